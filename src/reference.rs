@@ -120,16 +120,16 @@ impl Citation {
 /// The source of a figure in a file: `{ published = "…" }` or `{ computed = "…" }`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
-enum Source {
+enum FigureSource {
     Published(String),
     Computed(String),
 }
 
-impl From<&Source> for Citation {
-    fn from(source: &Source) -> Self {
+impl From<&FigureSource> for Citation {
+    fn from(source: &FigureSource) -> Self {
         match source {
-            Source::Published(text) => Self::Published(text.clone()),
-            Source::Computed(text) => Self::Computed(text.clone()),
+            FigureSource::Published(text) => Self::Published(text.clone()),
+            FigureSource::Computed(text) => Self::Computed(text.clone()),
         }
     }
 }
@@ -137,7 +137,7 @@ impl From<&Source> for Citation {
 /// One reference figure of a case.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Figure {
+struct ReferenceFigure {
     quantity: String,
     /// Empty for a dimensionless figure.
     unit: String,
@@ -149,13 +149,13 @@ struct Figure {
     /// Why so far.
     reason: Option<String>,
     /// Left out, that of the case.
-    source: Option<Source>,
+    source: Option<FigureSource>,
     /// Whether it stands in the short table of the README.
     #[serde(default)]
     headline: bool,
 }
 
-impl Figure {
+impl ReferenceFigure {
     /// Allowed deviation in the unit of the figure.
     fn allowed(&self) -> f64 {
         // half a digit, and the rounding of the comparison itself
@@ -167,19 +167,19 @@ impl Figure {
 /// A reference case: what is computed and the figures it should give.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Case {
+struct ReferenceCase {
     /// Name, as `aerodeck validate NAME` takes it.
     name: String,
     /// What is computed, in words.
     what: String,
-    source: Source,
-    figures: Vec<Figure>,
+    source: FigureSource,
+    figures: Vec<ReferenceFigure>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CaseFile {
-    case: Vec<Case>,
+    case: Vec<ReferenceCase>,
 }
 
 /// One figure after the computation.
@@ -216,7 +216,7 @@ pub struct CaseResult {
 }
 
 /// The cases of the files, in the order of [`COMPUTATIONS`].
-fn cases() -> Result<Vec<(Case, Compute)>> {
+fn cases() -> Result<Vec<(ReferenceCase, Compute)>> {
     let mut read = Vec::new();
     for text in FILES {
         let file: CaseFile = toml_lines::parse("a file of reference cases", text, |_| Ok(()))?;
@@ -265,7 +265,7 @@ pub fn run(name: &str) -> Result<Vec<CaseResult>> {
     Ok(case.run(*compute))
 }
 
-impl Case {
+impl ReferenceCase {
     fn run(&self, compute: Compute) -> Vec<CaseResult> {
         let values = compute().and_then(|values| {
             if values.len() == self.figures.len() {
@@ -277,14 +277,19 @@ impl Case {
                 self.figures.len()
             )))
         });
-        let judge = |(i, figure): (usize, &Figure)| match &values {
+        let judge = |(i, figure): (usize, &ReferenceFigure)| match &values {
             Ok(values) => self.result(figure, Some(values[i]), None),
             Err(error) => self.result(figure, None, Some(error.to_string())),
         };
         self.figures.iter().enumerate().map(judge).collect()
     }
 
-    fn result(&self, figure: &Figure, found: Option<f64>, problem: Option<String>) -> CaseResult {
+    fn result(
+        &self,
+        figure: &ReferenceFigure,
+        found: Option<f64>,
+        problem: Option<String>,
+    ) -> CaseResult {
         let deviation = found.map(|found| found - figure.expected);
         let usual = || "half of the last digit given".to_owned();
         CaseResult {
@@ -320,7 +325,7 @@ mod tests {
                 { quantity = "a", expected = 1.0, decimals = 3, unit = "m/s" },
                 { quantity = "b", expected = 1.0, decimals = 3, unit = "m/s" },
             ]"#;
-        let case: Case = toml::from_str(text).unwrap();
+        let case: ReferenceCase = toml::from_str(text).unwrap();
         let results = case.run(|| Ok(vec![1.0004, 1.0006]));
         assert!(results[0].passed && !results[1].passed);
         let broken: Compute = || Err(Error::Numerical("no roots".into()));

@@ -12,6 +12,7 @@ mod figure;
 mod first_order_figures;
 mod flutter_figures;
 mod font;
+mod geometry;
 mod heat_map;
 mod labels;
 mod legend;

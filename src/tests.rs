@@ -9,7 +9,7 @@ use crate::fmu::importer::Fmu;
 use crate::fmu::instance::Instance;
 use crate::fmu::package::{Export, FmiVersion, GrowthPolicy, Runtime, package};
 use crate::fmu::resources::{OptionFiles, Resources};
-use crate::fmu::variables::{Causality, Listing, Value};
+use crate::fmu::variables::{Causality, Listing, StartValue};
 use crate::study::{Study, demo_study_text};
 use crate::trained_model::TrainedModel;
 use rand::{Rng, SeedableRng};
@@ -101,8 +101,9 @@ fn run(resources: Resources) -> bool {
         return false;
     };
     let variables = instance.table().variables().iter().enumerate();
-    let outputs = variables
-        .filter(|(_, v)| v.causality == Causality::Output && matches!(v.value, Value::Real(_)));
+    let outputs = variables.filter(|(_, v)| {
+        v.causality == Causality::Output && matches!(v.value, StartValue::Real(_))
+    });
     let outputs: Vec<u32> = outputs.map(|(place, _)| place as u32).collect();
     instance.enter_initialization();
     if instance.exit_initialization().is_err() {

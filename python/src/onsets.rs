@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::section::{Section, place};
 use crate::work::Work;
 use aerodeck::section::SectionModel;
-use aerodeck::uncertainty::monte_carlo::{OnsetKind, Parameter, many_onsets};
+use aerodeck::uncertainty::monte_carlo::{OnsetKind, SectionProperty, many_onsets};
 use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -62,12 +62,12 @@ pub fn onsets(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Onsets> {
     let trained = model.get().trained(Some(section.get()))?;
-    let mut varied: Vec<(Parameter, Vec<f64>)> = Vec::new();
+    let mut varied: Vec<(SectionProperty, Vec<f64>)> = Vec::new();
     for (name, array) in values {
         let name: String = name.extract()?;
         place(&name, &mut trained.section.clone())?;
         let array: PyReadonlyArray1<f64> = array.extract()?;
-        let parameter = Parameter::named(&name).map_err(raised)?;
+        let parameter = SectionProperty::named(&name).map_err(raised)?;
         varied.push((parameter, array.as_array().to_vec()));
     }
     let count = varied.first().map_or(1, |v| v.1.len());

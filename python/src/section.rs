@@ -4,7 +4,7 @@ use crate::convert::{dof_names, from_python, shown, to_python};
 use crate::error::{raised, warned};
 use aerodeck::plausibility::of_section;
 use aerodeck::section::{Rotation, SectionModel, Translation};
-use aerodeck::uncertainty::monte_carlo::Parameter;
+use aerodeck::uncertainty::monte_carlo::SectionProperty;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -150,7 +150,7 @@ impl Section {
 
 /// The number of that name in a section.
 pub fn place<'a>(name: &str, section: &'a mut SectionModel) -> PyResult<&'a mut f64> {
-    let parameter = Parameter::named(name).map_err(raised)?;
+    let parameter = SectionProperty::named(name).map_err(raised)?;
     parameter.place(section).ok_or_else(|| {
         let expected =
             "a number that the section states (a support has either a frequency or a stiffness)";

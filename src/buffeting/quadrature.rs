@@ -32,7 +32,7 @@ const RULE: [(f64, f64, f64); 8] = [
     (0.0, 0.209_482_141_084_727_83, 0.417_959_183_673_469_4),
 ];
 
-struct Piece {
+struct QuadratureInterval {
     ends: (f64, f64),
     value: Vec<f64>,
     error: Vec<f64>,
@@ -61,7 +61,7 @@ pub(super) fn integrate(
         if error.iter().zip(&allowed).all(|(e, a)| e <= a) {
             return Ok((value, error));
         }
-        let badness = |p: &Piece| {
+        let badness = |p: &QuadratureInterval| {
             let parts = p.error.iter().zip(&allowed);
             parts
                 .map(|(e, a)| e / a.max(f64::MIN_POSITIVE))
@@ -80,9 +80,9 @@ pub(super) fn integrate(
     )))
 }
 
-fn totals(pieces: &[Piece]) -> (Vec<f64>, Vec<f64>) {
+fn totals(pieces: &[QuadratureInterval]) -> (Vec<f64>, Vec<f64>) {
     let components = pieces.first().map_or(0, |p| p.value.len());
-    let sum = |pick: fn(&Piece) -> &Vec<f64>| {
+    let sum = |pick: fn(&QuadratureInterval) -> &Vec<f64>| {
         (0..components)
             .map(|i| pieces.iter().map(|p| pick(p)[i]).sum())
             .collect()
@@ -90,7 +90,7 @@ fn totals(pieces: &[Piece]) -> (Vec<f64>, Vec<f64>) {
     (sum(|p| &p.value), sum(|p| &p.error))
 }
 
-fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, ends: (f64, f64)) -> Result<Piece> {
+fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, ends: (f64, f64)) -> Result<QuadratureInterval> {
     let (middle, half) = (0.5 * (ends.0 + ends.1), 0.5 * (ends.1 - ends.0));
     let mut kronrod: Vec<f64> = Vec::new();
     let mut gauss: Vec<f64> = Vec::new();
@@ -111,7 +111,7 @@ fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, ends: (f64, f64)) -> Result<Piece
         .zip(&gauss)
         .map(|(k, g)| (k - g).abs())
         .collect();
-    Ok(Piece {
+    Ok(QuadratureInterval {
         ends,
         value: kronrod,
         error,

@@ -65,12 +65,12 @@ pub(crate) fn turning(
     speed_m_s: f64,
 ) -> Result<Turning> {
     positive("wind speed", speed_m_s)?;
-    let at = |f: f64| -> Result<Point> {
+    let at = |f: f64| -> Result<DeterminantPoint> {
         let phase = phase(impedance(structure, model, speed_m_s, TAU * f)?);
-        Ok(Point { hertz: f, phase })
+        Ok(DeterminantPoint { hertz: f, phase })
     };
     let mut passed = Vec::new();
-    let mut before: Option<Point> = None;
+    let mut before: Option<DeterminantPoint> = None;
     for f in frequencies(structure) {
         let next = at(f)?;
         match &before {
@@ -94,7 +94,7 @@ pub(crate) fn turning(
 }
 
 /// The determinant over its size at a frequency.
-struct Point {
+struct DeterminantPoint {
     hertz: f64,
     phase: Complex<f64>,
 }
@@ -148,9 +148,9 @@ fn off_axis(z: Complex<f64>) -> f64 {
 
 /// Adds the turning between two frequencies to `passed`, by halves until it is small.
 fn turn(
-    at: &impl Fn(f64) -> Result<Point>,
-    a: &Point,
-    b: &Point,
+    at: &impl Fn(f64) -> Result<DeterminantPoint>,
+    a: &DeterminantPoint,
+    b: &DeterminantPoint,
     depth: usize,
     passed: &mut Vec<(f64, f64)>,
 ) -> Result<()> {

@@ -103,7 +103,7 @@ pub fn compare(
 }
 
 /// Grid of the records of a plan.
-struct Grid {
+struct TimeGrid {
     step_s: f64,
     samples: usize,
     warm_up: usize,
@@ -158,7 +158,7 @@ fn grid(
     section: &CoupledSection,
     speed_m_s: f64,
     plan: &TimePlan,
-) -> Result<Grid> {
+) -> Result<TimeGrid> {
     let slowest = section
         .at(speed_m_s)?
         .eigenvalues()?
@@ -191,7 +191,7 @@ fn grid(
     }
     // an even number of samples
     let samples = 2 * (0.5 * duration / step_s).round() as usize;
-    Ok(Grid {
+    Ok(TimeGrid {
         step_s,
         samples,
         warm_up: ((warm_up_s / step_s).ceil() as usize).min(samples),
@@ -203,7 +203,7 @@ fn mean_squares(
     problem: &BuffetingProblem<'_>,
     section: &CoupledSection,
     speed: f64,
-    grid: &Grid,
+    grid: &TimeGrid,
     seed: u64,
 ) -> Result<(Vec<f64>, [f64; 2])> {
     let sample = synthesise(problem, speed, (grid.step_s, grid.samples), seed)?;
@@ -229,7 +229,7 @@ fn mean_squares(
     Ok((squares, sample.expected_variance))
 }
 
-fn gathered(speed_m_s: f64, grid: &Grid, runs: Vec<(Vec<f64>, [f64; 2])>) -> Ensemble {
+fn gathered(speed_m_s: f64, grid: &TimeGrid, runs: Vec<(Vec<f64>, [f64; 2])>) -> Ensemble {
     let count = runs.len() as f64;
     let n = runs.first().map_or(0, |(squares, _)| squares.len());
     let column = |i: usize| runs.iter().map(move |(squares, _)| squares[i]);

@@ -22,19 +22,19 @@ use crate::error::Result;
 
 /// Flutter of whole bridges, their modes, and modes of finite-element programs
 #[derive(clap::Subcommand)]
-pub(super) enum Bridge {
-    Flutter(flutter::Args),
-    Show(show::Args),
-    Buffeting(buffeting::Args),
-    Convert(convert::Args),
+pub(super) enum BridgeCommand {
+    Flutter(flutter::BridgeFlutterArgs),
+    Show(show::BridgeShowArgs),
+    Buffeting(buffeting::BridgeBuffetingArgs),
+    Convert(convert::BridgeConvertArgs),
 }
 
 /// Runs the command.
-pub(super) fn run(command: &Bridge, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(command: &BridgeCommand, progress: &Progress) -> Result<Answer> {
     match command {
-        Bridge::Flutter(args) => flutter::run(args, progress),
-        Bridge::Show(args) => show::run(args, progress),
-        Bridge::Buffeting(args) => buffeting::run(args, progress),
-        Bridge::Convert(args) => convert::run(args),
+        BridgeCommand::Flutter(args) => flutter::run(args, progress),
+        BridgeCommand::Show(args) => show::run(args, progress),
+        BridgeCommand::Buffeting(args) => buffeting::run(args, progress),
+        BridgeCommand::Convert(args) => convert::run(args),
     }
 }

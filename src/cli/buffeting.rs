@@ -17,13 +17,13 @@ const TABLE_LINES: usize = 15;
 /// Example: aerodeck buffeting wind.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct BuffetingArgs {
     #[command(flatten)]
     wind: WindArgs,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.wind.open()?;
     let stage = progress.steps("records in the time domain");
     let results = buffeting_study(&study, &|done, all| stage.at(done as u64, all as u64))?;

@@ -9,15 +9,15 @@ use crate::error::Result;
 
 /// Raw wind-tunnel campaigns: check the files of a laboratory, or invent a campaign with a known truth
 #[derive(clap::Subcommand)]
-pub(crate) enum Campaign {
-    Check(check::Args),
-    Virtual(invent::Args),
+pub(crate) enum CampaignCommand {
+    Check(check::CampaignCheckArgs),
+    Virtual(invent::VirtualCampaignArgs),
 }
 
 /// Runs the command.
-pub(crate) fn run(command: &Campaign, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(command: &CampaignCommand, progress: &Progress) -> Result<Answer> {
     match command {
-        Campaign::Check(args) => check::run(args, progress),
-        Campaign::Virtual(args) => invent::run(args, progress),
+        CampaignCommand::Check(args) => check::run(args, progress),
+        CampaignCommand::Virtual(args) => invent::run(args, progress),
     }
 }

@@ -15,9 +15,9 @@ use std::path::PathBuf;
 /// Predicted against measured forces: one model on several decks, several models on one, or two signals of a file
 #[derive(clap::Subcommand)]
 pub(crate) enum Compare {
-    Decks(decks::Args),
-    Models(models::Args),
-    Signals(signals::Args),
+    Decks(decks::CompareDecksArgs),
+    Models(models::CompareModelsArgs),
+    Signals(signals::CompareSignalsArgs),
 }
 
 /// Sections 3.5.4 to 3.5.6 of the thesis on rebuilt records: its sentences beside what is found, and the figures.

@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck coverage --family 400
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct CoverageArgs {
     /// Number of repetitions.
     #[arg(long, default_value_t = 500)]
     repetitions: usize,
@@ -61,7 +61,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
     if let Some(decks) = args.family {
         let plan = FamilyPlan {
             decks,

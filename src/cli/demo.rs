@@ -18,7 +18,7 @@ const STUDY_FILE: &str = "study.toml";
 /// Example: aerodeck demo --bridge --out first-bridge
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct DemoArgs {
     /// Where the results go.
     #[arg(long, default_value = "aerodeck-out")]
     out: PathBuf,
@@ -31,7 +31,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &DemoArgs, progress: &Progress) -> Result<Answer> {
     if args.bridge {
         return super::bridge::demo::run(&args.out, args.force, progress);
     }

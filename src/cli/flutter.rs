@@ -19,7 +19,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck flutter study.toml --all
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct FlutterArgs {
     #[command(flatten)]
     study: StudyArgs,
     /// Every route side by side: eigenvalues, determinant, p-k iteration, quasi-steady limit, flat plate, Selberg and
@@ -29,7 +29,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();

@@ -9,15 +9,15 @@ use crate::error::Result;
 
 /// Export and check FMUs
 #[derive(clap::Subcommand)]
-pub(super) enum Fmu {
-    Export(Box<export::Args>),
-    Check(check::Args),
+pub(super) enum FmuCommand {
+    Export(Box<export::FmuExportArgs>),
+    Check(check::FmuCheckArgs),
 }
 
 /// Runs the command.
-pub(super) fn run(command: &Fmu, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(command: &FmuCommand, progress: &Progress) -> Result<Answer> {
     match command {
-        Fmu::Export(args) => export::run(args, progress),
-        Fmu::Check(args) => check::run(args, progress),
+        FmuCommand::Export(args) => export::run(args, progress),
+        FmuCommand::Check(args) => check::run(args, progress),
     }
 }

@@ -26,14 +26,14 @@ pub(super) fn write(
     out: &mut OutputDir,
 ) -> Result<()> {
     let wanted = ReducedFrequency::from_hertz(onset.1, model.section.width_m, onset.0);
-    let mut chosen: Vec<Stretch> = Vec::new();
+    let mut chosen: Vec<RecordExcerpt> = Vec::new();
     for source in records.select(None)? {
         let header = source.header();
         if header.dofs != crate::aerodynamics::Transfer::dofs(&model.model) {
             continue;
         }
         let record = Record::whole(source)?;
-        let Some(stretch) = Stretch::nearest(record, wanted.full_width()) else {
+        let Some(stretch) = RecordExcerpt::nearest(record, wanted.full_width()) else {
             continue;
         };
         match chosen.iter_mut().find(|c| c.motion == stretch.motion) {
@@ -50,7 +50,10 @@ pub(super) fn write(
     for stretch in &chosen {
         panels.extend(stretch.panels(model, origin)?);
     }
-    let descriptions = chosen.iter().map(Stretch::describe).collect::<Vec<_>>();
+    let descriptions = chosen
+        .iter()
+        .map(RecordExcerpt::describe)
+        .collect::<Vec<_>>();
     let title = format!("Forces by {}", descriptions.join(", by "));
     figures::write(FORCES, out, || {
         time_history_figure(&title, &panels, "Periods of the motion")
@@ -58,7 +61,7 @@ pub(super) fn write(
 }
 
 /// A few periods of a record.
-struct Stretch {
+struct RecordExcerpt {
     record: Record,
     motion: Dof,
     frequency_hz: f64,
@@ -67,7 +70,7 @@ struct Stretch {
     off: f64,
 }
 
-impl Stretch {
+impl RecordExcerpt {
     /// The stretch of the record whose reduced frequency is nearest; of a record without harmonic stretches its middle, with
     /// periods of that reduced frequency.
     fn nearest(record: Record, k: f64) -> Option<Self> {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck monte-carlo scatter.toml --samples 100000
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct MonteCarloArgs {
     /// What is random (`.toml`); names the trained model.
     plan: PathBuf,
     /// Number of samples instead of that of the file.
@@ -31,7 +31,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> {
     let text = read_text(&args.plan)?;
     let folder = args.plan.parent().unwrap_or(Path::new(""));
     let mut plan = MonteCarloPlan::from_toml(&text, folder.to_path_buf())

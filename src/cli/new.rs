@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck new --workbook AerodynamicDerivatives_LN21_5200.xlsx --out my-bridge.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct NewArgs {
     /// An embedded deck (see `aerodeck derivatives show --help`) or `flat plate`.
     #[arg(long, default_value = "LN21-5200")]
     deck: String,
@@ -27,7 +27,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<Answer> {
+pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
     let folder = args.out.parent().filter(|p| !p.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     let name = args.out.file_name().ok_or_else(|| {

@@ -32,7 +32,7 @@ const UNITS: [(&str, &str); 13] = [
 /// Example: aerodeck plot aerodeck-out/curves.csv --x speed_m_s --y frequency_hz,damping_ratio
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct PlotArgs {
     /// The file (`curves.csv`, `simulation.csv`, a record, …). Columns of text tell curves apart.
     file: PathBuf,
     /// Abscissa; by default the first column of numbers.
@@ -47,8 +47,8 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<Answer> {
-    let table = Table::read(&args.file)?;
+pub(crate) fn run(args: &PlotArgs) -> Result<Answer> {
+    let table = ResultTable::read(&args.file)?;
     let numbers: Vec<usize> = (0..table.names.len())
         .filter(|c| table.is_number(*c))
         .collect();
@@ -97,12 +97,12 @@ fn label(name: &str) -> String {
     unit.map_or(words.clone(), |unit| format!("{words} ({unit})"))
 }
 
-struct Table {
+struct ResultTable {
     names: Vec<String>,
     rows: Vec<Vec<String>>,
 }
 
-impl Table {
+impl ResultTable {
     fn read(path: &Path) -> Result<Self> {
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))

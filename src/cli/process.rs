@@ -40,7 +40,7 @@ const STUDY: &str = "study.toml";
 /// Example: aerodeck process campaign.toml --out results
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct ProcessArgs {
     /// The campaign file.
     campaign: PathBuf,
     /// Folder of the results.
@@ -71,7 +71,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.answer(text, value)
 }
 
-impl Args {
+impl ProcessArgs {
     fn options(&self) -> Result<ProcessingOptions> {
         let mut options = match &self.options {
             None => ProcessingOptions::default(),
@@ -180,7 +180,7 @@ fn draw_stages(processed: &Processed, out: &mut OutputDir, progress: &Progress) 
 
 /// The derivatives with all that is known of them, and their figure.
 fn write_derivatives(
-    args: &Args,
+    args: &ProcessArgs,
     raw: &RawCampaign,
     found: &IdentifiedDerivatives,
     out: &mut OutputDir,

@@ -28,13 +28,13 @@ const TABLE_LINES: usize = 15;
 /// Example: aerodeck quasi-steady wind.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct QuasiSteadyArgs {
     #[command(flatten)]
     wind: WindArgs,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &QuasiSteadyArgs, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.wind.open()?;
     let stage = progress.stage("equilibria and modes over wind speed");
     let results = quasi_steady_study(&study)?;

@@ -21,7 +21,7 @@ use crate::flutter::{Onset, OnsetMethod};
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
-use folder::{Kind, digest, parsed};
+use folder::{SummaryKind, digest, parsed};
 use parts::{card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
@@ -32,13 +32,13 @@ use view::{EntryView, FitView, SummaryView};
 /// Example: aerodeck report aerodeck-out
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct ReportArgs {
     /// The folder of results.
     folder: PathBuf,
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args) -> Result<Answer> {
+pub(super) fn run(args: &ReportArgs) -> Result<Answer> {
     let page = page(&args.folder, &args.folder)?;
     let mut out = OutputDir::new(&args.folder)?;
     out.write(REPORT, page)?;
@@ -53,7 +53,7 @@ pub(super) fn run(args: &Args) -> Result<Answer> {
 pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     let path = folder.join(SUMMARY);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-    let kind: Kind = parsed(&path, &text)?;
+    let kind: SummaryKind = parsed(&path, &text)?;
     if kind.bridge.is_some() {
         return bridge::page(folder, &text);
     }

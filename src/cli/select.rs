@@ -25,7 +25,7 @@ pub(crate) const SELECTED: &str = "selected";
 /// Example: aerodeck select study.toml --filters 8 --values 25 --write selected.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct SelectArgs {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
@@ -45,8 +45,8 @@ pub(crate) struct Args {
 #[derive(clap::Args)]
 pub(crate) struct Choice {
     /// Continuous filters over `L` and `p`, or the thesis's discrete ones over `L` and `α`.
-    #[arg(long, value_enum, default_value_t = Kind::Continuous)]
-    kind: Kind,
+    #[arg(long, value_enum, default_value_t = ModelKind::Continuous)]
+    kind: ModelKind,
     /// Greatest number of filters.
     #[arg(long, default_value_t = 8)]
     filters: usize,
@@ -64,7 +64,7 @@ pub(crate) struct Choice {
 impl Default for Choice {
     fn default() -> Self {
         Self {
-            kind: Kind::Continuous,
+            kind: ModelKind::Continuous,
             filters: 8,
             values: 25,
             min: None,
@@ -74,13 +74,13 @@ impl Default for Choice {
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
-enum Kind {
+enum ModelKind {
     Continuous,
     Discrete,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let made: Vec<Record>;
@@ -180,7 +180,7 @@ fn recommended(
         table: None,
         discrete: None,
     };
-    if choice.kind == Kind::Discrete {
+    if choice.kind == ModelKind::Discrete {
         let given = study.models.iter().find_map(|m| m.discrete.clone());
         block.discrete = Some(DiscreteFit {
             filters: found.filters,
@@ -211,7 +211,12 @@ fn records_fit(study: &Study) -> TimeFit {
 }
 
 /// Paths in a study are read against its folder, so that is where the new one goes.
-fn write_study(args: &Args, study: &Study, block: ModelBlock, name: &Path) -> Result<Vec<Written>> {
+fn write_study(
+    args: &SelectArgs,
+    study: &Study,
+    block: ModelBlock,
+    name: &Path,
+) -> Result<Vec<Written>> {
     if name.components().count() != 1 {
         let expected = "a name without a folder: paths in the study are read against its own";
         return Err(Error::input(
@@ -242,7 +247,7 @@ fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result
         ));
     }
     let last = choice.values as f64 - 1.0;
-    if choice.kind == Kind::Discrete {
+    if choice.kind == ModelKind::Discrete {
         let (low, high) = (choice.min.unwrap_or(0.2), choice.max.unwrap_or(0.98));
         let given = study.models.iter().find_map(|m| m.discrete.as_ref());
         let weights = given.map_or(TimeWeights::None, |d| d.weights);

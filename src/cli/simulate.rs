@@ -22,7 +22,7 @@ const MAX_STEPS: f64 = 1e7;
 /// Example: aerodeck simulate model.json --wind-speed 35 --stop-time 20
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct SimulateArgs {
     /// The trained model (see `train`).
     model: PathBuf,
     /// Wind speed, m/s; by default that of the model's experiment, just below the onset.
@@ -98,7 +98,7 @@ fn verdict(modes: &[ModeSummary]) -> String {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<Answer> {
+pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let e = &model.experiment;
     let speed = positive("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;

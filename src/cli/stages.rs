@@ -85,7 +85,7 @@ pub(crate) fn train(
             block,
             deck,
             records.unwrap_or(&none),
-            &|p: identification::Progress| {
+            &|p: identification::FitProgress| {
                 let total = (p.passes * p.records) as u64;
                 let done = ((p.pass - 1) * p.records + p.records_done) as u64;
                 stage.at(done, total);

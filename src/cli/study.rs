@@ -24,7 +24,7 @@ use std::path::PathBuf;
 /// Example: aerodeck study study.toml --out results
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct RunStudyArgs {
     #[command(flatten)]
     study: StudyArgs,
     /// Export a model that grows below its onset, at reduced frequencies that were not tested.
@@ -40,7 +40,7 @@ const RECORDS: &str = "records";
 const STEPPING: &str = "stepping the FMU";
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &RunStudyArgs, progress: &Progress) -> Result<Answer> {
     let (study, text) = args.study.read_with_text()?;
     let mut out = OutputDir::new(&args.study.directory())?;
     if args.force {
@@ -64,7 +64,7 @@ pub(crate) fn run_chain(
 ) -> Result<Answer> {
     let deck = Deck::load(ran.study)?;
     let study_file = study_run::leave(ran, &mut out)?;
-    let mut chain = Chain {
+    let mut chain = StudyStages {
         study: ran.study.clone(),
         deck,
         out,
@@ -88,7 +88,7 @@ pub(crate) fn run_chain(
 }
 
 /// A study on its way through the stages.
-struct Chain<'a> {
+struct StudyStages<'a> {
     /// With the selected model, once there is one.
     study: Study,
     deck: Deck,
@@ -97,7 +97,7 @@ struct Chain<'a> {
     progress: &'a Progress,
 }
 
-impl Chain<'_> {
+impl StudyStages<'_> {
     /// The value of a stage; a failure is noted.
     fn attempt<T>(&mut self, stage: &str, result: Result<T>) -> Result<Option<T>> {
         attempt(&mut self.failed, stage, result)

@@ -20,14 +20,14 @@ const PRINTED_M_S: f64 = 37.6;
 /// Example: aerodeck thesis --out thesis
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct ThesisArgs {
     /// Write thesis.html into this folder: every figure and table that can be computed, its numbers beside ours.
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;

@@ -14,13 +14,13 @@ use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
 /// Example: aerodeck train study.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct TrainArgs {
     #[command(flatten)]
     study: StudyArgs,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();

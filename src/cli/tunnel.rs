@@ -14,13 +14,13 @@ use std::fmt::Write as _;
 /// Example: aerodeck tunnel study.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct TunnelArgs {
     #[command(flatten)]
     study: StudyArgs,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &TunnelArgs, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let mut out = OutputDir::new(&args.study.directory())?;

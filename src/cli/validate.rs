@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Example: aerodeck validate --case my_bridge.toml --case my_deck.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct ValidateArgs {
     /// One case by name; by default, all.
     name: Option<String>,
     /// A case of your own (`.toml`); may be given several times.
@@ -25,7 +25,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &ValidateArgs, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("reference cases");
     let results = match &args.name {
         Some(name) => run_case(name)?,

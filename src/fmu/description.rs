@@ -7,9 +7,9 @@ use super::identity::MODEL_IDENTIFIER;
 use super::log_categories::LOG_CATEGORIES;
 use super::package::Label;
 use super::resources::Resources;
-use super::si::Unit;
+use super::si::SiUnit;
 use super::standard::FmiTerm;
-use super::variables::{Causality, ListedVariables, Listing, Value, Variable, VariableTable};
+use super::variables::{Causality, ListedVariables, Listing, StartValue, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
@@ -131,7 +131,7 @@ fn interfaces(table: &VariableTable) -> Vec<Element> {
 
 /// Every unit that a variable uses, once, in the order of first use.
 pub(super) fn units(table: &VariableTable) -> Result<Vec<Element>> {
-    let mut used: Vec<&'static Unit> = Vec::new();
+    let mut used: Vec<&'static SiUnit> = Vec::new();
     for unit in table.variables().iter().filter_map(|v| v.unit) {
         if used.iter().all(|u| u.name != unit.name) {
             used.push(unit);
@@ -140,7 +140,7 @@ pub(super) fn units(table: &VariableTable) -> Result<Vec<Element>> {
     used.into_iter().map(unit_definition).collect()
 }
 
-fn unit_definition(unit: &Unit) -> Result<Element> {
+fn unit_definition(unit: &SiUnit) -> Result<Element> {
     let mut base = Element::new("BaseUnit");
     let b = unit.base;
     for (name, exponent) in [("kg", b.kg), ("m", b.m), ("s", b.s), ("rad", b.rad)] {
@@ -193,7 +193,7 @@ fn typed(v: &Variable) -> Result<Element> {
     let element = Element::new(v.value.type_name());
     let text = |x: Option<f64>| x.map(number).transpose();
     Ok(match &v.value {
-        Value::Real(start) => element
+        StartValue::Real(start) => element
             .with_any("quantity", v.quantity)
             .with_any("unit", v.unit.map(|u| u.name))
             .with_any("displayUnit", v.display_unit)
@@ -202,9 +202,9 @@ fn typed(v: &Variable) -> Result<Element> {
             .with_any("nominal", text(v.nominal)?)
             .with_any("start", text(*start)?)
             .with_any("derivative", v.derivative_of.map(|state| state + 1)),
-        Value::Integer(start) => element.with_any("start", *start),
-        Value::Boolean(start) => element.with_any("start", *start),
-        Value::String(start) => element.with("start", start),
+        StartValue::Integer(start) => element.with_any("start", *start),
+        StartValue::Boolean(start) => element.with_any("start", *start),
+        StartValue::String(start) => element.with("start", start),
     })
 }
 

@@ -6,7 +6,7 @@ use super::identity::MODEL_IDENTIFIER;
 use super::package::Label;
 use super::resources::Resources;
 use super::standard::FmiTerm;
-use super::variables::{Causality, InitialDependency, Value, Variable, VariableTable};
+use super::variables::{Causality, InitialDependency, StartValue, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::Result;
 use std::collections::BTreeSet;
@@ -91,10 +91,10 @@ impl GroupedVariables<'_> {
     fn variable(&self, reference: usize, places: &[u32]) -> Result<Element> {
         let v = self.at(places[0]);
         let kind = match v.value {
-            Value::Real(_) => "Float64",
-            Value::Integer(_) => "Int32",
-            Value::Boolean(_) => "Boolean",
-            Value::String(_) => "String",
+            StartValue::Real(_) => "Float64",
+            StartValue::Integer(_) => "Int32",
+            StartValue::Boolean(_) => "Boolean",
+            StartValue::String(_) => "String",
         };
         let text = |x: Option<f64>| x.map(number).transpose();
         let array = array_of(v.role, &v.name);
@@ -110,9 +110,9 @@ impl GroupedVariables<'_> {
             .with("variability", v.variability.word())
             .with_any("initial", v.initial.map(FmiTerm::word));
         let element = match &v.value {
-            Value::Real(_) => {
+            StartValue::Real(_) => {
                 let starts = places.iter().filter_map(|p| match self.at(*p).value {
-                    Value::Real(start) => start.map(number),
+                    StartValue::Real(start) => start.map(number),
                     _ => None,
                 });
                 let starts = starts.collect::<Result<Vec<_>>>()?;
@@ -127,9 +127,9 @@ impl GroupedVariables<'_> {
                     .with_any("start", (!starts.is_empty()).then(|| starts.join(" ")))
                     .with_any("derivative", state)
             }
-            Value::Integer(start) => element.with_any("start", *start),
-            Value::Boolean(start) => element.with_any("start", *start),
-            Value::String(start) => {
+            StartValue::Integer(start) => element.with_any("start", *start),
+            StartValue::Boolean(start) => element.with_any("start", *start),
+            StartValue::String(start) => {
                 element.containing([Element::new("Start").with("value", start)])
             }
         };

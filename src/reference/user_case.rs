@@ -93,7 +93,7 @@ pub(crate) struct UserRational {
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserFigure {
     /// What.
-    pub quantity: Quantity,
+    pub quantity: FigureQuantity,
     /// Route of the onset; left out, eigenvalues where the forces have a realisation, else the determinant.
     pub route: Option<OnsetMethod>,
     /// Wind speed of a mode in wind, m/s.
@@ -114,7 +114,7 @@ pub(crate) struct UserFigure {
 /// What a figure of a case file can be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Quantity {
+pub(crate) enum FigureQuantity {
     /// Onset speed, m/s.
     OnsetSpeed,
     /// Frequency at onset, Hz.
@@ -141,7 +141,7 @@ pub(crate) enum Quantity {
     ModeDampingRatio,
 }
 
-impl Quantity {
+impl FigureQuantity {
     /// Name and unit in words.
     pub(crate) fn words(self) -> (&'static str, &'static str) {
         match self {

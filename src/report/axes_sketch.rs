@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::font::FAMILIES;
-use super::scene::Px;
+use super::geometry::Px;
 use super::style::{BLACK, COLOURS};
 use crate::aerodynamics::derivatives::notation::Axes;
 use std::fmt::Write as _;

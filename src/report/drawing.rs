@@ -2,9 +2,10 @@
 
 use super::figure::Figure;
 use super::font::text_width;
+use super::geometry::Px;
 use super::legend::{Entry, LegendLayout, lay_out};
 use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
-use super::scene::{Px, Scene};
+use super::scene::Scene;
 use super::style::BLACK;
 use crate::error::{Error, Result};
 

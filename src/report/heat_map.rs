@@ -1,8 +1,8 @@
 //! A number over a grid of two parameters, as cells of colour.
 
 use super::figure::Figure;
-use super::labels::Area;
-use super::scene::{Anchor, Px, Scene};
+use super::geometry::{Area, Px};
+use super::scene::{Anchor, Scene};
 use super::style::{BLACK, GREY, Stroke};
 use crate::error::{Error, Result};
 

@@ -1,7 +1,8 @@
 //! The legend below the panels: rows of samples and names, never over a curve.
 
 use super::font::text_width;
-use super::scene::{Px, Scene};
+use super::geometry::Px;
+use super::scene::Scene;
 use super::style::{BLACK, Ink};
 use crate::error::Result;
 

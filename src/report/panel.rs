@@ -2,8 +2,9 @@
 
 use super::axis::{Axis, Scale};
 use super::font::text_width;
-use super::labels::{Area, Labels};
-use super::scene::{Anchor, Px, Scene};
+use super::geometry::{Area, Px};
+use super::labels::Labels;
+use super::scene::{Anchor, Scene};
 use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, Stroke};
 use crate::error::{Error, Result};
 

@@ -2,43 +2,15 @@
 
 use super::figure::Figure;
 use super::font::FAMILIES;
-use super::labels::Area;
+use super::geometry::{Area, Px};
 use super::style::{BLACK, Marker, Shape, Stroke};
 use quick_xml::escape::escape;
 use std::fmt::{Display, Write as _};
-use std::ops::Add;
 use uuid::Uuid;
 
 /// Beginning of the names of clip paths before the figure has a name of its own.
 const CLIP: &str = "clip-of-the-figure-";
 const WHITE: &str = "#ffffff";
-
-/// A place, or the way between two, px.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Px {
-    pub(super) x: f64,
-    pub(super) y: f64,
-}
-
-impl Px {
-    pub(super) const fn new(x: f64, y: f64) -> Self {
-        Self { x, y }
-    }
-}
-
-impl Add for Px {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y)
-    }
-}
-
-impl Display for Px {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {}", rounded(self.x), rounded(self.y))
-    }
-}
 
 /// Which part of a text stands at its point, where it is not the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -215,6 +187,12 @@ impl Display for Stroke {
         write!(f, " stroke=\"{colour}\" stroke-width=\"{width}\"")?;
         self.dash
             .map_or(Ok(()), |d| write!(f, " stroke-dasharray=\"{d}\""))
+    }
+}
+
+impl Display for Px {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {}", rounded(self.x), rounded(self.y))
     }
 }
 

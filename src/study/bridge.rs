@@ -14,7 +14,7 @@ pub use answers::{
 };
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
 pub use export::BridgeExportOptions;
-pub use forces::SectionForces;
+pub use forces::SectionForceModels;
 pub(crate) use forces::block_table;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
@@ -23,7 +23,7 @@ use super::speeds::reaching;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
-use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
+use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
 use crate::plausibility::{Finding, of_bridge, of_coefficients, sentences};
 use crate::section::Dof;
@@ -52,7 +52,7 @@ pub struct BridgeStudy {
     /// With tables where there are some; `None` without any.
     pub by_table: Option<Bridge>,
     /// Forces of each section, in the order of the file.
-    pub sections: Vec<SectionForces>,
+    pub sections: Vec<SectionForceModels>,
     /// Section of each group.
     section_of_group: Vec<usize>,
     /// What a reader should know: simplifications, what was assumed.
@@ -73,20 +73,20 @@ impl BridgeStudy {
     /// The same, with models at hand for some sections.
     pub(crate) fn with_trained(
         file: BridgeFile,
-        trained: impl Fn(&SectionBlock) -> Option<(TrainedModel, KnownUncertainty)>,
+        trained: impl Fn(&BridgeSectionBlock) -> Option<(TrainedModel, KnownUncertainty)>,
     ) -> Result<Self> {
         let modes = file.read_modes()?;
         let mut notes = Vec::new();
         let mut findings = modes.findings();
-        let section = |block: &SectionBlock| {
-            SectionForces::of(block, trained(block), &file.directory, &mut findings)
+        let section = |block: &BridgeSectionBlock| {
+            SectionForceModels::of(block, trained(block), &file.directory, &mut findings)
         };
-        let sections: Vec<SectionForces> =
+        let sections: Vec<SectionForceModels> =
             file.sections.iter().map(section).collect::<Result<_>>()?;
         notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));
         let parts = groups(&file, &modes, &mut notes)?;
         let bridge = |table: bool| {
-            let group = |part: &Part| StripGroup {
+            let group = |part: &SectionNodes| StripGroup {
                 name: file.sections[part.section].name.clone(),
                 width_m: file.sections[part.section].width_m,
                 wind_factor: part.factor,
@@ -213,13 +213,17 @@ impl BridgeStudy {
 }
 
 /// Nodes of one section in one wind.
-struct Part {
+struct SectionNodes {
     section: usize,
     factor: f64,
     nodes: Vec<usize>,
 }
 
-fn groups(file: &BridgeFile, modes: &Modes, notes: &mut Vec<String>) -> Result<Vec<Part>> {
+fn groups(
+    file: &BridgeFile,
+    modes: &BridgeModes,
+    notes: &mut Vec<String>,
+) -> Result<Vec<SectionNodes>> {
     let mut parts = Vec::new();
     for (section, block) in file.sections.iter().enumerate() {
         let (first, last) = ends(block, modes, section)?;
@@ -246,7 +250,7 @@ fn groups(file: &BridgeFile, modes: &Modes, notes: &mut Vec<String>) -> Result<V
             };
             by_wind.entry(wind.to_bits()).or_default().push(node);
         }
-        parts.extend(by_wind.into_iter().map(|(bits, nodes)| Part {
+        parts.extend(by_wind.into_iter().map(|(bits, nodes)| SectionNodes {
             section,
             factor: f64::from_bits(bits),
             nodes,
@@ -256,7 +260,7 @@ fn groups(file: &BridgeFile, modes: &Modes, notes: &mut Vec<String>) -> Result<V
 }
 
 /// Places of the first and the last node of a section.
-fn ends(block: &SectionBlock, modes: &Modes, section: usize) -> Result<(usize, usize)> {
+fn ends(block: &BridgeSectionBlock, modes: &BridgeModes, section: usize) -> Result<(usize, usize)> {
     let last = modes.nodes.len().saturating_sub(1);
     let place = |key: &str, name: &Option<String>, otherwise: usize| match name {
         None => Ok(otherwise),

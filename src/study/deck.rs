@@ -30,7 +30,7 @@ const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 /// Where the aerodynamics of a study come from.
 #[derive(Debug, Clone)]
 pub struct Deck {
-    source: Source,
+    source: DeckData,
     interpolation: Interpolation,
     /// What was assumed in reading the table.
     notes: Vec<String>,
@@ -42,7 +42,7 @@ pub struct Deck {
 }
 
 #[derive(Debug, Clone)]
-enum Source {
+enum DeckData {
     Table(DerivativeTable),
     FlatPlate,
 }
@@ -68,7 +68,7 @@ impl Deck {
         let is_file = is_table_file(name);
         let mut convention = Convention::default();
         let source = if name.eq_ignore_ascii_case(FLAT_PLATE) {
-            Source::FlatPlate
+            DeckData::FlatPlate
         } else if is_file {
             let options = ReadOptions {
                 convention: study.deck.convention,
@@ -82,9 +82,9 @@ impl Deck {
             table
                 .header
                 .state_angle("deck.angle_deg", study.deck.angle_deg)?;
-            Source::Table(table)
+            DeckData::Table(table)
         } else {
-            Source::Table(embedded::deck(name)?)
+            DeckData::Table(embedded::deck(name)?)
         };
         if !is_file && !study.deck.convention.is_empty() {
             return Err(Error::input(
@@ -103,7 +103,7 @@ impl Deck {
                 format!("source `{name}`"),
             ));
         }
-        if let Source::Table(table) = &source {
+        if let DeckData::Table(table) = &source {
             table.require(&dofs)?;
         } else if dofs != Dof::TWO {
             return Err(Error::input(
@@ -113,7 +113,7 @@ impl Deck {
             ));
         }
         let (mut notes, mut findings) = (Vec::new(), Vec::new());
-        if let (Source::Table(table), true) = (&source, is_file) {
+        if let (DeckData::Table(table), true) = (&source, is_file) {
             // derivatives have no dimension: the width of an answer is that of the section, which is stated
             let of_answer = table.header.notes.iter();
             notes.extend(of_answer.filter(|n| !n.starts_with(WIDTH_ASSUMED)).cloned());
@@ -122,7 +122,7 @@ impl Deck {
                 notes.extend(study.tunnel.assumption(table));
             }
         }
-        let built_in = matches!(source, Source::Table(_)) && !is_file;
+        let built_in = matches!(source, DeckData::Table(_)) && !is_file;
         Ok(Self {
             source,
             notes,
@@ -136,8 +136,8 @@ impl Deck {
     /// The deck in words.
     pub(crate) fn description(&self) -> String {
         match &self.source {
-            Source::Table(table) => format!("{}: {}", table.name, table.header.source),
-            Source::FlatPlate => "flat plate, Theodorsen's theory, exact".to_owned(),
+            DeckData::Table(table) => format!("{}: {}", table.name, table.header.source),
+            DeckData::FlatPlate => "flat plate, Theodorsen's theory, exact".to_owned(),
         }
     }
 
@@ -145,33 +145,33 @@ impl Deck {
     pub(crate) fn licence(&self) -> String {
         match &self.source {
             // the notice has to go wherever the figures go
-            Source::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
-            Source::Table(table) => table.header.licence.clone(),
-            Source::FlatPlate => "none needed: a closed formula".to_owned(),
+            DeckData::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
+            DeckData::Table(table) => table.header.licence.clone(),
+            DeckData::FlatPlate => "none needed: a closed formula".to_owned(),
         }
     }
 
     /// Name of its table; none for a closed formula.
     pub(crate) fn table_name(&self) -> Option<&str> {
         match &self.source {
-            Source::Table(table) => Some(&table.name),
-            Source::FlatPlate => None,
+            DeckData::Table(table) => Some(&table.name),
+            DeckData::FlatPlate => None,
         }
     }
 
     /// Name of the deck's own model, searched by the determinant.
     pub(crate) fn own_model_name(&self) -> String {
         match &self.source {
-            Source::Table(_) => "interpolated table".to_owned(),
-            Source::FlatPlate => "flat plate (exact)".to_owned(),
+            DeckData::Table(_) => "interpolated table".to_owned(),
+            DeckData::FlatPlate => "flat plate (exact)".to_owned(),
         }
     }
 
     /// Records of the virtual tunnel, one per motion and speed.
     pub(crate) fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
         match &self.source {
-            Source::Table(table) => study.tunnel.records_from_table(table, &self.dofs),
-            Source::FlatPlate => study.tunnel.records_from_model(
+            DeckData::Table(table) => study.tunnel.records_from_table(table, &self.dofs),
+            DeckData::FlatPlate => study.tunnel.records_from_model(
                 &FlatPlate::default(),
                 FLAT_PLATE,
                 plate_width_m(study),
@@ -186,7 +186,7 @@ impl Deck {
         groups: Option<&[usize]>,
     ) -> Result<Vec<TransferSample>> {
         match &self.source {
-            Source::Table(table) => {
+            DeckData::Table(table) => {
                 let Some(groups) = groups else {
                     return Ok(table.samples(&self.dofs));
                 };
@@ -197,7 +197,7 @@ impl Deck {
                 }
                 Ok(samples)
             }
-            Source::FlatPlate => {
+            DeckData::FlatPlate => {
                 // groups are numbered from the lowest speed, as those of tables and records
                 let mut speeds = study.tunnel.speeds_m_s.clone();
                 speeds.sort_by(f64::total_cmp);
@@ -218,8 +218,8 @@ impl Deck {
     /// The measured table; `None` for the flat plate.
     pub(crate) fn table(&self) -> Option<&DerivativeTable> {
         match &self.source {
-            Source::Table(table) => Some(table),
-            Source::FlatPlate => None,
+            DeckData::Table(table) => Some(table),
+            DeckData::FlatPlate => None,
         }
     }
 
@@ -247,13 +247,13 @@ impl Deck {
     /// [`Error::Input`] when the table lacks a derivative of the section.
     pub(crate) fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
         match &self.source {
-            Source::Table(table) => {
+            DeckData::Table(table) => {
                 let by = self.interpolation;
                 let model = InterpolatedTable::by(by, table, &self.dofs, Extrapolation::Hold)?;
                 let range = model.tested_range();
                 Ok((Box::new(model), Some(range)))
             }
-            Source::FlatPlate => Ok((Box::new(FlatPlate::default()), None)),
+            DeckData::FlatPlate => Ok((Box::new(FlatPlate::default()), None)),
         }
     }
 }

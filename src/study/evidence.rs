@@ -14,8 +14,8 @@ use crate::plausibility::of_section;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    MovedOnset, Reach,
+    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
+    MeanRotation, MovedOnset, Reach,
 };
 
 /// Stages that draw and write, without which the answer is the same.
@@ -133,7 +133,7 @@ fn of_model(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Opti
     Some(FlutterReading {
         forces: forces(&model.name, ""),
         search: results.search_of(&model.name, OnsetMethod::Eigenvalues)?,
-        basis: Basis::tested(model.tested_range, reach),
+        basis: ForceBasis::tested(model.tested_range, reach),
     })
 }
 
@@ -162,9 +162,9 @@ fn of_deck(
             Some(range) => {
                 let structure = study.section.structure().ok()?;
                 let from = table_tested_from(&structure, &*table, range).ok()?;
-                Basis::tested(range, Reach::of_table(from))
+                ForceBasis::tested(range, Reach::of_table(from))
             }
-            None => Basis::Exact,
+            None => ForceBasis::Exact,
         },
     })
 }

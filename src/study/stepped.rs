@@ -7,7 +7,7 @@ use crate::flutter::{
     UnstableStart, judged_speeds,
 };
 use crate::fmu::importer::{
-    Fmu, GrowthPoint, SteppedOnset as Found, SteppedSearch, SteppingSearch, growth_by_stepping,
+    Fmu, GrowthOnset as Found, GrowthPoint, SteppedSearch, SteppingSearch, growth_by_stepping,
     onset_by_stepping,
 };
 use crate::trained_model::TrainedModel;
@@ -132,12 +132,12 @@ pub fn stepped_onset(
     }
     let mut onset = as_onset(model, first);
     match enters(&fmu, model, first)? {
-        Entry::Growing(start) => return Ok((*start).into()),
-        Entry::Diverging(speed_m_s) => onset.warnings.push(format!(
+        MotionInRange::Growing(start) => return Ok((*start).into()),
+        MotionInRange::Diverging(speed_m_s) => onset.warnings.push(format!(
             "at {speed_m_s:.3} m/s, where its motion would come into the tested range, the section diverges without \
              oscillating"
         )),
-        Entry::Damped => {}
+        MotionInRange::Damped => {}
     }
     let search = FlutterSearch::Onset(Box::new(onset));
     Ok(SteppedAnswer { search, runs })
@@ -157,7 +157,7 @@ fn diverges(found: &Found) -> FlutterSearch {
 }
 
 /// What a motion that grows above the tested `K` does where it comes into the tested range.
-enum Entry {
+enum MotionInRange {
     /// It grows there still: unstable at and below that speed.
     Growing(Box<FlutterSearch>),
     /// The section diverges at that speed, m/s, which hides the motion.
@@ -167,18 +167,18 @@ enum Entry {
 }
 
 /// Steps an onset above the tested `K` where its motion comes into the tested range.
-fn enters(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Entry> {
+fn enters(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<MotionInRange> {
     let limit = model.tested_range.max;
     let width = model.section.width_m;
     if ReducedFrequency::from_hertz(found.frequency_hz, width, found.speed_m_s) <= limit {
-        return Ok(Entry::Damped);
+        return Ok(MotionInRange::Damped);
     }
     let speed_of = |frequency_hz: f64| TAU * frequency_hz * width / limit.full_width();
     let mut speed = speed_of(found.frequency_hz);
     let mut at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
     for _ in 0..MAX_ROUNDS {
         if at.frequency_hz <= 0.0 {
-            return Ok(Entry::of_rest(&at));
+            return Ok(MotionInRange::of_rest(&at));
         }
         let next = speed_of(at.frequency_hz);
         if (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
@@ -194,16 +194,16 @@ fn enters(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Entry> {
         found.speed_m_s
     );
     if at.frequency_hz <= 0.0 || at.growth_rate_per_s <= 0.0 {
-        return Ok(Entry::of_rest(&at));
+        return Ok(MotionInRange::of_rest(&at));
     }
     let mut answer = unstable(model, at, reason);
     if let FlutterSearch::UnstableAtOrBelow(start) = &mut answer {
         start.in_tested_range = Some(true);
     }
-    Ok(Entry::Growing(Box::new(answer)))
+    Ok(MotionInRange::Growing(Box::new(answer)))
 }
 
-impl Entry {
+impl MotionInRange {
     /// Of a motion that does not oscillate, or is damped.
     fn of_rest(at: &GrowthPoint) -> Self {
         match at.growth_rate_per_s > 0.0 {
@@ -287,12 +287,12 @@ mod tests {
              oscillation)"
         );
         assert!(matches!(
-            Entry::of_rest(&point(30.0, 0.4, 0.0)),
-            Entry::Diverging(30.0)
+            MotionInRange::of_rest(&point(30.0, 0.4, 0.0)),
+            MotionInRange::Diverging(30.0)
         ));
         assert!(matches!(
-            Entry::of_rest(&point(30.0, -0.4, 0.0)),
-            Entry::Damped
+            MotionInRange::of_rest(&point(30.0, -0.4, 0.0)),
+            MotionInRange::Damped
         ));
     }
 }

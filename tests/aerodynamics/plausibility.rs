@@ -3,7 +3,7 @@
 use aerodeck::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
 use aerodeck::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use aerodeck::files::derivatives::embedded;
-use aerodeck::plausibility::{Kind, Severity, of_table, sentences};
+use aerodeck::plausibility::{FindingKind, FindingSeverity, of_table, sentences};
 use aerodeck::section::Dof;
 
 /// What `deck`, written in `truth`, becomes when it is read as `label`.
@@ -136,7 +136,7 @@ fn v_hat_labelled_v_star_is_a_doubt() {
             assert_eq!(found.len(), 1, "{}", deck.name);
             assert_eq!(
                 (found[0].kind, found[0].severity),
-                (Kind::Convention, Severity::Doubt)
+                (FindingKind::Convention, FindingSeverity::Doubt)
             );
             let text = found[0].to_string();
             assert!(
@@ -160,7 +160,7 @@ fn what_is_bluff_is_no_doubt() {
     }
     let found = of_table(&bluff.to_table().unwrap(), &label);
     assert!(
-        found.iter().all(|f| f.severity == Severity::Note),
+        found.iter().all(|f| f.severity == FindingSeverity::Note),
         "{found:?}"
     );
 }

@@ -3,18 +3,20 @@
 use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::bridge::{Bridge, BridgeMode, Node};
 use aerodeck::bridge::{StripGroup, tributary_lengths};
-use aerodeck::files::bridge::{Modes, embedded};
-use aerodeck::plausibility::{Finding, Girder, Kind, Severity, of_bridge, of_modes, sentences};
+use aerodeck::files::bridge::{BridgeModes, embedded};
+use aerodeck::plausibility::{
+    Finding, FindingKind, FindingSeverity, Girder, of_bridge, of_modes, sentences,
+};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-fn langenuen() -> Modes {
+fn langenuen() -> BridgeModes {
     let mut modes = embedded::modes("langenuen").unwrap();
     modes.modes.iter_mut().for_each(|m| m.damping_ratio = 0.005);
     modes
 }
 
-fn bridge(modes: Modes, width_m: f64, air_density_kg_m3: f64) -> Bridge {
+fn bridge(modes: BridgeModes, width_m: f64, air_density_kg_m3: f64) -> Bridge {
     let group = StripGroup {
         name: "girder".into(),
         width_m,
@@ -22,26 +24,26 @@ fn bridge(modes: Modes, width_m: f64, air_density_kg_m3: f64) -> Bridge {
         nodes: (0..modes.nodes.len()).collect(),
         forces: Arc::new(FlatPlate::default()),
     };
-    let Modes { nodes, modes, .. } = modes;
+    let BridgeModes { nodes, modes, .. } = modes;
     Bridge::new("bridge", air_density_kg_m3, nodes, modes, vec![group]).unwrap()
 }
 
 /// All findings of the bridge with these modes.
-fn found(modes: Modes, width_m: f64, air_density_kg_m3: f64) -> Vec<Finding> {
+fn found(modes: BridgeModes, width_m: f64, air_density_kg_m3: f64) -> Vec<Finding> {
     let mut found = modes.findings();
     found.extend(of_bridge(&bridge(modes, width_m, air_density_kg_m3)));
     found
 }
 
 /// The one doubt about it.
-fn doubt(modes: Modes, width_m: f64, air_density_kg_m3: f64) -> String {
+fn doubt(modes: BridgeModes, width_m: f64, air_density_kg_m3: f64) -> String {
     let found = found(modes, width_m, air_density_kg_m3);
     assert_eq!(found.len(), 1, "{found:?}");
-    assert_eq!(found[0].severity, Severity::Doubt);
+    assert_eq!(found[0].severity, FindingSeverity::Doubt);
     found[0].to_string()
 }
 
-fn changed(change: impl Fn(&mut BridgeMode)) -> Modes {
+fn changed(change: impl Fn(&mut BridgeMode)) -> BridgeModes {
     let mut modes = langenuen();
     modes.modes.iter_mut().for_each(change);
     modes
@@ -204,7 +206,7 @@ fn axes_are_compared_with_the_line_of_the_nodes() {
     assert_eq!(skew.len(), 1, "{skew:?}");
     assert_eq!(
         (skew[0].kind, skew[0].severity),
-        (Kind::Axes, Severity::Doubt)
+        (FindingKind::Axes, FindingSeverity::Doubt)
     );
     assert_eq!(
         skew[0].to_string(),
@@ -214,7 +216,7 @@ fn axes_are_compared_with_the_line_of_the_nodes() {
     );
     assert_eq!(
         girder_findings(1235.0, 0.0, 3.0)[0].severity,
-        Severity::Note
+        FindingSeverity::Note
     );
     let curved = girder_findings(400.0, 20.0, 0.0);
     assert_eq!(curved.len(), 1, "{curved:?}");
@@ -227,5 +229,8 @@ fn axes_are_compared_with_the_line_of_the_nodes() {
         )),
         "{text}"
     );
-    assert_eq!(girder_findings(400.0, 3.0, 0.0)[0].severity, Severity::Note);
+    assert_eq!(
+        girder_findings(400.0, 3.0, 0.0)[0].severity,
+        FindingSeverity::Note
+    );
 }

@@ -20,4 +20,5 @@ mod onsets;
 mod process;
 mod report;
 mod select;
+mod verdicts;
 mod wind;

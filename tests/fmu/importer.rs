@@ -5,7 +5,7 @@ use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
-    Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
+    Fmu, FmuSeverity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
 use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
@@ -75,7 +75,12 @@ fn every_check_and_every_trial_passes() {
         assert_eq!(fmu.check_without_running().findings, [], "{kind}");
         let report = fmu.check();
         assert!(report.passed(), "{kind}: {report:#?}");
-        assert_eq!(report.count(Severity::Warning), 0, "{:#?}", report.findings);
+        assert_eq!(
+            report.count(FmuSeverity::Warning),
+            0,
+            "{:#?}",
+            report.findings
+        );
         // platform, run, replay, two instances, states, bytes, steps, derivatives of both sorts
         assert_eq!(report.trials.len(), 9, "{:#?}", report.trials);
         for trial in &report.trials {

@@ -2,7 +2,7 @@
 
 mod place;
 
-pub use place::{Part, Place};
+pub use place::{Place, PlaceStep};
 
 use place::quoted;
 use std::fmt;

@@ -31,9 +31,9 @@ pub struct Finding {
     /// The number found there; `None` where several are meant.
     pub value: Option<f64>,
     /// What was probably mistaken.
-    pub kind: Kind,
+    pub kind: FindingKind,
     /// How much it weighs.
-    pub severity: Severity,
+    pub severity: FindingSeverity,
     /// Why it is odd.
     pub text: String,
     /// What it would be if it was meant otherwise: `in rad/s it would be 0.13 Hz`.
@@ -43,7 +43,7 @@ pub struct Finding {
 /// What was probably mistaken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum FindingKind {
     /// The unit of a number, or a factor as between semi-chord and width.
     Unit,
     /// Signs, notation or argument of a table.
@@ -59,7 +59,7 @@ pub enum Kind {
 /// How much a finding weighs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Severity {
+pub enum FindingSeverity {
     /// Rare, or on the safe side: worth a look.
     Note,
     /// An answer that rests on it cannot be relied on before it is cleared.
@@ -68,12 +68,12 @@ pub enum Severity {
 
 impl Finding {
     /// A doubt about what stands at `place`.
-    pub fn doubt(kind: Kind, place: impl Into<String>, text: impl Into<String>) -> Self {
+    pub fn doubt(kind: FindingKind, place: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
             place: place.into(),
             value: None,
             kind,
-            severity: Severity::Doubt,
+            severity: FindingSeverity::Doubt,
             text: text.into(),
             otherwise: None,
         }
@@ -83,7 +83,7 @@ impl Finding {
     pub fn unit(place: impl Into<String>, value: f64, text: impl Into<String>) -> Self {
         Self {
             value: Some(value),
-            ..Self::doubt(Kind::Unit, place, text)
+            ..Self::doubt(FindingKind::Unit, place, text)
         }
     }
 
@@ -97,7 +97,7 @@ impl Finding {
     /// The same as no more than a note.
     #[must_use]
     pub fn into_note(mut self) -> Self {
-        self.severity = Severity::Note;
+        self.severity = FindingSeverity::Note;
         self
     }
 }

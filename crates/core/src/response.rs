@@ -30,7 +30,7 @@ use gusts::Gusts;
 use nalgebra::{DMatrix, DVector};
 use packed::{advanced, apply, settled};
 use sampling::Sampling;
-use series::{Drive, Moving, Series};
+use series::{Drive, Moving, PowerSeries};
 use step_cache::{StepCache, active_columns, load};
 
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
@@ -77,7 +77,7 @@ pub struct RepeatableStep {
 pub struct Stepper {
     section: CoupledSection,
     cache: StepCache,
-    series: Series,
+    series: PowerSeries,
     /// Of the discrete model.
     sampling: Option<Sampling>,
     /// `[z, w, ẇ]` of the step at hand.
@@ -123,7 +123,7 @@ impl Stepper {
             both: vec![0.0; 2 * n],
             now: Outputs::default(),
             sampled: SectionState::default(),
-            series: Series::new(&section, gusts),
+            series: PowerSeries::new(&section, gusts),
             sampling: Sampling::of(&section),
             section,
             cache: StepCache::default(),

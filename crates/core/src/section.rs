@@ -223,7 +223,7 @@ impl SectionModel {
     /// gyration or farther.
     pub fn structure(&self) -> Result<Structure> {
         let supports: Vec<_> = self.supports()?.into_iter().flatten().collect();
-        let diagonal = |pick: fn(&Support) -> f64| {
+        let diagonal = |pick: fn(&Suspension) -> f64| {
             DMatrix::from_diagonal(&supports.iter().map(pick).collect::<Vec<_>>().into())
         };
         let mut mass = diagonal(|s| s.mass);
@@ -245,7 +245,7 @@ impl SectionModel {
     }
 
     /// The vertical, lateral and torsional support.
-    pub fn supports(&self) -> Result<[Option<Support>; 3]> {
+    pub fn supports(&self) -> Result<[Option<Suspension>; 3]> {
         positive("section.width_m", self.width_m)?;
         positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
         let heave = translation_support("section.vertical", &self.vertical)?;
@@ -271,7 +271,7 @@ impl SectionModel {
     }
 }
 
-fn rotation_support(place: &str, s: &Rotation) -> Result<Support> {
+fn rotation_support(place: &str, s: &Rotation) -> Result<Suspension> {
     support(
         place,
         ("inertia_kg_m2_m", s.inertia_kg_m2_m),
@@ -281,7 +281,7 @@ fn rotation_support(place: &str, s: &Rotation) -> Result<Support> {
     )
 }
 
-fn translation_support(place: &str, s: &Translation) -> Result<Support> {
+fn translation_support(place: &str, s: &Translation) -> Result<Suspension> {
     support(
         place,
         ("mass_kg_m", s.mass_kg_m),
@@ -293,7 +293,7 @@ fn translation_support(place: &str, s: &Translation) -> Result<Support> {
 
 /// One degree of freedom by itself, in the units of its row of the structure's matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Support {
+pub struct Suspension {
     /// kg/m or kg·m²/m.
     pub mass: f64,
     /// N·s/m² or N·s.
@@ -308,7 +308,7 @@ fn support(
     frequency_hz: Option<f64>,
     (stiffness_key, stiffness): (&str, Option<f64>),
     damping_ratio: f64,
-) -> Result<Support> {
+) -> Result<Suspension> {
     // the place is put together only where something is wrong: this is called for every sample of a random section
     let at = |key: &str, checked: fn(&'static str, f64) -> Result<f64>, value: f64| {
         checked("", value).map_err(|e| e.at(Place::from(place).key(key)))
@@ -329,7 +329,7 @@ fn support(
             ));
         }
     };
-    Ok(Support {
+    Ok(Suspension {
         mass: inertia,
         damping: 2.0 * damping_ratio * (stiffness * inertia).sqrt(),
         stiffness,

@@ -34,8 +34,8 @@ mod tests;
 pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    MovedOnset, RequiredSpeed, UntestedPart,
+    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
+    MeanRotation, MovedOnset, RequiredSpeed, UntestedPart,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;

@@ -42,7 +42,7 @@ pub use phase::{LagEstimate, PhaseDetails, PhaseParameters, phase};
 pub use stationarity::{
     StationarityDetails, StationarityParameters, StationarityTest, stationarity,
 };
-pub use wavelet::{NormalisedWaveletDetails, WaveletDetails, wavelet, wavelet_normalised};
+pub use wavelet::{NormalisedWaveletDetails, wavelet, wavelet_normalised};
 
 use crate::error::{Error, Result, counted, positive};
 use serde::Serialize;

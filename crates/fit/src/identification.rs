@@ -44,5 +44,5 @@ pub use report::{
     StaticReport,
 };
 pub use samples::sample_model;
+pub use time::pass::FitProgress;
 pub use time::pass::OnProgress;
-pub use time::pass::Progress;

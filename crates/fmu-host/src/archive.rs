@@ -1,6 +1,6 @@
 //! Unpacking an FMU into a temporary directory: nothing outside it, nothing without a limit.
 
-use super::findings::Findings;
+use super::findings::FmuFindings;
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -18,7 +18,7 @@ const MAX_ENTRIES: usize = 100_000;
 /// # Errors
 /// [`Error::Io`] when it cannot be read or written, [`Error::Input`] when it is no ZIP archive, holds entries that
 /// would land outside, links or encrypted entries, or is too large.
-pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, Findings)> {
+pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)> {
     let file = File::open(path).map_err(|e| Error::io(path, e))?;
     let mut zip = ZipArchive::new(BufReader::new(file))
         .map_err(|e| refused("", "a ZIP archive", e.to_string()))?;
@@ -30,7 +30,7 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, Findings)> {
         .prefix("aerodeck-fmu-")
         .tempdir()
         .map_err(|e| Error::io(std::env::temp_dir(), e))?;
-    let (mut names, mut findings, mut left) = (Vec::new(), Findings::default(), MAX_BYTES);
+    let (mut names, mut findings, mut left) = (Vec::new(), FmuFindings::default(), MAX_BYTES);
     for index in 0..zip.len() {
         let mut entry = zip
             .by_index(index)
@@ -60,7 +60,7 @@ fn refused(place: &str, expected: impl Into<String>, found: impl Into<String>) -
     Error::input(place, expected, found)
 }
 
-fn safe_path(name: &str, findings: &mut Findings) -> Result<PathBuf> {
+fn safe_path(name: &str, findings: &mut FmuFindings) -> Result<PathBuf> {
     if name.contains('\\') {
         findings.error(
             format!("archive, entry {name:?}"),
@@ -85,7 +85,7 @@ fn safe_path(name: &str, findings: &mut Findings) -> Result<PathBuf> {
         .collect())
 }
 
-fn method(name: &str, method: CompressionMethod, findings: &mut Findings) {
+fn method(name: &str, method: CompressionMethod, findings: &mut FmuFindings) {
     if !matches!(
         method,
         CompressionMethod::Stored | CompressionMethod::Deflated

@@ -8,18 +8,18 @@ mod units;
 mod variables;
 
 use super::description::ModelDescription;
-use super::findings::Findings;
+use super::findings::FmuFindings;
 
 /// Applies every rule.
-pub(super) fn check(description: &ModelDescription) -> Findings {
-    let mut findings = Findings::default();
+pub(super) fn check(description: &ModelDescription) -> FmuFindings {
+    let mut findings = FmuFindings::default();
     for rule in RULES {
         rule(description, &mut findings);
     }
     findings
 }
 
-type Rule = fn(&ModelDescription, &mut Findings);
+type Rule = fn(&ModelDescription, &mut FmuFindings);
 
 const RULES: [Rule; 20] = [
     head::head,

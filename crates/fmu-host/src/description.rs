@@ -9,7 +9,7 @@ pub(super) const FILE: &str = "modelDescription.xml";
 
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-pub enum Kind {
+pub enum VariableType {
     /// `fmi2Real`.
     Real,
     /// `fmi2Integer`.
@@ -82,7 +82,7 @@ pub struct ScalarVariable {
     /// `initial` as stated.
     pub initial: Option<Initial>,
     /// Type.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Start value.
     pub start: Option<Value>,
     /// Name of the declared type.
@@ -165,7 +165,7 @@ pub(super) fn initial_choices(
 
 /// A unit for display: `value in display unit = factor · value + offset`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DisplayUnit {
+pub struct DisplayUnitDefinition {
     /// Name.
     pub name: String,
     /// Factor.
@@ -176,13 +176,13 @@ pub struct DisplayUnit {
 
 /// A unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Unit {
+pub struct UnitDefinition {
     /// Name.
     pub name: String,
     /// Exponents of kg, m, s, A, K, mol, cd, rad, then factor and offset to the SI unit; `None` when not stated.
     pub base: Option<([i32; 8], f64, f64)>,
     /// Display units.
-    pub display_units: Vec<DisplayUnit>,
+    pub display_units: Vec<DisplayUnitDefinition>,
     /// Line in the file.
     pub line: usize,
 }
@@ -193,7 +193,7 @@ pub struct SimpleType {
     /// Name.
     pub name: String,
     /// Type.
-    pub kind: Kind,
+    pub kind: VariableType,
     /// Unit, range and the like.
     pub attributes: TypeAttributes,
     /// Line in the file.
@@ -273,7 +273,7 @@ pub struct ModelDescription {
     /// Whether it offers model exchange.
     pub model_exchange: bool,
     /// Units.
-    pub units: Vec<Unit>,
+    pub units: Vec<UnitDefinition>,
     /// Declared types.
     pub types: Vec<SimpleType>,
     /// Names of log categories.

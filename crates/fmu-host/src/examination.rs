@@ -1,6 +1,6 @@
 //! The whole check of an FMU: archive, description and binary, then running it.
 
-use super::findings::{CheckReport, Findings, Severity};
+use super::findings::{CheckReport, FmuFindings, FmuSeverity};
 use super::{Fmu, checks, library, trials};
 
 impl Fmu {
@@ -52,7 +52,7 @@ impl Fmu {
         }
     }
 
-    pub(super) fn check_files(&self, findings: &mut Findings) {
+    pub(super) fn check_files(&self, findings: &mut FmuFindings) {
         let mut seen = std::collections::HashSet::new();
         for entry in &self.entries {
             if !seen.insert(entry.to_lowercase()) {
@@ -69,7 +69,7 @@ impl Fmu {
         ] {
             if !self.entries.iter().any(|e| e == file) {
                 findings.add(
-                    Severity::Note,
+                    FmuSeverity::Note,
                     "archive",
                     format!("{what} ({file})"),
                     "none",

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Severity {
+pub enum FmuSeverity {
     /// Worth knowing; nothing is wrong.
     Note,
     /// Legal or tolerated, but some importer will stumble.
@@ -15,7 +15,7 @@ pub enum Severity {
     Error,
 }
 
-impl Severity {
+impl FmuSeverity {
     /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
@@ -28,9 +28,9 @@ impl Severity {
 
 /// One finding.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Finding {
+pub struct FmuFinding {
     /// How much it matters.
-    pub severity: Severity,
+    pub severity: FmuSeverity,
     /// Where: file with line, variable, or function.
     pub place: String,
     /// What the standard or common sense asks for.
@@ -39,7 +39,7 @@ pub struct Finding {
     pub found: String,
 }
 
-impl std::fmt::Display for Finding {
+impl std::fmt::Display for FmuFinding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
@@ -54,17 +54,17 @@ impl std::fmt::Display for Finding {
 
 /// Findings in the order in which they were made.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Findings(pub Vec<Finding>);
+pub(super) struct FmuFindings(pub Vec<FmuFinding>);
 
-impl Findings {
+impl FmuFindings {
     pub(super) fn add(
         &mut self,
-        severity: Severity,
+        severity: FmuSeverity,
         place: impl Into<String>,
         expected: impl Into<String>,
         found: impl Into<String>,
     ) {
-        self.0.push(Finding {
+        self.0.push(FmuFinding {
             severity,
             place: place.into(),
             expected: expected.into(),
@@ -78,7 +78,7 @@ impl Findings {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) {
-        self.add(Severity::Error, place, expected, found);
+        self.add(FmuSeverity::Error, place, expected, found);
     }
 
     pub(super) fn warning(
@@ -87,7 +87,7 @@ impl Findings {
         expected: impl Into<String>,
         found: impl Into<String>,
     ) {
-        self.add(Severity::Warning, place, expected, found);
+        self.add(FmuSeverity::Warning, place, expected, found);
     }
 
     /// An error for every text that comes more than once.
@@ -131,7 +131,7 @@ pub struct CheckReport {
     /// Number of variables.
     pub variables: usize,
     /// Everything that was found.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<FmuFinding>,
     /// The binary whose code was loaded and run in this process; `None` where none was.
     pub ran: Option<String>,
     /// What was tried by running it; empty when it could not be loaded.
@@ -141,13 +141,13 @@ pub struct CheckReport {
 }
 
 impl CheckReport {
-    /// Whether there is no finding of [`Severity::Error`] and no trial failed.
+    /// Whether there is no finding of [`FmuSeverity::Error`] and no trial failed.
     pub fn passed(&self) -> bool {
-        self.count(Severity::Error) == 0 && self.trials.iter().all(|t| t.passed)
+        self.count(FmuSeverity::Error) == 0 && self.trials.iter().all(|t| t.passed)
     }
 
     /// Number of findings of one severity.
-    pub fn count(&self, severity: Severity) -> usize {
+    pub fn count(&self, severity: FmuSeverity) -> usize {
         self.findings
             .iter()
             .filter(|f| f.severity == severity)

@@ -8,10 +8,10 @@ mod search;
 
 pub use estimate::Growth;
 pub(crate) use estimate::growth_of_samples;
-pub use search::{GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch};
+pub use search::{GrowthOnset, GrowthPoint, SteppedSearch, SteppingSearch};
 
 use super::Fmu;
-use super::description::{Kind, Value};
+use super::description::{Value, VariableType};
 use super::simulation::{Times, start};
 use super::slave::{Slave, find};
 use super::status::Status;
@@ -292,20 +292,22 @@ impl Run {
             .map(SteppedSearch::Onset)
     }
 
-    fn onset(mut self, speed: f64, growth: &Growth) -> Result<SteppedOnset> {
+    fn onset(mut self, speed: f64, growth: &Growth) -> Result<GrowthOnset> {
         let place = |name: &str| self.names.iter().position(|n| *n == name);
         let relative = match (place("heave"), place("rotation")) {
             (Some(y), Some(theta)) => Some(growth.shape[y] / growth.shape[theta]),
             _ => None,
         };
         let width = match self.slave.model_description().variable("width") {
-            Some(v) if v.kind == Kind::Real => Some(self.slave.get_real(&[v.value_reference])?[0]),
+            Some(v) if v.kind == VariableType::Real => {
+                Some(self.slave.get_real(&[v.value_reference])?[0])
+            }
             _ => None,
         };
         self.slave.terminate()?;
         self.points
             .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
-        Ok(SteppedOnset {
+        Ok(GrowthOnset {
             speed_m_s: speed,
             frequency_hz: growth.frequency_rad_s / std::f64::consts::TAU,
             mode_ratio: relative.zip(width).map(|(r, b)| r.norm() / b),

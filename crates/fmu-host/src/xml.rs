@@ -93,7 +93,7 @@ impl Element {
             return Err(malformed(line, &forbidden(c)));
         }
         let mut reader = Reader::from_str(text);
-        let mut lines = Lines::new(text);
+        let mut lines = LineCounter::new(text);
         let mut open: Vec<Element> = Vec::new();
         loop {
             let event = reader.read_event();
@@ -180,13 +180,13 @@ fn malformed(line: usize, found: &dyn std::fmt::Display) -> Error {
 }
 
 /// Line numbers of positions that only grow.
-struct Lines<'a> {
+struct LineCounter<'a> {
     text: &'a [u8],
     position: usize,
     line: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> LineCounter<'a> {
     fn new(text: &'a str) -> Self {
         Self {
             text: text.as_bytes(),

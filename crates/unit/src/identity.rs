@@ -1,6 +1,6 @@
 //! What ties binary, description and model together: one digest over all three.
 
-use super::variables::{Value, Variable, VariableTable};
+use super::variables::{StartValue, Variable, VariableTable};
 use uuid::Uuid;
 
 /// Version of the interface between archive and runtime: raised when an old archive must not meet a new binary.
@@ -36,16 +36,16 @@ fn put_variable(bytes: &mut Vec<u8>, v: &Variable) {
     let initial = v.initial.map_or(0, |initial| 1 + initial as u8);
     bytes.extend_from_slice(&[v.causality as u8, v.variability as u8, initial]);
     match &v.value {
-        Value::Real(start) => {
+        StartValue::Real(start) => {
             bytes.push(0);
             put_number(bytes, *start);
         }
-        Value::Integer(start) => {
+        StartValue::Integer(start) => {
             bytes.push(1);
             put_number(bytes, start.map(f64::from));
         }
-        Value::Boolean(start) => bytes.extend_from_slice(&[2, start.map_or(2, u8::from)]),
-        Value::String(start) => {
+        StartValue::Boolean(start) => bytes.extend_from_slice(&[2, start.map_or(2, u8::from)]),
+        StartValue::String(start) => {
             bytes.push(3);
             put_text(bytes, start);
         }
@@ -98,7 +98,7 @@ mod tests {
             causality: Causality::Input,
             variability: Variability::Continuous,
             initial: None,
-            value: Value::Real(Some(1.0)),
+            value: StartValue::Real(Some(1.0)),
             unit: None,
             display_unit: None,
             quantity: None,
@@ -122,11 +122,11 @@ mod tests {
             |v| v.variability = Variability::Discrete,
             |v| v.initial = Some(Initial::Exact),
             |v| v.initial = Some(Initial::Calculated),
-            |v| v.value = Value::Real(None),
-            |v| v.value = Value::Real(Some(-1.0)),
-            |v| v.value = Value::Integer(Some(1)),
-            |v| v.value = Value::Boolean(Some(true)),
-            |v| v.value = Value::String("1".into()),
+            |v| v.value = StartValue::Real(None),
+            |v| v.value = StartValue::Real(Some(-1.0)),
+            |v| v.value = StartValue::Integer(Some(1)),
+            |v| v.value = StartValue::Boolean(Some(true)),
+            |v| v.value = StartValue::String("1".into()),
             |v| v.unit = Some(&crate::si::METRE),
             |v| v.min = Some(0.0),
             |v| v.max = Some(0.0),

@@ -40,14 +40,14 @@ pub use layout::DataType;
 pub use saving::Snapshot;
 
 use super::lifecycle::{Call, Interface, State};
-use super::refusal::{CallResult, Refusal, Severity};
+use super::refusal::{CallResult, Refusal, RefusalEffect};
 use super::resources::Resources;
 use super::variables::VariableTable;
 use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::VariablePlaces;
-use memory::{Experiment, Memory};
+use memory::{Memory, RunTimes};
 use section_unit::SectionUnit;
 use unit::Unit;
 
@@ -140,7 +140,7 @@ impl Instance {
 
     /// Takes note that a call was refused: an error ends the run.
     pub fn note(&mut self, refusal: &Refusal) {
-        if refusal.severity == Severity::Error {
+        if refusal.severity == RefusalEffect::Error {
             self.memory.state = State::Error;
         }
     }
@@ -156,7 +156,7 @@ impl Instance {
                 "expected a finite start time and a stop time not before it, found start {start}, stop {stop}"
             )));
         }
-        self.memory.experiment = Some(Experiment { start, stop });
+        self.memory.experiment = Some(RunTimes { start, stop });
         self.memory.time = start;
         Ok(())
     }
@@ -165,7 +165,7 @@ impl Instance {
     /// with a warning.
     pub fn enter_initialization(&mut self) {
         if self.memory.experiment.is_none() {
-            self.memory.experiment = Some(Experiment {
+            self.memory.experiment = Some(RunTimes {
                 start: 0.0,
                 stop: None,
             });

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// What a refusal does to the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Severity {
+pub enum RefusalEffect {
     /// Nothing has changed; other values, or a saved state, lead on.
     Discard,
     /// The call was wrong but touches nothing: the run goes on.
@@ -18,7 +18,7 @@ pub enum Severity {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
     /// What it does to the run.
-    pub severity: Severity,
+    pub severity: RefusalEffect,
     /// What was wrong, for the log.
     pub message: String,
 }
@@ -31,7 +31,7 @@ impl Refusal {
     #[cold]
     pub fn error(message: impl Into<String>) -> Self {
         Self {
-            severity: Severity::Error,
+            severity: RefusalEffect::Error,
             message: message.into(),
         }
     }
@@ -40,7 +40,7 @@ impl Refusal {
     #[cold]
     pub fn call(message: impl Into<String>) -> Self {
         Self {
-            severity: Severity::Call,
+            severity: RefusalEffect::Call,
             message: message.into(),
         }
     }
@@ -49,7 +49,7 @@ impl Refusal {
     #[cold]
     pub(crate) fn discard(message: impl Into<String>) -> Self {
         Self {
-            severity: Severity::Discard,
+            severity: RefusalEffect::Discard,
             message: message.into(),
         }
     }

@@ -24,7 +24,7 @@ pub struct DisplayUnit {
 
 /// A unit: `value in base units = factor · value`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unit {
+pub struct SiUnit {
     /// Name.
     pub name: &'static str,
     /// Dimension.
@@ -39,8 +39,8 @@ const fn coherent(
     name: &'static str,
     (kg, m, s, rad): (i8, i8, i8, i8),
     display: &'static [DisplayUnit],
-) -> Unit {
-    Unit {
+) -> SiUnit {
+    SiUnit {
         name,
         base: BaseExponents { kg, m, s, rad },
         factor: 1.0,
@@ -51,9 +51,9 @@ const fn coherent(
 const DEGREES_PER_RADIAN: f64 = 57.295_779_513_082_32;
 
 /// Length, m.
-pub(crate) static METRE: Unit = coherent("m", (0, 1, 0, 0), &[]);
+pub(crate) static METRE: SiUnit = coherent("m", (0, 1, 0, 0), &[]);
 /// Speed, m/s, shown in km/h on request.
-pub(crate) static METRE_PER_SECOND: Unit = coherent(
+pub(crate) static METRE_PER_SECOND: SiUnit = coherent(
     "m/s",
     (0, 1, -1, 0),
     &[DisplayUnit {
@@ -62,11 +62,11 @@ pub(crate) static METRE_PER_SECOND: Unit = coherent(
     }],
 );
 /// Rate of a dimensionless number, 1/s.
-pub(crate) static PER_SECOND: Unit = coherent("1/s", (0, 0, -1, 0), &[]);
+pub(crate) static PER_SECOND: SiUnit = coherent("1/s", (0, 0, -1, 0), &[]);
 /// Acceleration, m/s².
-pub(crate) static METRE_PER_SECOND2: Unit = coherent("m/s2", (0, 1, -2, 0), &[]);
+pub(crate) static METRE_PER_SECOND2: SiUnit = coherent("m/s2", (0, 1, -2, 0), &[]);
 /// Angle, rad, shown in degrees on request.
-pub(crate) static RADIAN: Unit = coherent(
+pub(crate) static RADIAN: SiUnit = coherent(
     "rad",
     (0, 0, 0, 1),
     &[DisplayUnit {
@@ -75,7 +75,7 @@ pub(crate) static RADIAN: Unit = coherent(
     }],
 );
 /// Angular rate, rad/s.
-pub(crate) static RADIAN_PER_SECOND: Unit = coherent(
+pub(crate) static RADIAN_PER_SECOND: SiUnit = coherent(
     "rad/s",
     (0, 0, -1, 1),
     &[DisplayUnit {
@@ -84,7 +84,7 @@ pub(crate) static RADIAN_PER_SECOND: Unit = coherent(
     }],
 );
 /// Angular acceleration, rad/s².
-pub(crate) static RADIAN_PER_SECOND2: Unit = coherent(
+pub(crate) static RADIAN_PER_SECOND2: SiUnit = coherent(
     "rad/s2",
     (0, 0, -2, 1),
     &[DisplayUnit {
@@ -93,21 +93,21 @@ pub(crate) static RADIAN_PER_SECOND2: Unit = coherent(
     }],
 );
 /// Force, N.
-pub(crate) static NEWTON: Unit = coherent("N", (1, 1, -2, 0), &[]);
+pub(crate) static NEWTON: SiUnit = coherent("N", (1, 1, -2, 0), &[]);
 /// Moment, N·m.
-pub(crate) static NEWTON_METRE: Unit = coherent("N.m", (1, 2, -2, 0), &[]);
+pub(crate) static NEWTON_METRE: SiUnit = coherent("N.m", (1, 2, -2, 0), &[]);
 /// Force per length, N/m.
-pub(crate) static NEWTON_PER_METRE: Unit = coherent("N/m", (1, 0, -2, 0), &[]);
+pub(crate) static NEWTON_PER_METRE: SiUnit = coherent("N/m", (1, 0, -2, 0), &[]);
 /// Moment per length, N·m/m.
-pub(crate) static NEWTON_METRE_PER_METRE: Unit = coherent("N.m/m", (1, 1, -2, 0), &[]);
+pub(crate) static NEWTON_METRE_PER_METRE: SiUnit = coherent("N.m/m", (1, 1, -2, 0), &[]);
 /// Density, kg/m³.
-pub(crate) static KILOGRAM_PER_METRE3: Unit = coherent("kg/m3", (1, -3, 0, 0), &[]);
+pub(crate) static KILOGRAM_PER_METRE3: SiUnit = coherent("kg/m3", (1, -3, 0, 0), &[]);
 /// Mass per length, kg/m.
-pub(crate) static KILOGRAM_PER_METRE: Unit = coherent("kg/m", (1, -1, 0, 0), &[]);
+pub(crate) static KILOGRAM_PER_METRE: SiUnit = coherent("kg/m", (1, -1, 0, 0), &[]);
 /// Mass moment of inertia per length, kg·m²/m.
-pub(crate) static KILOGRAM_METRE2_PER_METRE: Unit = coherent("kg.m2/m", (1, 1, 0, 0), &[]);
+pub(crate) static KILOGRAM_METRE2_PER_METRE: SiUnit = coherent("kg.m2/m", (1, 1, 0, 0), &[]);
 /// Frequency, Hz: one cycle is 2π rad.
-pub(crate) static HERTZ: Unit = Unit {
+pub(crate) static HERTZ: SiUnit = SiUnit {
     name: "Hz",
     base: BaseExponents {
         kg: 0,

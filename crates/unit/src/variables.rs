@@ -21,8 +21,8 @@ pub use super::standard::{Causality, Initial, Variability};
 pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use variable::{
-    Calculated, ForceOutput, Gust, InitialDependency, ModeOutput, Response, Role, Status,
-    StripParameter, Value, Variable,
+    Calculated, ForceOutput, GustDirection, InitialDependency, ModeOutput, Response, Role, Safety,
+    StartValue, StripParameter, Variable,
 };
 
 use super::bridge_options::BridgeOptions;
@@ -128,7 +128,7 @@ fn state_rates(variables: &[Variable]) -> Vec<usize> {
 
 /// No checker looks whether a start value lies between minimum and maximum, so it is done here.
 fn check_start(variable: &Variable) -> Result<()> {
-    let Value::Real(Some(start)) = variable.value else {
+    let StartValue::Real(Some(start)) = variable.value else {
         return Ok(());
     };
     let above = variable.min.is_none_or(|min| start >= min);

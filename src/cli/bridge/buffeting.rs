@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck bridge buffeting bridge.toml --speed 35 --out results
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct BridgeBuffetingArgs {
     #[command(flatten)]
     bridge: BridgeArgs,
     /// Mean wind speed of the bridge, m/s.
@@ -31,7 +31,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let block = study
         .buffeting_block()
@@ -61,7 +61,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 
 /// The response to the turbulence of a file.
 fn by_file(
-    args: &Args,
+    args: &BridgeBuffetingArgs,
     study: &BridgeStudy,
     block: &BuffetingBlock,
     path: &Path,

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Example: aerodeck bridge convert bridge.toml modes.csv --every 4
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct BridgeConvertArgs {
     /// The bridge file, whose modes are read.
     bridge: PathBuf,
     /// The file to be written.
@@ -29,7 +29,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args) -> Result<Answer> {
+pub(super) fn run(args: &BridgeConvertArgs) -> Result<Answer> {
     if args.every == 0 {
         return Err(Error::input("--every", "a number from 1 on", "0"));
     }

@@ -34,7 +34,7 @@ const PHASES: usize = 24;
 /// Example: aerodeck bridge flutter bridge.toml --samples 1000 --scatter-derivatives measured
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct BridgeFlutterArgs {
     #[command(flatten)]
     bridge: BridgeArgs,
     /// Samples of a bridge whose frequencies, damping and derivatives scatter; without, none.
@@ -56,7 +56,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
@@ -93,7 +93,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         .with_outcome_of(&verdict))
 }
 
-impl Args {
+impl BridgeFlutterArgs {
     /// What makes the results again, in the folder of the bridge file.
     fn command(&self, scattered: bool) -> String {
         let file = self.bridge.bridge.file_name().unwrap_or_default();

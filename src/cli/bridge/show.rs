@@ -17,13 +17,13 @@ const PAIRS: usize = 10;
 /// Example: aerodeck bridge show bridge.toml --out modes
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct BridgeShowArgs {
     #[command(flatten)]
     bridge: BridgeArgs,
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let bridge = &study.by_model;

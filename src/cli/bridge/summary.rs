@@ -21,7 +21,7 @@ pub(super) struct BridgeRun {
 
 /// What `summary.json` holds.
 #[derive(Serialize)]
-pub(super) struct Summary<'a> {
+pub(super) struct BridgeSummary<'a> {
     #[serde(flatten)]
     facts: BridgeFacts,
     warnings: Vec<String>,
@@ -39,10 +39,10 @@ pub(super) fn leave<'a>(
     (study, results, verdict): (&'a BridgeStudy, &'a BridgeFlutter, &Verdict),
     (said, failed): (&[String], &'a [String]),
     out: &mut OutputDir,
-) -> Result<Summary<'a>> {
+) -> Result<BridgeSummary<'a>> {
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
-    let summary = Summary {
+    let summary = BridgeSummary {
         facts: BridgeFacts {
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             bridge: study.file.name.clone(),

@@ -13,13 +13,13 @@ use std::path::PathBuf;
 /// Example: aerodeck campaign check campaign.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct CampaignCheckArgs {
     /// The campaign file.
     campaign: PathBuf,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &CampaignCheckArgs, progress: &Progress) -> Result<Answer> {
     let campaign = Campaign::read(&args.campaign)?;
     let stage = progress.stage("reading the recordings");
     let reading = campaign.load()?;

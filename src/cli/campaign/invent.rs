@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck campaign virtual LN21-5200 --out campaign
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct VirtualCampaignArgs {
     /// Name of an embedded deck, `flat plate`, `jones`, or a table of derivatives (.csv, .xlsx).
     #[arg(default_value = "LN21-5200")]
     deck: String,
@@ -61,7 +61,7 @@ fn formats() -> [PossibleValue; 2] {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Answer> {
     let plan = plan(args)?;
     let stage = progress.stage("virtual campaign");
     let made = make(args, &plan)?;
@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.answer(text, value)
 }
 
-fn plan(args: &Args) -> Result<VirtualCampaignPlan> {
+fn plan(args: &VirtualCampaignArgs) -> Result<VirtualCampaignPlan> {
     let mut plan = match (&args.plan, args.clean) {
         (Some(path), _) => VirtualCampaignPlan::read(path)?,
         (None, true) => VirtualCampaignPlan::default(),
@@ -116,7 +116,7 @@ fn plan(args: &Args) -> Result<VirtualCampaignPlan> {
     Ok(plan)
 }
 
-fn make(args: &Args, plan: &VirtualCampaignPlan) -> Result<VirtualCampaign> {
+fn make(args: &VirtualCampaignArgs, plan: &VirtualCampaignPlan) -> Result<VirtualCampaign> {
     let name = args.deck.trim();
     let refuse_lateral = || {
         if args.lateral {

@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck compare decks --out decks
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct CompareDecksArgs {
     /// Embedded decks to compare.
     #[arg(long, value_delimiter = ',', default_values_t = THESIS_DECKS.map(str::to_owned))]
     decks: Vec<String>,
@@ -29,7 +29,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &CompareDecksArgs, progress: &Progress) -> Result<Answer> {
     let options = args
         .common
         .options(args.decks.clone(), args.trained_on.clone());

@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck compare models --deck LN21-5200
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct CompareModelsArgs {
     /// Embedded deck.
     #[arg(long, default_value = "LN21-5200")]
     deck: String,
@@ -30,7 +30,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &CompareModelsArgs, progress: &Progress) -> Result<Answer> {
     let options = args.common.options(vec![args.deck.clone()], None);
     let mut out = OutputDir::new(&args.common.out)?;
     let results = compared(compare_models, &options, (progress, "records"))?;

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// Example: aerodeck compare signals forces.csv --reference measured --compared predicted --sampling-hz 200
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct CompareSignalsArgs {
     /// CSV, MATLAB, HDF5 or TDMS file with both signals.
     file: PathBuf,
     /// Channel of the reference signal.
@@ -86,7 +86,7 @@ impl Line {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answer> {
     let set = ChannelSet::read(&args.file, args.group.as_deref())?;
     let channel = |name: &str| {
         let found = set.channel(name);
@@ -109,7 +109,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     Ok(Answer::new(account(args, &pair, &lines), &lines)?.passed_if(!missing))
 }
 
-fn metrics(pair: &SignalPair<'_>, args: &Args) -> Result<Vec<Line>> {
+fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>> {
     let levels = WaveletParameters {
         level_count: args.levels,
         frequency_min_hz: args.from_hz,
@@ -158,7 +158,7 @@ fn metrics(pair: &SignalPair<'_>, args: &Args) -> Result<Vec<Line>> {
     ])
 }
 
-fn account(args: &Args, pair: &SignalPair<'_>, lines: &[Line]) -> String {
+fn account(args: &CompareSignalsArgs, pair: &SignalPair<'_>, lines: &[Line]) -> String {
     let mut text = format!(
         "{} against {}: {} samples of {} s; 1 for equal signals\n",
         args.compared,

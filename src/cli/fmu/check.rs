@@ -15,7 +15,7 @@ use std::path::PathBuf;
 /// Example: aerodeck fmu check foreign.fmu --no-run
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct FmuCheckArgs {
     /// The FMU.
     fmu: PathBuf,
     /// Check archive and description alone; no code of the FMU is loaded.
@@ -24,7 +24,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &FmuCheckArgs, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("checking the FMU");
     let fmu = Fmu::open(&args.fmu)?;
     let report = match args.no_run {

@@ -32,7 +32,7 @@ use std::path::PathBuf;
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct FmuExportArgs {
     /// The trained model, or the bridge file with --bridge.
     model: PathBuf,
     /// Pack a whole bridge: the file is a bridge file (see docs/bridge.md).
@@ -42,8 +42,8 @@ pub(crate) struct Args {
     #[arg(long, value_delimiter = ',', requires = "bridge")]
     nodes: Vec<String>,
     /// What is packed: the section of the model with its forces, or its forces alone.
-    #[arg(long, value_enum, default_value_t = Kind::Section)]
-    kind: Kind,
+    #[arg(long, value_enum, default_value_t = ExportKind::Section)]
+    kind: ExportKind,
     /// Number of strips of a force FMU, with variables named strip[1].heave …; by default one strip with plain names.
     #[arg(long)]
     strips: Option<usize>,
@@ -100,7 +100,7 @@ pub(crate) struct Args {
 
 /// What is packed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Kind {
+enum ExportKind {
     Section,
     Force,
 }
@@ -112,7 +112,7 @@ fn version(number: String) -> FmiVersion {
     }
 }
 
-impl Args {
+impl FmuExportArgs {
     fn label(&self) -> Result<Label> {
         let label = Label {
             name: self.name.clone(),
@@ -140,7 +140,7 @@ impl Args {
     /// The options of a force FMU.
     fn force(&self, model: &TrainedModel) -> Result<Option<ForceOptions>> {
         let mut options = ForceOptions::single(model.section.width_m);
-        if self.kind == Kind::Section {
+        if self.kind == ExportKind::Section {
             let given = [
                 ("--strips", self.strips.is_some()),
                 ("--strip-length", self.strip_length.is_some()),
@@ -167,7 +167,7 @@ impl Args {
     }
 }
 
-impl Args {
+impl FmuExportArgs {
     fn listing(&self) -> Listing {
         match self.reals_only {
             true => Listing::Reals,
@@ -181,7 +181,7 @@ impl Args {
                      model.json --kind force --strips N` packs";
         let strips = "--gust-strips and the `static` coefficients of the bridge file";
         let given = [
-            ("--kind force", self.kind == Kind::Force, alone),
+            ("--kind force", self.kind == ExportKind::Force, alone),
             ("--strips", self.strips.is_some(), alone),
             ("--strip-length", self.strip_length.is_some(), alone),
             ("--prediction", self.prediction.is_some(), alone),
@@ -241,17 +241,17 @@ impl Args {
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     if args.bridge {
         return args.whole_bridge(progress);
     }
     let model = stages::read_model(&args.model)?;
     let (default_name, evidence) = match args.kind {
-        Kind::Section => {
+        ExportKind::Section => {
             let known = uncertainty_beside(&args.model, &model)?;
             (stages::FMU_FILE, Some(model_evidence(&model, &known)?))
         }
-        Kind::Force => ("deck_force.fmu", None),
+        ExportKind::Force => ("deck_force.fmu", None),
     };
     let verdict = evidence.as_ref().map(Verdict::of);
     let beside_the_model = || args.model.with_file_name(default_name);

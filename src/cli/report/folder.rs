@@ -13,13 +13,13 @@ pub(in crate::cli) const SUMMARY: &str = "summary.json";
 /// Whether a study, and no bridge, has left its summary at `path`.
 pub(in crate::cli) fn is_of_a_study(path: &Path) -> bool {
     let text = std::fs::read_to_string(path).ok();
-    let kind = text.and_then(|text| serde_json::from_str::<Kind>(&text).ok());
+    let kind = text.and_then(|text| serde_json::from_str::<SummaryKind>(&text).ok());
     kind.is_some_and(|kind| kind.bridge.is_none())
 }
 
 /// Whose summary it is.
 #[derive(Deserialize)]
-pub(super) struct Kind {
+pub(super) struct SummaryKind {
     pub bridge: Option<String>,
 }
 

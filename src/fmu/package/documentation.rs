@@ -9,7 +9,7 @@ use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::standard::FmiVersion;
 use crate::fmu::variables::{
-    Causality, Listing, Role, SectionParameter, Value, Variability, Variable,
+    Causality, Listing, Role, SectionParameter, StartValue, Variability, Variable,
 };
 use crate::plausibility::of_section;
 use crate::section::Dof;
@@ -29,7 +29,7 @@ pub fn documentation(
     verdict: Option<&Verdict>,
 ) -> Result<String> {
     let model = &resources.model;
-    let page = Page {
+    let page = DocumentationPage {
         model,
         kind: model.model.kind(),
         guid: resources.guid.to_string(),
@@ -49,7 +49,7 @@ pub fn documentation(
             Some(_) => Vec::new(),
         },
         force: resources.force.as_ref(),
-        sampling: Sampling::of(model),
+        sampling: SamplingText::of(model),
     };
     page.render()
         .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
@@ -57,7 +57,7 @@ pub fn documentation(
 
 #[derive(Template)]
 #[template(path = "fmu_documentation.html")]
-struct Page<'a> {
+struct DocumentationPage<'a> {
     model: &'a TrainedModel,
     kind: &'static str,
     guid: String,
@@ -71,7 +71,7 @@ struct Page<'a> {
     speeds: Vec<Speeds>,
     stability: Vec<String>,
     force: Option<&'a ForceOptions>,
-    sampling: Option<Sampling>,
+    sampling: Option<SamplingText>,
 }
 
 /// Variables of one role.
@@ -149,10 +149,10 @@ fn row(v: &Variable) -> Row {
             |shown| format!("{unit} (shown in {shown})"),
         ),
         start: match &v.value {
-            Value::Real(start) => start.map(|x| x.to_string()),
-            Value::Integer(start) => start.map(|x| x.to_string()),
-            Value::Boolean(start) => start.map(|x| x.to_string()),
-            Value::String(text) => Some(text.clone()),
+            StartValue::Real(start) => start.map(|x| x.to_string()),
+            StartValue::Integer(start) => start.map(|x| x.to_string()),
+            StartValue::Boolean(start) => start.map(|x| x.to_string()),
+            StartValue::String(text) => Some(text.clone()),
         }
         .unwrap_or_default(),
         limits: limits.join(", "),
@@ -278,13 +278,13 @@ fn motion(onset: &Onset) -> String {
 }
 
 /// What the discrete model does between its samples.
-struct Sampling {
+struct SamplingText {
     delta_s: String,
     speed_m_s: String,
     step_s: String,
 }
 
-impl Sampling {
+impl SamplingText {
     fn of(model: &TrainedModel) -> Option<Self> {
         let Model::DiscreteLaguerre(discrete) = &model.model else {
             return None;

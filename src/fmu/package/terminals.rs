@@ -3,7 +3,7 @@
 
 use crate::fmu::groups::{Groups, array_of};
 use crate::fmu::standard::Causality;
-use crate::fmu::variables::{ForceOutput, Gust, Response, Role, VariableTable};
+use crate::fmu::variables::{ForceOutput, GustDirection, Response, Role, VariableTable};
 use crate::fmu::xml::Element;
 use crate::section::Dof;
 
@@ -90,8 +90,8 @@ fn member(role: Role) -> Option<(Terminal, &'static str)> {
     };
     match role {
         Role::WindSpeed => Some((Terminal::Wind, "speed")),
-        Role::Gust(_, Gust::Along) => Some((Terminal::Wind, "gust_along")),
-        Role::Gust(_, Gust::Vertical) => Some((Terminal::Wind, "gust_up")),
+        Role::Gust(_, GustDirection::Along) => Some((Terminal::Wind, "gust_along")),
+        Role::Gust(_, GustDirection::Vertical) => Some((Terminal::Wind, "gust_up")),
         Role::Response(of, dof) | Role::Motion(_, of, dof) | Role::NodeMotion(_, of, dof) => {
             motion(of, dof)
         }

@@ -1,6 +1,6 @@
 //! Loads the forces of a case, computes its figures and judges them.
 
-use super::{Quantity, UserCase, UserFigure};
+use super::{FigureQuantity, UserCase, UserFigure};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
@@ -138,7 +138,7 @@ impl LoadedCase {
     fn figure(&self, figure: &UserFigure) -> Result<f64> {
         let nothing = |what: &str| Error::Numerical(format!("no {what}"));
         Ok(match figure.quantity {
-            Quantity::DivergenceSpeed => {
+            FigureQuantity::DivergenceSpeed => {
                 // a table says nothing about steady flow; its static part at the lowest tested K is the nearest to it
                 let slowest = self.tested.filter(|_| self.model.realizable().is_none());
                 let k = slowest.map_or(ReducedFrequency::from_full_width(0.0), |range| range.min);
@@ -148,25 +148,27 @@ impl LoadedCase {
                 }
                 divergence_speed(&self.structure, &steady)?.ok_or_else(|| nothing("divergence"))?
             }
-            Quantity::Selberg | Quantity::Rocard => {
+            FigureQuantity::Selberg | FigureQuantity::Rocard => {
                 let lines = sanity_lines(&self.structure)
                     .ok_or_else(|| nothing("formula: the rotation is not faster than the heave"))?;
-                if figure.quantity == Quantity::Selberg {
+                if figure.quantity == FigureQuantity::Selberg {
                     lines.selberg_m_s
                 } else {
                     lines.rocard_m_s
                 }
             }
-            Quantity::ModeFrequency | Quantity::ModeDampingRatio => self.in_wind(figure)?,
+            FigureQuantity::ModeFrequency | FigureQuantity::ModeDampingRatio => {
+                self.in_wind(figure)?
+            }
             quantity => {
                 let onset = self.onset(figure.route)?;
                 match quantity {
-                    Quantity::OnsetSpeed => onset.at.speed_m_s,
-                    Quantity::OnsetFrequency => onset.at.frequency_hz,
-                    Quantity::OnsetReducedVelocity => onset.at.reduced_velocity.v_star(),
-                    Quantity::OnsetVHat => onset.at.reduced_frequency.v_hat(),
-                    Quantity::ModeRatio => onset.mode_ratio,
-                    Quantity::Phase => onset.phase_deg,
+                    FigureQuantity::OnsetSpeed => onset.at.speed_m_s,
+                    FigureQuantity::OnsetFrequency => onset.at.frequency_hz,
+                    FigureQuantity::OnsetReducedVelocity => onset.at.reduced_velocity.v_star(),
+                    FigureQuantity::OnsetVHat => onset.at.reduced_frequency.v_hat(),
+                    FigureQuantity::ModeRatio => onset.mode_ratio,
+                    FigureQuantity::Phase => onset.phase_deg,
                     _ => onset
                         .damping_slope_s_m
                         .ok_or_else(|| nothing("damping slope by this route"))?,
@@ -196,7 +198,7 @@ impl LoadedCase {
                 known.max.full_width()
             )));
         }
-        Ok(if figure.quantity == Quantity::ModeFrequency {
+        Ok(if figure.quantity == FigureQuantity::ModeFrequency {
             mode.im / TAU
         } else {
             -mode.re / mode.norm()

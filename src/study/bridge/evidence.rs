@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    Reach, RequiredSpeed, UntestedPart, Verdict,
+    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
+    MeanRotation, Reach, RequiredSpeed, UntestedPart, Verdict,
 };
 use std::sync::Arc;
 
@@ -141,10 +141,10 @@ impl BridgeStudy {
     /// By the tables, where there are some, then by the models.
     fn readings(&self, results: &BridgeFlutter) -> Vec<FlutterReading> {
         let basis = match self.tested_range() {
-            None => Basis::Stated,
+            None => ForceBasis::Stated,
             Some(range) => {
                 let reach = self.reach(results, range);
-                Basis::tested(range, reach.unwrap_or_else(|_| Reach::nowhere()))
+                ForceBasis::tested(range, reach.unwrap_or_else(|_| Reach::nowhere()))
             }
         };
         let reading = |forces: &str, answer: &BridgeAnswer| FlutterReading {

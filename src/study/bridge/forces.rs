@@ -7,7 +7,7 @@ use crate::aerodynamics::derivatives::{
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
-use crate::files::bridge::{SectionBlock, StaticBlock};
+use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
 use crate::files::derivatives::TableWords;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_table};
@@ -24,7 +24,7 @@ const FLAT_PLATE: &str = "flat plate";
 
 /// Forces of a section, by table and by model.
 #[derive(Clone)]
-pub struct SectionForces {
+pub struct SectionForceModels {
     /// Between the points of the table, or the flat plate, exactly.
     pub table: Option<Arc<dyn Transfer>>,
     /// With a realisation.
@@ -52,7 +52,7 @@ pub struct SectionForces {
     pub degrees_of_freedom: Option<f64>,
 }
 
-impl std::fmt::Debug for SectionForces {
+impl std::fmt::Debug for SectionForceModels {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("SectionForces")
             .field("tested", &self.tested)
@@ -60,9 +60,9 @@ impl std::fmt::Debug for SectionForces {
     }
 }
 
-impl SectionForces {
+impl SectionForceModels {
     pub(super) fn of(
-        block: &SectionBlock,
+        block: &BridgeSectionBlock,
         trained: Option<(TrainedModel, KnownUncertainty)>,
         directory: &Path,
         findings: &mut Vec<Finding>,
@@ -130,7 +130,7 @@ impl SectionForces {
     }
 
     /// Theodorsen's plate where frequencies are asked for, Jones's rational functions where a realisation is.
-    fn flat_plate(block: &SectionBlock) -> Result<Self> {
+    fn flat_plate(block: &BridgeSectionBlock) -> Result<Self> {
         let place = format!("section {}", block.name);
         if block.motions != Dof::TWO {
             let expected = "vertical and torsional motion with the flat plate";
@@ -162,7 +162,7 @@ impl SectionForces {
     }
 
     /// Forces of a section of which no more than static coefficients are known.
-    fn quasi_steady(block: &SectionBlock, statics: &StaticBlock) -> Self {
+    fn quasi_steady(block: &BridgeSectionBlock, statics: &StaticBlock) -> Self {
         let theory =
             LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
         // rational functions without lags say the same in a form that is saved
@@ -213,7 +213,7 @@ impl SectionForces {
 
 /// The table of a section, in the convention of this project.
 pub(crate) fn block_table(
-    block: &SectionBlock,
+    block: &BridgeSectionBlock,
     name: &str,
     directory: &Path,
 ) -> Result<DerivativeTable> {
@@ -233,12 +233,12 @@ struct Tabulated {
 
 /// The table between its points, and the model fitted to it.
 fn by_table(
-    block: &SectionBlock,
+    block: &BridgeSectionBlock,
     name: &str,
     directory: &Path,
     fit: bool,
     findings: &mut Vec<Finding>,
-) -> Result<(Tabulated, Option<SectionForces>)> {
+) -> Result<(Tabulated, Option<SectionForceModels>)> {
     let mut table = block_table(block, name, directory)?;
     let key = format!("section {}: angle_deg", block.name);
     table.header.state_angle(&key, block.angle_deg)?;
@@ -275,7 +275,7 @@ fn by_table(
     let samples = table.samples(&block.motions);
     let Fitted { model, report } = fit_table(&samples, &block.motions, &options)?;
     let uncertainty = table_uncertainty(&samples, &block.motions, &options, &report);
-    let forces = SectionForces {
+    let forces = SectionForceModels {
         table: None,
         model: Arc::new(model.clone()),
         saved: Some(model),

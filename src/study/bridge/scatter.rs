@@ -2,11 +2,11 @@
 
 use super::answers::coupled;
 use super::scaled_forces::Scaled;
-use super::{BridgeStudy, SectionForces};
+use super::{BridgeStudy, SectionForceModels};
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
-use crate::files::bridge::SectionBlock;
+use crate::files::bridge::BridgeSectionBlock;
 use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
 use crate::signal::{mean_and_deviation, random_stream};
 use crate::uncertainty::{ModelDraws, sample_quantile};
@@ -116,7 +116,7 @@ impl BridgeStudy {
                 scatter.samples.to_string(),
             ));
         }
-        let sampler = Sampler {
+        let sampler = OnsetSampler {
             study: self,
             scatter,
             forces: self.drawn_forces(scatter.derivatives)?,
@@ -153,26 +153,26 @@ impl BridgeStudy {
     }
 
     /// What the forces of every section are drawn from.
-    fn drawn_forces(&self, scatter: DerivativeScatter) -> Result<Vec<Drawn<'_>>> {
+    fn drawn_forces(&self, scatter: DerivativeScatter) -> Result<Vec<ForceDraws<'_>>> {
         let sections = self.file.sections.iter().zip(&self.sections);
         sections
-            .map(|(block, forces)| Drawn::of(block, forces, scatter))
+            .map(|(block, forces)| ForceDraws::of(block, forces, scatter))
             .collect()
     }
 }
 
 /// Where the forces of one section are drawn from.
-enum Drawn<'a> {
+enum ForceDraws<'a> {
     /// Entries of the mean times factors with this standard deviation.
     Scaled(f64),
     /// The covariance of the fit.
     Models(ModelDraws<'a>),
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> ForceDraws<'a> {
     fn of(
-        block: &SectionBlock,
-        forces: &'a SectionForces,
+        block: &BridgeSectionBlock,
+        forces: &'a SectionForceModels,
         scatter: DerivativeScatter,
     ) -> Result<Self> {
         let DerivativeScatter::Relative(part) = scatter else {
@@ -211,15 +211,15 @@ impl<'a> Drawn<'a> {
 }
 
 /// What all samples share.
-struct Sampler<'a> {
+struct OnsetSampler<'a> {
     study: &'a BridgeStudy,
     scatter: &'a Scatter,
     /// In the order of the sections.
-    forces: Vec<Drawn<'a>>,
+    forces: Vec<ForceDraws<'a>>,
     nearby: NearbyOnset,
 }
 
-impl Sampler<'_> {
+impl OnsetSampler<'_> {
     /// The onset of one sample, m/s: that of the mean followed, else by a search.
     fn onset(&self, index: u64) -> Result<Option<f64>> {
         if let Some(speed) = self.followed(index)? {
@@ -276,7 +276,7 @@ impl Sampler<'_> {
         let mut models = vec![None; self.forces.len()];
         for (group, &section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
             group.forces = match (&self.forces[section], &models[section]) {
-                (Drawn::Models(_), Some(drawn)) => Arc::clone(drawn),
+                (ForceDraws::Models(_), Some(drawn)) => Arc::clone(drawn),
                 (of, _) => of.forces(&group.forces, random, part)?,
             };
             models[section] = Some(group.forces.clone());
@@ -307,7 +307,7 @@ mod tests {
             samples: 4,
             seed: 1,
         };
-        let sampler = Sampler {
+        let sampler = OnsetSampler {
             study: &study,
             scatter: &scatter,
             forces: study.drawn_forces(scatter.derivatives).unwrap(),

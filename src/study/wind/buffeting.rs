@@ -89,7 +89,7 @@ struct Setting<'a> {
 }
 
 /// Everything about one wind speed.
-struct AtSpeed {
+struct ForcesAtSpeed {
     moving: Option<Box<dyn Transfer>>,
     forces: GustForces,
 }
@@ -202,16 +202,16 @@ impl<'a> Setting<'a> {
 
     /// The forces at one speed: gust forces about the equilibrium with quasi-steady theory, else at rotation zero; without
     /// coefficients those of the thin plate. The inner error says that there is no equilibrium.
-    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<AtSpeed, String>> {
+    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<ForcesAtSpeed, String>> {
         let Some(theory) = &self.theory else {
-            return Ok(Ok(AtSpeed {
+            return Ok(Ok(ForcesAtSpeed {
                 moving: None,
                 forces: GustForces::flat_plate(),
             }));
         };
         if self.fixed.is_some() {
             let forces = GustForces::quasi_steady(&theory.linearised(0.0)?);
-            return Ok(Ok(AtSpeed {
+            return Ok(Ok(ForcesAtSpeed {
                 moving: None,
                 forces,
             }));
@@ -224,21 +224,21 @@ impl<'a> Setting<'a> {
             return Ok(Err(why));
         };
         let linear = theory.linearised(point.rotation_rad)?;
-        Ok(Ok(AtSpeed {
+        Ok(Ok(ForcesAtSpeed {
             forces: GustForces::quasi_steady(&linear),
             moving: Some(Box::new(linear)),
         }))
     }
 
     /// The problem of the frequency domain.
-    fn problem<'b>(&'b self, at: &'b AtSpeed) -> Result<BuffetingProblem<'b>> {
+    fn problem<'b>(&'b self, at: &'b ForcesAtSpeed) -> Result<BuffetingProblem<'b>> {
         self.problem_of(at.moving.as_deref().or(self.fixed.as_deref()), at)
     }
 
     fn problem_of<'b>(
         &'b self,
         model: Option<&'b dyn Transfer>,
-        at: &'b AtSpeed,
+        at: &'b ForcesAtSpeed,
     ) -> Result<BuffetingProblem<'b>> {
         let turbulence = self.study.turbulence.as_ref();
         Ok(BuffetingProblem {
@@ -287,7 +287,7 @@ impl<'a> Setting<'a> {
     }
 
     /// The forces at a speed that was asked for by name.
-    fn required(&self, speed: f64) -> Result<AtSpeed> {
+    fn required(&self, speed: f64) -> Result<ForcesAtSpeed> {
         self.at(speed)?
             .map_err(|why| Error::Numerical(format!("buffeting at {speed} m/s: {why}")))
     }

@@ -12,7 +12,7 @@ use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
 use crate::response::{Inputs, NonlinearSection, Stepper};
 use crate::section::{Dof, Structure};
-use crate::verdict::{Basis, DivergenceReading, Evidence, FlutterReading, Verdict};
+use crate::verdict::{DivergenceReading, Evidence, FlutterReading, ForceBasis, Verdict};
 use serde::Serialize;
 
 /// Agreement that halving the step has to reach.
@@ -110,7 +110,7 @@ fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Result<Evidence> {
         flutter: vec![FlutterReading {
             forces: forces.to_owned(),
             search: onset.search.clone(),
-            basis: Basis::Stated,
+            basis: ForceBasis::Stated,
         }],
         implausible: study.findings(),
         ..Evidence::default()

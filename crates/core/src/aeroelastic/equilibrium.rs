@@ -126,7 +126,7 @@ pub fn static_equilibria(
 
 /// A place on the branch.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct BranchPoint {
     /// `½ρV²`, N/m².
     pressure: f64,
     /// Rotation, rad.
@@ -171,16 +171,16 @@ impl<'a> Branch<'a> {
         })
     }
 
-    fn still_air(&self) -> Result<Place> {
+    fn still_air(&self) -> Result<BranchPoint> {
         self.place(0.0, 0.0)
     }
 
     /// Compliance and stiffness left at a pressure and rotation.
-    fn place(&self, pressure: f64, rotation: f64) -> Result<Place> {
+    fn place(&self, pressure: f64, rotation: f64) -> Result<BranchPoint> {
         let forces = self.theory.static_forces(rotation)?;
         let row = self.flexibility.row(self.torsion);
         let by = |v: &[f64]| row.iter().zip(v).map(|(f, c)| f * c).sum::<f64>();
-        Ok(Place {
+        Ok(BranchPoint {
             pressure,
             rotation,
             left: 1.0 - pressure * by(&forces.slopes),
@@ -189,7 +189,7 @@ impl<'a> Branch<'a> {
     }
 
     /// From one place to the pressure `target`, or to the end of the branch; whether it arrived.
-    fn follow(&self, from: Place, target: f64) -> Result<(Place, bool)> {
+    fn follow(&self, from: BranchPoint, target: f64) -> Result<(BranchPoint, bool)> {
         let mut at = from;
         let mut step = target - at.pressure;
         while at.pressure < target {
@@ -209,7 +209,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The place at `pressure` on the branch through `from`; `None` when the step is too long.
-    fn correct(&self, from: Place, pressure: f64) -> Option<Place> {
+    fn correct(&self, from: BranchPoint, pressure: f64) -> Option<BranchPoint> {
         let mut rotation = from.rotation + (pressure - from.pressure) * from.compliance / from.left;
         for _ in 0..MAX_NEWTON_STEPS {
             // outside the table there is nothing to correct with
@@ -226,7 +226,7 @@ impl<'a> Branch<'a> {
         None
     }
 
-    fn end(&self, at: Place) -> EquilibriumEnd {
+    fn end(&self, at: BranchPoint) -> EquilibriumEnd {
         let last = LastEquilibrium {
             speed_m_s: (2.0 * at.pressure / self.structure.air_density_kg_m3).sqrt(),
             rotation_rad: at.rotation,
@@ -238,7 +238,7 @@ impl<'a> Branch<'a> {
         }
     }
 
-    fn point(&self, at: Place, speed_m_s: f64) -> Result<StaticEquilibrium> {
+    fn point(&self, at: BranchPoint, speed_m_s: f64) -> Result<StaticEquilibrium> {
         let forces = self.theory.static_forces(at.rotation)?;
         let displacement = &self.flexibility * DVector::from_vec(forces.values) * at.pressure;
         Ok(StaticEquilibrium {

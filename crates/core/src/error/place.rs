@@ -11,12 +11,12 @@ pub struct Place {
     /// Line of the file, from 1.
     pub line: Option<u64>,
     /// What is named there, from the outside in.
-    pub parts: Vec<Part>,
+    pub parts: Vec<PlaceStep>,
 }
 
 /// One step of a [`Place`] into an input.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Part {
+pub enum PlaceStep {
     /// A key of a table.
     Key(String),
     /// An entry of the list named before, from 0.
@@ -47,19 +47,19 @@ impl Place {
     /// A column of what this is a row of.
     #[must_use]
     pub fn column(self, name: impl fmt::Display) -> Self {
-        self.and(Part::Column(name.to_string()))
+        self.and(PlaceStep::Column(name.to_string()))
     }
 
     /// The key below this one.
     #[must_use]
     pub fn key(&self, key: &str) -> Self {
-        self.clone().and(Part::Key(key.to_owned()))
+        self.clone().and(PlaceStep::Key(key.to_owned()))
     }
 
     /// What it is about, behind it.
     #[must_use]
     pub fn about(self, what: impl fmt::Display) -> Self {
-        self.and(Part::About(what.to_string()))
+        self.and(PlaceStep::About(what.to_string()))
     }
 
     /// This place inside another one; lines are counted where they were.
@@ -68,7 +68,10 @@ impl Place {
         let outer = outer.into();
         let mut parts = outer.parts;
         // lines of two files have no order
-        parts.extend(self.line.map(|line| Part::Words(format!("line {line}"))));
+        parts.extend(
+            self.line
+                .map(|line| PlaceStep::Words(format!("line {line}"))),
+        );
         parts.extend(self.parts);
         Self {
             line: outer.line,
@@ -85,8 +88,10 @@ impl Place {
     /// The same with at most a line of every text that an input gave.
     pub(super) fn quoted(mut self) -> Self {
         for part in &mut self.parts {
-            if let Part::Key(text) | Part::Column(text) | Part::Words(text) | Part::About(text) =
-                part
+            if let PlaceStep::Key(text)
+            | PlaceStep::Column(text)
+            | PlaceStep::Words(text)
+            | PlaceStep::About(text) = part
             {
                 *text = quoted(std::mem::take(text));
             }
@@ -94,7 +99,7 @@ impl Place {
         self
     }
 
-    fn and(mut self, part: Part) -> Self {
+    fn and(mut self, part: PlaceStep) -> Self {
         self.parts.push(part);
         self
     }
@@ -118,7 +123,7 @@ pub(super) fn quoted(text: String) -> String {
 }
 
 /// `torsion.frequency[2]` as its parts; `None` for words.
-fn keys(text: &str) -> Option<Vec<Part>> {
+fn keys(text: &str) -> Option<Vec<PlaceStep>> {
     let mut parts = Vec::new();
     for step in text.split('.') {
         let (name, indices) = step.split_once('[').unwrap_or((step, ""));
@@ -126,9 +131,9 @@ fn keys(text: &str) -> Option<Vec<Part>> {
         if name.is_empty() || !name.chars().all(is_key) {
             return None;
         }
-        parts.push(Part::Key(name.to_owned()));
+        parts.push(PlaceStep::Key(name.to_owned()));
         if let Some(index) = indices.strip_suffix(']') {
-            parts.push(Part::Index(index.parse().ok()?));
+            parts.push(PlaceStep::Index(index.parse().ok()?));
         } else if step.contains('[') {
             return None;
         }
@@ -138,7 +143,7 @@ fn keys(text: &str) -> Option<Vec<Part>> {
 
 impl From<&str> for Place {
     fn from(text: &str) -> Self {
-        let words = || vec![Part::Words(text.to_owned())];
+        let words = || vec![PlaceStep::Words(text.to_owned())];
         Self {
             line: None,
             parts: match text {
@@ -169,24 +174,24 @@ impl From<&Place> for Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut before: Option<&Part> = None;
+        let mut before: Option<&PlaceStep> = None;
         if let Some(line) = self.line {
             write!(f, "line {line}")?;
         }
         for part in &self.parts {
-            let after_key = matches!(before, Some(Part::Key(_) | Part::Index(_)));
+            let after_key = matches!(before, Some(PlaceStep::Key(_) | PlaceStep::Index(_)));
             let first = before.is_none() && self.line.is_none();
             match part {
-                Part::Key(_) if after_key => f.write_str(".")?,
-                Part::Index(_) | Part::About(_) => {}
+                PlaceStep::Key(_) if after_key => f.write_str(".")?,
+                PlaceStep::Index(_) | PlaceStep::About(_) => {}
                 _ if first => {}
                 _ => f.write_str(", ")?,
             }
             match part {
-                Part::Key(text) | Part::Words(text) => f.write_str(text)?,
-                Part::Index(index) => write!(f, "[{index}]")?,
-                Part::Column(name) => write!(f, "column {name}")?,
-                Part::About(what) => write!(f, " ({what})")?,
+                PlaceStep::Key(text) | PlaceStep::Words(text) => f.write_str(text)?,
+                PlaceStep::Index(index) => write!(f, "[{index}]")?,
+                PlaceStep::Column(name) => write!(f, "column {name}")?,
+                PlaceStep::About(what) => write!(f, " ({what})")?,
             }
             before = Some(part);
         }
@@ -228,10 +233,15 @@ mod tests {
     #[test]
     fn keys_are_parts_and_words_are_not() {
         let place = Place::from("sections[2].mass").key("unit");
-        let key = |k: &str| Part::Key(k.to_owned());
-        let expected = [key("sections"), Part::Index(2), key("mass"), key("unit")];
+        let key = |k: &str| PlaceStep::Key(k.to_owned());
+        let expected = [
+            key("sections"),
+            PlaceStep::Index(2),
+            key("mass"),
+            key("unit"),
+        ];
         assert_eq!(place.parts, expected);
         let words = Place::from("run 3");
-        assert_eq!(words.parts, [Part::Words("run 3".to_owned())]);
+        assert_eq!(words.parts, [PlaceStep::Words("run 3".to_owned())]);
     }
 }

@@ -1,13 +1,10 @@
 //! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
 
-use super::critical_point::{CriticalPoint, OnsetMethod};
+use super::critical_point::CriticalPoint;
 use super::judged::{RangePassages, StableRange};
 use super::onset::Onset;
-use crate::section::Structure;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use nalgebra::Complex;
+use crate::units::ReducedFrequencyRange;
 use serde::Serialize;
-use std::f64::consts::TAU;
 
 /// Speeds closer than this, relatively, are one finding by two ways.
 const SAME_SPEED: f64 = 1e-3;
@@ -95,19 +92,16 @@ impl FlutterSearch {
 }
 
 impl UnstableStart {
-    /// Growth at a speed (m/s) with the eigenvalue `lambda` (rad/s); nothing about ranges yet.
+    /// Growth of a motion; nothing about ranges yet.
     pub(super) fn new(
-        model: &str,
-        method: OnsetMethod,
-        structure: &Structure,
-        (speed_m_s, lambda): (f64, Complex<f64>),
+        at: CriticalPoint,
+        growth_rate_per_s: f64,
         branch: String,
         reason: String,
     ) -> Self {
-        let k = ReducedFrequency::from_circular(lambda.im, structure.width_m, speed_m_s);
         Self {
-            at: CriticalPoint::new(model, method, speed_m_s, lambda.im / TAU, k),
-            growth_rate_per_s: lambda.re,
+            at,
+            growth_rate_per_s,
             branch,
             in_tested_range: None,
             reason,

@@ -7,7 +7,7 @@
 use super::dynamic_stiffness::{Complex64, Determinant, Small, ZERO, oscillator};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
-use crate::section::Support;
+use crate::section::Suspension;
 use nalgebra::DVector;
 
 /// Degrees of freedom at most.
@@ -92,7 +92,7 @@ impl Characteristic {
         let [e0, e1, e2] = &self.feed_through;
         for i in 0..n {
             for j in 0..n {
-                let with_air = Support {
+                let with_air = Suspension {
                     mass: self.mass[i][j] - b * b * e2[i][j],
                     damping: self.damping[i][j] - speed * b * e1[i][j],
                     stiffness: self.stiffness[i][j] - speed * speed * e0[i][j],

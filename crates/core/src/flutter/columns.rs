@@ -12,12 +12,12 @@ pub(super) const WIDTH: usize = 8;
 /// Eight rows of one column.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub(super) struct Rows {
+pub(super) struct EntryBlock {
     re: [f64; WIDTH],
     im: [f64; WIDTH],
 }
 
-impl Rows {
+impl EntryBlock {
     pub(super) const ZERO: Self = Self {
         re: [0.0; WIDTH],
         im: [0.0; WIDTH],
@@ -96,20 +96,20 @@ pub(super) struct Term<'a> {
 
 /// A complex matrix, column by column.
 #[derive(Debug, Clone)]
-pub(super) struct Columns {
+pub(super) struct ComplexColumns {
     pub(super) rows: usize,
     /// Eights of one column.
     pub(super) stride: usize,
-    pub(super) all: Vec<Rows>,
+    pub(super) all: Vec<EntryBlock>,
 }
 
-impl Columns {
+impl ComplexColumns {
     pub(super) fn zeros(rows: usize, columns: usize) -> Self {
         let stride = rows.div_ceil(WIDTH);
         Self {
             rows,
             stride,
-            all: vec![Rows::ZERO; stride * columns],
+            all: vec![EntryBlock::ZERO; stride * columns],
         }
     }
 
@@ -146,7 +146,7 @@ impl Columns {
     pub(super) fn value(terms: &[Term<'_>]) -> Self {
         let mut value = Self::like(terms);
         for i in 0..value.all.len() {
-            let mut sum = Rows::ZERO;
+            let mut sum = EntryBlock::ZERO;
             for term in terms {
                 sum.add(&term.matrix.all[i], term.value);
             }
@@ -160,7 +160,7 @@ impl Columns {
     pub(super) fn sum(terms: &[Term<'_>]) -> (Self, Self) {
         let (mut value, mut slope) = (Self::like(terms), Self::like(terms));
         for i in 0..value.all.len() {
-            let (mut sum, mut slopes) = (Rows::ZERO, Rows::ZERO);
+            let (mut sum, mut slopes) = (EntryBlock::ZERO, EntryBlock::ZERO);
             for term in terms {
                 sum.add(&term.matrix.all[i], term.value);
                 slopes.add(&term.matrix.all[i], term.slope);
@@ -179,7 +179,7 @@ impl Columns {
         Self {
             rows,
             stride: rows.div_ceil(WIDTH),
-            all: vec![Rows::ZERO; eights],
+            all: vec![EntryBlock::ZERO; eights],
         }
     }
 
@@ -200,7 +200,7 @@ impl Columns {
     }
 
     #[inline(always)]
-    pub(super) fn column(&self, j: usize) -> &[Rows] {
+    pub(super) fn column(&self, j: usize) -> &[EntryBlock] {
         &self.all[j * self.stride..][..self.stride]
     }
 
@@ -279,15 +279,15 @@ impl Columns {
 }
 
 #[inline(always)]
-pub(super) fn entry(column: &[Rows], i: usize) -> Complex64 {
+pub(super) fn entry(column: &[EntryBlock], i: usize) -> Complex64 {
     let rows = &column[i / WIDTH];
     Complex64::new(rows.re[i % WIDTH], rows.im[i % WIDTH])
 }
 
 /// `aᵀ b` in eight sums that are added at the end.
 #[inline(always)]
-pub(super) fn dot(a: &[Rows], b: &[Rows]) -> Complex64 {
-    let mut sums = Rows::ZERO;
+pub(super) fn dot(a: &[EntryBlock], b: &[EntryBlock]) -> Complex64 {
+    let mut sums = EntryBlock::ZERO;
     for (a, b) in a.iter().zip(b) {
         for e in 0..WIDTH {
             sums.re[e] += a.re[e] * b.re[e] - a.im[e] * b.im[e];

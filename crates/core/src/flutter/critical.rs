@@ -91,7 +91,7 @@ struct Dimensionless {
 }
 
 /// The part of the state matrix that is looked at: `E`, `D`, and whether what does not depend on `u` is counted.
-struct Part<'a> {
+struct MatrixPart<'a> {
     e: Option<&'a DMatrix<f64>>,
     d: Option<&'a DMatrix<f64>>,
     constant: bool,
@@ -140,17 +140,17 @@ impl Dimensionless {
     fn pencil(&self, size: usize) -> Option<[DMatrix<f64>; 3]> {
         let filters = AntisymmetricLyapunov::new(&self.a)?;
         let parts = [
-            Part {
+            MatrixPart {
                 e: Some(&self.e0),
                 d: Some(&self.d0),
                 constant: true,
             },
-            Part {
+            MatrixPart {
                 e: None,
                 d: Some(&self.d1),
                 constant: false,
             },
-            Part {
+            MatrixPart {
                 e: Some(&self.e2),
                 d: None,
                 constant: false,
@@ -176,7 +176,7 @@ impl Dimensionless {
     }
 
     /// The rows of `v` of `A X + X Aᵀ`.
-    fn equations(&self, x: &Unknowns, part: &Part<'_>, size: usize) -> DVector<f64> {
+    fn equations(&self, x: &Unknowns, part: &MatrixPart<'_>, size: usize) -> DVector<f64> {
         let (n, filters) = self.c.shape();
         let (mut vq, mut vx) = (DMatrix::zeros(n, n), DMatrix::zeros(n, filters));
         let mut vv = DMatrix::zeros(n, n);

@@ -1,7 +1,9 @@
 //! The motion at a speed at which flutter begins, or is found to have begun.
 
+use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// How an onset was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,6 +49,18 @@ pub struct CriticalPoint {
 }
 
 impl CriticalPoint {
+    /// A motion of the structure with the circular frequency `omega` (rad/s).
+    pub(super) fn of_motion(
+        model: &str,
+        method: OnsetMethod,
+        structure: &Structure,
+        speed_m_s: f64,
+        omega: f64,
+    ) -> Self {
+        let k = ReducedFrequency::from_circular(omega, structure.width_m, speed_m_s);
+        Self::new(model, method, speed_m_s, omega / TAU, k)
+    }
+
     /// At a speed and a frequency, whose reduced frequency is `k`.
     pub fn new(
         model: &str,

@@ -5,13 +5,13 @@
 //! section flutters (Theodorsen's method with viscous damping).
 
 use super::answer::{Findings, FlutterSearch, UnstableStart, choose};
-use super::critical_point::OnsetMethod;
+use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::judged::{Exit, FastMotion, StableRange, TestedFrom, damps_at, entry_reason};
 use super::onset::Onset;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
-use crate::state_space::{complex, first_order, root};
+use crate::state_space::{ValueAt, complex, first_order, root};
 use crate::units::{LowerEnd, ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
@@ -83,7 +83,7 @@ pub fn determinant_onset(
 ) -> Result<FlutterSearch> {
     let k_min = positive("range of reduced frequencies", range.min.full_width())?;
     let k_max = positive("range of reduced frequencies", range.max.full_width())?;
-    let problem = Problem { structure, model };
+    let problem = DeterminantProblem { structure, model };
     let at = |i: usize| {
         // both ends exactly, so that a table is not asked beyond its last point
         match i {
@@ -93,9 +93,9 @@ pub fn determinant_onset(
         }
     };
     let width = structure.width_m;
-    let exits = |roots: &[(Complex<f64>, usize)], end: LowerEnd| {
-        let speed = |omega: &Complex<f64>| omega.re * width / end.0.full_width();
-        let exit = |(omega, row)| (speed(omega), structure.branch_name(row), Exit::at(end));
+    let exits = |roots: &[(Complex<f64>, usize)], (k, gap): LowerEnd| {
+        let speed = |omega: &Complex<f64>| omega.re * width / k.full_width();
+        let exit = |(omega, row)| (speed(omega), structure.branch_name(row), Exit::at(k, gap));
         let all = roots.iter().map(|(omega, row)| (omega, *row));
         all.map(exit).collect::<Vec<_>>()
     };
@@ -106,9 +106,9 @@ pub fn determinant_onset(
         let (speed, branch) = (omega.re * width / k_max, structure.branch_name(*row));
         findings.reach.entries.push((speed, branch.clone()));
         if omega.im < -ROUNDING * omega.norm() {
-            let at = (speed, omega * Complex::i());
-            let (method, why) = (OnsetMethod::Determinant, entry_reason(range.max));
-            let mut start = UnstableStart::new(name, method, structure, at, branch, why);
+            let (method, lambda) = (OnsetMethod::Determinant, omega * Complex::i());
+            let at = CriticalPoint::of_motion(name, method, structure, speed, lambda.im);
+            let mut start = UnstableStart::new(at, lambda.re, branch, entry_reason(range.max));
             start.in_tested_range = Some(true);
             findings.starts.push(start);
         }
@@ -128,7 +128,8 @@ pub fn determinant_onset(
                 continue;
             };
             if root.im > 0.0 && after.im <= 0.0 {
-                let (from, to) = ((at(i - 1), root), (at(i), after));
+                let from = ValueAt::new(at(i - 1), root);
+                let to = ValueAt::new(at(i), after);
                 let onset = problem.refine(name, from, to, structure.branch_name(row))?;
                 if onset.at.speed_m_s <= speed_max_m_s {
                     findings.crossings.push(onset);
@@ -157,7 +158,7 @@ pub fn table_tested_from(
     range: ReducedFrequencyRange,
 ) -> Result<Option<TestedFrom>> {
     let k = positive("range of reduced frequencies", range.max.full_width())?;
-    let problem = Problem {
+    let problem = DeterminantProblem {
         structure,
         model: table,
     };
@@ -203,12 +204,12 @@ fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>>
         .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
 }
 
-struct Problem<'a> {
+struct DeterminantProblem<'a> {
     structure: &'a Structure,
     model: &'a dyn Transfer,
 }
 
-impl Problem<'_> {
+impl DeterminantProblem<'_> {
     /// Roots at the reduced frequency `k` with the rows whose modes they are: those of the structure without air, followed
     /// while the air comes to its density.
     fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, usize)>> {
@@ -269,26 +270,25 @@ impl Problem<'_> {
     fn refine(
         &self,
         name: &str,
-        before: (f64, Complex<f64>),
-        after: (f64, Complex<f64>),
+        before: ValueAt<Complex<f64>>,
+        after: ValueAt<Complex<f64>>,
         branch: String,
     ) -> Result<Onset> {
         let root_at = |k: f64| -> Result<Complex<f64>> {
             // the roots move little over one cell of the grid: nearest to the straight line between its ends
-            let share = (k - before.0) / (after.0 - before.0);
-            let guess = before.1 + (after.1 - before.1) * share;
+            let share = (k - before.at) / (after.at - before.at);
+            let guess = before.value + (after.value - before.value) * share;
             nearest(guess, &self.frequencies(k)?)
                 .ok_or_else(|| Error::Numerical(format!("determinant: no root at K = {k}")))
         };
-        let k = root((before.0, -before.1.im), (after.0, -after.1.im), |k| {
-            Ok(-root_at(k)?.im)
-        })?;
+        let imaginary = |end: ValueAt<Complex<f64>>| ValueAt::new(end.at, -end.value.im);
+        let k = root(imaginary(before), imaginary(after), |k| Ok(-root_at(k)?.im))?;
         let omega = root_at(k)?.re;
         let s = self.structure;
         let speed = omega * s.width_m / k;
         let shape = null_vector(s, &impedance(s, self.model, speed, omega)?, omega)?;
-        let (method, at) = (OnsetMethod::Determinant, (speed, omega));
-        let mut onset = Onset::new(name, method, s, at, &shape, branch);
+        let at = CriticalPoint::of_motion(name, OnsetMethod::Determinant, s, speed, omega);
+        let mut onset = Onset::new(at, s, &shape, branch);
         onset.damping_slope_s_m = damping_slope(s, self.model, speed, omega);
         Ok(onset)
     }

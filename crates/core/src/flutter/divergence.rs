@@ -4,7 +4,7 @@ use crate::aerodynamics::{FlatPlate, Transfer, TransferMatrix};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
-use crate::state_space::{balance, eigenvalues, root};
+use crate::state_space::{ValueAt, balance, eigenvalues, root};
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
@@ -106,11 +106,11 @@ pub fn divergence_by_eigenvalues(
     speed_max_m_s: f64,
 ) -> Result<Option<f64>> {
     let speed_max = positive("highest wind speed", speed_max_m_s)?;
-    let mut before: Option<(f64, f64)> = None;
+    let mut before: Option<ValueAt> = None;
     for i in 1..=SPEEDS {
         let speed = speed_max * i as f64 / SPEEDS as f64;
-        let after = (speed, singularity(section, speed)?);
-        if let Some(before) = before.filter(|b| (b.1 > 0.0) != (after.1 > 0.0)) {
+        let after = ValueAt::new(speed, singularity(section, speed)?);
+        if let Some(before) = before.filter(|b| (b.value > 0.0) != (after.value > 0.0)) {
             return root(before, after, |speed| singularity(section, speed)).map(Some);
         }
         before = Some(after);

@@ -1,7 +1,7 @@
 //! The dynamic stiffness `D(λ, V) = λ²M + λR + K − ½ρV²B² G(λB/V)` of up to three degrees of freedom, without allocation:
 //! its structural part and its determinant, each with derivatives. Whoever brings `G` subtracts it.
 
-use crate::section::Support;
+use crate::section::Suspension;
 use nalgebra::{Complex, DVector};
 
 pub(super) type Complex64 = Complex<f64>;
@@ -11,7 +11,7 @@ pub(super) type Small<const M: usize> = [[Complex64; M]; M];
 pub(super) const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
 /// One entry of `λ²M + λR + K`, and its derivative with respect to `λ`.
-pub(super) fn oscillator(lambda: Complex64, s: Support) -> (Complex64, Complex64) {
+pub(super) fn oscillator(lambda: Complex64, s: Suspension) -> (Complex64, Complex64) {
     (
         (lambda * s.mass + s.damping) * lambda + s.stiffness,
         lambda * (2.0 * s.mass) + s.damping,

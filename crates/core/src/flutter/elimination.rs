@@ -1,18 +1,18 @@
 //! Small complex systems of equations by Gaussian elimination with row pivoting, as they are solved for every mode of a bridge
 //! at every wind speed.
 
-use super::columns::{Columns, Rows, WIDTH, dot, entry};
+use super::columns::{ComplexColumns, EntryBlock, WIDTH, dot, entry};
 use nalgebra::{Complex, DMatrix};
 use std::ops::Range;
 
 type Complex64 = Complex<f64>;
 
-impl Columns {
+impl ComplexColumns {
     /// Lower and upper triangle; `None` where the matrix is singular or not finite.
     #[inline(always)]
     pub(super) fn factors(mut self) -> Option<Factors> {
         let (n, stride) = (self.rows, self.stride);
-        let mut below = vec![Rows::ZERO; stride];
+        let mut below = vec![EntryBlock::ZERO; stride];
         let mut swaps = Vec::with_capacity(n);
         for k in 0..n {
             let pivot = self.pivot(k)?;
@@ -55,7 +55,7 @@ impl Columns {
 #[derive(Debug)]
 pub(super) struct Factors {
     /// Multipliers below the diagonal, the upper triangle on and above it.
-    lu: Columns,
+    lu: ComplexColumns,
     /// The row with which each was exchanged, in turn.
     swaps: Vec<usize>,
 }
@@ -72,7 +72,7 @@ impl Factors {
 
     /// The solution `x` of `A x = sides`.
     #[inline(always)]
-    pub(super) fn solve(&self, mut sides: Columns) -> Columns {
+    pub(super) fn solve(&self, mut sides: ComplexColumns) -> ComplexColumns {
         let n = self.lu.rows;
         for (k, row) in self.swaps.iter().enumerate() {
             sides.swap(k, *row);
@@ -92,7 +92,7 @@ impl Factors {
 
     /// Subtracts row `k` of `sides` times those entries of column `k` that stand in `rows`.
     #[inline(always)]
-    fn take(&self, k: usize, rows: Range<usize>, sides: &mut Columns) {
+    fn take(&self, k: usize, rows: Range<usize>, sides: &mut ComplexColumns) {
         let (stride, from) = (self.lu.stride, self.lu.column(k));
         for j in 0..sides.columns() {
             let factor = sides.at(k, j);
@@ -106,10 +106,10 @@ impl Factors {
 
     /// The solution `x` of `Aᵀ x = side`, a column.
     #[inline(always)]
-    pub(super) fn solve_transposed(&self, side: &Columns) -> Columns {
+    pub(super) fn solve_transposed(&self, side: &ComplexColumns) -> ComplexColumns {
         let n = self.lu.rows;
         // what is not found yet is zero, so that a product with a whole column takes what is found
-        let (mut y, mut x) = (Columns::zeros(n, 1), Columns::zeros(n, 1));
+        let (mut y, mut x) = (ComplexColumns::zeros(n, 1), ComplexColumns::zeros(n, 1));
         for k in 0..n {
             let to = k.div_ceil(WIDTH);
             let known = dot(&self.lu.column(k)[..to], &y.column(0)[..to]);
@@ -132,17 +132,17 @@ pub(super) fn solve(
     a: &DMatrix<Complex64>,
     sides: &DMatrix<Complex64>,
 ) -> Option<DMatrix<Complex64>> {
-    let solve = Solve(Columns::of(a), Columns::of(sides));
+    let solve = Solve(ComplexColumns::of(a), ComplexColumns::of(sides));
     Some(pulp::Arch::new().dispatch(solve)?.to_matrix())
 }
 
-struct Solve(Columns, Columns);
+struct Solve(ComplexColumns, ComplexColumns);
 
 impl pulp::NullaryFnOnce for Solve {
-    type Output = Option<Columns>;
+    type Output = Option<ComplexColumns>;
 
     #[inline(always)]
-    fn call(self) -> Option<Columns> {
+    fn call(self) -> Option<ComplexColumns> {
         Some(self.0.factors()?.solve(self.1))
     }
 }
@@ -174,8 +174,10 @@ mod tests {
             assert!((&found - &expected).norm() < 1e-11 * expected.norm(), "{n}");
             assert!((&a * found - &sides).norm() < 1e-12 * sides.norm() * n as f64);
             let side = sides.columns(0, 1).into_owned();
-            let factors = Columns::of(&a).factors().expect("a regular matrix");
-            let of_transposed = factors.solve_transposed(&Columns::of(&side)).to_matrix();
+            let factors = ComplexColumns::of(&a).factors().expect("a regular matrix");
+            let of_transposed = factors
+                .solve_transposed(&ComplexColumns::of(&side))
+                .to_matrix();
             assert!((a.transpose() * of_transposed - &side).norm() < 1e-11 * side.norm());
         }
     }

@@ -1,12 +1,12 @@
 //! What the routes that follow modes over wind speed share: the modes, and what is watched from one speed to the next.
 
 use super::answer::{Findings, UnstableStart};
-use super::critical_point::OnsetMethod;
+use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::judged::{Exit, entry_reason};
 use super::onset::Onset;
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::root;
+use crate::state_space::{ValueAt, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
 
@@ -153,22 +153,19 @@ impl<F: Follower> OnsetWatch<'_, F> {
                 continue;
             };
             if before.lambda.re < 0.0 && after.lambda.re >= 0.0 {
-                let (speed, mode) = self.zero((low, before), (high, after), |_, m| m.lambda.re)?;
+                let (speed, mode) = self.zero(low, before, high, after, |_, m| m.lambda.re)?;
                 let (s, branch) = (self.follower.structure(), self.follower.name(mode.branch));
-                let at = (speed, mode.lambda.im);
-                let onset = Onset::new(self.model, F::METHOD, s, at, &mode.shape, branch);
+                let onset = Onset::new(self.motion(speed, &mode), s, &mode.shape, branch);
                 found
                     .crossings
                     .extend(self.follower.complete(onset, low, &mode)?);
             }
             if before.lambda.re >= 0.0 && after.lambda.re < 0.0 {
-                let (speed, mode) = self.zero((low, before), (high, after), |_, m| m.lambda.re)?;
+                let (speed, mode) = self.zero(low, before, high, after, |_, m| m.lambda.re)?;
                 let name = self.follower.name(mode.branch);
                 found.recoveries.push((speed, name));
             }
-            found
-                .starts
-                .extend(self.entry((low, before), (high, after))?);
+            found.starts.extend(self.entry(low, before, high, after)?);
         }
         Ok(())
     }
@@ -176,7 +173,9 @@ impl<F: Follower> OnsetWatch<'_, F> {
     /// Adds the ends of what can be judged that modes pass between two speeds.
     fn look(&self, low: &Modes, high: &Modes, found: &mut Findings) {
         let Some(range) = self.judged else { return };
-        let k = |modes: &Modes, mode: &Mode| (modes.speed, self.follower.k(modes.speed, mode));
+        let k = |modes: &Modes, mode: &Mode| {
+            ValueAt::new(modes.speed, self.follower.k(modes.speed, mode))
+        };
         for before in &low.all {
             let branch = self.follower.name(before.branch);
             match high.mode(before.branch) {
@@ -189,29 +188,39 @@ impl<F: Follower> OnsetWatch<'_, F> {
         }
     }
 
+    fn motion(&self, speed: f64, mode: &Mode) -> CriticalPoint {
+        let s = self.follower.structure();
+        CriticalPoint::of_motion(self.model, F::METHOD, s, speed, mode.lambda.im)
+    }
+
     /// Growth of a mode where it can be judged first.
     pub(super) fn start(&self, speed: f64, mode: &Mode, reason: String) -> UnstableStart {
-        let (s, branch) = (self.follower.structure(), self.follower.name(mode.branch));
-        let at = (speed, mode.lambda);
-        let mut start = UnstableStart::new(self.model, F::METHOD, s, at, branch, reason);
+        let (at, branch) = (self.motion(speed, mode), self.follower.name(mode.branch));
+        let mut start = UnstableStart::new(at, mode.lambda.re, branch, reason);
         let k = start.at.reduced_frequency;
         start.in_tested_range = self.tested.map(|range| range.contains(k));
         start
     }
 
     /// A mode that comes into the tested range between two speeds and grows there.
-    fn entry(&self, low: (&Modes, &Mode), high: (&Modes, &Mode)) -> Result<Option<UnstableStart>> {
-        let grows = low.1.lambda.re >= 0.0 || high.1.lambda.re >= 0.0;
+    fn entry(
+        &self,
+        low: &Modes,
+        before: &Mode,
+        high: &Modes,
+        after: &Mode,
+    ) -> Result<Option<UnstableStart>> {
+        let grows = before.lambda.re >= 0.0 || after.lambda.re >= 0.0;
         let Some(range) = self.tested.filter(|_| grows) else {
             return Ok(None);
         };
-        let k = |(modes, mode): (&Modes, &Mode)| self.follower.k(modes.speed, mode);
-        if k(low) <= range.max || k(high) > range.max {
+        let k = |modes: &Modes, mode: &Mode| self.follower.k(modes.speed, mode);
+        if k(low, before) <= range.max || k(high, after) > range.max {
             return Ok(None);
         }
         let beyond =
             |v: f64, mode: &Mode| range.max.full_width() - self.follower.k(v, mode).full_width();
-        let (speed, mode) = self.zero(low, high, beyond)?;
+        let (speed, mode) = self.zero(low, before, high, after, beyond)?;
         Ok(growing(&mode.lambda).then(|| {
             let mut start = self.start(speed, &mode, entry_reason(range.max));
             start.in_tested_range = Some(true);
@@ -222,13 +231,17 @@ impl<F: Follower> OnsetWatch<'_, F> {
     /// The speed between two at which a number of one mode is zero, and the mode there.
     fn zero(
         &self,
-        (low, before): (&Modes, &Mode),
-        (high, after): (&Modes, &Mode),
+        low: &Modes,
+        before: &Mode,
+        high: &Modes,
+        after: &Mode,
         value: impl Fn(f64, &Mode) -> f64,
     ) -> Result<(f64, Mode)> {
         let mode_at = |v: f64| self.follower.mode_at(low, v, after.branch);
-        let ends = [(low, before), (high, after)].map(|(at, m)| (at.speed, value(at.speed, m)));
-        let speed = root(ends[0], ends[1], |v| Ok(value(v, &mode_at(v)?)))?;
+        let end = |modes: &Modes, mode: &Mode| ValueAt::new(modes.speed, value(modes.speed, mode));
+        let speed = root(end(low, before), end(high, after), |v| {
+            Ok(value(v, &mode_at(v)?))
+        })?;
         Ok((speed, mode_at(speed)?))
     }
 }

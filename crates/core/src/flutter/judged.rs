@@ -3,7 +3,8 @@
 use crate::aerodynamics::TransferMatrix;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::units::{LowerEnd, ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
+use crate::state_space::ValueAt;
+use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::Serialize;
 
@@ -115,7 +116,7 @@ pub(super) enum Exit {
 
 impl Exit {
     /// At one of the [lower ends](ReducedFrequencyRange::lower_ends) of a range.
-    pub(super) fn at((k, gap): LowerEnd) -> Self {
+    pub(super) fn at(k: ReducedFrequency, gap: Option<ReducedFrequencyGap>) -> Self {
         gap.map_or(Self::Below(k), Self::Into)
     }
 
@@ -149,16 +150,16 @@ impl RangePassages {
         &mut self,
         range: ReducedFrequencyRange,
         branch: &str,
-        before: (f64, ReducedFrequency),
-        after: (f64, ReducedFrequency),
+        before: ValueAt<ReducedFrequency>,
+        after: ValueAt<ReducedFrequency>,
     ) {
         let slowness = |k: ReducedFrequency| 1.0 / k.full_width();
         let passes = |k: ReducedFrequency| {
-            let (a, b, c) = (slowness(before.1), slowness(after.1), slowness(k));
-            (a <= c && c < b).then(|| before.0 + (after.0 - before.0) * (c - a) / (b - a))
+            let (a, b, c) = (slowness(before.value), slowness(after.value), slowness(k));
+            (a <= c && c < b).then(|| before.at + (after.at - before.at) * (c - a) / (b - a))
         };
-        for end in range.lower_ends() {
-            let exit = passes(end.0).map(|speed| (speed, branch.to_owned(), Exit::at(end)));
+        for (k, gap) in range.lower_ends() {
+            let exit = passes(k).map(|speed| (speed, branch.to_owned(), Exit::at(k, gap)));
             self.exits.extend(exit);
         }
         let entry = passes(range.max).map(|speed| (speed, branch.to_owned()));

@@ -1,7 +1,7 @@
 //! What the scan of all eigenvalues adds to the modes that were followed.
 
 use super::answer::{Findings, UnstableStart};
-use super::critical_point::OnsetMethod;
+use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::onset::Onset;
 use super::scan::{AERODYNAMIC, COARSE, FINE, Scan};
 use super::tracking::{SLOPE_STEP, mode_shape};
@@ -17,7 +17,7 @@ impl Scan<'_> {
     /// Adds growth from still air up to a speed that is not among the findings yet; what lies above an answer inside the
     /// tested range does not matter.
     pub(super) fn add_missed(&self, found: &mut Findings, to_m_s: f64) -> Result<()> {
-        let density = if found.warnings.is_empty() {
+        let spacing = if found.warnings.is_empty() {
             COARSE
         } else {
             FINE
@@ -30,7 +30,7 @@ impl Scan<'_> {
             .filter(|(_, k)| self.tested.is_none_or(|range| range.spans(*k)))
             .map(|(speed, _)| speed)
             .fold(to_m_s, f64::min);
-        for band in self.bands(0.0, to_m_s, density)? {
+        for band in self.bands(0.0, to_m_s, spacing)? {
             let at = self.at(band.from_m_s)?;
             if let Some(lambda) = at.fastest.filter(|_| !found.knows(band.from_m_s)) {
                 if band.from_start {
@@ -58,13 +58,17 @@ impl Scan<'_> {
         Ok(())
     }
 
+    fn motion(&self, speed: f64, lambda: Complex<f64>) -> CriticalPoint {
+        let (s, method) = (self.section.structure(), OnsetMethod::Eigenvalues);
+        CriticalPoint::of_motion(self.model, method, s, speed, lambda.im)
+    }
+
     fn start(&self, speed: f64, lambda: Complex<f64>, reason: &str) -> UnstableStart {
+        let branch = self.branch(speed, lambda);
         UnstableStart::new(
-            self.model,
-            OnsetMethod::Eigenvalues,
-            self.section.structure(),
-            (speed, lambda),
-            self.branch(speed, lambda),
+            self.motion(speed, lambda),
+            lambda.re,
+            branch,
             reason.to_owned(),
         )
     }
@@ -73,8 +77,8 @@ impl Scan<'_> {
         let shape = mode_shape(self.section, &self.section.at(speed)?, lambda)?;
         let branch = self.branch(speed, lambda);
         let force_model = branch == AERODYNAMIC;
-        let (s, method) = (self.section.structure(), OnsetMethod::Eigenvalues);
-        let mut onset = Onset::new(self.model, method, s, (speed, lambda.im), &shape, branch);
+        let (at, s) = (self.motion(speed, lambda), self.section.structure());
+        let mut onset = Onset::new(at, s, &shape, branch);
         let nearby = self.at(speed * (1.0 - SLOPE_STEP))?;
         onset.damping_slope_s_m = nearby
             .fastest

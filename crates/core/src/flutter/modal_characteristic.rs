@@ -11,7 +11,7 @@
 
 mod chains;
 
-use super::columns::{Columns, RealColumns, Term};
+use super::columns::{ComplexColumns, RealColumns, Term};
 use super::elimination::{Factors, solve};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -120,7 +120,7 @@ impl AtSpeed<'_> {
         // what a step of this size leaves, as a part: nothing where no other eigenvalue is known
         let part = |step: Complex64| apart.map_or(0.0, |apart| step.norm() / apart);
         let mut lambda = start;
-        let mut shape = Columns::of_column(&near.normalize());
+        let mut shape = ComplexColumns::of_column(&near.normalize());
         for _ in 0..MAX_ROUNDS {
             let terms = self.terms(lambda)?;
             let Some(round) = pulp::Arch::new().dispatch(TwoSided {
@@ -163,10 +163,10 @@ impl AtSpeed<'_> {
         basis: &DMatrix<Complex64>,
     ) -> Option<DMatrix<Complex64>> {
         let terms = self.terms(lambda)?;
-        let basis = Columns::of(basis);
+        let basis = ComplexColumns::of(basis);
         Some(
             pulp::Arch::new()
-                .dispatch(Iteration { terms, basis })?
+                .dispatch(InverseStep { terms, basis })?
                 .to_matrix(),
         )
     }
@@ -208,17 +208,17 @@ impl AtSpeed<'_> {
 }
 
 /// `D⁻¹ D' U`, compiled for the vectors of the processor.
-struct Iteration<'a> {
+struct InverseStep<'a> {
     terms: Vec<Term<'a>>,
-    basis: Columns,
+    basis: ComplexColumns,
 }
 
-impl pulp::NullaryFnOnce for Iteration<'_> {
-    type Output = Option<Columns>;
+impl pulp::NullaryFnOnce for InverseStep<'_> {
+    type Output = Option<ComplexColumns>;
 
     #[inline(always)]
-    fn call(self) -> Option<Columns> {
-        let (value, slope) = Columns::sum(&self.terms);
+    fn call(self) -> Option<ComplexColumns> {
+        let (value, slope) = ComplexColumns::sum(&self.terms);
         Some(value.factors()?.solve(slope.times(&self.basis)))
     }
 }
@@ -233,7 +233,7 @@ impl pulp::NullaryFnOnce for Triangles<'_> {
 
     #[inline(always)]
     fn call(self) -> Option<Factors> {
-        Columns::value(&self.terms).factors()
+        ComplexColumns::value(&self.terms).factors()
     }
 }
 
@@ -241,7 +241,7 @@ impl pulp::NullaryFnOnce for Triangles<'_> {
 struct TwoSided<'a> {
     terms: Vec<Term<'a>>,
     /// Of unit norm.
-    shape: &'a Columns,
+    shape: &'a ComplexColumns,
 }
 
 /// What it finds.
@@ -250,8 +250,8 @@ struct Round {
     step: Complex64,
     factors: Factors,
     /// The better shape, of unit norm.
-    right: Columns,
-    left: Columns,
+    right: ComplexColumns,
+    left: ComplexColumns,
     /// `wᵀ D' u` of the two.
     scale: Complex64,
 }
@@ -262,7 +262,7 @@ impl pulp::NullaryFnOnce for TwoSided<'_> {
     /// `None` where it is not finite.
     #[inline(always)]
     fn call(self) -> Option<Round> {
-        let (value, slope) = Columns::sum(&self.terms);
+        let (value, slope) = ComplexColumns::sum(&self.terms);
         let factors = value.factors()?;
         let side = slope.times(self.shape);
         let left = factors.solve_transposed(&slope.transposed_times(self.shape));
@@ -290,12 +290,12 @@ struct Residual<'a> {
 }
 
 impl pulp::NullaryFnOnce for Residual<'_> {
-    type Output = Option<(Complex64, Columns)>;
+    type Output = Option<(Complex64, ComplexColumns)>;
 
     /// What is to be taken from the eigenvalue, and the better shape; `None` where they are not finite.
     #[inline(always)]
-    fn call(self) -> Option<(Complex64, Columns)> {
-        let value = Columns::value(&self.terms);
+    fn call(self) -> Option<(Complex64, ComplexColumns)> {
+        let value = ComplexColumns::value(&self.terms);
         let Round {
             factors,
             mut right,

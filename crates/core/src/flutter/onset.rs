@@ -1,11 +1,10 @@
 //! The flutter onset as a result: everything a practitioner wants on the card.
 
-use super::critical_point::{CriticalPoint, OnsetMethod};
+use super::critical_point::CriticalPoint;
 use crate::section::Structure;
-use crate::units::{ReducedFrequency, ReducedFrequencyGap};
+use crate::units::ReducedFrequencyGap;
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// A flutter onset.
 ///
@@ -269,21 +268,17 @@ impl Onset {
         format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
     }
 
-    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
+    /// The onset of a motion of a mode shape; nothing about ranges yet.
     pub(super) fn new(
-        model: &str,
-        method: OnsetMethod,
+        at: CriticalPoint,
         structure: &Structure,
-        (speed_m_s, omega): (f64, f64),
         shape: &DVector<Complex<f64>>,
         branch: String,
     ) -> Self {
-        let width = structure.width_m;
-        let y = shape[0] / width;
+        let y = shape[0] / structure.width_m;
         let theta = shape[shape.len() - 1];
-        let k = ReducedFrequency::from_circular(omega, width, speed_m_s);
         Self {
-            at: CriticalPoint::new(model, method, speed_m_s, omega / TAU, k),
+            at,
             mode_ratio: y.norm() / theta.norm(),
             phase_deg: (y / theta).arg().to_degrees(),
             damping_slope_s_m: None,

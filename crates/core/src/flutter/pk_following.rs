@@ -11,7 +11,7 @@ use super::quasi_pk::{pk_mode, pk_mode_at};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::{eigenvalues, eigenvector, first_order, root};
+use crate::state_space::{ValueAt, eigenvalues, eigenvector, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;
@@ -31,7 +31,7 @@ const AIR_STEPS: usize = 40;
 
 /// A mode at the lowest speed at which it is known.
 #[derive(Debug, Clone)]
-pub(super) struct Entry {
+pub(super) struct StartingMode {
     pub(super) speed: f64,
     pub(super) mode: Mode,
 }
@@ -55,9 +55,9 @@ impl Iteration<'_> {
         &self,
         speeds: &[f64],
         on_step: OnStep<'_>,
-    ) -> Result<(Vec<Entry>, RangePassages)> {
+    ) -> Result<(Vec<StartingMode>, RangePassages)> {
         let entries = self.entries(speeds)?;
-        let named = |e: &Entry| (e.speed, self.name(e.mode.branch));
+        let named = |e: &StartingMode| (e.speed, self.name(e.mode.branch));
         let mut reach = RangePassages::default();
         if self.model.known_range().is_some() {
             reach.entries = entries.iter().map(named).collect();
@@ -102,15 +102,13 @@ impl Iteration<'_> {
             let Some(before) = from.mode(mode.branch) else {
                 continue;
             };
-            let ends = (
-                beyond(self.k(from.speed, before)),
-                beyond(self.k(target, mode)),
-            );
-            let speed = root((from.speed, ends.0), (target, ends.1), |v| {
+            let end = |at: f64, mode: &Mode| ValueAt::new(at, beyond(self.k(at, mode)));
+            let last = end(target, mode);
+            let speed = root(end(from.speed, before), last, |v| {
                 let modes = self.advance(from, v)?;
                 Ok(modes
                     .mode(mode.branch)
-                    .map_or(ends.1, |m| beyond(self.k(v, m))))
+                    .map_or(last.value, |m| beyond(self.k(v, m))))
             })?;
             if first.is_none_or(|f| speed < f.0) {
                 first = Some((speed, mode.branch));
@@ -134,7 +132,7 @@ impl Iteration<'_> {
     }
 
     /// Every mode where it is known first, by rising speed: in nearly still air, or at the highest `K` of a table.
-    fn entries(&self, speeds: &[f64]) -> Result<Vec<Entry>> {
+    fn entries(&self, speeds: &[f64]) -> Result<Vec<StartingMode>> {
         let still = self.still_air();
         let mut entries = match self.model.known_range() {
             Some(range) => self.entries_into(range, &still)?,
@@ -144,7 +142,7 @@ impl Iteration<'_> {
                 let speed = NEARLY_STILL * slowest * self.structure.width_m;
                 let speed = speed.min(0.5 * speeds.first().copied().unwrap_or(f64::INFINITY));
                 let modes = self.advance(&still, speed)?.all;
-                let entry = |mode| Entry { speed, mode };
+                let entry = |mode| StartingMode { speed, mode };
                 modes.into_iter().map(entry).collect()
             }
         };
@@ -154,7 +152,11 @@ impl Iteration<'_> {
 
     /// The modes at the highest `K` of a table: those of the structure without air, followed while the air comes to its
     /// density.
-    fn entries_into(&self, range: ReducedFrequencyRange, still: &Modes) -> Result<Vec<Entry>> {
+    fn entries_into(
+        &self,
+        range: ReducedFrequencyRange,
+        still: &Modes,
+    ) -> Result<Vec<StartingMode>> {
         let mut entries = Vec::with_capacity(still.all.len());
         for mode in &still.all {
             let mut thin = self.structure.clone();
@@ -167,7 +169,7 @@ impl Iteration<'_> {
                     None => None,
                 };
             }
-            entries.extend(at.map(|(speed, mode)| Entry { speed, mode }));
+            entries.extend(at.map(|(speed, mode)| StartingMode { speed, mode }));
         }
         Ok(entries)
     }

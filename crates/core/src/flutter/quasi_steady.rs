@@ -2,7 +2,7 @@
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
 use super::answer::{FlutterSearch, UnstableStart};
-use super::critical_point::OnsetMethod;
+use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::curves::{FlutterCurves, empty_branches, trace_modes};
 use super::following::{Mode, oscillates};
 use super::instability::{ModeAtOnset, classify};
@@ -14,7 +14,7 @@ use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::{damping_ratio, root};
+use crate::state_space::{ValueAt, damping_ratio, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::Serialize;
 
@@ -56,12 +56,13 @@ pub fn quasi_steady_onset(
         mode,
         equilibrium_end: path.end,
     };
-    let mut before: Option<(f64, f64)> = None;
+    let mut before: Option<ValueAt> = None;
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
         let section = CoupledSection::with_model(structure, &linear)?;
         let growth = fastest_growth(&section, point.speed_m_s)?;
-        let Some(before) = before.replace((point.speed_m_s, growth)) else {
+        let here = ValueAt::new(point.speed_m_s, growth);
+        let Some(before) = before.replace(here) else {
             if growth > 0.0 {
                 let start = grows_in_still_air(name, &section, point.speed_m_s)?;
                 return Ok(found(
@@ -72,7 +73,7 @@ pub fn quasi_steady_onset(
             continue;
         };
         if growth >= 0.0 {
-            let speed = root(before, (point.speed_m_s, growth), |speed| {
+            let speed = root(before, here, |speed| {
                 let linear = at_equilibrium(structure, theory, speed)?;
                 fastest_growth(&CoupledSection::with_model(structure, &linear)?, speed)
             })?;
@@ -144,9 +145,10 @@ fn fastest_growth(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
 fn grows_in_still_air(name: &str, section: &CoupledSection, speed: f64) -> Result<UnstableStart> {
     let mode = least_damped(section, speed)?;
     let structure = section.structure();
-    let (at, branch) = ((speed, mode.lambda), structure.branch_name(mode.branch));
     let (method, why) = (OnsetMethod::Eigenvalues, "nearly still air".to_owned());
-    Ok(UnstableStart::new(name, method, structure, at, branch, why))
+    let at = CriticalPoint::of_motion(name, method, structure, speed, mode.lambda.im);
+    let branch = structure.branch_name(mode.branch);
+    Ok(UnstableStart::new(at, mode.lambda.re, branch, why))
 }
 
 /// The mode with the least damping, followed from still air at one linearisation.
@@ -170,14 +172,10 @@ fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64
     };
     let mode = mode_at(speed)?;
     let nearby = mode_at(speed * (1.0 - SLOPE_STEP))?;
-    let mut onset = Onset::new(
-        name,
-        OnsetMethod::Eigenvalues,
-        structure,
-        (speed, mode.lambda.im),
-        &mode.shape,
-        structure.branch_name(mode.branch),
-    );
+    let method = OnsetMethod::Eigenvalues;
+    let at = CriticalPoint::of_motion(name, method, structure, speed, mode.lambda.im);
+    let branch = structure.branch_name(mode.branch);
+    let mut onset = Onset::new(at, structure, &mode.shape, branch);
     let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
     onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));
     let v_star = onset.at.reduced_velocity.v_star();

@@ -15,10 +15,16 @@ use std::f64::consts::TAU;
 
 /// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
 const NEARLY_STILL: f64 = 0.01;
-/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
-pub(super) const FINE: (f64, f64) = (1.05, 1.0 / 120.0);
+/// Spacing of a scan by itself.
+pub(super) const FINE: SpeedSpacing = SpeedSpacing {
+    ratio: 1.05,
+    part: 1.0 / 120.0,
+};
 /// The same where the structural modes are followed besides.
-pub(super) const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
+pub(super) const COARSE: SpeedSpacing = SpeedSpacing {
+    ratio: 1.12,
+    part: 1.0 / 50.0,
+};
 /// Branch of an eigenvalue that belongs to no structural mode.
 pub(super) const AERODYNAMIC: &str = "aerodynamic";
 /// Relative width to which the ends of a band are halved.
@@ -98,7 +104,7 @@ pub fn growth_scan(
 
 /// The fastest growing oscillations at one speed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+pub(super) struct ScanPoint {
     pub(super) speed: f64,
     /// The least damped oscillating eigenvalue, rad/s.
     pub(super) fastest: Option<Complex<f64>>,
@@ -108,7 +114,7 @@ pub(super) struct Point {
     unstable: usize,
 }
 
-impl Point {
+impl ScanPoint {
     fn grows(&self) -> bool {
         self.fastest.is_some_and(|z| growing(&z))
     }
@@ -116,6 +122,13 @@ impl Point {
     fn rate(&self) -> f64 {
         self.fastest.map_or(f64::NEG_INFINITY, |z| z.re)
     }
+}
+
+/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SpeedSpacing {
+    ratio: f64,
+    part: f64,
 }
 
 /// A section whose eigenvalues are looked at.
@@ -171,7 +184,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Speeds of a scan, m/s.
-    fn speeds(&self, from_m_s: f64, to_m_s: f64, (ratio, part): (f64, f64)) -> Result<Vec<f64>> {
+    fn speeds(&self, from_m_s: f64, to_m_s: f64, spacing: SpeedSpacing) -> Result<Vec<f64>> {
         non_negative("lowest wind speed", from_m_s)?;
         positive("highest wind speed", to_m_s)?;
         if from_m_s >= to_m_s {
@@ -185,7 +198,7 @@ impl<'a> Scan<'a> {
         let mut speed = from_m_s.max(self.lowest(to_m_s)?);
         while speed < to_m_s {
             all.push(speed);
-            speed = (ratio * speed).min(speed + to_m_s * part);
+            speed = (spacing.ratio * speed).min(speed + to_m_s * spacing.part);
         }
         all.push(to_m_s);
         Ok(all)
@@ -195,9 +208,9 @@ impl<'a> Scan<'a> {
         &self,
         from_m_s: f64,
         to_m_s: f64,
-        density: (f64, f64),
+        spacing: SpeedSpacing,
     ) -> Result<Vec<GrowthBand>> {
-        let grid = self.speeds(from_m_s, to_m_s, density)?;
+        let grid = self.speeds(from_m_s, to_m_s, spacing)?;
         let points = match critical_speeds(self.section) {
             Some(critical) => self.between(&critical, &grid)?,
             None => {
@@ -225,13 +238,13 @@ impl<'a> Scan<'a> {
         self.tested.map(|range| range.spans(k))
     }
 
-    pub(super) fn at(&self, speed: f64) -> Result<Point> {
+    pub(super) fn at(&self, speed: f64) -> Result<ScanPoint> {
         let mut all = self.section.at(speed)?.eigenvalues()?;
         let unstable = all.iter().filter(|z| z.re > 0.0).count();
         all.retain(oscillates);
         all.sort_by(|a, b| b.re.total_cmp(&a.re));
         let inside = |z: &&Complex<f64>| growing(z) && self.inside(speed, **z) != Some(false);
-        Ok(Point {
+        Ok(ScanPoint {
             speed,
             fastest: all.first().copied(),
             inside: all.iter().find(inside).copied(),
@@ -239,14 +252,14 @@ impl<'a> Scan<'a> {
         })
     }
 
-    fn all_at(&self, speeds: &[f64]) -> Result<Vec<Point>> {
+    fn all_at(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
         speeds.iter().map(|v| self.at(*v)).collect()
     }
 
     /// Points on both sides of all critical speeds and half way between them. Where no two eigenvalues have a positive real
     /// part there, none have up to the next, and no oscillation grows. Where two have, the speeds of the grid are added: for the
     /// fastest growth and the tested range, and since two that are real may meet and oscillate.
-    fn between(&self, critical: &[f64], grid: &[f64]) -> Result<Vec<Point>> {
+    fn between(&self, critical: &[f64], grid: &[f64]) -> Result<Vec<ScanPoint>> {
         let (low, high) = (grid[0], grid[grid.len() - 1]);
         let inside = critical.iter().filter(|v| (low..high).contains(*v));
         let sides = inside.flat_map(|v| [v * (1.0 - BESIDE), *v, v * (1.0 + BESIDE)]);
@@ -258,8 +271,8 @@ impl<'a> Scan<'a> {
         ends.sort_by(f64::total_cmp);
         ends.dedup();
         let mut points = self.all_at(&ends)?;
-        let two = |w: &[Point]| w[0].unstable > 1 || w[1].unstable > 1;
-        let within = |w: &[Point], v: f64| w[0].speed < v && v < w[1].speed;
+        let two = |w: &[ScanPoint]| w[0].unstable > 1 || w[1].unstable > 1;
+        let within = |w: &[ScanPoint], v: f64| w[0].speed < v && v < w[1].speed;
         let more = |v: &&f64| points.windows(2).any(|w| two(w) && within(w, **v));
         let more: Vec<f64> = grid.iter().filter(more).copied().collect();
         points.extend(self.all_at(&more)?);
@@ -271,7 +284,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Adds growth that is met only between the speeds looked at.
-    fn add_peaks(&self, points: &mut Vec<Point>) -> Result<()> {
+    fn add_peaks(&self, points: &mut Vec<ScanPoint>) -> Result<()> {
         let mut peaks = Vec::new();
         for three in points.windows(3) {
             let rate = |i: usize| three[i].rate();
@@ -285,27 +298,29 @@ impl<'a> Scan<'a> {
     }
 
     /// The highest point between two speeds, if it grows.
-    fn peak(&self, low: f64, high: f64) -> Result<Option<Point>> {
+    fn peak(&self, low: f64, high: f64) -> Result<Option<ScanPoint>> {
         let mut steps = 0;
-        let done = |_, left: &Point, right: &Point| {
+        let done = |_, left: &ScanPoint, right: &ScanPoint| {
             steps += 1;
             left.grows() || right.grows() || steps > PEAK_STEPS
         };
-        let higher = |a: &Point, b: &Point| a.rate() > b.rate();
+        let higher = |a: &ScanPoint, b: &ScanPoint| a.rate() > b.rate();
         let (_, [left, right]) = golden_section((low, high), |v| self.at(v), higher, done)?;
         let highest = if higher(&left, &right) { left } else { right };
         Ok(highest.grows().then_some(highest))
     }
 
     /// The band of the points `from..to`, its ends refined.
-    fn band(&self, points: &[Point], from: usize, to: usize) -> Result<GrowthBand> {
+    fn band(&self, points: &[ScanPoint], from: usize, to: usize) -> Result<GrowthBand> {
         let within = &points[from..to];
         let from_m_s = match from.checked_sub(1) {
-            Some(before) => self.edge(points[from].speed, points[before].speed, Point::grows)?,
+            Some(before) => {
+                self.edge(points[from].speed, points[before].speed, ScanPoint::grows)?
+            }
             None => points[0].speed,
         };
         let to_m_s = match points.get(to) {
-            Some(after) => self.edge(points[to - 1].speed, after.speed, Point::grows)?,
+            Some(after) => self.edge(points[to - 1].speed, after.speed, ScanPoint::grows)?,
             None => points[to - 1].speed,
         };
         let fastest = within
@@ -327,7 +342,7 @@ impl<'a> Scan<'a> {
         })
     }
 
-    fn tested_from(&self, from_m_s: f64, within: &[Point]) -> Result<Option<f64>> {
+    fn tested_from(&self, from_m_s: f64, within: &[ScanPoint]) -> Result<Option<f64>> {
         let Some(first) = within.iter().position(|p| p.inside.is_some()) else {
             return Ok(None);
         };
@@ -337,7 +352,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The last speed from `yes` towards `no` at which the test still holds.
-    fn edge(&self, yes: f64, no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
+    fn edge(&self, yes: f64, no: f64, test: impl Fn(&ScanPoint) -> bool) -> Result<f64> {
         let found = boundary(yes, no, EDGE_TOLERANCE, |v| {
             Ok::<_, Error>(test(&self.at(v)?))
         })?;

@@ -350,7 +350,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
             let omega = a.re + (b.re - a.re) * share;
             let speed = omega * self.supports.width / k;
             let forces = &self.sweep.forces;
-            let crossing = refine(forces, self.coefficients, &self.supports, (speed, omega))?;
+            let crossing = refine(forces, self.coefficients, &self.supports, speed, omega)?;
             if crossing.speed <= self.sweep.speed_max {
                 *self.crossings.get_mut(self.found)? = Some(crossing);
                 self.found += 1;

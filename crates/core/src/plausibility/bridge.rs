@@ -4,7 +4,7 @@ mod line;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
 use super::section::{unusual_air, unusual_damping, unusual_radius};
-use super::{Finding, Kind};
+use super::{Finding, FindingKind};
 use crate::bridge::{Bridge, BridgeMode, Node};
 use line::{LENGTH, length_m, of_line};
 use std::f64::consts::{PI, TAU};
@@ -46,7 +46,7 @@ pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
             "in degrees it would be {} rad",
             significant(turns.to_radians())
         );
-        found.push(Finding::doubt(Kind::Unit, place(mode), text).otherwise(otherwise));
+        found.push(Finding::doubt(FindingKind::Unit, place(mode), text).otherwise(otherwise));
     }
     if let Some(mode) = modes.iter().find(|m| is_of_another_norm(m)) {
         let moves = greatest_displacement(mode).max(greatest(mode, 2));
@@ -54,7 +54,7 @@ pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
             "a generalised mass of 1 belongs to a mass-normalised shape, which moves by about 1e-3, and this one moves by up to {moves:.3}"
         );
         found.push(
-            Finding::doubt(Kind::Contradiction, place(mode), text)
+            Finding::doubt(FindingKind::Contradiction, place(mode), text)
                 .otherwise("is the mass that of a shape of another norm?".to_owned()),
         );
     }
@@ -146,7 +146,7 @@ fn twice(girder: &Girder<'_>) -> Vec<Finding> {
                     b.number, a.frequency_hz, b.frequency_hz
                 );
                 found.push(
-                    Finding::doubt(Kind::Duplicate, place(a), text)
+                    Finding::doubt(FindingKind::Duplicate, place(a), text)
                         .otherwise("modes.select can leave it out".to_owned()),
                 );
                 break;
@@ -182,7 +182,7 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
             significant(mass),
             significant(ratio)
         );
-        return vec![Finding::doubt(Kind::Unit, key, text).otherwise(otherwise)];
+        return vec![Finding::doubt(FindingKind::Unit, key, text).otherwise(otherwise)];
     }
     let Some((inertia, torsional)) = least(2).filter(|(_, i)| bridge.main_motion(*i) == 2) else {
         return Vec::new();

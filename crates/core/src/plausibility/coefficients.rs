@@ -1,7 +1,7 @@
 //! Static coefficients: sizes, slopes that are those per degree, signs, arms in another unit.
 
 use super::limits::significant;
-use super::{Finding, Kind};
+use super::{Finding, FindingKind};
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::section::Dof;
 use std::f64::consts::PI;
@@ -26,7 +26,7 @@ pub fn of_coefficients(place: &str, at: &CoefficientsAt, arms: &Arms) -> Vec<Fin
         let text = "drag acts with the wind: it is positive downwind";
         found.push(Finding {
             value: Some(at.drag),
-            ..Finding::doubt(Kind::Convention, key("drag"), text)
+            ..Finding::doubt(FindingKind::Convention, key("drag"), text)
         });
     }
     for (name, value, most) in [
@@ -87,7 +87,7 @@ fn slopes(place: &str, at: &CoefficientsAt) -> Vec<Finding> {
             let meant = "is lift positive down, or the moment nose-down?".to_owned();
             let odd = Finding {
                 value: Some(value),
-                ..Finding::doubt(Kind::Convention, key, text)
+                ..Finding::doubt(FindingKind::Convention, key, text)
             };
             found.push(odd.otherwise(meant).into_note());
         }
@@ -98,7 +98,7 @@ fn slopes(place: &str, at: &CoefficientsAt) -> Vec<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plausibility::{Severity, sentences};
+    use crate::plausibility::{FindingSeverity, sentences};
 
     const PLATE: CoefficientsAt = CoefficientsAt {
         drag: 0.05,
@@ -182,7 +182,7 @@ mod tests {
         };
         let odd = of_coefficients("static.", &at, &Arms::default());
         // few decks do that: to be known, no more
-        assert_eq!(odd[0].severity, Severity::Note);
+        assert_eq!(odd[0].severity, FindingSeverity::Note);
         assert!(odd[0].to_string().ends_with("or the moment nose-down?"));
     }
 

@@ -1,7 +1,7 @@
 //! Sections: width, air, masses, frequencies, damping, each by itself and against the others.
 
 use super::limits::{DECK_WIDTH, FREQUENCIES, Limits, beyond, significant};
-use super::{Finding, Kind, Severity};
+use super::{Finding, FindingKind, FindingSeverity};
 use crate::section::SectionModel;
 use std::f64::consts::TAU;
 
@@ -55,7 +55,7 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
     }
     if scale_is_usual {
         let of_mass = masses(section);
-        let masses_are_usual = of_mass.iter().all(|f| f.severity < Severity::Doubt);
+        let masses_are_usual = of_mass.iter().all(|f| f.severity < FindingSeverity::Doubt);
         found.extend(of_mass);
         found.extend(frequencies(section, masses_are_usual));
     }
@@ -146,7 +146,7 @@ pub(super) fn unusual_radius(key: &str, width_m: f64, ratio: f64) -> Option<Find
         "with the mass that is a radius of gyration of {ratio:.3} widths (decks have {} to {}; 0.5 is all mass in both edges)",
         RADII.0, RADII.1
     );
-    let found = Finding::doubt(Kind::Unit, key, text);
+    let found = Finding::doubt(FindingKind::Unit, key, text);
     if within(POSSIBLE_RADII, ratio) {
         return Some(found.into_note());
     }
@@ -198,7 +198,7 @@ fn frequencies(section: &SectionModel, masses_are_usual: bool) -> Vec<Finding> {
             unusual_frequency(&key, name, hertz, section.width_m)
         })
         .collect();
-    if masses_are_usual && found.iter().all(|f| f.severity < Severity::Doubt) {
+    if masses_are_usual && found.iter().all(|f| f.severity < FindingSeverity::Doubt) {
         found.extend(fast_plate(section, heave, twist));
     }
     found

@@ -7,7 +7,7 @@
 //! wrong by 2π change `H1*`, `A1*` by that factor against the plate's and `H3*`, `A2*`, `A3*` by its square.
 
 use super::limits::{DECK_WIDTH, beyond};
-use super::{Finding, Kind};
+use super::{Finding, FindingKind};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::aerodynamics::{FlatPlate, Transfer};
@@ -49,7 +49,7 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let best = candidates(*label)
         .map(|(words, reading)| (Signature::of(table, &*reading).score(), words))
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let odd = Finding::doubt(Kind::Convention, &table.name, own.words());
+    let odd = Finding::doubt(FindingKind::Convention, &table.name, own.words());
     found.push(match best {
         Some((other, words)) if other < FITS && other + BETTER_BY < score => {
             odd.otherwise(format!(

@@ -60,7 +60,7 @@ struct Norms {
 /// A section ready for series. Motion is scaled by powers of two to numbers of one size, exactly: displacements by their
 /// motion scale, rates by a frequency as well.
 #[derive(Debug, Clone)]
-pub(super) struct Series {
+pub(super) struct PowerSeries {
     dofs: usize,
     /// Factor from a displacement to its scaled value.
     scale: Vec<f64>,
@@ -95,7 +95,7 @@ struct Work {
     by_gusts: Vec<f64>,
 }
 
-impl Series {
+impl PowerSeries {
     /// The section; of a sampled model the structure alone. Gusts act where their forces are known.
     pub(super) fn new(section: &CoupledSection, gusts: Option<Gusts>) -> Self {
         let s = section.structure();

@@ -118,7 +118,7 @@ impl Structure {
 
     /// `Tᵀ X`: dimensionless forces (rows) about the reference point as forces about the axis, `m_axis = m + (a/B) f`.
     #[must_use]
-    pub fn forces_at_axis<T: Entry>(&self, mut forces: DMatrix<T>) -> DMatrix<T> {
+    pub fn forces_at_axis<T: MatrixEntry>(&self, mut forces: DMatrix<T>) -> DMatrix<T> {
         if let Some((y, theta, lever)) = self.lever() {
             for mut column in forces.column_iter_mut() {
                 let moment = column[y] * lever;
@@ -131,7 +131,7 @@ impl Structure {
     /// `X T`: what follows from dimensionless motion of the reference point (columns) as what follows from motion of the
     /// axis, `y = y_axis + a θ`.
     #[must_use]
-    pub fn motion_at_axis<T: Entry>(&self, mut effects: DMatrix<T>) -> DMatrix<T> {
+    pub fn motion_at_axis<T: MatrixEntry>(&self, mut effects: DMatrix<T>) -> DMatrix<T> {
         if let Some((y, theta, lever)) = self.lever() {
             for mut row in effects.row_iter_mut() {
                 let by_rotation = row[y] * lever;
@@ -143,19 +143,19 @@ impl Structure {
 
     /// `Tᵀ G T`: a dimensionless aerodynamic matrix about the reference point as one about the axis.
     #[must_use]
-    pub fn at_axis<T: Entry>(&self, g: DMatrix<T>) -> DMatrix<T> {
+    pub fn at_axis<T: MatrixEntry>(&self, g: DMatrix<T>) -> DMatrix<T> {
         self.forces_at_axis(self.motion_at_axis(g))
     }
 
     /// Takes a dimensionless aerodynamic matrix about the reference point to physical motion of the axis and force
     /// about it: `diag(B, B, B²) Tᵀ G T diag(1/B, 1/B, 1)`, still to be multiplied by `½ρV²`.
-    pub fn to_physical<T: Entry>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T> {
+    pub fn to_physical<T: MatrixEntry>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T> {
         self.scaled(&self.at_axis(dimensionless.clone()))
     }
 
     /// Scales a dimensionless aerodynamic matrix that is about the axis already:
     /// `diag(B, B, B²) G diag(1/B, 1/B, 1)`.
-    pub fn scaled<T: Entry>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T> {
+    pub fn scaled<T: MatrixEntry>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T> {
         DMatrix::from_fn(dimensionless.nrows(), dimensionless.ncols(), |i, j| {
             dimensionless[(i, j)]
                 * (self.dofs[i].force_scale(self.width_m) * self.dofs[j].motion_scale(self.width_m))
@@ -164,12 +164,12 @@ impl Structure {
 }
 
 /// A real or complex entry of a matrix.
-pub trait Entry:
+pub trait MatrixEntry:
     nalgebra::Scalar + std::ops::Mul<f64, Output = Self> + std::ops::AddAssign + Copy
 {
 }
 
-impl<T> Entry for T where
+impl<T> MatrixEntry for T where
     T: nalgebra::Scalar + std::ops::Mul<f64, Output = T> + std::ops::AddAssign + Copy
 {
 }

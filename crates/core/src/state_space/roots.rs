@@ -9,11 +9,27 @@ const MAX_ROOT_STEPS: usize = 80;
 /// Part of an interval that a step of the golden section keeps, `(√5 − 1)/2`.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
+/// A value of a function, and the argument it was taken at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValueAt<T = f64> {
+    /// The argument.
+    pub at: f64,
+    /// The value.
+    pub value: T,
+}
+
+impl<T> ValueAt<T> {
+    /// The value at an argument.
+    pub fn new(at: f64, value: T) -> Self {
+        Self { at, value }
+    }
+}
+
 /// Zero of `f` in a bracket with a sign change, by secant steps kept inside (Illinois) and bisection. Both ends are given
 /// with their values.
-pub fn root(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
-    let (mut a, mut fa) = low;
-    let (mut b, mut fb) = high;
+pub fn root(low: ValueAt, high: ValueAt, f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
+    let (mut a, mut fa) = (low.at, low.value);
+    let (mut b, mut fb) = (high.at, high.value);
     for step in 0..MAX_ROOT_STEPS {
         if fb == 0.0 || (b - a).abs() <= ROOT_TOLERANCE * b.abs() {
             break;

@@ -1,7 +1,7 @@
 //! The doubt about slow wind, in which motions are faster than every test.
 
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Basis, FlutterReading};
+use super::evidence::{FlutterReading, ForceBasis};
 use super::words::speed;
 use crate::flutter::FastMotion;
 
@@ -11,7 +11,8 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
     let kind = DoubtKind::NotJudgedBelow {
         speed_m_s: from_m_s,
     };
-    let (Basis::Tested { range, .. }, Some(tested)) = (&first.basis, first.tested_from()) else {
+    let (ForceBasis::Tested { range, .. }, Some(tested)) = (&first.basis, first.tested_from())
+    else {
         let text = format!("Below {} not every motion was tested", speed(from_m_s));
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };

@@ -3,7 +3,7 @@
 use super::below::not_judged_below;
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Basis, Evidence, FlutterReading, UntestedPart};
+use super::evidence::{Evidence, FlutterReading, ForceBasis, UntestedPart};
 use super::moved::constraints;
 use super::words::{found, k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
@@ -75,7 +75,7 @@ impl Weighed<'_> {
                 .filter(|o| contradict(first, o))
                 .map(|o| contradiction(first, o)),
         );
-        if first.basis == Basis::Stated {
+        if first.basis == ForceBasis::Stated {
             let text = format!(
                 "The forces are those of {}, which no test of this deck confirms",
                 first.forces
@@ -96,7 +96,7 @@ impl Weighed<'_> {
 
     /// The onset at a reduced frequency that was not tested.
     fn tests(&self, first: &FlutterReading) -> Option<Doubt> {
-        let Basis::Tested { range, .. } = &first.basis else {
+        let ForceBasis::Tested { range, .. } = &first.basis else {
             return None;
         };
         let at = first.search.critical().filter(|_| first.extrapolated())?;
@@ -161,14 +161,14 @@ impl Weighed<'_> {
             asked_m_s: asked,
         };
         let (missing, of_tests) = match &first.basis {
-            Basis::Tested { range, reach } => {
+            ForceBasis::Tested { range, reach } => {
                 let binds = reach.to_m_s <= to;
                 (
                     reach.missing_up_to(asked, *range),
                     reach.why.as_ref().filter(|_| binds),
                 )
             }
-            Basis::Exact | Basis::Stated => (None, None),
+            ForceBasis::Exact | ForceBasis::Stated => (None, None),
         };
         let of_search = match &first.search {
             FlutterSearch::StableUpTo(range) => range.not_judged.as_ref(),
@@ -187,7 +187,7 @@ impl Weighed<'_> {
 
     fn interval(&self, first: &FlutterReading) -> Vec<Doubt> {
         let mut found = Vec::new();
-        let Some(onset) = first.onset().filter(|_| first.basis != Basis::Exact) else {
+        let Some(onset) = first.onset().filter(|_| first.basis != ForceBasis::Exact) else {
             return found;
         };
         let others = &self.evidence.flutter[1..];
@@ -283,8 +283,8 @@ impl Weighed<'_> {
         }));
         all.extend(evidence.implausible.iter().map(|finding| {
             let severity = match finding.severity {
-                plausibility::Severity::Doubt => Severity::Severe,
-                plausibility::Severity::Note => Severity::Minor,
+                plausibility::FindingSeverity::Doubt => Severity::Severe,
+                plausibility::FindingSeverity::Note => Severity::Minor,
             };
             let kind = DoubtKind::ImplausibleInput {
                 place: finding.place.clone(),

@@ -52,12 +52,12 @@ pub struct FlutterReading {
     /// What the search found.
     pub search: FlutterSearch,
     /// What the forces rest on.
-    pub basis: Basis,
+    pub basis: ForceBasis,
 }
 
 /// What forces rest on.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Basis {
+pub enum ForceBasis {
     /// Tests.
     Tested {
         /// Reduced frequencies of the tests.
@@ -71,7 +71,7 @@ pub enum Basis {
     Stated,
 }
 
-impl Basis {
+impl ForceBasis {
     /// Tests in `range`, among which every mode is at the wind speeds of `reach`.
     pub fn tested(range: ReducedFrequencyRange, reach: Reach) -> Self {
         Self::Tested {
@@ -110,7 +110,7 @@ impl FlutterReading {
     /// Whether the onset has an interval that is a statement of probability, or needs none.
     pub(super) fn interval_is_known(&self) -> bool {
         let known = |o: &Onset| matches!(o.interval, OnsetInterval::Known { .. });
-        self.basis == Basis::Exact || self.onset().is_none_or(known)
+        self.basis == ForceBasis::Exact || self.onset().is_none_or(known)
     }
 
     /// Whether data reach the growth that was found.
@@ -126,8 +126,8 @@ impl FlutterReading {
     /// The last mode that comes among the tests as the wind rises; `None` where all are from the beginning, or nothing was tested.
     pub(super) fn tested_from(&self) -> Option<&TestedFrom> {
         match &self.basis {
-            Basis::Tested { reach, .. } => reach.tested_from.as_ref(),
-            Basis::Exact | Basis::Stated => None,
+            ForceBasis::Tested { reach, .. } => reach.tested_from.as_ref(),
+            ForceBasis::Exact | ForceBasis::Stated => None,
         }
     }
 
@@ -139,10 +139,10 @@ impl FlutterReading {
             FlutterSearch::StableUpTo(range) => (range.from_m_s, range.to_m_s),
         };
         match &self.basis {
-            Basis::Tested { reach, .. } => {
+            ForceBasis::Tested { reach, .. } => {
                 (searched.0.max(reach.from_m_s), searched.1.min(reach.to_m_s))
             }
-            Basis::Exact | Basis::Stated => searched,
+            ForceBasis::Exact | ForceBasis::Stated => searched,
         }
     }
 }

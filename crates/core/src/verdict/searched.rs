@@ -1,6 +1,6 @@
 //! Evidence of one section in the forces of one model, from the searches alone.
 
-use super::evidence::{Basis, DivergenceReading, Evidence, Failure, FlutterReading};
+use super::evidence::{DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis};
 use super::reach::Reach;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
@@ -33,7 +33,7 @@ impl Evidence {
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
-            basis: Basis::tested(tested, reach.unwrap_or_else(Reach::nowhere)),
+            basis: ForceBasis::tested(tested, reach.unwrap_or_else(Reach::nowhere)),
         });
         let growth = unwanted_growth(section, search, Some(tested));
         evidence.growth = evidence.noted("scan for growth", growth);
@@ -60,7 +60,7 @@ impl Evidence {
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
-            basis: Basis::tested(range, Reach::of_table(tested_from.flatten())),
+            basis: ForceBasis::tested(range, Reach::of_table(tested_from.flatten())),
         });
         let divergence = table.transfer(range.min).and_then(|lowest| {
             let speed = divergence_speed(structure, &static_part(table.dofs(), &lowest))?;
@@ -87,7 +87,7 @@ impl Evidence {
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
-            basis: Basis::Exact,
+            basis: ForceBasis::Exact,
         });
         let at_rest = exact.transfer(ReducedFrequency::from_full_width(0.0));
         let divergence = at_rest.and_then(|g| divergence_speed(structure, &g));

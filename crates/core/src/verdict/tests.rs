@@ -16,13 +16,13 @@ fn k(value: f64) -> ReducedFrequency {
 
 const TESTED: (f64, f64) = (0.3, 2.0);
 
-fn tests(to_m_s: f64) -> Basis {
+fn tests(to_m_s: f64) -> ForceBasis {
     let range = ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1));
     let reach = Reach {
         to_m_s,
         ..Reach::everywhere()
     };
-    Basis::tested(range, reach)
+    ForceBasis::tested(range, reach)
 }
 
 fn at(speed_m_s: f64, reduced: f64) -> CriticalPoint {

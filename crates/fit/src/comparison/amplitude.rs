@@ -13,10 +13,11 @@ pub struct LevelDetails {
     pub compared: f64,
 }
 
-/// A distance and what it is relative to, both Euclidean norms in the unit of the signals.
+/// A distance and what it is relative to: Euclidean norms in the unit of the signals, of wavelet coefficients those over
+/// all inside the cone of influence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DistanceDetails {
-    /// `‖X₁ − X₂‖₂`.
+    /// `‖X₁ − X₂‖₂`, of wavelets `‖|W₁| − |W₂|‖_F`.
     pub distance: f64,
     /// `‖X₁‖₂`.
     pub reference_norm: f64,

@@ -55,11 +55,11 @@ pub fn warping_path(
             width.to_string(),
         ));
     }
-    Grid::new(compared, reference, band).path(INTERVAL)
+    CostMatrix::new(compared, reference, band).path(INTERVAL)
 }
 
 /// The cost matrix, never formed.
-struct Grid<'a> {
+struct CostMatrix<'a> {
     rows: &'a [f64],
     /// Reference in reverse, so that an antidiagonal runs forward through both signals.
     reversed_columns: Vec<f64>,
@@ -108,7 +108,7 @@ fn cheapest(row: f64, column: f64, diagonal: f64) -> (f64, Step) {
     best
 }
 
-impl<'a> Grid<'a> {
+impl<'a> CostMatrix<'a> {
     fn new(rows: &'a [f64], columns: &[f64], band: Option<usize>) -> Self {
         Self {
             rows,
@@ -260,7 +260,7 @@ struct Triangle {
 }
 
 impl Triangle {
-    fn new(grid: &Grid<'_>, checkpoint: Checkpoint, apex_row: isize, apex_d: isize) -> Self {
+    fn new(grid: &CostMatrix<'_>, checkpoint: Checkpoint, apex_row: isize, apex_d: isize) -> Self {
         let Checkpoint {
             index: base,
             mut last,
@@ -367,7 +367,7 @@ mod tests {
                 }
                 let (distance, cells) = reference_path(&x, &y, band.unwrap_or(usize::MAX));
                 for interval in [1, 2, 3, 7, 50, 512] {
-                    let path = Grid::new(&x, &y, band).path(interval).unwrap();
+                    let path = CostMatrix::new(&x, &y, band).path(interval).unwrap();
                     assert_eq!(path.distance, distance);
                     assert_eq!(path.cells, cells, "n {n}, m {m}, band {band:?}");
                 }

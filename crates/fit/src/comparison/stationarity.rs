@@ -82,8 +82,8 @@ pub fn stationarity(
     check(parameters)?;
     let plan = Morlet::new(&parameters.wavelet, pair.sample_count(), pair.time_step_s())?;
     let signals = [
-        Ensemble::new(&plan, pair.reference(), parameters),
-        Ensemble::new(&plan, pair.compared(), parameters),
+        Surrogates::new(&plan, pair.reference(), parameters),
+        Surrogates::new(&plan, pair.compared(), parameters),
     ];
     let reference = signals[0].test("reference signal", parameters)?;
     let compared = signals[1].test("compared signal", parameters)?;
@@ -130,13 +130,13 @@ fn check(parameters: &StationarityParameters) -> Result<()> {
 }
 
 /// Spectra of a signal and of its surrogates.
-struct Ensemble<'a> {
+struct Surrogates<'a> {
     plan: &'a Morlet,
     signal: Vec<Complex64>,
     surrogates: Vec<Vec<Complex64>>,
 }
 
-impl<'a> Ensemble<'a> {
+impl<'a> Surrogates<'a> {
     fn new(plan: &'a Morlet, signal: &[f64], parameters: &StationarityParameters) -> Self {
         let surrogates = phase_randomised(signal, parameters.surrogate_count, parameters.seed);
         Self {
@@ -214,7 +214,7 @@ impl<'a> Ensemble<'a> {
 
 fn content_metric(
     plan: &Morlet,
-    signals: &[Ensemble<'_>; 2],
+    signals: &[Surrogates<'_>; 2],
     deviations: f64,
 ) -> Result<Metric<DistanceDetails>> {
     let groups = plan.by_groups(|levels| {

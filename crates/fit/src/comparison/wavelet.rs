@@ -1,19 +1,11 @@
 //! Metrics of amplitude over time and frequency.
 
+use super::amplitude::DistanceDetails;
 use super::morlet::{Morlet, WaveletParameters};
 use super::{Metric, SignalPair, exponential, zero_signal};
 use crate::error::Result;
 use rustfft::num_complex::Complex64;
 use serde::Serialize;
-
-/// What [`wavelet`] found: Frobenius norms inside the cone of influence.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct WaveletDetails {
-    /// `‖|W₁| − |W₂|‖_F`.
-    pub distance: f64,
-    /// `‖W₁‖_F`.
-    pub reference_norm: f64,
-}
 
 /// What [`wavelet_normalised`] found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,7 +21,7 @@ pub struct NormalisedWaveletDetails {
 pub fn wavelet(
     pair: &SignalPair<'_>,
     parameters: &WaveletParameters,
-) -> Result<Metric<WaveletDetails>> {
+) -> Result<Metric<DistanceDetails>> {
     let transform = PairTransform::new(pair, parameters)?;
     let sums = transform.plan.by_groups(|levels| {
         let (mut distance, mut reference) = (0.0, 0.0);
@@ -45,7 +37,7 @@ pub fn wavelet(
     let (distance, reference_norm) = (norm(0), norm(1));
     Ok(Metric {
         value: exponential(distance, reference_norm)?,
-        details: WaveletDetails {
+        details: DistanceDetails {
             distance,
             reference_norm,
         },

@@ -15,11 +15,11 @@ use nalgebra::{Complex, DMatrix, DVector};
 #[derive(Debug, Clone)]
 pub(crate) struct Basis {
     feed: FeedThrough,
-    chain: Chain,
+    chain: FilterKind,
 }
 
 #[derive(Debug, Clone)]
-enum Chain {
+enum FilterKind {
     /// `Λ_l(p)`.
     Orthonormal(FilterBank),
     /// `p/(p + d_l)`.
@@ -36,10 +36,10 @@ pub(crate) struct Filters {
 impl Basis {
     /// The basis of `form` with the poles `poles`, one per filter.
     pub(crate) fn new(form: &Form, poles: &[f64]) -> Result<Self> {
-        let orthonormal = || FilterBank::new(poles.to_vec()).map(Chain::Orthonormal);
+        let orthonormal = || FilterBank::new(poles.to_vec()).map(FilterKind::Orthonormal);
         let chain = match form {
             Form::Rational { .. } | Form::RationalPerForce { .. } | Form::MinimumState { .. } => {
-                Chain::Lags(FilterBank::new(poles.to_vec())?.poles().to_vec())
+                FilterKind::Lags(FilterBank::new(poles.to_vec())?.poles().to_vec())
             }
             Form::Laguerre { .. } | Form::TakenakaMalmquist { .. } => orthonormal()?,
         };
@@ -54,13 +54,13 @@ impl Basis {
     pub(crate) fn orthonormal(form: &Form, poles: &[f64]) -> Result<Self> {
         Ok(Self {
             feed: form.feed_through(),
-            chain: Chain::Orthonormal(FilterBank::new(poles.to_vec())?),
+            chain: FilterKind::Orthonormal(FilterBank::new(poles.to_vec())?),
         })
     }
 
     /// Whether another basis has the same columns.
     pub(crate) fn same_columns(&self, other: &Self) -> bool {
-        let kind = std::mem::discriminant::<Chain>;
+        let kind = std::mem::discriminant::<FilterKind>;
         self.feed == other.feed
             && kind(&self.chain) == kind(&other.chain)
             && self.poles() == other.poles()
@@ -69,8 +69,8 @@ impl Basis {
     /// Poles of the filters.
     pub(crate) fn poles(&self) -> &[f64] {
         match &self.chain {
-            Chain::Orthonormal(bank) => bank.poles(),
-            Chain::Lags(lags) => lags,
+            FilterKind::Orthonormal(bank) => bank.poles(),
+            FilterKind::Lags(lags) => lags,
         }
     }
 
@@ -88,8 +88,8 @@ impl Basis {
         let powers = [Complex::new(1.0, 0.0), p, p * p];
         let mut columns: Vec<_> = self.feed.orders().map(|order| powers[order]).collect();
         match &self.chain {
-            Chain::Orthonormal(bank) => columns.extend(bank.response(p)),
-            Chain::Lags(lags) => columns.extend(lags.iter().map(|d| p / (p + d))),
+            FilterKind::Orthonormal(bank) => columns.extend(bank.response(p)),
+            FilterKind::Lags(lags) => columns.extend(lags.iter().map(|d| p / (p + d))),
         }
         columns
     }
@@ -103,7 +103,7 @@ impl Basis {
         };
         let (mut value, mut slope): (Vec<f64>, Vec<f64>) = (feed(0).collect(), feed(1).collect());
         match &self.chain {
-            Chain::Orthonormal(bank) => {
+            FilterKind::Orthonormal(bank) => {
                 // the logarithmic derivative of Λ_l: −1/π_l from its own pole, −2/π_j from every all-pass before it
                 let mut before = 0.0;
                 for (filter, pole) in bank
@@ -116,7 +116,7 @@ impl Basis {
                     before -= 2.0 / pole;
                 }
             }
-            Chain::Lags(lags) => {
+            FilterKind::Lags(lags) => {
                 value.extend(lags.iter().map(|_| 0.0));
                 slope.extend(lags.iter().map(|d| 1.0 / d));
             }
@@ -127,8 +127,8 @@ impl Basis {
     /// Names of the columns as in the equations: `e0 … c0 …`, or `a1 … a4 …`.
     pub(crate) fn names(&self) -> Vec<String> {
         let (feed, shift, filter, first) = match self.chain {
-            Chain::Orthonormal(_) => ("e", 0, "c", 0),
-            Chain::Lags(_) => ("a", 1, "a", 4),
+            FilterKind::Orthonormal(_) => ("e", 0, "c", 0),
+            FilterKind::Lags(_) => ("a", 1, "a", 4),
         };
         let filters = (0..self.poles().len()).map(|l| format!("{filter}{}", first + l));
         self.feed
@@ -141,7 +141,7 @@ impl Basis {
     /// The filters as a linear system driven by the motion.
     pub(crate) fn filters(&self) -> Filters {
         match &self.chain {
-            Chain::Orthonormal(bank) => {
+            FilterKind::Orthonormal(bank) => {
                 let (a, on_motion) = bank.matrices();
                 let on_rate = DVector::zeros(on_motion.len());
                 Filters {
@@ -151,7 +151,7 @@ impl Basis {
                 }
             }
             // (1.28), corrected: δ' = r' − d δ
-            Chain::Lags(lags) => Filters {
+            FilterKind::Lags(lags) => Filters {
                 a: DMatrix::from_diagonal(&DVector::from_vec(lags.iter().map(|d| -d).collect())),
                 on_motion: DVector::zeros(lags.len()),
                 on_rate: DVector::from_element(lags.len(), 1.0),

@@ -13,7 +13,7 @@ use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
 use super::report::{FitReport, Fitted, FittedTable, variance};
-use super::samples::{Entry, sizes, sort_by_entry, state_wishes};
+use super::samples::{EntrySamples, sizes, sort_by_entry, state_wishes};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -98,7 +98,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
 /// Every form whose entries are linear in their coefficients once the poles are known: each entry by itself, and all of
 /// them again where that breaks a constraint.
 fn fit_linear(
-    entries: &[Entry],
+    entries: &[EntrySamples],
     dofs: &[Dof],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
@@ -169,7 +169,7 @@ fn model_of(dofs: &[Dof], fit: &FrequencyFit, reports: &[EntryReport]) -> Result
 /// Accounts of all entries of a fit that constraints hold together.
 fn held_reports(
     held: &JointFit<'_>,
-    entries: &[Entry],
+    entries: &[EntrySamples],
     poles: &[Vec<f64>],
 ) -> Result<Vec<EntryReport>> {
     let mut reports = Vec::new();
@@ -206,7 +206,7 @@ fn describe(weights: FrequencyWeights) -> &'static str {
 }
 
 /// Account of one entry by itself, in the columns of the model.
-fn fit_entry(entry: &Entry, form: &Form, poles: &[f64]) -> Result<EntryReport> {
+fn fit_entry(entry: &EntrySamples, form: &Form, poles: &[f64]) -> Result<EntryReport> {
     let basis = Basis::new(form, poles)?;
     let fit = entry.fit(&basis)?;
     let (mut report, variance) = account(entry, &basis, &fit, &fit.coefficients);
@@ -219,7 +219,7 @@ fn fit_entry(entry: &Entry, form: &Form, poles: &[f64]) -> Result<EntryReport> {
 
 /// Account of given coefficients of one entry but for their covariance, and the variance of the weighted residuals.
 fn account(
-    entry: &Entry,
+    entry: &EntrySamples,
     basis: &Basis,
     fit: &LinearSolution,
     coefficients: &[f64],

@@ -11,7 +11,7 @@ use super::least_squares::Factor;
 use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
 use super::time::continuous::{RecordFit, Rows};
-use super::time::fitted::Joint;
+use super::time::fitted::JointTimeFit;
 use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
@@ -207,7 +207,7 @@ impl Grid {
         systems: &Rc<Systems>,
         value: usize,
         filters: usize,
-    ) -> Result<Option<Joint>> {
+    ) -> Result<Option<JointTimeFit>> {
         let GridAxis::Continuous(poles, fit) = &self.axis else {
             return Ok(None);
         };
@@ -222,7 +222,7 @@ impl Grid {
             counts: vec![self.leading(filters); entries],
             systems: vec![Rc::clone(systems)],
         };
-        let joint = Joint::new(
+        let joint = JointTimeFit::new(
             &systems,
             &vec![basis; entries],
             &wishes,

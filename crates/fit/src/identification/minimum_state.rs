@@ -14,7 +14,7 @@ use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
 use super::frequency_options::FrequencyFit;
 use super::report::{FittedTable, SearchPoint, SearchReport};
-use super::samples::{Entry, shares, sizes};
+use super::samples::{EntrySamples, shares, sizes};
 use super::search::{Bounds, best_of, descend, search_poles};
 use crate::aerodynamics::MinimumStateModel;
 use crate::error::{Error, Result};
@@ -28,7 +28,7 @@ const ROUNDS: usize = 3;
 
 /// Everything that stays the same during the search.
 struct LagSearch<'a> {
-    entries: &'a [Entry],
+    entries: &'a [EntrySamples],
     /// Weight of the residuals of each entry.
     shares: Vec<f64>,
     n: usize,
@@ -50,7 +50,7 @@ enum SearchedLags {
 /// # Errors
 /// [`Error::Input`] for bounds without room and samples that do not determine the coefficients.
 pub(super) fn fit_minimum_state(
-    entries: &[Entry],
+    entries: &[EntrySamples],
     dofs: &[Dof],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,

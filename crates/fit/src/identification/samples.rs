@@ -41,10 +41,10 @@ pub fn sample_model(model: &dyn Transfer, ks: &[ReducedFrequency]) -> Result<Vec
 
 /// All samples of one entry.
 #[derive(Debug, Clone)]
-pub(crate) struct Entry {
+pub(crate) struct EntrySamples {
     pub force: Dof,
     pub motion: Dof,
-    pub rows: Vec<Row>,
+    pub rows: Vec<EntrySample>,
     /// Weight of the entry where it shares something with others.
     pub weight: f64,
     /// Factor of the ridge on its filters.
@@ -55,7 +55,7 @@ pub(crate) struct Entry {
 
 /// One sample: value and weight, and the magnitude of `G` at its point.
 #[derive(Debug, Clone)]
-pub(crate) struct Row {
+pub(crate) struct EntrySample {
     pub k: f64,
     pub part: Part,
     pub value: f64,
@@ -65,7 +65,7 @@ pub(crate) struct Row {
     pub mean_speed_m_s: Option<f64>,
 }
 
-impl Row {
+impl EntrySample {
     /// The part of complex columns that the sample sees.
     pub(crate) fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
         let part = self.part;
@@ -76,7 +76,7 @@ impl Row {
     }
 }
 
-impl Entry {
+impl EntrySamples {
     /// Name for messages.
     pub(crate) fn name(&self) -> String {
         format!(
@@ -150,11 +150,11 @@ pub(crate) fn sort_by_entry(
     samples: &[TransferSample],
     dofs: &[Dof],
     weights: FrequencyWeights,
-) -> Result<(Vec<Entry>, Vec<String>)> {
-    let mut entries: Vec<Entry> = dofs
+) -> Result<(Vec<EntrySamples>, Vec<String>)> {
+    let mut entries: Vec<EntrySamples> = dofs
         .iter()
         .flat_map(|&force| dofs.iter().map(move |&motion| (force, motion)))
-        .map(|(force, motion)| Entry {
+        .map(|(force, motion)| EntrySamples {
             force,
             motion,
             rows: Vec::new(),
@@ -171,7 +171,7 @@ pub(crate) fn sort_by_entry(
         if !s.value.is_finite() {
             return Err(Error::input(place, "a finite value", s.value.to_string()));
         }
-        entries[i * dofs.len() + j].rows.push(Row {
+        entries[i * dofs.len() + j].rows.push(EntrySample {
             k,
             part: s.part,
             value: s.value,
@@ -201,7 +201,11 @@ pub(crate) fn sort_by_entry(
 ///
 /// # Errors
 /// [`Error::Input`] for weights of another shape and limits of degrees of freedom that are not there.
-pub(crate) fn state_wishes(entries: &mut [Entry], dofs: &[Dof], fit: &FrequencyFit) -> Result<()> {
+pub(crate) fn state_wishes(
+    entries: &mut [EntrySamples],
+    dofs: &[Dof],
+    fit: &FrequencyFit,
+) -> Result<()> {
     let n = dofs.len();
     for (at, entry) in entries.iter_mut().enumerate() {
         entry.weight = fit.entry_weight(n, at / n, at % n)?;
@@ -215,7 +219,7 @@ pub(crate) fn state_wishes(entries: &mut [Entry], dofs: &[Dof], fit: &FrequencyF
 }
 
 /// Sets the magnitude of `G` from the nearest sample of the other part; returns how many have none.
-fn pair(rows: &mut [Row]) -> usize {
+fn pair(rows: &mut [EntrySample]) -> usize {
     let others: Vec<Option<f64>> = rows
         .iter()
         .map(|row| {
@@ -237,7 +241,7 @@ fn pair(rows: &mut [Row]) -> usize {
     unpaired
 }
 
-fn weigh(rows: &mut [Row], weights: FrequencyWeights) {
+fn weigh(rows: &mut [EntrySample], weights: FrequencyWeights) {
     // a part that happens to pass through zero must not get an infinite weight
     let floor = 1e-3 * rows.iter().map(|r| r.magnitude).fold(0.0, f64::max);
     for row in rows {
@@ -252,8 +256,8 @@ fn weigh(rows: &mut [Row], weights: FrequencyWeights) {
 
 /// What the weighted residuals of each entry are multiplied with where entries share something: its weight over its
 /// weighted size.
-pub(super) fn shares(entries: &[&Entry]) -> Vec<f64> {
-    let share = |entry: &&Entry| {
+pub(super) fn shares(entries: &[&EntrySamples]) -> Vec<f64> {
+    let share = |entry: &&EntrySamples| {
         let total = entry.total();
         let size = if total > 0.0 {
             (total * entries.len() as f64).sqrt()
@@ -274,7 +278,7 @@ pub(super) struct RelativeSizes {
 }
 
 /// Sizes of residuals relative to the samples of their entry.
-pub(super) fn sizes(entry: &Entry, residuals: &[f64]) -> RelativeSizes {
+pub(super) fn sizes(entry: &EntrySamples, residuals: &[f64]) -> RelativeSizes {
     let sum: f64 = residuals.iter().map(|r| r * r).sum();
     let total: f64 = entry.rows.iter().map(|r| r.value * r.value).sum();
     let relative = residuals

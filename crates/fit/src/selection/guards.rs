@@ -13,7 +13,7 @@ const CALM_PARTS: [f64; 3] = [0.5, 0.75, 0.95];
 const ROUNDING: f64 = 1e-6;
 
 /// Onset of a cell and every reason against it.
-pub(super) struct Verdict {
+pub(super) struct CellVerdict {
     pub onset_m_s: Option<f64>,
     pub rejected: Vec<String>,
 }
@@ -24,8 +24,8 @@ pub(super) fn judge(
     structure: &Structure,
     search: &OnsetSearch,
     tested: ReducedFrequencyRange,
-) -> Verdict {
-    let mut verdict = Verdict {
+) -> CellVerdict {
+    let mut verdict = CellVerdict {
         onset_m_s: None,
         rejected: Vec::new(),
     };
@@ -54,7 +54,7 @@ fn onset(
     structure: &Structure,
     search: &OnsetSearch,
     tested: ReducedFrequencyRange,
-    verdict: &mut Verdict,
+    verdict: &mut CellVerdict,
 ) -> Result<()> {
     let section = CoupledSection::with_model(structure, &fit.model)?;
     let found = find_onset("", &section, search, Some(tested))?;

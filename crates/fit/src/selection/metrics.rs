@@ -62,7 +62,7 @@ pub fn metric_grid(
 ) -> Result<Vec<MetricGrid>> {
     let mut grids = Vec::new();
     for (i, dof) in grid.dofs().iter().enumerate() {
-        let Some(steady) = Steady::new(records, *dof, frequency_hz)? else {
+        let Some(steady) = SteadySegment::new(records, *dof, frequency_hz)? else {
             continue;
         };
         let cells: Vec<Vec<Option<CellMetrics>>> = (0..grid.values().len())
@@ -96,7 +96,7 @@ pub fn metric_grid(
 }
 
 /// Steady part of one segment.
-struct Steady {
+struct SteadySegment {
     record: String,
     frequency_hz: f64,
     k: ReducedFrequency,
@@ -107,7 +107,7 @@ struct Steady {
     motion: (f64, f64),
 }
 
-impl Steady {
+impl SteadySegment {
     fn new(records: &[&dyn RecordSource], dof: Dof, wanted_hz: f64) -> Result<Option<Self>> {
         let mut best: Option<(Record, usize)> = None;
         for record in records {

@@ -215,9 +215,9 @@ impl CoverageReport {
 /// # Errors
 /// [`Error::Input`] for impossible plans; [`Error::Numerical`] when no fit or no search gives an onset.
 pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<CoverageReport> {
-    let campaign = Campaign::new(plan)?;
+    let campaign = KnownDeck::new(plan)?;
     let finished = AtomicUsize::new(0);
-    let runs: Vec<Option<Run>> = (0..plan.repetitions)
+    let runs: Vec<Option<Repetition>> = (0..plan.repetitions)
         .into_par_iter()
         .map(|r| {
             let run = campaign.repeat(r);
@@ -228,7 +228,7 @@ pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<Co
     campaign.summary(plan, &runs)
 }
 
-struct Campaign {
+struct KnownDeck {
     section: SectionModel,
     model: Box<dyn Transfer + Sync>,
     records: ScatteredTunnel,
@@ -240,7 +240,7 @@ struct Campaign {
 }
 
 /// One repetition.
-struct Run {
+struct Repetition {
     onset_m_s: f64,
     standard_error_m_s: f64,
     half_width_m_s: f64,
@@ -249,7 +249,7 @@ struct Run {
     speeds_differ: bool,
 }
 
-impl Campaign {
+impl KnownDeck {
     fn new(plan: &CoveragePlan) -> Result<Self> {
         plan.validate()?;
         let section = SectionModel::table_4_1();
@@ -314,7 +314,7 @@ impl Campaign {
         Ok((estimate, found.onset().cloned(), report.tested_range))
     }
 
-    fn repeat(&self, repetition: usize) -> Result<Option<Run>> {
+    fn repeat(&self, repetition: usize) -> Result<Option<Repetition>> {
         let seed = self.tunnel.seed.wrapping_add(repetition as u64);
         let mut records = self.records.draw(seed);
         let plan = TunnelPlan {
@@ -329,7 +329,7 @@ impl Campaign {
             return Ok(None);
         };
         let error = onset_error(&estimate, &self.section.structure()?, &onset, None)?;
-        Ok(Some(Run {
+        Ok(Some(Repetition {
             onset_m_s: onset.at.speed_m_s,
             standard_error_m_s: error.standard_error_m_s,
             half_width_m_s: error.half_width_m_s(),
@@ -360,19 +360,19 @@ impl Campaign {
         Ok(inside)
     }
 
-    fn summary(&self, plan: &CoveragePlan, runs: &[Option<Run>]) -> Result<CoverageReport> {
-        let good: Vec<&Run> = runs.iter().flatten().collect();
+    fn summary(&self, plan: &CoveragePlan, runs: &[Option<Repetition>]) -> Result<CoverageReport> {
+        let good: Vec<&Repetition> = runs.iter().flatten().collect();
         if good.len() < 2 {
             return Err(Error::Numerical(
                 "coverage: fewer than two repetitions have an onset".into(),
             ));
         }
         let count = good.len() as f64;
-        let mean = |f: &dyn Fn(&Run) -> f64| good.iter().map(|r| f(r)).sum::<f64>() / count;
+        let mean = |f: &dyn Fn(&Repetition) -> f64| good.iter().map(|r| f(r)).sum::<f64>() / count;
         let average = mean(&|r| r.onset_m_s);
         let scatter = (mean(&|r| (r.onset_m_s - average).powi(2)) * count / (count - 1.0)).sqrt();
         let variance = mean(&|r| r.standard_error_m_s.powi(2));
-        let inside = |r: &Run, target: f64| (r.onset_m_s - target).abs() <= r.half_width_m_s;
+        let inside = |r: &Repetition, target: f64| (r.onset_m_s - target).abs() <= r.half_width_m_s;
         let holds = |target: f64| IntervalCoverage::count(good.iter().map(|r| inside(r, target)));
         let mut report = CoverageReport {
             plan: plan.clone(),

@@ -14,8 +14,8 @@ mod sampler;
 mod scatter;
 
 pub use distribution::Distribution;
-pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, Parameter, RandomParameter};
-pub use results::{DesignCheck, Failure, Histogram, MonteCarloResult, Quantile};
+pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter, SectionProperty};
+pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile};
 pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo};
 
 #[cfg(test)]

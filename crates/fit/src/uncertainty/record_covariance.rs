@@ -6,7 +6,7 @@ use super::parameters::{
     Coordinates, FreePoles, Parameter, coordinates_of, free_poles, held_sentence, parameters_of,
     tangent_of,
 };
-use super::segments::{Part, Stretched, gather, sandwich};
+use super::segments::{StretchRows, Stretched, gather, sandwich};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
 use crate::identification::DiscreteFit;
@@ -150,7 +150,7 @@ impl Entries {
             }
             for i in 0..self.inputs {
                 let (rows, residual, total) = self.part(stretch, i)?;
-                parts.push(Part {
+                parts.push(StretchRows {
                     record: stretch.record,
                     stretch: stretch.stretch,
                     segment: stretch.segment,
@@ -221,7 +221,7 @@ pub fn discrete_uncertainty(
         ));
     };
     let records = Records::read(records, fit.static_term)?;
-    let columns = DiscreteColumns {
+    let columns = DiscreteParameters {
         inputs: records.dofs.len(),
         filters,
     };
@@ -262,12 +262,12 @@ pub fn discrete_uncertainty(
 }
 
 /// The parameters of a discrete model, force by force: its constant, then the filters of every input.
-struct DiscreteColumns {
+struct DiscreteParameters {
     inputs: usize,
     filters: usize,
 }
 
-impl DiscreteColumns {
+impl DiscreteParameters {
     /// Parameters of one force.
     fn each(&self) -> usize {
         1 + self.inputs * self.filters
@@ -296,7 +296,7 @@ impl DiscreteColumns {
     }
 
     /// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
-    fn part(&self, stretch: &Stretch, i: usize, values: &DVector<f64>) -> Part {
+    fn part(&self, stretch: &Stretch, i: usize, values: &DVector<f64>) -> StretchRows {
         let factor = &stretch.factors[0];
         let weight = stretch.weights[i];
         let first = i * self.each();
@@ -309,7 +309,7 @@ impl DiscreteColumns {
             }
         }
         let fitted = &columns * values;
-        Part {
+        StretchRows {
             record: stretch.record,
             stretch: stretch.stretch,
             segment: stretch.segment,

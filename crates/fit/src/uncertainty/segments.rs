@@ -60,7 +60,7 @@ pub(super) fn sandwich(
 }
 
 /// Rows of one force in one stretch of a record.
-pub(super) struct Part {
+pub(super) struct StretchRows {
     pub record: usize,
     pub stretch: usize,
     pub segment: Option<usize>,
@@ -76,7 +76,7 @@ pub(super) struct Part {
 
 /// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
 /// them.
-pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<Part>) -> Stretched {
+pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows>) -> Stretched {
     let weights = weights(records, &parts);
     let mut stretches: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
@@ -132,7 +132,7 @@ struct Weight {
 }
 
 /// The weights of all parts: equations of one group share their scale.
-fn weights(records: &[DimensionlessRecord], parts: &[Part]) -> Vec<Weight> {
+fn weights(records: &[DimensionlessRecord], parts: &[StretchRows]) -> Vec<Weight> {
     let mut groups: BTreeMap<&(Vec<usize>, usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
         groups.entry(&part.group).or_default().push(at);
@@ -149,7 +149,7 @@ fn weights(records: &[DimensionlessRecord], parts: &[Part]) -> Vec<Weight> {
         } else {
             1.0
         };
-        let own: Vec<&Part> = members.iter().map(|&m| &parts[m]).collect();
+        let own: Vec<&StretchRows> = members.iter().map(|&m| &parts[m]).collect();
         for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
             let variance = variance * scale * scale;
             weights[m] = Weight { scale, variance };
@@ -160,7 +160,7 @@ fn weights(records: &[DimensionlessRecord], parts: &[Part]) -> Vec<Weight> {
 
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
 /// squares on the logarithms.
-fn working_variances(records: &[DimensionlessRecord], parts: &[&Part]) -> Vec<f64> {
+fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows]) -> Vec<f64> {
     let floor = 1e-12
         * parts
             .iter()

@@ -11,7 +11,7 @@ use crate::identification::basis::Basis;
 use crate::identification::form::Form;
 use crate::identification::frequency_options::FrequencyFit;
 use crate::identification::report::FitReport;
-use crate::identification::samples::{Entry, Row, sort_by_entry};
+use crate::identification::samples::{EntrySample, EntrySamples, sort_by_entry};
 use crate::section::Dof;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -45,7 +45,7 @@ pub fn table_uncertainty(
     let poles = free_poles(&form, &fit.poles, report);
     let (parameters, first) = parameters_of(report, &poles);
     let first_pole = parameters.len() - poles.searched.len();
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<MotionSamples> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
         let searched = poles
             .searched
@@ -61,7 +61,7 @@ pub fn table_uncertainty(
         columns.add_to(&mut runs, &form, entry, parameters.len())?;
     }
     let tangent = tangent_of(report, (&form, &poles), &first, parameters.len())?;
-    let blocks = runs.into_iter().map(Run::block).collect();
+    let blocks = runs.into_iter().map(MotionSamples::block).collect();
     let searched = poles.sentence() + &held_sentence(report);
     CoefficientUncertainty::new(
         (
@@ -80,15 +80,15 @@ pub fn table_uncertainty(
 }
 
 /// All samples of one motion at one frequency and speed.
-struct Run {
+struct MotionSamples {
     motion: Dof,
     k: f64,
     mean_speed_m_s: Option<f64>,
     rows: Vec<(Vec<f64>, f64, f64)>,
 }
 
-impl Run {
-    fn holds(&self, motion: Dof, row: &Row) -> bool {
+impl MotionSamples {
+    fn holds(&self, motion: Dof, row: &EntrySample) -> bool {
         let near = |a: f64, b: f64| (a / b).ln().abs() < SAME_RUN;
         let same_speed = match (self.mean_speed_m_s, row.mean_speed_m_s) {
             (Some(a), Some(b)) => near(a, b),
@@ -124,7 +124,13 @@ struct EntryColumns<'a> {
 }
 
 impl EntryColumns<'_> {
-    fn add_to(&self, runs: &mut Vec<Run>, form: &Form, entry: &Entry, width: usize) -> Result<()> {
+    fn add_to(
+        &self,
+        runs: &mut Vec<MotionSamples>,
+        form: &Form,
+        entry: &EntrySamples,
+        width: usize,
+    ) -> Result<()> {
         let basis = Basis::new(form, self.chain)?;
         let free = form.collapse(self.chain);
         let mut pairs = Vec::new();
@@ -139,7 +145,7 @@ impl EntryColumns<'_> {
             1.0
         };
         let residuals = entry.residuals(&basis, &self.values);
-        let weighted = |r: f64, row: &Row| scale * row.weight * r;
+        let weighted = |r: f64, row: &EntrySample| scale * row.weight * r;
         let sum: f64 = residuals
             .iter()
             .zip(&entry.rows)
@@ -164,7 +170,7 @@ impl EntryColumns<'_> {
             }
             let place = runs.iter().position(|run| run.holds(entry.motion, row));
             let place = place.unwrap_or_else(|| {
-                runs.push(Run {
+                runs.push(MotionSamples {
                     motion: entry.motion,
                     k: row.k,
                     mean_speed_m_s: row.mean_speed_m_s,

@@ -1,9 +1,9 @@
 //! The head of the description: version, identifier, capabilities, log categories, default experiment.
 
 use super::super::description::{FILE, ModelDescription};
-use super::super::findings::Findings;
+use super::super::findings::FmuFindings;
 
-pub(super) fn head(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn head(d: &ModelDescription, f: &mut FmuFindings) {
     if !d.fmi_version.is_empty() && d.fmi_version != "2.0" {
         f.error(
             format!("{FILE}, fmiVersion"),
@@ -30,7 +30,7 @@ pub(super) fn head(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn co_simulation(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn co_simulation(d: &ModelDescription, f: &mut FmuFindings) {
     let Some(slave) = &d.co_simulation else {
         f.error(FILE, "an FMU for co-simulation", "no <CoSimulation>");
         return;
@@ -64,13 +64,13 @@ pub(super) fn co_simulation(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn log_categories(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn log_categories(d: &ModelDescription, f: &mut FmuFindings) {
     let place = format!("{FILE}, LogCategories");
     let names = d.log_categories.iter().map(String::as_str);
     f.each_once(&place, "each category once", names);
 }
 
-pub(super) fn default_experiment(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn default_experiment(d: &ModelDescription, f: &mut FmuFindings) {
     let e = &d.default_experiment;
     let place = |what: &str| format!("{FILE}, DefaultExperiment, {what}");
     let start = e.start_time.unwrap_or(0.0);

@@ -3,7 +3,7 @@
 use super::super::description::{
     Causality, FILE, Initial, ModelDescription, ScalarVariable, Unknown,
 };
-use super::super::findings::Findings;
+use super::super::findings::FmuFindings;
 use std::collections::BTreeSet;
 
 type Lists<'a> = [(&'static str, &'a [Unknown]); 3];
@@ -26,7 +26,7 @@ fn place(list: &str, unknown: &Unknown) -> String {
 /// The list must name exactly the variables of `expected` (indices from 1).
 fn same_members(
     d: &ModelDescription,
-    f: &mut Findings,
+    f: &mut FmuFindings,
     (list, found): (&str, &[Unknown]),
     expected: &BTreeSet<usize>,
     why: &str,
@@ -66,7 +66,7 @@ fn indices(
         .collect()
 }
 
-pub(super) fn outputs(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn outputs(d: &ModelDescription, f: &mut FmuFindings) {
     let expected = indices(d, |_, v| v.causality == Causality::Output);
     same_members(
         d,
@@ -77,7 +77,7 @@ pub(super) fn outputs(d: &ModelDescription, f: &mut Findings) {
     );
 }
 
-pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
     let derivatives: BTreeSet<usize> = d.derivatives.iter().map(|u| u.index).collect();
     let states: BTreeSet<usize> = derivatives
         .iter()
@@ -104,7 +104,7 @@ pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut Findings) {
     );
 }
 
-pub(super) fn state_derivatives(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn state_derivatives(d: &ModelDescription, f: &mut FmuFindings) {
     for unknown in &d.derivatives {
         if let Some(v) = variable(d, unknown.index)
             && v.derivative.is_none()
@@ -118,7 +118,7 @@ pub(super) fn state_derivatives(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn order(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn order(d: &ModelDescription, f: &mut FmuFindings) {
     for (list, unknowns) in lists(d) {
         for unknown in unknowns {
             if variable(d, unknown.index).is_none() {
@@ -148,7 +148,7 @@ pub(super) fn order(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn dependencies(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn dependencies(d: &ModelDescription, f: &mut FmuFindings) {
     for (list, unknowns) in lists(d) {
         for unknown in unknowns {
             let on = unknown.dependencies.as_deref().unwrap_or_default();
@@ -171,7 +171,7 @@ pub(super) fn dependencies(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-fn kinds(f: &mut Findings, list: &str, unknown: &Unknown, dependencies: usize) {
+fn kinds(f: &mut FmuFindings, list: &str, unknown: &Unknown, dependencies: usize) {
     let Some(kinds) = &unknown.kinds else { return };
     if unknown.dependencies.is_none() {
         f.error(

@@ -1,6 +1,6 @@
 //! Every rule on a description that breaks it and no other.
 
-use super::super::findings::Severity;
+use super::super::findings::FmuSeverity;
 use super::super::reading::read;
 use super::check;
 use crate::xml::Element;
@@ -41,7 +41,7 @@ fn errors(text: &str) -> Vec<String> {
     let mut all = reading.0;
     all.extend(check(&description).0);
     all.iter()
-        .filter(|f| f.severity == Severity::Error)
+        .filter(|f| f.severity == FmuSeverity::Error)
         .map(ToString::to_string)
         .collect()
 }

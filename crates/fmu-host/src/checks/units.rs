@@ -1,10 +1,10 @@
 //! Units: defined once, with a meaning, and every one that is used is defined.
 
-use super::super::description::{FILE, ModelDescription, Unit};
-use super::super::findings::Findings;
+use super::super::description::{FILE, ModelDescription, UnitDefinition};
+use super::super::findings::FmuFindings;
 use std::collections::HashMap;
 
-pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn definitions(d: &ModelDescription, f: &mut FmuFindings) {
     let names = d.units.iter().map(|u| u.name.as_str());
     f.each_once(&format!("{FILE}, UnitDefinitions"), "each unit once", names);
     for unit in &d.units {
@@ -26,9 +26,9 @@ pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn uses(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn uses(d: &ModelDescription, f: &mut FmuFindings) {
     // the first of each name, as everywhere
-    let mut units: HashMap<&str, &Unit> = HashMap::new();
+    let mut units: HashMap<&str, &UnitDefinition> = HashMap::new();
     for unit in &d.units {
         units.entry(&unit.name).or_insert(unit);
     }

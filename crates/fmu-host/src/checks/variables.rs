@@ -1,16 +1,16 @@
 //! Rules about single variables and about variables that share a value reference.
 
 use super::super::description::{
-    Causality, FILE, Initial, Kind, ModelDescription, ScalarVariable, Value, Variability,
+    Causality, FILE, Initial, ModelDescription, ScalarVariable, Value, Variability, VariableType,
     initial_choices,
 };
-use super::super::findings::Findings;
+use super::super::findings::FmuFindings;
 use std::collections::BTreeMap;
 
 /// Names that one finding lists.
 const MAX_NAMES: usize = 5;
 
-pub(super) fn names(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn names(d: &ModelDescription, f: &mut FmuFindings) {
     let names = d.variables.iter().map(|v| v.name.as_str());
     f.each_once(&format!("{FILE}, ModelVariables"), "unique names", names);
     for v in &d.variables {
@@ -51,10 +51,10 @@ fn structured(name: &str) -> bool {
     })
 }
 
-pub(super) fn types(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn types(d: &ModelDescription, f: &mut FmuFindings) {
     let types = d.types_by_name();
     for v in &d.variables {
-        if v.kind == Kind::Enumeration && v.declared_type.is_none() {
+        if v.kind == VariableType::Enumeration && v.declared_type.is_none() {
             f.error(v.place(), "the declared type of an enumeration", "none");
         }
         let Some(name) = &v.declared_type else {
@@ -76,9 +76,9 @@ pub(super) fn types(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn combinations(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn combinations(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
-        if v.kind != Kind::Real && v.variability == Variability::Continuous {
+        if v.kind != VariableType::Real && v.variability == Variability::Continuous {
             let found = if v.variability_stated {
                 "continuous"
             } else {
@@ -99,7 +99,7 @@ pub(super) fn combinations(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn initial(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn initial(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
         let (Some(stated), Some((_, allowed))) =
             (v.initial, initial_choices(v.causality, v.variability))
@@ -117,7 +117,7 @@ pub(super) fn initial(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn start_presence(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn start_presence(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
         let initial = v.effective_initial();
         let needed = v.causality == Causality::Input
@@ -136,7 +136,7 @@ pub(super) fn start_presence(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn ranges(d: &ModelDescription, f: &mut FmuFindings) {
     let types = d.types_by_name();
     for v in &d.variables {
         let min = v.attribute(&types, |a| a.min);
@@ -170,13 +170,13 @@ pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
 }
 
 /// Section 2.2.7 on alias sets: at most one member can be set, constants stand apart, units agree.
-pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn aliases(d: &ModelDescription, f: &mut FmuFindings) {
     let types = d.types_by_name();
-    let mut sets: BTreeMap<(Kind, u32), Vec<&ScalarVariable>> = BTreeMap::new();
+    let mut sets: BTreeMap<(VariableType, u32), Vec<&ScalarVariable>> = BTreeMap::new();
     for v in &d.variables {
         // the two are the same C type
-        let kind = if v.kind == Kind::Enumeration {
-            Kind::Integer
+        let kind = if v.kind == VariableType::Enumeration {
+            VariableType::Integer
         } else {
             v.kind
         };
@@ -219,7 +219,7 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
     }
 }
 
-pub(super) fn derivatives(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn derivatives(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
         let Some(of) = v.derivative else { continue };
         let state = of.checked_sub(1).and_then(|i| d.variables.get(i));
@@ -229,17 +229,18 @@ pub(super) fn derivatives(d: &ModelDescription, f: &mut Findings) {
                 format!("`derivative` in 1 .. {}", d.variables.len()),
                 of.to_string(),
             ),
-            Some(state) if state.kind != Kind::Real || v.kind != Kind::Real => f.error(
-                v.place(),
-                "the derivative of a Real, itself a Real",
-                format!("derivative of `{}`", state.name),
-            ),
+            Some(state) if state.kind != VariableType::Real || v.kind != VariableType::Real => f
+                .error(
+                    v.place(),
+                    "the derivative of a Real, itself a Real",
+                    format!("derivative of `{}`", state.name),
+                ),
             Some(_) => {}
         }
     }
 }
 
-pub(super) fn independent(d: &ModelDescription, f: &mut Findings) {
+pub(super) fn independent(d: &ModelDescription, f: &mut FmuFindings) {
     let mut times = d
         .variables
         .iter()

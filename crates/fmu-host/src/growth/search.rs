@@ -59,7 +59,7 @@ pub struct GrowthPoint {
 
 /// An onset found by stepping.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SteppedOnset {
+pub struct GrowthOnset {
     /// Wind speed at which the growth rate is zero, m/s.
     pub speed_m_s: f64,
     /// Frequency there, Hz.
@@ -81,7 +81,7 @@ pub struct SteppedOnset {
 #[serde(rename_all = "snake_case")]
 pub enum SteppedSearch {
     /// The section flutters.
-    Onset(Box<SteppedOnset>),
+    Onset(Box<GrowthOnset>),
     /// Growth at the lowest speed that was stepped.
     UnstableAtOrBelow(GrowthPoint),
     /// No growth of an oscillation between these speeds.
@@ -90,7 +90,7 @@ pub enum SteppedSearch {
 
 impl SteppedSearch {
     /// The onset, if there is one.
-    pub fn onset(&self) -> Option<&SteppedOnset> {
+    pub fn onset(&self) -> Option<&GrowthOnset> {
         match self {
             Self::Onset(onset) => Some(onset),
             Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,

@@ -1,7 +1,7 @@
 //! How bridges are written down: `bridge.toml` ([`BridgeFile`]) and the modes of finite-element programs.
 //!
 //! Every reader of modes ends in `ModalData`: nodes, and for every mode three displacements and three rotations a node along
-//! the axes of the program. [`Axes`] says which way is up and downwind, and nothing is assumed about either. Files that know
+//! the axes of the program. [`WindAxes`] says which way is up and downwind, and nothing is assumed about either. Files that know
 //! vertical, lateral and rotation themselves (our own single file, MATLAB `phi`) are in those axes already.
 
 mod abaqus;
@@ -18,12 +18,13 @@ mod turbsim;
 mod wawi;
 mod wind_block;
 
-pub use axes::{Axes, Direction};
+pub use axes::{Direction, WindAxes};
 pub use field::FieldTable;
-pub use modal_data::{Modes, RawMode};
+pub use modal_data::{BridgeModes, RawMode};
 pub use single_file::write_modes;
 pub use toml_file::{
-    BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock, SectionBlock, StaticBlock,
+    BridgeFile, BridgeSectionBlock, DampingRatios, ModesBlock, ModesFormat, SearchBlock,
+    StaticBlock,
 };
 pub use wind_block::{ProfilePoint, WindBlock};
 
@@ -44,7 +45,7 @@ pub fn read_field(path: &Path) -> Result<FieldTable> {
 
 /// Modes of bridges that come with the program.
 pub mod embedded {
-    use super::{Modes, single_file};
+    use super::{BridgeModes, single_file};
     use crate::aerodynamics::derivatives::DerivativeTable;
     use crate::error::{Error, Result};
 
@@ -77,7 +78,7 @@ pub mod embedded {
     ///
     /// # Errors
     /// [`Error::Input`] for a name that is none.
-    pub fn modes(name: &str) -> Result<Modes> {
+    pub fn modes(name: &str) -> Result<BridgeModes> {
         for (known, text) in BRIDGES {
             if name.eq_ignore_ascii_case(known) {
                 return single_file::parse(text);

@@ -13,7 +13,7 @@ pub(crate) fn table_reader(text: &str) -> csv::Reader<&[u8]> {
 
 /// One header line.
 #[derive(Debug, Clone)]
-pub(crate) struct Entry {
+pub(crate) struct HeaderLine {
     line: usize,
     key: &'static str,
     pub value: String,
@@ -25,7 +25,7 @@ pub(crate) struct CommentHeader {
     formats: &'static [&'static str],
     keys: &'static [&'static str],
     repeated: &'static [&'static str],
-    entries: Vec<Entry>,
+    entries: Vec<HeaderLine>,
     lines: usize,
 }
 
@@ -86,7 +86,7 @@ impl CommentHeader {
         if self.optional(key).is_some() && !self.repeated.contains(&key) {
             return Err(Error::input(place, format!("`{key}` once"), "it twice"));
         }
-        self.entries.push(Entry {
+        self.entries.push(HeaderLine {
             line: self.lines,
             key,
             value: value.trim().to_owned(),
@@ -100,12 +100,12 @@ impl CommentHeader {
     }
 
     /// All lines with this key, in order.
-    pub(crate) fn all(&self, key: &str) -> impl Iterator<Item = &Entry> {
+    pub(crate) fn all(&self, key: &str) -> impl Iterator<Item = &HeaderLine> {
         self.entries.iter().filter(move |e| e.key == key)
     }
 
     /// The line with this key.
-    pub(crate) fn optional(&self, key: &str) -> Option<&Entry> {
+    pub(crate) fn optional(&self, key: &str) -> Option<&HeaderLine> {
         self.all(key).next()
     }
 
@@ -116,7 +116,7 @@ impl CommentHeader {
     }
 
     /// The line with this key, which must be there and not be empty.
-    pub(crate) fn required(&self, key: &str) -> Result<&Entry> {
+    pub(crate) fn required(&self, key: &str) -> Result<&HeaderLine> {
         self.optional(key)
             .filter(|e| !e.value.is_empty())
             .ok_or_else(|| Error::input("header", format!("a line `# {key}: …`"), "none"))
@@ -147,7 +147,7 @@ impl CommentHeader {
     }
 }
 
-impl Entry {
+impl HeaderLine {
     /// Where it stands: `line 8 (width_m)`.
     pub(crate) fn place(&self) -> Place {
         Place::line(self.line).about(self.key)

@@ -1,6 +1,6 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
-use crate::error::{Error, Part, Place, Result};
+use crate::error::{Error, Place, PlaceStep, Result};
 use crate::files::text::read_text;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -109,14 +109,14 @@ pub fn with_line(text: &str, error: Error) -> Error {
 }
 
 /// Line of the deepest of the keys that the file states.
-fn line_of_key(text: &str, place: &[Part]) -> Option<usize> {
+fn line_of_key(text: &str, place: &[PlaceStep]) -> Option<usize> {
     let document = DeTable::parse(text).ok()?;
     let mut table = Some(document.get_ref());
     let mut list = None;
     let mut offset = None;
     for part in place {
         let value = match part {
-            Part::Key(name) => {
+            PlaceStep::Key(name) => {
                 let found = table.and_then(|t| t.iter().find(|(k, _)| k.get_ref() == name));
                 let Some((spanned_key, value)) = found else {
                     break;
@@ -124,7 +124,7 @@ fn line_of_key(text: &str, place: &[Part]) -> Option<usize> {
                 offset = Some(spanned_key.span().start);
                 value
             }
-            Part::Index(index) => {
+            PlaceStep::Index(index) => {
                 let Some(item) = list.and_then(|l: &DeArray| l.get(*index)) else {
                     break;
                 };

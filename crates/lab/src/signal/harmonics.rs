@@ -83,7 +83,7 @@ pub fn fit_harmonics(
             format!("{} to {}", range.start, range.end),
         ));
     }
-    let regressors = Regressors {
+    let regressors = HarmonicRegressors {
         centre: 0.5 * (range.start + range.end - 1) as f64,
         half: (0.5 * range.len() as f64).max(1.0),
         step: Complex::from_polar(1.0, TAU * frequency_hz / sampling_hz),
@@ -132,7 +132,7 @@ pub fn fit_harmonics(
 }
 
 /// Constant, trend, then cosine and sine of each harmonic.
-struct Regressors {
+struct HarmonicRegressors {
     /// Middle of the stretch, and half of its length, samples.
     centre: f64,
     half: f64,
@@ -141,7 +141,7 @@ struct Regressors {
     harmonics: usize,
 }
 
-impl Regressors {
+impl HarmonicRegressors {
     fn unknowns(&self) -> usize {
         2 + 2 * self.harmonics
     }

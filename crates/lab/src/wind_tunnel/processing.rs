@@ -43,7 +43,7 @@ pub use signals::{HarmonicSegment, SectionSignals, index};
 use super::{RawCampaign, Record};
 use crate::error::{Error, Result, all_or_errors};
 use crate::section::Dof;
-use prepare::Prepared;
+use prepare::PreparedRun;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -76,7 +76,7 @@ pub fn process(
     let prepared = campaign
         .runs
         .par_iter()
-        .map(|run| Prepared::new(run, &campaign.rig, options))
+        .map(|run| PreparedRun::new(run, &campaign.rig, options))
         .collect();
     let prepared = all_or_errors(prepared)?;
     let stated = options.dofs.clone();
@@ -121,7 +121,7 @@ pub fn process(
 }
 
 /// Heave and rotation, and sway when a run moves it; of these the forces that there are.
-fn dofs_of(campaign: &RawCampaign, prepared: &[Prepared<'_>]) -> Vec<Dof> {
+fn dofs_of(campaign: &RawCampaign, prepared: &[PreparedRun<'_>]) -> Vec<Dof> {
     let all: &[Dof] = if prepared.iter().any(|p| p.dof == Dof::Lateral) {
         &Dof::THREE
     } else {

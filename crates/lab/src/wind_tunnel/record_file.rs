@@ -67,7 +67,7 @@ impl RecordSource for RecordFile {
         let mut file = File::open(&self.path).map_err(io)?;
         file.seek(SeekFrom::Start(self.columns.start)).map_err(io)?;
         let mut reader = BufReader::with_capacity(1 << 16, file);
-        let mut rows = Rows::new(&self.header, &self.columns);
+        let mut rows = RecordRows::new(&self.header, &self.columns);
         let mut line = Vec::new();
         loop {
             line.clear();
@@ -149,7 +149,7 @@ fn push_number(text: &mut String, x: f64) {
 }
 
 /// Rows being collected into a block.
-struct Rows<'a> {
+struct RecordRows<'a> {
     header: &'a RecordHeader,
     columns: &'a RecordColumns,
     line: usize,
@@ -160,7 +160,7 @@ struct Rows<'a> {
     last_time: f64,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> RecordRows<'a> {
     fn new(header: &'a RecordHeader, columns: &'a RecordColumns) -> Self {
         let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); header.dofs.len()];
         Self {

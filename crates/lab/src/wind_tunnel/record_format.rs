@@ -18,7 +18,7 @@
 
 use super::records::{RecordHeader, Segment};
 use crate::error::{Error, Place, Result};
-use crate::files::header_csv::{CommentHeader, Entry};
+use crate::files::header_csv::{CommentHeader, HeaderLine};
 use crate::section::Dof;
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -160,7 +160,7 @@ fn record_header(head: &CommentHeader) -> Result<RecordHeader> {
     })
 }
 
-fn dofs(entry: &Entry) -> Result<Vec<Dof>> {
+fn dofs(entry: &HeaderLine) -> Result<Vec<Dof>> {
     let one = |name: &str| Dof::THREE.into_iter().find(|d| d.name() == name.trim());
     let dofs: Option<Vec<Dof>> = entry.value.split(',').map(one).collect();
     let is_new = |dofs: &[Dof], i: usize| !dofs[..i].contains(&dofs[i]);
@@ -170,7 +170,7 @@ fn dofs(entry: &Entry) -> Result<Vec<Dof>> {
         })
 }
 
-fn segment(entry: &Entry) -> Result<Segment> {
+fn segment(entry: &HeaderLine) -> Result<Segment> {
     let words: Vec<&str> = entry.value.split_whitespace().collect();
     let numbers = match words[..] {
         [f, "Hz", "from", start, "s", "to", end, "s"] => {

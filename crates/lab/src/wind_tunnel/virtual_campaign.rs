@@ -24,7 +24,7 @@ mod truth;
 
 pub use make::VirtualCampaign;
 pub use plan::{
-    Disturbances, ModelBody, Spike, StaticWind, Support, Turbulence, VirtualCampaignPlan,
+    Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence, VirtualCampaignPlan,
 };
 pub use truth::{AppliedDisturbances, AppliedSpike, CampaignTruth, TruthPoint};
 

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 const SAME_K: f64 = 0.02;
 
 /// One column of `G` at the test points of one speed.
-pub(super) struct TestPoints {
+pub(super) struct TransferColumn {
     /// Reduced frequency of each point.
     pub k: Vec<ReducedFrequency>,
     /// `G` of each row, then point.
@@ -25,7 +25,7 @@ pub(super) struct TestPoints {
     pub interpolated: bool,
 }
 
-impl TestPoints {
+impl TransferColumn {
     /// The column of `motion` from a table of one speed group.
     ///
     /// # Errors

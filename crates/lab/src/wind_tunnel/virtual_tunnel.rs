@@ -17,7 +17,7 @@
 
 use super::motion::{Timing, TrainingMotion, UnitMotion};
 use super::records::{Record, RecordHeader};
-use super::virtual_forces::{TestPoints, unit_response};
+use super::virtual_forces::{TransferColumn, unit_response};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Result, positive};
@@ -129,7 +129,7 @@ impl TunnelPlan {
                 continue;
             }
             for motion in dofs {
-                let points = TestPoints::new(&group, dofs, *motion)?;
+                let points = TransferColumn::new(&group, dofs, *motion)?;
                 records
                     .push(self.record_at_points(&group, &points, dofs, *motion, *speed, delay_s)?);
             }
@@ -293,7 +293,7 @@ impl TunnelPlan {
     fn record_at_points(
         &self,
         group: &DerivativeTable,
-        points: &TestPoints,
+        points: &TransferColumn,
         dofs: &[Dof],
         motion: Dof,
         speed_m_s: f64,

@@ -8,8 +8,8 @@ use super::types::{fmi2Component, fmi2Status};
 use crate::groups::Groups;
 use crate::instance::Instance;
 use crate::lifecycle::Call;
-use crate::refusal::{CallResult, Refusal, Severity};
-use crate::variables::Value;
+use crate::refusal::{CallResult, Refusal, RefusalEffect};
+use crate::variables::StartValue;
 use std::any::Any;
 use std::ffi::CString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -30,7 +30,7 @@ impl Component {
     pub(crate) fn new(instance: Instance, logger: Logger) -> Self {
         let variables = instance.table().variables().iter();
         let texts = variables.map(|v| match &v.value {
-            Value::String(text) => c_text(text),
+            StartValue::String(text) => c_text(text),
             _ => CString::default(),
         });
         Self {
@@ -47,8 +47,8 @@ impl Component {
     fn refuse(&mut self, function: &str, refusal: &Refusal) -> fmi2Status {
         self.instance.note(refusal);
         let (status, category) = match refusal.severity {
-            Severity::Discard => (fmi2Status::fmi2Discard, Category::Discard),
-            Severity::Call | Severity::Error => (fmi2Status::fmi2Error, Category::Error),
+            RefusalEffect::Discard => (fmi2Status::fmi2Discard, Category::Discard),
+            RefusalEffect::Call | RefusalEffect::Error => (fmi2Status::fmi2Error, Category::Error),
         };
         let message = format!("{}{function}: {refusal}", self.logger.prefix());
         self.logger.log(status, category, &message);

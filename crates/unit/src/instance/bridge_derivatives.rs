@@ -14,7 +14,7 @@ use crate::flutter::smallest_damping;
 use crate::lifecycle::State;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
-use crate::variables::{Calculated, Role, Status};
+use crate::variables::{Calculated, Role, Safety};
 
 impl Differentiable for BridgeUnit {
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
@@ -56,7 +56,9 @@ impl Differentiable for BridgeUnit {
                 return Ok(unknowns.iter().map(slope).collect::<Result<_>>()?);
             }
             (Source::Limit, _) => return Ok(self.by_limit(resources, memory, unknowns)),
-            (Source::Section, _) => return self.by_parameter(resources, memory, known, unknowns),
+            (Source::Section, _) => {
+                return self.by_parameter(resources, memory, known, unknowns);
+            }
             _ => self.by_unit(memory, known)?,
         };
         let derivative = |unknown: &Role| self.pick_of(&instant, *unknown);
@@ -117,10 +119,10 @@ impl BridgeUnit {
                 | Calculated::StableBelowOnset => false,
             },
             Some(Known::Status(status)) => match status {
-                Status::FlutterSpeed | Status::FlutterMargin => {
+                Safety::FlutterSpeed | Safety::FlutterMargin => {
                     none(Calculated::OnsetFound, Calculated::OnsetSpeed)
                 }
-                Status::DampingNow | Status::WindInTestedRange | Status::AmplitudeInLinearRange => {
+                Safety::DampingNow | Safety::WindInTestedRange | Safety::AmplitudeInLinearRange => {
                     false
                 }
             },
@@ -162,7 +164,7 @@ impl BridgeUnit {
         let limit = memory.values[self.places.limit];
         let card =
             wants(is_of_onset).then(|| OnsetCard::of_bridge(&self.built, self.tested, limit).0);
-        let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
+        let damping = if unknowns.contains(&Role::Status(Safety::DampingNow)) {
             smallest_damping(self.built.stepper.section(), wind)?
         } else {
             0.0

@@ -4,11 +4,11 @@ use super::layout::{calculated, place};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::variables::{Calculated, Gust, Role, Variable, VariableTable};
+use crate::variables::{Calculated, GustDirection, Role, Variable, VariableTable};
 
 /// See the module.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct BridgePlaces {
     /// Wind, then the forces in the rows of the shapes, then the gusts of each strip.
     pub inputs: Vec<usize>,
     /// Where the gusts begin among them.
@@ -28,7 +28,7 @@ pub(super) struct Places {
     pub state_entry: Vec<Option<usize>>,
 }
 
-impl Places {
+impl BridgePlaces {
     pub(super) fn new(table: &VariableTable, options: &BridgeOptions) -> Result<Self> {
         let mut inputs = vec![place(table, Role::WindSpeed)?];
         for (node, dof) in
@@ -38,7 +38,7 @@ impl Places {
         }
         let first_gust = inputs.len();
         let strips = options.gusts.as_ref().map_or(0, |g| g.strips.len());
-        for (strip, gust) in (0..strips).flat_map(|s| Gust::BOTH.map(|gust| (s, gust))) {
+        for (strip, gust) in (0..strips).flat_map(|s| GustDirection::BOTH.map(|gust| (s, gust))) {
             inputs.push(place(table, Role::Gust(strip, gust))?);
         }
         let all = || table.variables().iter().enumerate();

@@ -5,7 +5,7 @@
 
 use super::bridge_built::Built;
 use super::bridge_followed::SearchedOnset;
-use super::bridge_places::Places;
+use super::bridge_places::BridgePlaces;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
@@ -26,7 +26,7 @@ use nalgebra::DMatrix;
 /// See the module.
 #[derive(Debug)]
 pub(super) struct BridgeUnit {
-    pub places: Places,
+    pub places: BridgePlaces,
     /// What follows from the parameters.
     pub built: Built,
     /// Whether they have changed since.
@@ -58,7 +58,7 @@ impl BridgeUnit {
         let searched = start.and_then(|start| SearchedOnset::from(&built, start).ok());
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
         Ok(Self {
-            places: Places::new(table, options)?,
+            places: BridgePlaces::new(table, options)?,
             shapes: built.bridge.shapes_at(&options.named),
             roots: masses.collect(),
             tested: options.tested_range,

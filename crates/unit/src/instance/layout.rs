@@ -4,7 +4,7 @@ use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::lifecycle::{StateSet, gettable_in, settable_in};
 use crate::response::wind_at_rest;
-use crate::variables::{Calculated, Role, Value, Variable, VariableTable};
+use crate::variables::{Calculated, Role, StartValue, Variable, VariableTable};
 
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,10 +90,10 @@ impl Access {
     fn of(v: &Variable) -> Self {
         Self {
             data_type: match v.value {
-                Value::Real(_) => DataType::Real,
-                Value::Integer(_) => DataType::Integer,
-                Value::Boolean(_) => DataType::Boolean,
-                Value::String(_) => DataType::String,
+                StartValue::Real(_) => DataType::Real,
+                StartValue::Integer(_) => DataType::Integer,
+                StartValue::Boolean(_) => DataType::Boolean,
+                StartValue::String(_) => DataType::String,
             },
             source: Source::of(v.role),
             gettable: gettable_in(v.causality, v.variability),

@@ -2,11 +2,11 @@
 
 use crate::lifecycle::State;
 use crate::response::SectionState;
-use crate::variables::{Value, VariableTable};
+use crate::variables::{StartValue, VariableTable};
 
 /// Times of a run, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Experiment {
+pub(super) struct RunTimes {
     pub start: f64,
     pub stop: Option<f64>,
 }
@@ -16,7 +16,7 @@ pub(super) struct Experiment {
 pub(super) struct Memory {
     pub state: State,
     /// Set by the set-up of the experiment.
-    pub experiment: Option<Experiment>,
+    pub experiment: Option<RunTimes>,
     /// Point of time of `system`, s.
     pub time: f64,
     /// One number per variable, as in [`starts`].
@@ -43,11 +43,11 @@ impl Memory {
 
 /// Start value of each variable; truth values are 0 and 1, texts 0.
 pub(super) fn starts(table: &VariableTable) -> Vec<f64> {
-    let start = |value: &Value| match value {
-        Value::Real(start) => start.unwrap_or(0.0),
-        Value::Integer(start) => f64::from(start.unwrap_or(0)),
-        Value::Boolean(start) => f64::from(u8::from(start.unwrap_or(false))),
-        Value::String(_) => 0.0,
+    let start = |value: &StartValue| match value {
+        StartValue::Real(start) => start.unwrap_or(0.0),
+        StartValue::Integer(start) => f64::from(start.unwrap_or(0)),
+        StartValue::Boolean(start) => f64::from(u8::from(start.unwrap_or(false))),
+        StartValue::String(_) => 0.0,
     };
     table.variables().iter().map(|v| start(&v.value)).collect()
 }

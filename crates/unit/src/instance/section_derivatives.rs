@@ -15,7 +15,7 @@ use crate::flutter::smallest_damping;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, Stepper};
-use crate::variables::{Role, Status};
+use crate::variables::{Role, Safety};
 
 impl Differentiable for SectionUnit {
     fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
@@ -164,7 +164,7 @@ impl SectionUnit {
         } else {
             None
         };
-        let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
+        let damping = if unknowns.contains(&Role::Status(Safety::DampingNow)) {
             smallest_damping(self.new_stepper(resources, values)?.section(), wind)?
         } else {
             0.0

@@ -3,11 +3,11 @@
 use super::layout::{calculated, place};
 use crate::error::Result;
 use crate::section::Dof;
-use crate::variables::{Calculated, Gust, Response, Role, VariableTable};
+use crate::variables::{Calculated, GustDirection, Response, Role, VariableTable};
 
 /// Places of the variables by what they stand for.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct SectionPlaces {
     pub wind_speed: usize,
     /// External force of each degree of freedom.
     pub force: Vec<usize>,
@@ -27,7 +27,7 @@ pub(super) struct Places {
     pub onset_speed: usize,
 }
 
-impl Places {
+impl SectionPlaces {
     pub(super) fn new(table: &VariableTable) -> Result<Self> {
         let dofs = table.dofs();
         let each = |role: fn(Dof) -> Role| -> Result<Vec<usize>> {
@@ -54,7 +54,7 @@ impl Places {
             state_entry,
             wind_speed: place(table, Role::WindSpeed)?,
             force: each(Role::ExternalForce)?,
-            gusts: Gust::BOTH
+            gusts: GustDirection::BOTH
                 .into_iter()
                 .filter_map(|gust| table.find(Role::Gust(0, gust)))
                 .collect(),

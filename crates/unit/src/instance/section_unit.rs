@@ -5,7 +5,7 @@ use super::damping::PresentDamping;
 use super::layout::Source;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
-use super::section_places::Places;
+use super::section_places::SectionPlaces;
 use super::sensitivity::{check_finite, finite};
 use super::trust::{MonitoredUnit, TrustWarnings, tested_winds};
 use super::unit::{Differentiable, Prepared, Unit};
@@ -36,7 +36,7 @@ enum LoadedInputs {
 /// See the module.
 #[derive(Debug)]
 pub(super) struct SectionUnit {
-    pub places: Places,
+    pub places: SectionPlaces,
     inputs_at: Vec<usize>,
     aerodynamics: Realization,
     /// Numbers of the state of the gusts.
@@ -66,7 +66,7 @@ impl SectionUnit {
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation.
     pub(super) fn new(resources: &Resources) -> Result<Self> {
-        let places = Places::new(&resources.table)?;
+        let places = SectionPlaces::new(&resources.table)?;
         let forces = places.force.iter().chain(&places.gusts).copied();
         let inputs = std::iter::once(places.wind_speed).chain(forces);
         Ok(Self {

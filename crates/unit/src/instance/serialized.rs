@@ -7,7 +7,7 @@
 //! digest of all bytes before, 16 bytes
 //! ```
 
-use super::memory::{Experiment, Memory};
+use super::memory::{Memory, RunTimes};
 use crate::error::{Error, Result};
 use crate::lifecycle::State;
 use uuid::Uuid;
@@ -124,11 +124,11 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     Ok(memory)
 }
 
-fn experiment(code: u8, start: f64, stop: f64) -> Result<Option<Experiment>> {
+fn experiment(code: u8, start: f64, stop: f64) -> Result<Option<RunTimes>> {
     match code {
         0 => Ok(None),
-        1 => Ok(Some(Experiment { start, stop: None })),
-        3 => Ok(Some(Experiment {
+        1 => Ok(Some(RunTimes { start, stop: None })),
+        3 => Ok(Some(RunTimes {
             start,
             stop: Some(stop),
         })),

@@ -1,7 +1,7 @@
 //! Communication steps.
 
 use super::Instance;
-use super::memory::Experiment;
+use super::memory::RunTimes;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
 use crate::response::wind_at_rest;
@@ -72,7 +72,7 @@ impl Instance {
             return Err(elsewhere(point, time));
         }
         match self.memory.experiment {
-            Some(Experiment {
+            Some(RunTimes {
                 stop: Some(stop), ..
             }) if point + step > stop + tolerance + CLOCK_TOLERANCE * stop.abs() => {
                 Err(too_late(point + step, stop))

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::flutter::smallest_damping;
 use crate::resources::Resources;
 use crate::response::Stepper;
-use crate::variables::{Calculated, Role, Status};
+use crate::variables::{Calculated, Role, Safety};
 
 /// Rotation up to which forces are taken as linear: 10 degrees.
 pub(super) const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -26,7 +26,7 @@ fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
 /// What is known without the motion: numbers of the parameters, and of the present moment.
 pub(super) enum Known {
     Calculated(Calculated),
-    Status(Status),
+    Status(Safety),
 }
 
 impl Known {
@@ -66,8 +66,8 @@ pub(super) fn is_of_onset(unknown: &Role) -> bool {
     match Known::of(*unknown) {
         Some(Known::Calculated(_)) => true,
         Some(Known::Status(status)) => match status {
-            Status::FlutterMargin | Status::FlutterSpeed => true,
-            Status::DampingNow | Status::WindInTestedRange | Status::AmplitudeInLinearRange => {
+            Safety::FlutterMargin | Safety::FlutterSpeed => true,
+            Safety::DampingNow | Safety::WindInTestedRange | Safety::AmplitudeInLinearRange => {
                 false
             }
         },
@@ -86,10 +86,10 @@ pub(super) fn without_motion(
     match Known::of(unknown)? {
         Known::Calculated(which) => Some(calculated(which)),
         Known::Status(status) => match status {
-            Status::FlutterSpeed => Some(calculated(Calculated::OnsetSpeed)),
-            Status::FlutterMargin => Some(calculated(Calculated::OnsetSpeed) - wind),
-            Status::DampingNow => Some(damping),
-            Status::WindInTestedRange | Status::AmplitudeInLinearRange => None,
+            Safety::FlutterSpeed => Some(calculated(Calculated::OnsetSpeed)),
+            Safety::FlutterMargin => Some(calculated(Calculated::OnsetSpeed) - wind),
+            Safety::DampingNow => Some(damping),
+            Safety::WindInTestedRange | Safety::AmplitudeInLinearRange => None,
         },
     }
 }
@@ -131,17 +131,17 @@ pub(super) trait MonitoredUnit: Prepared {
             return 0.0;
         };
         match status {
-            Status::FlutterSpeed => {
+            Safety::FlutterSpeed => {
                 self.calculate(resources, memory, notices);
                 self.onset_speed(memory)
             }
-            Status::FlutterMargin => {
+            Safety::FlutterMargin => {
                 self.calculate(resources, memory, notices);
                 self.onset_speed(memory) - wind
             }
-            Status::DampingNow => self.damping(wind, notices),
-            Status::WindInTestedRange => flag(self.wind_is_tested(resources, memory, notices)),
-            Status::AmplitudeInLinearRange => {
+            Safety::DampingNow => self.damping(wind, notices),
+            Safety::WindInTestedRange => flag(self.wind_is_tested(resources, memory, notices)),
+            Safety::AmplitudeInLinearRange => {
                 flag(self.rotation(memory).abs() <= LINEAR_ROTATION_RAD)
             }
         }
@@ -159,14 +159,14 @@ pub(super) trait MonitoredUnit: Prepared {
     fn present_by_wind(&self, memory: &Memory, role: Role) -> Result<f64> {
         match Known::of(role) {
             Some(Known::Status(status)) => match status {
-                Status::FlutterMargin => Ok(-1.0),
-                Status::DampingNow => {
+                Safety::FlutterMargin => Ok(-1.0),
+                Safety::DampingNow => {
                     let wind = self.wind_speed(memory);
                     self.coupled().map_or(Ok(0.0), |s| damping_slope(s, wind))
                 }
-                Status::FlutterSpeed
-                | Status::WindInTestedRange
-                | Status::AmplitudeInLinearRange => Ok(0.0),
+                Safety::FlutterSpeed
+                | Safety::WindInTestedRange
+                | Safety::AmplitudeInLinearRange => Ok(0.0),
             },
             // of the parameters, or of the motion, which is differentiated elsewhere
             Some(Known::Calculated(_)) | None => Ok(0.0),

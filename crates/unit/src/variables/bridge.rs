@@ -6,7 +6,7 @@ use super::section::{
     air_density, calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit,
     status, wind_speed,
 };
-use super::{ModeOutput, ModeParameter, Response, Role, SectionParameter, Status, Variable};
+use super::{ModeOutput, ModeParameter, Response, Role, Safety, SectionParameter, Variable};
 use super::{bridge_states, dependencies};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
@@ -220,8 +220,8 @@ fn fill_dependencies(table: &mut [Variable]) {
             }
             Role::NodeMotion(..)
             | Role::Mode(..)
-            | Role::Status(Status::AmplitudeInLinearRange) => (Vec::new(), dependent(&release)),
-            Role::Calculated(_) | Role::Status(Status::FlutterSpeed) => {
+            | Role::Status(Safety::AmplitudeInLinearRange) => (Vec::new(), dependent(&release)),
+            Role::Calculated(_) | Role::Status(Safety::FlutterSpeed) => {
                 (Vec::new(), dependent(&searched))
             }
             Role::Status(_) => (wind.clone(), dependent(&with_wind)),

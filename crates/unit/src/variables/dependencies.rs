@@ -1,6 +1,6 @@
 //! What depends on what: the structure of outputs while stepping, and of all unknowns while initialising.
 
-use super::{Causality, InitialDependency, Response, Role, SectionParameter, Status, Variable};
+use super::{Causality, InitialDependency, Response, Role, Safety, SectionParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -39,7 +39,7 @@ macro_rules! of_other_units {
 /// Fills in the dependencies of every output, state, rate of a state and calculated parameter. States count as known only
 /// where importers see them.
 pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Option<&GustForce>) {
-    let coupling = Coupling {
+    let coupling = AccelerationCoupling {
         added_mass: has_added_mass(model),
         unbalance: model.section.mass_offset_m.is_some(),
         gusts_at_once: gusts.is_some_and(|g| g.states() == 0),
@@ -74,8 +74,8 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
             Role::Calculated(_) => (Vec::new(), parameters(known)),
             Role::Status(status) => {
                 let of_wind = match status {
-                    Status::FlutterMargin | Status::DampingNow | Status::WindInTestedRange => true,
-                    Status::AmplitudeInLinearRange | Status::FlutterSpeed => false,
+                    Safety::FlutterMargin | Safety::DampingNow | Safety::WindInTestedRange => true,
+                    Safety::AmplitudeInLinearRange | Safety::FlutterSpeed => false,
                 };
                 let wind = places(known, |role| role == Role::WindSpeed && of_wind);
                 let by_wind = dependent(wind.iter().copied());
@@ -84,11 +84,11 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
                     role == Role::InitialDisplacement(Dof::Torsion)
                 }));
                 let initial = match status {
-                    Status::AmplitudeInLinearRange => release,
-                    Status::FlutterMargin
-                    | Status::DampingNow
-                    | Status::WindInTestedRange
-                    | Status::FlutterSpeed => stated.chain(by_wind).collect(),
+                    Safety::AmplitudeInLinearRange => release,
+                    Safety::FlutterMargin
+                    | Safety::DampingNow
+                    | Safety::WindInTestedRange
+                    | Safety::FlutterSpeed => stated.chain(by_wind).collect(),
                 };
                 (wind, initial)
             }
@@ -131,13 +131,13 @@ impl UnknownSources {
 fn states_behind(known: &UnknownSources, of: Role, filters: usize) -> impl Iterator<Item = usize> {
     let depends = move |on: Role| match of {
         Role::Status(status) => match status {
-            Status::AmplitudeInLinearRange => {
+            Safety::AmplitudeInLinearRange => {
                 on == Role::Response(Response::Displacement, Dof::Torsion)
             }
-            Status::FlutterMargin
-            | Status::DampingNow
-            | Status::WindInTestedRange
-            | Status::FlutterSpeed => false,
+            Safety::FlutterMargin
+            | Safety::DampingNow
+            | Safety::WindInTestedRange
+            | Safety::FlutterSpeed => false,
         },
         Role::Response(response, _) => match response {
             Response::Acceleration | Response::SelfExcitedForce => true,
@@ -173,7 +173,7 @@ fn gust(known: &UnknownSources) -> Vec<usize> {
 
 /// What makes the accelerations depend on one another.
 #[derive(Clone, Copy)]
-struct Coupling {
+struct AccelerationCoupling {
     /// Of the air: acts on the self-excited forces as well.
     added_mass: bool,
     /// Of the section itself.
@@ -182,7 +182,7 @@ struct Coupling {
     gusts_at_once: bool,
 }
 
-impl Coupling {
+impl AccelerationCoupling {
     fn of(self, response: Response) -> bool {
         self.added_mass || (self.unbalance && response == Response::Acceleration)
     }
@@ -201,7 +201,7 @@ fn direct_inputs(
     known: &UnknownSources,
     response: Response,
     dof: Dof,
-    coupling: Coupling,
+    coupling: AccelerationCoupling,
 ) -> Vec<usize> {
     let coupled = coupling.of(response);
     // what acts on the motion at once, and what on the forces
@@ -232,7 +232,7 @@ fn initial_knowns(
     known: &UnknownSources,
     response: Response,
     dof: Dof,
-    coupling: Coupling,
+    coupling: AccelerationCoupling,
 ) -> Vec<InitialDependency> {
     let release = match response {
         Response::Displacement => Some(Role::InitialDisplacement(dof)),

@@ -1,21 +1,21 @@
 //! Names, units and words of the degrees of freedom.
 
 use crate::section::Dof;
-use crate::si::{self, Unit};
+use crate::si::{self, SiUnit};
 
 /// Names, units and words of one degree of freedom.
 pub(super) struct DofNames {
     /// Displacement, rate, acceleration, force.
     pub responses: [&'static str; 4],
     /// Units of the same.
-    pub units: [&'static Unit; 4],
+    pub units: [&'static SiUnit; 4],
     /// External force.
     pub external: &'static str,
     /// Displacement and rate at release.
     pub initial: [&'static str; 2],
     /// Inertia, frequency, damping ratio.
     pub support: [&'static str; 3],
-    pub inertia_unit: &'static Unit,
+    pub inertia_unit: &'static SiUnit,
     pub inertia_quantity: &'static str,
     /// The motion and its sign.
     pub motion: &'static str,
@@ -26,7 +26,7 @@ pub(super) struct DofNames {
     pub quantities: [&'static str; 3],
 }
 
-const TRANSLATION_UNITS: [&Unit; 4] = [
+const TRANSLATION_UNITS: [&SiUnit; 4] = [
     &si::METRE,
     &si::METRE_PER_SECOND,
     &si::METRE_PER_SECOND2,

@@ -8,7 +8,7 @@ use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::force_options::{ForceOptions, MAX_PREDICTION};
 use crate::section::Dof;
-use crate::si::{self, Unit};
+use crate::si::{self, SiUnit};
 use crate::trained_model::TrainedModel;
 
 /// All variables with their dependencies.
@@ -115,7 +115,7 @@ fn forces<'a>(
 ) -> impl Iterator<Item = Variable> + 'a {
     dofs.iter().flat_map(move |&dof| {
         let w = names_of(dof);
-        let (total_unit, total_quantity): (&'static Unit, _) = match dof {
+        let (total_unit, total_quantity): (&'static SiUnit, _) = match dof {
             Dof::Torsion => (&si::NEWTON_METRE, "Torque"),
             _ => (&si::NEWTON, "Force"),
         };
@@ -143,7 +143,7 @@ fn strip(s: usize, options: &ForceOptions) -> [Variable; 3] {
         let role = Role::Strip(s, which);
         real(name(options, s, of), role, TUNABLE, text)
     };
-    let metre: Option<&Unit> = Some(&si::METRE);
+    let metre: Option<&SiUnit> = Some(&si::METRE);
     [
         parameter("width", StripParameter::Width, "Full deck width B")
             .quantity("Length", metre)

@@ -1,6 +1,6 @@
 //! The table as a description lists it: all of it, or its real variables for importers that take no others.
 
-use super::{InitialDependency, Value, Variable, VariableTable};
+use super::{InitialDependency, StartValue, Variable, VariableTable};
 
 /// Which variables a description lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,7 +24,7 @@ pub struct ListedVariables {
 impl VariableTable {
     /// The variables that are listed.
     pub fn listed(&self, listing: Listing) -> ListedVariables {
-        let real = |v: &Variable| matches!(v.value, Value::Real(_));
+        let real = |v: &Variable| matches!(v.value, StartValue::Real(_));
         let references: Vec<usize> = (0..self.variables.len())
             .filter(|&i| listing == Listing::All || real(&self.variables[i]))
             .collect();

@@ -1,10 +1,10 @@
 //! Real variables, and the constants that every exported unit has.
 
 use super::parameters::SectionParameter;
-use super::{Causality, Initial, Response, Role, Value, Variability, Variable};
+use super::{Causality, Initial, Response, Role, StartValue, Variability, Variable};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::si::{self, Unit};
+use crate::si::{self, SiUnit};
 use crate::standard::printable;
 use crate::trained_model::TrainedModel;
 use std::f64::consts::TAU;
@@ -31,7 +31,7 @@ pub(super) fn real(
         causality,
         variability,
         initial,
-        value: Value::Real(None),
+        value: StartValue::Real(None),
         unit: None,
         display_unit: None,
         quantity: None,
@@ -46,11 +46,15 @@ pub(super) fn real(
 
 impl Variable {
     pub(super) fn start(mut self, value: f64) -> Self {
-        self.value = Value::Real(Some(value));
+        self.value = StartValue::Real(Some(value));
         self
     }
 
-    pub(super) fn quantity(mut self, quantity: &'static str, unit: Option<&'static Unit>) -> Self {
+    pub(super) fn quantity(
+        mut self,
+        quantity: &'static str,
+        unit: Option<&'static SiUnit>,
+    ) -> Self {
         (self.quantity, self.unit) = (Some(quantity), unit);
         self
     }
@@ -93,7 +97,7 @@ pub(super) const CALCULATED: (Causality, Variability) =
 pub(super) const LOCAL: (Causality, Variability) = (Causality::Local, Variability::Constant);
 /// A state or its rate.
 pub(super) const INNER: (Causality, Variability) = (Causality::Local, Variability::Continuous);
-pub(super) const SPEED: Option<&Unit> = Some(&si::METRE_PER_SECOND);
+pub(super) const SPEED: Option<&SiUnit> = Some(&si::METRE_PER_SECOND);
 
 /// `filters` is the number of the states of its forces.
 pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Variable>> {
@@ -103,14 +107,14 @@ pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Vari
         ..real(name, Role::Constant, LOCAL, text)
     };
     // as the description can say it
-    let text = |text: &str| Value::String(printable(text));
+    let text = |text: &str| StartValue::String(printable(text));
     let states = i32::try_from(filters)
         .map_err(|_| Error::input("model", "fewer filter states", filters.to_string()))?;
     let version = env!("CARGO_PKG_VERSION");
     Ok(vec![
         constant(
             "filters",
-            Value::Integer(Some(states)),
+            StartValue::Integer(Some(states)),
             "Number of filter states of the aerodynamic model",
         ),
         constant(

@@ -7,12 +7,12 @@ use super::real::{
     force_scale, nominal, real,
 };
 use super::variable::find;
-use super::{Calculated, Gust, Initial, Response, Role, Status, Value, Variable};
+use super::{Calculated, GustDirection, Initial, Response, Role, Safety, StartValue, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::onset_bounds::OnsetBounds;
 use crate::section::{Dof, SectionModel};
-use crate::si::{self, Unit};
+use crate::si::{self, SiUnit};
 use crate::trained_model::{Model, TrainedModel};
 
 /// Usual size of filter states: dimensionless motion of some hundredths.
@@ -85,10 +85,10 @@ pub(super) fn gust_inputs(strip: usize, name: impl Fn(&str) -> String) -> [Varia
     };
     [
         gust(
-            Gust::Along,
+            GustDirection::Along,
             ("gust_u", "Turbulence along the mean wind, on top of it"),
         ),
-        gust(Gust::Vertical, ("gust_w", "Turbulence upwards")),
+        gust(GustDirection::Vertical, ("gust_w", "Turbulence upwards")),
     ]
 }
 
@@ -225,7 +225,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
         )
         .min(0.0)
     };
-    let metre: Option<&Unit> = Some(&si::METRE);
+    let metre: Option<&SiUnit> = Some(&si::METRE);
     match parameter {
         SectionParameter::AxisOffset => variable(
             "axis_offset",
@@ -295,7 +295,7 @@ pub(super) fn calculated_parameters() -> Vec<Variable> {
     use Calculated as C;
     let parameter = |name, what, text: &str| real(name, Role::Calculated(what), CALCULATED, text);
     let flag = |name, what, text: &str| Variable {
-        value: Value::Boolean(None),
+        value: StartValue::Boolean(None),
         ..parameter(name, what, text)
     };
     vec![
@@ -351,35 +351,35 @@ pub(super) fn calculated_parameters() -> Vec<Variable> {
 pub(super) fn status() -> Vec<Variable> {
     let output = |name, what, text: &str| real(name, Role::Status(what), OUTPUT, text);
     let flag = |name, what, text: &str| Variable {
-        value: Value::Boolean(None),
+        value: StartValue::Boolean(None),
         ..real(name, Role::Status(what), DISCRETE, text)
     };
     vec![
         output(
             "flutter_margin",
-            Status::FlutterMargin,
+            Safety::FlutterMargin,
             "onset_speed less wind_speed",
         )
         .quantity("Velocity", SPEED),
         output(
             "damping_now",
-            Status::DampingNow,
+            Safety::DampingNow,
             "Smallest damping ratio of the modes at the present wind speed; negative when one grows",
         )
         .quantity("DampingRatio", None),
         flag(
             "wind_in_tested_range",
-            Status::WindInTestedRange,
+            Safety::WindInTestedRange,
             "Whether every motion, at its frequency in still air, lies in the tested range at the present wind speed",
         ),
         flag(
             "amplitude_in_linear_range",
-            Status::AmplitudeInLinearRange,
+            Safety::AmplitudeInLinearRange,
             "Whether the rotation is at most 10 degrees, where linear forces end",
         ),
         output(
             "flutter_speed",
-            Status::FlutterSpeed,
+            Safety::FlutterSpeed,
             "onset_speed once more, for tools that take outputs only",
         )
         .quantity("Velocity", SPEED),

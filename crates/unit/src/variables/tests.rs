@@ -33,7 +33,7 @@ fn names_are_unique_and_numbers_carry_units() {
                 v.quantity,
                 Some("DampingRatio" | "ReducedVelocity" | "FilterState")
             );
-            let real = matches!(v.value, Value::Real(_));
+            let real = matches!(v.value, StartValue::Real(_));
             assert_eq!(v.unit.is_some(), real && !ratio, "{}", v.name);
             let shown = v
                 .display_unit

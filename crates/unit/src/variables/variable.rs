@@ -2,12 +2,12 @@
 
 use super::parameters::{ModeParameter, SectionParameter};
 use crate::section::Dof;
-use crate::si::Unit;
+use crate::si::SiUnit;
 use crate::standard::{Causality, Initial, Variability};
 
 /// Type of a variable, with its start value where it has one.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Value {
+pub enum StartValue {
     /// A real number.
     Real(Option<f64>),
     /// An integer.
@@ -18,7 +18,7 @@ pub enum Value {
     String(String),
 }
 
-impl Value {
+impl StartValue {
     /// Name of the type.
     pub fn type_name(&self) -> &'static str {
         match self {
@@ -84,7 +84,7 @@ impl Calculated {
 
 /// What is known of the present moment: how far from flutter, and whether the answer can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
+pub enum Safety {
     /// Onset speed less the wind speed.
     FlutterMargin,
     /// Smallest damping ratio of the modes at the wind speed.
@@ -105,7 +105,7 @@ pub enum Role {
     /// External force on a degree of freedom.
     ExternalForce(Dof),
     /// Gust at a strip, counted from zero.
-    Gust(usize, Gust),
+    Gust(usize, GustDirection),
     /// Motion or self-excited force of a degree of freedom.
     Response(Response, Dof),
     /// A property of the section.
@@ -119,7 +119,7 @@ pub enum Role {
     /// Computed from the parameters.
     Calculated(Calculated),
     /// Computed from parameters, wind and state.
-    Status(Status),
+    Status(Safety),
     /// A state that is no motion, counted from zero: filters of the aerodynamic model, then gusts behind the lags of their
     /// admittance.
     Filter(usize),
@@ -173,16 +173,16 @@ pub enum ForceOutput {
 
 /// A component of the gusts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Gust {
+pub enum GustDirection {
     /// Along the mean wind.
     Along,
     /// Upwards.
     Vertical,
 }
 
-impl Gust {
+impl GustDirection {
     /// Both, in the order of the columns of coefficients.
-    pub(crate) const BOTH: [Gust; 2] = [Self::Along, Self::Vertical];
+    pub(crate) const BOTH: [GustDirection; 2] = [Self::Along, Self::Vertical];
 }
 
 /// A property of a strip.
@@ -221,9 +221,9 @@ pub struct Variable {
     /// How it is initialised; `None` for inputs.
     pub initial: Option<Initial>,
     /// Type and start value.
-    pub value: Value,
+    pub value: StartValue,
     /// Unit of a dimensional number.
-    pub unit: Option<&'static Unit>,
+    pub unit: Option<&'static SiUnit>,
     /// Name of the unit it is best shown in, one of the display units of `unit`.
     pub display_unit: Option<&'static str>,
     /// Physical quantity in one word.

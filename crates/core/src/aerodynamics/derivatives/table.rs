@@ -88,10 +88,10 @@ impl TableHeader {
     }
 }
 
-/// What is wrong with one point of a derivative; the reader adds where it stands.
+/// What is wrong with one point of a table; the reader adds where it stands.
 #[derive(Debug, PartialEq)]
-pub struct PointProblem {
-    /// Position in test order, from 0.
+pub struct TableProblem {
+    /// Position of the point in the table, from 0.
     pub index: usize,
     /// What should be there.
     pub expected: String,
@@ -358,9 +358,9 @@ fn check_speeds_agree(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Re
 }
 
 /// The first point of one derivative that cannot be right, if any.
-pub fn check_points(points: &[DerivativePoint]) -> Option<PointProblem> {
+pub fn check_points(points: &[DerivativePoint]) -> Option<TableProblem> {
     let problem = |index: usize, expected: &str, found: String| {
-        Some(PointProblem {
+        Some(TableProblem {
             index,
             expected: expected.to_owned(),
             found,
@@ -383,7 +383,7 @@ pub fn check_points(points: &[DerivativePoint]) -> Option<PointProblem> {
 }
 
 /// Within a speed group the frequencies are tested in rising or falling order, each once.
-fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
+fn check_monotone(points: &[DerivativePoint]) -> Option<TableProblem> {
     let speeds = points.iter().filter_map(|p| p.mean_speed_m_s);
     let mut groups = near_groups(speeds, SAME_SPEED);
     if groups.is_empty() {
@@ -402,7 +402,7 @@ fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
             a == b || (b < a) != falling
         })?;
         let (before, after) = (points[broken[0]].v_hat, points[broken[1]].v_hat);
-        Some(PointProblem {
+        Some(TableProblem {
             index: broken[1],
             expected: if before == after {
                 "every reduced velocity V̂ once in a speed group".to_owned()

@@ -1,5 +1,6 @@
 //! Static coefficients of a deck over the angle of attack, smooth between the tested angles.
 
+use crate::aerodynamics::derivatives::TableProblem;
 use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -77,17 +78,6 @@ pub struct StaticCoefficients {
     drag: Spline,
     lift: Spline,
     moment: Spline,
-}
-
-/// What is wrong with one row; the reader adds where it stands.
-#[derive(Debug, PartialEq)]
-pub struct RowProblem {
-    /// Position, from 0.
-    pub index: usize,
-    /// What should be there.
-    pub expected: String,
-    /// What is there.
-    pub found: String,
 }
 
 impl StaticCoefficients {
@@ -168,9 +158,9 @@ impl StaticCoefficients {
 }
 
 /// The first thing that is wrong with the rows.
-pub fn check_rows(rows: &[CoefficientRow]) -> Option<RowProblem> {
+pub fn check_rows(rows: &[CoefficientRow]) -> Option<TableProblem> {
     let problem = |index, expected: &str, found: String| {
-        Some(RowProblem {
+        Some(TableProblem {
             index,
             expected: expected.to_owned(),
             found,

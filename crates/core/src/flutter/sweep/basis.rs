@@ -31,7 +31,7 @@ struct HeldFilter {
 
 /// What a coefficient is called, in the letters of its model; in words where somebody reads it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Term {
+enum CoefficientName {
     /// A power of `p`.
     Power(&'static str),
     /// A filter of the motion's chain.
@@ -44,7 +44,7 @@ enum Term {
     OfOther { lag: f64, term: usize },
 }
 
-impl std::fmt::Display for Term {
+impl std::fmt::Display for CoefficientName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Power(name) => f.write_str(name),
@@ -64,7 +64,7 @@ pub struct LinearForces {
     /// First function of each motion, and one past the last.
     pub(super) starts: Vec<usize>,
     coefficients: Vec<f64>,
-    terms: Vec<Term>,
+    terms: Vec<CoefficientName>,
     pub(super) tested: Option<ReducedFrequencyRange>,
 }
 
@@ -86,8 +86,8 @@ impl LinearForces {
                     let function = Function::Filter(poles[..=l].to_vec());
                     let value = |i: usize| term.coefficients[(i, l)];
                     forces.add(function, value, |i| match own(i) {
-                        true => Term::Filter(l),
-                        false => Term::OfChain {
+                        true => CoefficientName::Filter(l),
+                        false => CoefficientName::OfChain {
                             chain: t,
                             filter: l,
                         },
@@ -118,7 +118,7 @@ impl LinearForces {
                         order: order as i32,
                         delta_s: model.delta_s,
                     });
-                    let term = Term::OfChain {
+                    let term = CoefficientName::OfChain {
                         chain: t,
                         filter: order,
                     };
@@ -151,8 +151,8 @@ impl LinearForces {
                     forces.add(Function::Lag(lag), value, |i| {
                         let term = l + 4;
                         match forces_of_it[i] {
-                            true => Term::Lag(term),
-                            false => Term::OfOther { lag, term },
+                            true => CoefficientName::Lag(term),
+                            false => CoefficientName::OfOther { lag, term },
                         }
                     });
                 }
@@ -176,7 +176,9 @@ impl LinearForces {
     fn add_powers(&mut self, input: usize, terms: [(&'static str, &DMatrix<f64>); 3]) {
         for ((name, matrix), power) in terms.into_iter().zip(0..) {
             let value = |i: usize| matrix[(i, input)];
-            self.add(Function::Power(power), value, |_| Term::Power(name));
+            self.add(Function::Power(power), value, |_| {
+                CoefficientName::Power(name)
+            });
         }
     }
 
@@ -184,7 +186,7 @@ impl LinearForces {
         &mut self,
         function: Function,
         value: impl Fn(usize) -> f64,
-        term: impl Fn(usize) -> Term,
+        term: impl Fn(usize) -> CoefficientName,
     ) {
         self.functions.push(function);
         for i in 0..self.dofs.len() {
@@ -201,7 +203,7 @@ impl LinearForces {
     /// Their names, `force.motion.term`, e.g. `vertical.torsion.e0`.
     pub fn names(&self) -> Vec<String> {
         let count = self.dofs.len();
-        let name = |(place, term): (usize, &Term)| {
+        let name = |(place, term): (usize, &CoefficientName)| {
             let (function, force) = (place / count, self.dofs[place % count].name());
             let motion = self.starts[1..].partition_point(|end| *end <= function);
             format!("{force}.{}.{term}", self.dofs[motion].name())

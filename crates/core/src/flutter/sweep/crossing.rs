@@ -25,7 +25,8 @@ pub(super) fn refine<const N: usize>(
     forces: &LinearForces,
     coefficients: &[f64],
     supports: &Supports<N>,
-    (mut speed, mut omega): (f64, f64),
+    mut speed: f64,
+    mut omega: f64,
 ) -> Option<Crossing> {
     for _ in 0..STEPS {
         let at = singularity(forces, coefficients, supports, speed, omega);

@@ -4,7 +4,7 @@
 //! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal. A static unbalance is an entry of `M`
 //! beside the diagonal; `G` is about the axis of the section ([`Supports::at_axis`]).
 
-use crate::section::Support;
+use crate::section::Suspension;
 use nalgebra::Complex;
 
 type Complex64 = Complex<f64>;
@@ -25,18 +25,18 @@ pub(super) struct Supports<const N: usize> {
 
 impl<const N: usize> Supports<N> {
     /// One entry of the three matrices.
-    pub(super) fn entry(&self, i: usize, j: usize) -> Support {
+    pub(super) fn entry(&self, i: usize, j: usize) -> Suspension {
         match i.abs_diff(j) {
-            0 => Support {
+            0 => Suspension {
                 mass: self.mass[i],
                 damping: self.damping[i],
                 stiffness: self.stiffness[i],
             },
-            apart if apart == N - 1 => Support {
+            apart if apart == N - 1 => Suspension {
                 mass: self.coupling,
-                ..Support::default()
+                ..Suspension::default()
             },
-            _ => Support::default(),
+            _ => Suspension::default(),
         }
     }
 

@@ -39,7 +39,7 @@ pub fn stands_at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<
 /// The onset to this part of the speed.
 fn moved(section: &CoupledSection, onset: SweptOnset, known: f64) -> Result<Option<SweptOnset>> {
     let begin = onset.speed_m_s;
-    let mode = |speed_m_s, omega| Mode::near(section, speed_m_s, omega);
+    let mode = |speed_m_s, omega| ModeSample::near(section, speed_m_s, omega);
     let mut before = mode(begin, TAU * onset.frequency_hz)?;
     let mut speed = begin * (1.0 - FIRST_STEP.copysign(before.lambda.re));
     for _ in 0..MAX_STEPS {
@@ -64,7 +64,7 @@ fn moved(section: &CoupledSection, onset: SweptOnset, known: f64) -> Result<Opti
 }
 
 /// A mode at a wind speed.
-struct Mode {
+struct ModeSample {
     speed_m_s: f64,
     /// Its eigenvalue in continuous time, rad/s.
     lambda: Complex<f64>,
@@ -72,7 +72,7 @@ struct Mode {
     others: f64,
 }
 
-impl Mode {
+impl ModeSample {
     /// The one whose eigenvalue is nearest to `iω`.
     fn near(section: &CoupledSection, speed_m_s: f64, omega: f64) -> Result<Self> {
         let modes = section.at(speed_m_s)?.eigenvalues()?;

@@ -2,7 +2,7 @@
 
 use crate::bridge::Node;
 use crate::plausibility::limits::{Limits, beyond};
-use crate::plausibility::{Finding, Kind};
+use crate::plausibility::{Finding, FindingKind};
 
 /// Length from the first to the last node.
 pub(super) const LENGTH: Limits = Limits {
@@ -48,7 +48,7 @@ pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
             100.0 * in_elevation.slope
         );
         found.push(
-            Finding::doubt(Kind::Axes, "modes.axes.up", text)
+            Finding::doubt(FindingKind::Axes, "modes.axes.up", text)
                 .otherwise("is another axis up?".to_owned()),
         );
     }
@@ -71,7 +71,7 @@ fn skew(slope: f64) -> Option<Finding> {
         "the wind square to the nodes blows {:.1}° from the stated direction",
         angle.abs()
     );
-    let found = Finding::doubt(Kind::Axes, "modes.axes.downwind", text).otherwise(otherwise);
+    let found = Finding::doubt(FindingKind::Axes, "modes.axes.downwind", text).otherwise(otherwise);
     Some(if angle.abs() < doubt {
         found.into_note()
     } else {
@@ -91,7 +91,7 @@ fn curve(line: &Straight, length_m: f64) -> Option<Finding> {
         line.farthest_m,
         100.0 * part
     );
-    let found = Finding::doubt(Kind::Axes, "nodes", text);
+    let found = Finding::doubt(FindingKind::Axes, "nodes", text);
     Some(if part < doubt {
         found.into_note()
     } else {

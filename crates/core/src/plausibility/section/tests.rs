@@ -60,7 +60,7 @@ fn doubt(change: impl Fn(&mut SectionModel)) -> String {
     section.lateral = Some(section.vertical.clone());
     let found = found(section, change);
     assert_eq!(found.len(), 1, "{found:?}");
-    assert_eq!(found[0].severity, Severity::Doubt);
+    assert_eq!(found[0].severity, FindingSeverity::Doubt);
     found[0].to_string()
 }
 
@@ -112,7 +112,7 @@ fn a_semi_chord_is_no_width() {
             22_740.0 * (0.42 * 31.0_f64).powi(2)
         )
     );
-    assert_eq!(found[0].severity, Severity::Doubt);
+    assert_eq!(found[0].severity, FindingSeverity::Doubt);
 }
 
 /// Circular frequencies for hertz, at a width where both could be a bridge's: the plate's flutter tells.
@@ -136,7 +136,7 @@ fn circular_frequencies_of_a_wide_deck_are_recognised() {
         text.contains("in rad/s the frequencies would be 0.131 and 0.36 Hz"),
         "{text}"
     );
-    assert_eq!(found[0].severity, Severity::Doubt);
+    assert_eq!(found[0].severity, FindingSeverity::Doubt);
 }
 
 /// Stiffnesses are judged as the frequencies that they are.
@@ -164,9 +164,9 @@ fn rare_values_are_notes() {
     ] {
         let found = found(box_girder(), |s| s.torsion.damping_ratio = damping);
         assert_eq!(found.len(), 1);
-        assert_eq!(found[0].severity, Severity::Note);
+        assert_eq!(found[0].severity, FindingSeverity::Note);
         assert!(found[0].to_string().ends_with(words), "{}", found[0]);
     }
     let rare = found(box_girder(), |s| s.torsion.inertia_kg_m2_m *= 2.5);
-    assert_eq!((rare.len(), rare[0].severity), (1, Severity::Note));
+    assert_eq!((rare.len(), rare[0].severity), (1, FindingSeverity::Note));
 }

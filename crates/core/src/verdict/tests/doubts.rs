@@ -59,7 +59,7 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
         [DoubtKind::IntervalUnknown { .. }]
     ));
     let mut exact = evidence.clone();
-    exact.flutter[0].basis = Basis::Exact;
+    exact.flutter[0].basis = ForceBasis::Exact;
     assert_eq!(words(&exact), "MET");
     // not even "not met": the best estimate is no result
     let wide = of(30.0, vec![found("the model", 9.2, 114.0)]);
@@ -118,7 +118,7 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
         ..Reach::everywhere()
     };
     evidence.flutter[0].basis =
-        Basis::tested(ReducedFrequencyRange::between(k(0.3), k(2.0)), reach);
+        ForceBasis::tested(ReducedFrequencyRange::between(k(0.3), k(2.0)), reach);
     assert_eq!(
         severe(&evidence),
         [DoubtKind::NotJudgedBelow { speed_m_s: 5.0 }]
@@ -211,7 +211,7 @@ fn failures_input_and_rotation_are_weighed() {
     assert!(Verdict::of(&turned(0.5)).doubts.is_empty());
     let theory = Evidence {
         flutter: vec![FlutterReading {
-            basis: Basis::Stated,
+            basis: ForceBasis::Stated,
             ..found("quasi-steady theory", 36.9, 0.3)
         }],
         ..clean.clone()
@@ -244,7 +244,7 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
             below,
         };
         let range = ReducedFrequencyRange::between(k(0.54), k(0.97));
-        evidence.flutter[0].basis = Basis::tested(range, Reach::of_table(Some(from)));
+        evidence.flutter[0].basis = ForceBasis::tested(range, Reach::of_table(Some(from)));
         Verdict::of(&evidence)
     };
     // what the conditions of a fit answer for is said, where no test is as fast, in the explanation
@@ -275,7 +275,7 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
         below: FastMotion::Damped,
     };
     let range = ReducedFrequencyRange::between(k(0.54), k(0.97));
-    evidence.flutter[0].basis = Basis::tested(range, Reach::of_table(Some(from)));
+    evidence.flutter[0].basis = ForceBasis::tested(range, Reach::of_table(Some(from)));
     let verdict = Verdict::of(&evidence);
     assert!(verdict.is_met() && !verdict.explanation.contains("Below"));
     assert_eq!(verdict.doubts.len(), 1);

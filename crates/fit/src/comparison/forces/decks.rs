@@ -1,7 +1,7 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
 use super::options::{CompareOptions, OnRecords};
-use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
+use super::score::{ModelOnRecord, Score, ScoreSummary, run_all, summaries};
 use super::statements::{Statement, on_decks};
 use super::tested_deck::TestedDeck;
 use crate::error::{Error, Result};
@@ -61,10 +61,10 @@ pub fn compare_decks(options: &CompareOptions, progress: OnRecords<'_>) -> Resul
         decks.push((deck, trained));
     }
     let name = options.laguerre_name();
-    let trials: Vec<Trial<'_>> = decks
+    let trials: Vec<ModelOnRecord<'_>> = decks
         .iter()
         .flat_map(|(deck, trained)| {
-            deck.records.iter().map(|record| Trial {
+            deck.records.iter().map(|record| ModelOnRecord {
                 deck,
                 record,
                 name: &name,

@@ -2,7 +2,7 @@
 
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
 use super::options::{CompareOptions, OnRecords};
-use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
+use super::score::{ModelOnRecord, Score, ScoreSummary, run_all, summaries};
 use super::statements::{Statement, on_models};
 use super::tested_deck::TestedDeck;
 use crate::aerodynamics::Transfer;
@@ -102,7 +102,7 @@ pub fn compare_models(
         .collect();
     let mut trials = Vec::with_capacity(fits.len() * records.len());
     for (name, fitted) in &fits {
-        trials.extend(records.iter().map(|record| Trial {
+        trials.extend(records.iter().map(|record| ModelOnRecord {
             deck: &deck,
             record,
             name,

@@ -199,7 +199,7 @@ pub fn score_table(scores: &[Score]) -> String {
 }
 
 /// A model and a record.
-pub(super) struct Trial<'a> {
+pub(super) struct ModelOnRecord<'a> {
     pub(super) deck: &'a TestedDeck,
     pub(super) record: &'a Record,
     /// Name of the model in the results.
@@ -210,7 +210,7 @@ pub(super) struct Trial<'a> {
 }
 
 /// What a model predicts for a record.
-pub(super) struct Outcome {
+pub(super) struct PredictedForces {
     /// One vector per force, one number per sample.
     pub(super) predicted: Vec<Vec<f64>>,
     /// One entry per force and frequency.
@@ -219,10 +219,10 @@ pub(super) struct Outcome {
 
 /// The outcomes in the order of the trials. `progress` hears how many of how many are done.
 pub(super) fn run_all(
-    trials: &[Trial<'_>],
+    trials: &[ModelOnRecord<'_>],
     options: &CompareOptions,
     progress: OnRecords<'_>,
-) -> Result<Vec<Outcome>> {
+) -> Result<Vec<PredictedForces>> {
     let done = AtomicUsize::new(0);
     trials
         .par_iter()
@@ -234,8 +234,8 @@ pub(super) fn run_all(
         .collect()
 }
 
-impl Trial<'_> {
-    fn run(&self, options: &CompareOptions) -> Result<Outcome> {
+impl ModelOnRecord<'_> {
+    fn run(&self, options: &CompareOptions) -> Result<PredictedForces> {
         let record = self.record;
         let predicted = predicted_forces(self.model, record)?;
         let h = &record.header;
@@ -267,6 +267,6 @@ impl Trial<'_> {
                 });
             }
         }
-        Ok(Outcome { predicted, scores })
+        Ok(PredictedForces { predicted, scores })
     }
 }

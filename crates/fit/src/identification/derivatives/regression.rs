@@ -1,7 +1,7 @@
 //! Least squares at one test point, and the standard errors of its solution.
 
 use super::result::{DerivativeEstimate, IdentifiedDerivatives};
-use super::test_points::{CROSS_TALK, Stretch};
+use super::test_points::{CROSS_TALK, TestRun};
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{Factor, StreamingQr};
@@ -16,10 +16,10 @@ const NEIGHBOURS: (usize, usize) = (4, 12);
 /// Fits all forces of one test point and appends what it determines to `result`.
 pub(super) fn solve(
     dofs: &[Dof],
-    group: &[Stretch],
+    group: &[TestRun],
     result: &mut IdentifiedDerivatives,
 ) -> Result<()> {
-    let point = TestPoint::new(dofs, group);
+    let point = TestPointEquations::new(dofs, group);
     result.warnings.extend(point.cross_talk());
     let factor = point.factor()?;
     let solution = factor.solve(point.columns)?;
@@ -37,9 +37,9 @@ pub(super) fn solve(
 }
 
 /// The equations of one test point. Columns: two per motion that some run drives, then constant and trend of each run.
-struct TestPoint<'a> {
+struct TestPointEquations<'a> {
     dofs: &'a [Dof],
-    group: &'a [Stretch],
+    group: &'a [TestRun],
     /// Motions that some run drives.
     active: Vec<usize>,
     columns: usize,
@@ -47,8 +47,8 @@ struct TestPoint<'a> {
     rows: Vec<DMatrix<f64>>,
 }
 
-impl<'a> TestPoint<'a> {
-    fn new(dofs: &'a [Dof], group: &'a [Stretch]) -> Self {
+impl<'a> TestPointEquations<'a> {
+    fn new(dofs: &'a [Dof], group: &'a [TestRun]) -> Self {
         let driven = |j: &usize| group.iter().any(|s| s.driven == *j);
         let active: Vec<usize> = (0..dofs.len()).filter(driven).collect();
         let columns = 2 * active.len() + 2 * group.len();
@@ -175,7 +175,7 @@ impl<'a> TestPoint<'a> {
 }
 
 /// Rows of one run: motions and rates, then its own constant and trend.
-fn regressors(s: &Stretch, run: usize, active: &[usize], columns: usize) -> DMatrix<f64> {
+fn regressors(s: &TestRun, run: usize, active: &[usize], columns: usize) -> DMatrix<f64> {
     let count = s.force[0].len();
     let middle = 0.5 * (count as f64 - 1.0);
     DMatrix::from_fn(count, columns, |k, c| {

@@ -15,7 +15,7 @@ const HARMONICS: usize = 3;
 pub(super) const CROSS_TALK: f64 = 0.05;
 
 /// One run at one test point, without dimensions.
-pub(super) struct Stretch {
+pub(super) struct TestRun {
     pub run: String,
     /// The motion that is driven, by its place among the degrees of freedom.
     pub driven: usize,
@@ -35,7 +35,7 @@ pub(super) struct Stretch {
 pub(super) struct TestPoints {
     pub width_m: f64,
     pub dofs: Vec<Dof>,
-    pub groups: Vec<Vec<Stretch>>,
+    pub groups: Vec<Vec<TestRun>>,
     pub warnings: Vec<String>,
 }
 
@@ -116,12 +116,12 @@ fn stretch(
     channels: &[Vec<f64>],
     segment: usize,
     options: &DerivativeOptions,
-) -> Result<Option<Stretch>> {
+) -> Result<Option<TestRun>> {
     refuse_gaps(header, channels)?;
-    let Some(steady) = Steady::find(header, channels, segment, options)? else {
+    let Some(steady) = SteadyMotion::find(header, channels, segment, options)? else {
         return Ok(None);
     };
-    let Steady {
+    let SteadyMotion {
         driven,
         frequency_hz,
         plateau: p,
@@ -150,7 +150,7 @@ fn stretch(
         force.iter().map(|f| f * factor).collect()
     };
     let amplitude_of = |j: usize| scale(j) * fits[j].fundamental().norm();
-    Ok(Some(Stretch {
+    Ok(Some(TestRun {
         run: header.name.clone(),
         driven,
         speed_m_s: header.mean_speed_m_s,
@@ -175,14 +175,14 @@ fn refuse_gaps(header: &RecordHeader, channels: &[Vec<f64>]) -> Result<()> {
 }
 
 /// Whole periods of a driven motion at full amplitude.
-struct Steady {
+struct SteadyMotion {
     /// The motion that is driven, by its place among the degrees of freedom.
     driven: usize,
     frequency_hz: f64,
     plateau: Plateau,
 }
 
-impl Steady {
+impl SteadyMotion {
     /// Those of the greatest motion in a segment; `None` when nothing moves or there is no whole period.
     fn find(
         header: &RecordHeader,
@@ -216,16 +216,16 @@ impl Steady {
 }
 
 /// Into the group of the same frequency and the nearest speed, unless that motion is there already: repeated tests are points of their own.
-fn insert(groups: &mut Vec<Vec<Stretch>>, stretch: Stretch, options: &DerivativeOptions) {
+fn insert(groups: &mut Vec<Vec<TestRun>>, stretch: TestRun, options: &DerivativeOptions) {
     let near = |a: f64, b: f64, ratio: f64| (a / b).ln().abs() <= ratio.ln();
-    let fits = |group: &&mut Vec<Stretch>| {
-        let same = |s: &Stretch| {
+    let fits = |group: &&mut Vec<TestRun>| {
+        let same = |s: &TestRun| {
             near(s.speed_m_s, stretch.speed_m_s, options.same_speed)
                 && near(s.frequency_hz, stretch.frequency_hz, options.same_frequency)
         };
         group.iter().all(same) && group.iter().all(|s| s.driven != stretch.driven)
     };
-    let off = |group: &&mut Vec<Stretch>| (group[0].speed_m_s / stretch.speed_m_s).ln().abs();
+    let off = |group: &&mut Vec<TestRun>| (group[0].speed_m_s / stretch.speed_m_s).ln().abs();
     let nearest = groups
         .iter_mut()
         .filter(fits)

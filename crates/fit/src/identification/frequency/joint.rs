@@ -8,7 +8,7 @@ use crate::identification::dissipative::{
 };
 use crate::identification::form::Form;
 use crate::identification::report::relative_noise;
-use crate::identification::samples::{Entry, shares};
+use crate::identification::samples::{EntrySamples, shares};
 use nalgebra::{DMatrix, DVector};
 
 /// Share of an entry that the search leaves out (weight zero) over the largest: it is free to follow the others.
@@ -16,7 +16,7 @@ const LEAST_SHARE: f64 = 1e-6;
 
 /// What stays the same for all poles.
 pub(super) struct Joint<'a> {
-    pub entries: &'a [Entry],
+    pub entries: &'a [EntrySamples],
     pub form: &'a Form,
     pub wishes: FitRequirements,
     /// What the weighted residuals of each entry are multiplied with, see [`by_noise`].
@@ -25,7 +25,7 @@ pub(super) struct Joint<'a> {
 
 /// All entries at given poles: each by itself, and together under the constraints where these bind.
 pub(super) struct JointFit<'a> {
-    entries: &'a [Entry],
+    entries: &'a [EntrySamples],
     shares: Vec<f64>,
     pub bases: Vec<Basis>,
     pub solutions: Vec<LinearSolution>,
@@ -40,8 +40,12 @@ pub(super) struct JointFit<'a> {
 ///
 /// # Errors
 /// Entries that cannot be fitted.
-pub(super) fn by_noise(entries: &[Entry], form: &Form, poles: &[Vec<f64>]) -> Result<Vec<f64>> {
-    let all: Vec<&Entry> = entries.iter().collect();
+pub(super) fn by_noise(
+    entries: &[EntrySamples],
+    form: &Form,
+    poles: &[Vec<f64>],
+) -> Result<Vec<f64>> {
+    let all: Vec<&EntrySamples> = entries.iter().collect();
     let by_size = shares(&all);
     let mut noisy = by_size.clone();
     let (mut before, mut after) = (0.0, 0.0);

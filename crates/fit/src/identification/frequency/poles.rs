@@ -8,7 +8,7 @@ use crate::identification::form::PoleSearch;
 use crate::identification::frequency_options::FrequencyFit;
 use crate::identification::own::{EntryForm, search_for, searched_together};
 use crate::identification::report::SearchReport;
-use crate::identification::samples::{Entry, shares};
+use crate::identification::samples::{EntrySamples, shares};
 use crate::identification::search::{Bounds, search_poles};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DVector;
@@ -28,7 +28,7 @@ fn searched(forms: &[EntryForm], fit: &FrequencyFit) -> Result<(Vec<EntryForm>, 
 
 /// Poles of every entry, one per filter, and how they were found.
 pub(super) fn choose_poles(
-    entries: &[Entry],
+    entries: &[EntrySamples],
     forms: &[EntryForm],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
@@ -42,7 +42,7 @@ pub(super) fn choose_poles(
     let mut reports = Vec::new();
     for members in groups {
         let form = &forms[members[0]].form;
-        let group: Vec<&Entry> = members.iter().map(|&e| &entries[e]).collect();
+        let group: Vec<&EntrySamples> = members.iter().map(|&e| &entries[e]).collect();
         let residuals = |free: &[f64]| relative_residuals(&group, form, &form.expand(free));
         let options = search_for(&fit.poles, form);
         reports.push(search_group(
@@ -73,7 +73,7 @@ pub(super) fn choose_poles_together(
         reports.clear();
         for members in &groups {
             let form = &forms[members[0]].form;
-            let group: Vec<&Entry> = members.iter().map(|&e| &joint.entries[e]).collect();
+            let group: Vec<&EntrySamples> = members.iter().map(|&e| &joint.entries[e]).collect();
             let at = |free: &[f64]| {
                 let mut all = poles.clone();
                 for &e in members {
@@ -96,7 +96,7 @@ pub(super) fn choose_poles_together(
 
 /// Searches the poles that a group of entries shares.
 fn search_group(
-    group: &[&Entry],
+    group: &[&EntrySamples],
     (of, options): (&EntryForm, &PoleSearch),
     tested: ReducedFrequencyRange,
     residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
@@ -132,7 +132,11 @@ fn state_lags_of_forces(forms: &mut [EntryForm], fit: &FrequencyFit, n: usize) -
 
 /// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
 /// data: whatever the weights, the poles do not follow the largest entry alone. The norm is the objective.
-fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+fn relative_residuals(
+    entries: &[&EntrySamples],
+    form: &Form,
+    poles: &[f64],
+) -> Result<DVector<f64>> {
     let mut all = Vec::new();
     for (entry, scale) in entries.iter().zip(shares(entries)) {
         // a ridge weighs the terms of the model themselves, else only the space counts

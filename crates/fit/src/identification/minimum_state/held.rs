@@ -11,7 +11,7 @@ use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 
 /// All forces at one point of the search.
-pub(super) struct Rows {
+pub(super) struct FittedForces {
     pub problems: Vec<LinearProblem>,
     pub solutions: Vec<LinearSolution>,
     /// Coefficients of each force.
@@ -54,14 +54,14 @@ impl LagSearch<'_> {
     }
 
     /// Coefficients of every force at one point, under the constraints once these are asked for.
-    pub(super) fn rows(&self, x: &[f64], strictness: Strictness) -> Result<Rows> {
+    pub(super) fn rows(&self, x: &[f64], strictness: Strictness) -> Result<FittedForces> {
         let (lags, e) = (self.lags_at(x), self.e_at(x));
         let problems: Vec<_> = (0..self.n).map(|i| self.row(i, &lags, &e)).collect();
         let mut solutions = Vec::new();
         for (i, problem) in problems.iter().enumerate() {
             solutions.push(self.solve(i, problem)?);
         }
-        let mut rows = Rows {
+        let mut rows = FittedForces {
             problems,
             values: solutions.iter().map(|s| s.coefficients.clone()).collect(),
             solutions,

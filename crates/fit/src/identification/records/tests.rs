@@ -3,11 +3,11 @@ use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::identification::form::PoleSearch;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
-use crate::identification::{Progress, TimeWeights};
+use crate::identification::{FitProgress, TimeWeights};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
 
-fn quiet(_: Progress) {}
+fn quiet(_: FitProgress) {}
 
 fn jones_fit(weights: TimeWeights) -> TimeFit {
     TimeFit {
@@ -108,7 +108,7 @@ fn simultaneous_motions_are_told_apart() {
 fn flat_plate_from_records() {
     let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let calls = std::sync::atomic::AtomicUsize::new(0);
-    let count = |p: Progress| {
+    let count = |p: FitProgress| {
         assert!(p.pass <= p.passes && p.records_done <= p.records);
         calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     };

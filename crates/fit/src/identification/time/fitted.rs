@@ -23,7 +23,7 @@ pub(crate) struct FittedSystems<'a> {
     noise_ratio: f64,
     /// Coefficients of all columns of each force.
     coefficients: Vec<Vec<f64>>,
-    joint: Option<Joint>,
+    joint: Option<JointTimeFit>,
 }
 
 impl<'a> FittedSystems<'a> {
@@ -69,7 +69,7 @@ impl<'a> FittedSystems<'a> {
     /// # Errors
     /// Constraints that no coefficients satisfy.
     pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &FitRequirements) -> Result<()> {
-        let joint = Joint::new(&self.systems, bases, wishes, Strictness::Everywhere)?;
+        let joint = JointTimeFit::new(&self.systems, bases, wishes, Strictness::Everywhere)?;
         if joint.held.is_none() {
             return Ok(());
         }
@@ -217,7 +217,7 @@ impl<'a> FittedSystems<'a> {
 }
 
 /// All transfer functions at given poles, each force by itself and together under the constraints.
-pub(crate) struct Joint {
+pub(crate) struct JointTimeFit {
     /// One per transfer function where each has rows of its own, else one per force, constant included.
     whole: Vec<LinearEntry>,
     /// One per transfer function.
@@ -229,7 +229,7 @@ pub(crate) struct Joint {
     pub held: Option<Solution>,
 }
 
-impl Joint {
+impl JointTimeFit {
     /// The constrained fit in the columns of `bases`, row by row. As in the search of poles, the weighted residuals of
     /// every transfer function that has rows of its own count relative to its weighted data, else those of every force.
     ///

@@ -53,7 +53,7 @@ impl ColumnOrder {
 
 /// How far a fit to records has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Progress {
+pub struct FitProgress {
     /// Pass over the records, from 1.
     pub pass: usize,
     /// Number of passes.
@@ -65,7 +65,7 @@ pub struct Progress {
 }
 
 /// Called after every record of every pass, from any thread.
-pub type OnProgress<'a> = &'a (dyn Fn(Progress) + Sync);
+pub type OnProgress<'a> = &'a (dyn Fn(FitProgress) + Sync);
 
 /// Consecutive samples, at most [`BLOCK_ROWS`], one slice per degree of freedom.
 pub(crate) struct Piece<'a> {
@@ -168,7 +168,7 @@ pub(crate) fn pass_over<C: Columns>(
         .enumerate()
         .map(|(r, record)| {
             let part = one_record((r, record), plan, &mut make(record)?);
-            progress(Progress {
+            progress(FitProgress {
                 pass: plan.number.0,
                 passes: plan.number.1,
                 records_done: 1 + finished.fetch_add(1, Ordering::Relaxed),

@@ -1,7 +1,7 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
 use super::continuous::{RecordFit, Rows, padded};
-use super::fitted::Joint;
+use super::fitted::JointTimeFit;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
@@ -21,7 +21,7 @@ pub(crate) const PASSES: usize = 5;
 const FIRST_POINTS: usize = 13;
 
 /// A set of poles that is searched: of the transfer functions that share it, or of one.
-struct Group {
+struct PoleGroup {
     /// Places of its transfer functions, row by row.
     members: Vec<usize>,
     /// Force and motion, when it is one with poles of its own.
@@ -38,7 +38,7 @@ struct Group {
 
 /// Poles of the filters of every transfer function, row by row, and how they were found.
 #[derive(Clone)]
-pub(crate) struct Choice {
+pub(crate) struct EntryPoles {
     pub chains: Vec<Vec<f64>>,
     pub search: Vec<SearchReport>,
 }
@@ -46,9 +46,9 @@ pub(crate) struct Choice {
 /// What [`choose_poles`] finds.
 pub(crate) struct ChosenPoles {
     /// By least squares alone.
-    pub unconstrained: Choice,
+    pub unconstrained: EntryPoles,
     /// Under the constraints, where some are asked for.
-    pub constrained: Option<Choice>,
+    pub constrained: Option<EntryPoles>,
     /// The constraints.
     pub wishes: FitRequirements,
 }
@@ -67,7 +67,7 @@ pub(crate) fn choose_poles(
     let (fit, dofs) = (task.fit, &task.records.dofs);
     let entries = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let wishes = fit.wishes(dofs, tested)?;
-    let group = |members| Group::new(&fit.poles, &entries, tested, members);
+    let group = |members| PoleGroup::new(&fit.poles, &entries, tested, members);
     let together = searched_together(&entries);
     let mut groups = together
         .into_iter()
@@ -76,7 +76,7 @@ pub(crate) fn choose_poles(
     let unconstrained = groups.len();
     if wishes.any() && unconstrained == 1 && groups[0].members.len() == entries.len() {
         let members = groups[0].members.clone();
-        groups.push(Group {
+        groups.push(PoleGroup {
             held: Some(wishes.clone()),
             ..group(members)?
         });
@@ -105,7 +105,7 @@ pub(crate) fn choose_poles(
 
 impl RecordFit<'_> {
     /// One pass over the records for the poles that every group wants to know of.
-    fn evaluate(&self, groups: &mut [Group], pass: usize, longest: usize) -> Result<()> {
+    fn evaluate(&self, groups: &mut [PoleGroup], pass: usize, longest: usize) -> Result<()> {
         let mut candidates: Vec<Vec<f64>> = Vec::new();
         let mut trials: Vec<(usize, Vec<f64>, usize)> = Vec::new();
         for (g, group) in groups.iter_mut().enumerate() {
@@ -132,7 +132,7 @@ impl RecordFit<'_> {
 }
 
 /// Fixed poles, and those that the groups found.
-fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<Group>) -> Result<Choice> {
+fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<PoleGroup>) -> Result<EntryPoles> {
     let fixed = entries.iter().map(|e| e.fixed.clone());
     let mut poles: Vec<Vec<f64>> = fixed.map(Option::unwrap_or_default).collect();
     let mut search = Vec::with_capacity(groups.len());
@@ -145,13 +145,13 @@ fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<Group>) -> Result<Cho
         search.push(report);
     }
     let chains = poles.iter().zip(entries);
-    Ok(Choice {
+    Ok(EntryPoles {
         chains: chains.map(|(p, e)| e.form.expand(p)).collect(),
         search,
     })
 }
 
-impl Group {
+impl PoleGroup {
     fn new(
         poles: &PoleSearch,
         entries: &[EntryForm],
@@ -203,7 +203,9 @@ impl Group {
                 systems: vec![Rc::clone(system)],
             };
             let bases = vec![basis; self.members.len()];
-            return Ok(Joint::new(&systems, &bases, wishes, Strictness::Sampled)?.objective());
+            return Ok(
+                JointTimeFit::new(&systems, &bases, wishes, Strictness::Sampled)?.objective(),
+            );
         }
         let Some((i, j)) = self.entry else {
             let n = system.order.inputs;

@@ -54,7 +54,7 @@ pub struct MonteCarloPlan {
 #[serde(deny_unknown_fields)]
 pub struct RandomParameter {
     /// Which.
-    pub name: Parameter,
+    pub name: SectionProperty,
     /// Its distribution.
     pub distribution: Distribution,
 }
@@ -64,7 +64,7 @@ pub struct RandomParameter {
 #[serde(deny_unknown_fields)]
 pub struct Correlation {
     /// The two.
-    pub between: [Parameter; 2],
+    pub between: [SectionProperty; 2],
     /// Between −1 and 1.
     pub coefficient: f64,
 }
@@ -191,7 +191,7 @@ impl MonteCarloPlan {
                     c.coefficient.to_string(),
                 ));
             }
-            let random = |p: &Parameter| self.parameters.iter().any(|r| r.name == *p);
+            let random = |p: &SectionProperty| self.parameters.iter().any(|r| r.name == *p);
             let missing = c.between.iter().find(|p| !random(p));
             let pair = |o: &Correlation| {
                 o.between == c.between || o.between == [c.between[1], c.between[0]]
@@ -230,7 +230,7 @@ impl AerodynamicScatter {
 
 /// A number of the section that may be random, by the name it has in a study file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Parameter {
+pub enum SectionProperty {
     /// Deck width, m.
     #[serde(rename = "width_m")]
     Width,
@@ -281,7 +281,7 @@ pub enum Parameter {
     TorsionDamping,
 }
 
-impl Parameter {
+impl SectionProperty {
     /// Where the number stands; `None` when the section states it otherwise (a stiffness instead of a frequency) or has
     /// no such support.
     pub fn place(self, section: &mut SectionModel) -> Option<&mut f64> {

@@ -37,7 +37,7 @@ pub struct MonteCarloResult {
     /// Samples without an answer, mostly for impossible values.
     pub failed: usize,
     /// The first of them, with the reason.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<FailedSample>,
     /// Onsets outside the tested range of the model: extrapolations.
     pub outside_tested_range: usize,
     /// Samples whose model loses damping below the onset, outside the tested range.
@@ -65,7 +65,7 @@ pub struct MonteCarloResult {
 
 /// A sample without an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Failure {
+pub struct FailedSample {
     /// Its number, from 0.
     pub sample: usize,
     /// Why.
@@ -123,7 +123,7 @@ pub(super) struct Tally {
     /// Speeds up to which samples without an onset could be judged.
     pub(super) stable: Vec<f64>,
     pub(super) failed: usize,
-    pub(super) failures: Vec<Failure>,
+    pub(super) failures: Vec<FailedSample>,
     pub(super) outside: usize,
     pub(super) spurious: usize,
     pub(super) in_full: usize,
@@ -158,7 +158,7 @@ impl Tally {
     pub(super) fn failure(&mut self, sample: usize, reason: String) {
         self.failed += 1;
         if self.failures.len() < NAMED_FAILURES {
-            self.failures.push(Failure { sample, reason });
+            self.failures.push(FailedSample { sample, reason });
         }
     }
 

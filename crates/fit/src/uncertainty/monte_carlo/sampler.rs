@@ -1,7 +1,7 @@
 //! Samples of section and coefficients: each a function of the seed and its own number.
 
 use super::distribution::Transform;
-use super::plan::{MonteCarloPlan, Parameter};
+use super::plan::{MonteCarloPlan, SectionProperty};
 use super::scatter::CovarianceFactor;
 use crate::error::{Error, Result};
 use crate::section::SectionModel;
@@ -17,14 +17,14 @@ pub(super) struct Sampler {
     seed: u64,
     section: SectionModel,
     coefficients: Vec<f64>,
-    parameters: Vec<(Parameter, Transform)>,
+    parameters: Vec<(SectionProperty, Transform)>,
     /// Lower factor of the correlation matrix; `None` when all are independent.
     correlation: Option<DMatrix<f64>>,
-    scatter: Scatter,
+    scatter: CoefficientScatter,
 }
 
 #[derive(Debug, Clone)]
-enum Scatter {
+enum CoefficientScatter {
     None,
     Relative(f64),
     Covariance(CovarianceFactor),
@@ -53,9 +53,9 @@ impl Sampler {
             parameters.push((random.name, random.distribution.resolve(&place, nominal)?));
         }
         let scatter = match (plan.aerodynamics.relative_scatter, covariance) {
-            (Some(scatter), _) => Scatter::Relative(scatter),
-            (None, Some(factor)) => Scatter::Covariance(factor),
-            (None, None) => Scatter::None,
+            (Some(scatter), _) => CoefficientScatter::Relative(scatter),
+            (None, Some(factor)) => CoefficientScatter::Covariance(factor),
+            (None, None) => CoefficientScatter::None,
         };
         Ok(Self {
             seed: plan.seed,
@@ -90,14 +90,14 @@ impl Sampler {
             }
         }
         match &self.scatter {
-            Scatter::None => {}
-            Scatter::Relative(scatter) => {
+            CoefficientScatter::None => {}
+            CoefficientScatter::Relative(scatter) => {
                 for (value, nominal) in sample.coefficients.iter_mut().zip(&self.coefficients) {
                     let z: f64 = random.sample(StandardNormal);
                     *value = nominal * (1.0 + scatter * z);
                 }
             }
-            Scatter::Covariance(covariance) => {
+            CoefficientScatter::Covariance(covariance) => {
                 fill(&mut sample.normal, covariance.factor.ncols(), &mut random);
                 for (row, place) in covariance.places.iter().enumerate() {
                     let terms = covariance.factor.row(row);
@@ -122,7 +122,7 @@ fn correlation(plan: &MonteCarloPlan) -> Result<Option<DMatrix<f64>>> {
     let n = plan.parameters.len();
     let mut matrix = DMatrix::identity(n, n);
     for c in &plan.correlations {
-        let at = |p: Parameter| plan.parameters.iter().position(|r| r.name == p);
+        let at = |p: SectionProperty| plan.parameters.iter().position(|r| r.name == p);
         if let [Some(i), Some(j)] = c.between.map(at) {
             matrix[(i, j)] = c.coefficient;
             matrix[(j, i)] = c.coefficient;

@@ -36,7 +36,7 @@ struct Saved {
 
 /// The assumption stated in the report of a fit.
 #[derive(Deserialize)]
-struct Stated {
+struct StatedAssumption {
     #[serde(default)]
     covariance_assumption: String,
 }
@@ -79,7 +79,7 @@ fn all_parameters(path: &Path, text: &str) -> Result<Option<(PathBuf, Coefficien
         })?;
         return Ok(Some((beside, saved.coefficients)));
     }
-    match serde_json::from_str::<Stated>(text) {
+    match serde_json::from_str::<StatedAssumption>(text) {
         Ok(stated) if stated.covariance_assumption.contains(SEARCHED_POLES) => Err(Error::input(
             path.display().to_string(),
             format!(

@@ -22,7 +22,7 @@ pub enum Direction {
 /// Up and downwind in the axes of the model; the wind blows square to the girder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Axes {
+pub struct WindAxes {
     /// Up.
     pub up: Direction,
     /// Where the wind blows to.
@@ -31,7 +31,7 @@ pub struct Axes {
 
 /// Unit vectors of vertical and lateral motion, and the axis about which a right-handed rotation lifts the windward edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct MotionDirections {
     up: [f64; 3],
     downwind: [f64; 3],
     pub(super) nose_up: [f64; 3],
@@ -67,12 +67,12 @@ impl Direction {
     }
 }
 
-impl Axes {
+impl WindAxes {
     /// The axes as unit vectors.
     ///
     /// # Errors
     /// [`Error::Input`] for directions that are none, or not square to each other.
-    pub(super) fn frame(&self) -> Result<Frame> {
+    pub(super) fn frame(&self) -> Result<MotionDirections> {
         let up = self.up.unit("modes.axes.up")?;
         let downwind = self.downwind.unit("modes.axes.downwind")?;
         let cosine = dot(up, downwind);
@@ -89,7 +89,7 @@ impl Axes {
             up[2] * downwind[0] - up[0] * downwind[2],
             up[0] * downwind[1] - up[1] * downwind[0],
         ];
-        Ok(Frame {
+        Ok(MotionDirections {
             up,
             downwind,
             nose_up,
@@ -97,7 +97,7 @@ impl Axes {
     }
 }
 
-impl Frame {
+impl MotionDirections {
     /// Vertical, lateral displacement and rotation of displacements and rotations along the axes of the model.
     pub(super) fn motion(&self, u: &[f64; 6]) -> [f64; 3] {
         let translation = [u[0], u[1], u[2]];
@@ -128,8 +128,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    fn axes(up: &str, downwind: &str) -> Axes {
-        Axes {
+    fn axes(up: &str, downwind: &str) -> WindAxes {
+        WindAxes {
             up: Direction::Axis(up.into()),
             downwind: Direction::Axis(downwind.into()),
         }

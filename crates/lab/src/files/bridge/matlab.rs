@@ -3,7 +3,7 @@
 //!
 //! Such a file knows neither the span nor the masses; both are stated beside it and the generalised masses are `m ∫φ²`.
 
-use super::modal_data::Modes;
+use super::modal_data::BridgeModes;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result};
 use crate::files::lab::matlab_array;
@@ -27,12 +27,12 @@ pub struct SpanBlock {
 const ROWS: [usize; 3] = [1, 0, 2];
 
 /// Reads the file.
-pub(super) fn read(path: &Path, span: &SpanBlock) -> Result<Modes> {
+pub(super) fn read(path: &Path, span: &SpanBlock) -> Result<BridgeModes> {
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
     parse(bytes, span).map_err(|e| e.in_file(path))
 }
 
-fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
+fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
     let (wn_size, wn) = matlab_array(bytes.clone(), "wn")?;
     let (phi_size, phi) = matlab_array(bytes, "phi")?;
     let (&[3, modes], &[3, of_phi, points]) = (&wn_size[..], &phi_size[..]) else {
@@ -82,7 +82,7 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
         along_m: *along_m,
         length_m,
     });
-    Ok(Modes {
+    Ok(BridgeModes {
         reversed: false,
         source: "MATLAB wn and phi".to_owned(),
         nodes: nodes.collect(),

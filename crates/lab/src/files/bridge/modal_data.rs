@@ -1,9 +1,9 @@
 //! Nodes and modes as finite-element programs write them, and as the bridge takes them.
 
-use super::axes::Frame;
+use super::axes::MotionDirections;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result};
-use crate::plausibility::{Finding, Girder, Kind, of_modes};
+use crate::plausibility::{Finding, FindingKind, Girder, of_modes};
 
 /// A mode with displacements and rotations along the axes of its program.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +28,7 @@ pub(super) struct ModalData {
 
 /// Nodes and modes of a bridge, in vertical, lateral and rotation, before its sections and its damping are known.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Modes {
+pub struct BridgeModes {
     /// Where they come from, in words.
     pub source: String,
     /// Nodes, rising along the girder.
@@ -44,7 +44,11 @@ pub struct Modes {
 impl ModalData {
     /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule. Nodes that all run against
     /// up × downwind, since the wind blows from the other side, are taken in the opposite order.
-    pub(super) fn in_frame(mut self, frame: &Frame, source: String) -> Result<Modes> {
+    pub(super) fn in_frame(
+        mut self,
+        frame: &MotionDirections,
+        source: String,
+    ) -> Result<BridgeModes> {
         let mut pairs = self.nodes.windows(2);
         let reversed = self.nodes.len() > 1
             && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
@@ -71,7 +75,7 @@ impl ModalData {
             damping_ratio: 0.0,
             shape: m.shape.iter().map(|u| frame.motion(u)).collect(),
         });
-        Ok(Modes {
+        Ok(BridgeModes {
             source,
             modes: modes.collect(),
             nodes,
@@ -99,7 +103,7 @@ pub(super) fn check_order(nodes: &[Node]) -> Result<()> {
     Ok(())
 }
 
-impl Modes {
+impl BridgeModes {
     /// Takes only every `n`-th node, both ends kept; tributary lengths follow by the trapezoidal rule.
     #[must_use]
     pub fn thinned(&self, n: usize) -> Self {
@@ -140,7 +144,7 @@ impl Modes {
                  up × downwind: from {} m at node {} to {} m at node {}",
                 first.along_m, first.name, last.along_m, last.name
             );
-            findings.push(Finding::doubt(Kind::Axes, "nodes", text).into_note());
+            findings.push(Finding::doubt(FindingKind::Axes, "nodes", text).into_note());
         }
         findings
     }

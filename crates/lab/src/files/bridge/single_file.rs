@@ -12,7 +12,7 @@
 //! 1001,-617.5,2.0,…
 //! ```
 
-use super::modal_data::{Modes, check_order};
+use super::modal_data::{BridgeModes, check_order};
 use super::table::Table;
 use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, positive};
@@ -27,12 +27,12 @@ const UNITS: &str = "along_m and length_m in m; vertical, lateral in m and rotat
 const MODE: &str = "mode";
 const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
 
-pub(super) fn read(path: &Path) -> Result<Modes> {
+pub(super) fn read(path: &Path) -> Result<BridgeModes> {
     let text = read_text(path)?;
     parse(&text).map_err(|e| e.in_file(path))
 }
 
-pub(super) fn parse(text: &str) -> Result<Modes> {
+pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     if text.lines().next().map(str::trim) != Some(&format!("# {FORMAT}")) {
         let found = format!("`{}`", text.lines().next().unwrap_or(""));
         return Err(Error::input("line 1", format!("`# {FORMAT}`"), found));
@@ -77,7 +77,7 @@ pub(super) fn parse(text: &str) -> Result<Modes> {
             shape: table.rows.iter().map(at).collect::<Result<_>>()?,
         })
     });
-    Ok(Modes {
+    Ok(BridgeModes {
         reversed: false,
         source: header.text("source"),
         modes: modes.collect::<Result<_>>()?,
@@ -99,7 +99,7 @@ fn mode_line(value: &str) -> Option<(usize, f64, f64)> {
 /// # Errors
 /// When `out` takes no more.
 pub fn write_modes(
-    modes: &Modes,
+    modes: &BridgeModes,
     licence: &str,
     generator: &str,
     out: &mut dyn Write,

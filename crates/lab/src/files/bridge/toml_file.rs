@@ -1,9 +1,9 @@
 //! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
 
 use super::matlab::SpanBlock;
-use super::modal_data::Modes;
+use super::modal_data::BridgeModes;
 use super::wind_block::WindBlock;
-use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
+use super::{WindAxes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
@@ -31,7 +31,7 @@ pub struct BridgeFile {
     pub modes: ModesBlock,
     /// Sections along the span.
     #[serde(rename = "section")]
-    pub sections: Vec<SectionBlock>,
+    pub sections: Vec<BridgeSectionBlock>,
     /// Wind along the span.
     #[serde(default)]
     pub wind: WindBlock,
@@ -56,7 +56,7 @@ pub struct ModesBlock {
     pub path: PathBuf,
     /// Up and downwind in the axes of the files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub axes: Option<Axes>,
+    pub axes: Option<WindAxes>,
     /// Damping ratio of all modes, or a list of one per mode.
     pub damping_ratio: DampingRatios,
     /// Numbers of the modes that take part; left out, all.
@@ -130,7 +130,7 @@ fn keep(numbers: &[usize], modes: &mut Vec<BridgeMode>) -> Result<()> {
 /// table), or `static` alone for quasi-steady forces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SectionBlock {
+pub struct BridgeSectionBlock {
     /// Name.
     pub name: String,
     /// Width `B`, m.
@@ -300,7 +300,7 @@ impl BridgeFile {
     ///
     /// # Errors
     /// [`Error::Io`] and [`Error::Input`] with file and place for what the files of the modes lack.
-    pub fn read_modes(&self) -> Result<Modes> {
+    pub fn read_modes(&self) -> Result<BridgeModes> {
         let block = &self.modes;
         let path = self.directory.join(&block.path);
         let mut modes = match block.format {
@@ -335,7 +335,7 @@ impl BridgeFile {
     }
 }
 
-impl SectionBlock {
+impl BridgeSectionBlock {
     fn validate(&self, place: &str) -> Result<()> {
         positive(format!("{place}.width_m"), self.width_m)?;
         if self.derivatives.is_none() && self.model.is_none() && self.statics.is_none() {

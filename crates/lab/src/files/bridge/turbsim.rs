@@ -18,12 +18,12 @@ const COMPONENTS: usize = 3;
 const ALONG_AND_UP: [usize; 2] = [0, 2];
 
 /// Bytes that are read in turn.
-struct Bytes<'a> {
+struct TurbSimBytes<'a> {
     all: &'a [u8],
     at: usize,
 }
 
-impl Bytes<'_> {
+impl TurbSimBytes<'_> {
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {
         let found = self.all.get(self.at..).and_then(|rest| rest.first_chunk());
         let found = found.ok_or_else(|| {
@@ -67,7 +67,7 @@ impl Bytes<'_> {
 }
 
 /// The head of a file.
-struct Head {
+struct TurbSimHeader {
     /// Points upwards, across, on the tower below, and in time.
     counts: [usize; 4],
     /// Distances upwards and across, m, and the time step, s.
@@ -80,9 +80,9 @@ struct Head {
     end: usize,
 }
 
-impl Head {
+impl TurbSimHeader {
     fn of(all: &[u8]) -> Result<Self> {
-        let mut bytes = Bytes { all, at: 0 };
+        let mut bytes = TurbSimBytes { all, at: 0 };
         let kind = bytes.short("the kind of file")?;
         if !KINDS.contains(&kind) {
             let expected = "7 or 8, a full-field file of TurbSim";
@@ -173,7 +173,7 @@ pub(super) fn read(path: &Path) -> Result<FieldTable> {
 }
 
 fn parse(bytes: &[u8]) -> Result<FieldTable> {
-    let head = Head::of(bytes)?;
+    let head = TurbSimHeader::of(bytes)?;
     let [_, across, _, times] = head.counts;
     let (below, share) = head.row();
     let sample = |time: usize, row: usize, point: usize, component: usize| -> f64 {

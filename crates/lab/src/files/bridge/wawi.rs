@@ -26,13 +26,13 @@ struct Phi {
 }
 
 #[derive(Deserialize)]
-struct Element {
+struct WawiElement {
     node_matrix: Vec<Vec<f64>>,
 }
 
 /// Reads the folder.
 pub(super) fn read(folder: &Path) -> Result<ModalData> {
-    let element: Element = json(&folder.join("element.json"))?;
+    let element: WawiElement = json(&folder.join("element.json"))?;
     let path = folder.join("modal.json");
     let modal: Modal = json(&path)?;
     data(element, modal).map_err(|e| e.in_file(path))
@@ -44,7 +44,7 @@ fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
         .map_err(|e| Error::json("a file of wawi's model folder", &e).in_file(path))
 }
 
-fn data(element: Element, modal: Modal) -> Result<ModalData> {
+fn data(element: WawiElement, modal: Modal) -> Result<ModalData> {
     if modal.local {
         return Err(Error::input(
             "local",

@@ -7,7 +7,7 @@ use crate::aerodynamics::derivatives::{
     DerivativeTable, Missing, SIGN_CONVENTION, TableHeader, UNITS,
 };
 use crate::error::{Error, Result};
-use crate::files::header_csv::{CommentHeader, Entry};
+use crate::files::header_csv::{CommentHeader, HeaderLine};
 use std::io::Write;
 
 /// A table with the convention that its file is in.
@@ -148,10 +148,12 @@ impl Head {
             source: head.text("source"),
             licence: head.text("licence"),
             generator: head.text("generator"),
-            model_length_m: stated("model_length_m").map(Entry::positive).transpose()?,
+            model_length_m: stated("model_length_m")
+                .map(HeaderLine::positive)
+                .transpose()?,
             angle_deg: stated("angle_deg").map(angle_deg).transpose()?,
             rotation_amplitude_deg: stated("rotation_amplitude_deg")
-                .map(Entry::positive)
+                .map(HeaderLine::positive)
                 .transpose()?,
             notes: head.all("note").map(|e| e.value.clone()).collect(),
         })
@@ -159,7 +161,7 @@ impl Head {
 }
 
 /// The mean angle of tests; beyond a right angle it is in another unit.
-fn angle_deg(entry: &Entry) -> Result<f64> {
+fn angle_deg(entry: &HeaderLine) -> Result<f64> {
     let angle = entry.number()?;
     match angle.abs() <= 90.0 {
         true => Ok(angle),
@@ -168,7 +170,7 @@ fn angle_deg(entry: &Entry) -> Result<f64> {
 }
 
 /// Reads one entry, which may not contradict what is known already.
-fn read_one<T>(entry: Option<&Entry>, known: Option<T>) -> Result<Option<T>>
+fn read_one<T>(entry: Option<&HeaderLine>, known: Option<T>) -> Result<Option<T>>
 where
     T: std::str::FromStr<Err = Error> + PartialEq + std::fmt::Display,
 {

@@ -29,7 +29,7 @@ type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<usize>)>;
 
 /// Where the numbers stand.
-struct Columns {
+struct WideColumns {
     argument: usize,
     speed: Option<usize>,
     derivatives: Vec<(usize, Derivative)>,
@@ -98,7 +98,7 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
     let columns = find_columns(&names, line, &convention)?;
     let mut rows = Rows::new();
     for (line, text) in lines {
-        let row = Row {
+        let row = WideRow {
             line,
             cells: cells(text, between),
             names: &names,
@@ -112,14 +112,14 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
 }
 
 /// One line of numbers.
-struct Row<'a> {
+struct WideRow<'a> {
     line: usize,
     cells: Vec<&'a str>,
     names: &'a [&'a str],
     decimal_comma: bool,
 }
 
-impl Row<'_> {
+impl WideRow<'_> {
     fn place(&self, column: usize) -> Place {
         Place::line(self.line).column(self.names[column])
     }
@@ -135,7 +135,7 @@ impl Row<'_> {
     }
 
     /// Adds the points of this line.
-    fn enter(&self, columns: &Columns, convention: &Convention, rows: &mut Rows) -> Result<()> {
+    fn enter(&self, columns: &WideColumns, convention: &Convention, rows: &mut Rows) -> Result<()> {
         if self.cells.len() != self.names.len() {
             let expected = counted(self.names.len(), "column");
             let found = self.cells.len().to_string();
@@ -204,8 +204,8 @@ fn is_argument(name: &str, argument: Argument) -> bool {
     name.eq_ignore_ascii_case(argument.name()) || name == argument.definition()
 }
 
-fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<Columns> {
-    let mut columns = Columns {
+fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<WideColumns> {
+    let mut columns = WideColumns {
         argument: usize::MAX,
         speed: None,
         derivatives: Vec::new(),

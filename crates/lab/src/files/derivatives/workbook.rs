@@ -19,7 +19,7 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::error::{Error, Result, positive};
 use crate::files::derivatives::csv_header::TableInConvention;
-use crate::files::derivatives::xlsx_cells::{Cell, CheckedWorkbook, Sheet};
+use crate::files::derivatives::xlsx_cells::{CellContent, CheckedWorkbook, Sheet};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -93,7 +93,7 @@ pub(crate) fn read_workbook_in(
 
 /// Keys and values of the sheet `Notes`, the first two columns.
 fn pairs(sheet: &Sheet) -> BTreeMap<String, String> {
-    let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(Cell::text);
+    let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(CellContent::text);
     let rows = sheet.cells.keys().filter(|(_, column)| *column == 0);
     rows.filter_map(|(row, _)| Some((cell(*row, 0)?, cell(*row, 1)?)))
         .collect()
@@ -262,9 +262,9 @@ fn read_columns(
 
 fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {
     let found = match sheet.cells.get(&(row, column)) {
-        Some(Cell::Number(x)) => return Ok(*x),
+        Some(CellContent::Number(x)) => return Ok(*x),
         None => "an empty cell".to_owned(),
-        Some(Cell::Text(text)) => format!("`{text}`"),
+        Some(CellContent::Text(text)) => format!("`{text}`"),
     };
     let letter = column_letters(column as usize);
     let place = format!("sheet {name}, cell {letter}{}", row + 1);

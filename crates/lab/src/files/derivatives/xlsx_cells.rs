@@ -17,12 +17,12 @@ const CELLS_AT_MOST: usize = 200_000;
 
 /// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Cell {
+pub(super) enum CellContent {
     Number(f64),
     Text(String),
 }
 
-impl Cell {
+impl CellContent {
     /// The content as text.
     pub(crate) fn text(&self) -> String {
         match self {
@@ -35,7 +35,7 @@ impl Cell {
 /// The cells of a sheet that hold something, by row and column from 0.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sheet {
-    pub cells: BTreeMap<(u32, u32), Cell>,
+    pub cells: BTreeMap<(u32, u32), CellContent>,
 }
 
 impl Sheet {
@@ -102,17 +102,17 @@ impl CheckedWorkbook {
         while let Some(cell) = reader.next_cell().map_err(unreadable)? {
             let content = match cell.get_value() {
                 DataRef::Empty => continue,
-                DataRef::Float(x) => Cell::Number(*x),
+                DataRef::Float(x) => CellContent::Number(*x),
                 #[expect(
                     clippy::cast_precision_loss,
                     reason = "no measured figure has 16 digits before the point"
                 )]
-                DataRef::Int(x) => Cell::Number(*x as f64),
-                DataRef::String(text) => Cell::Text(text.clone()),
-                DataRef::SharedString(text) => Cell::Text((*text).to_owned()),
-                other => Cell::Text(calamine::Data::from(other.clone()).to_string()),
+                DataRef::Int(x) => CellContent::Number(*x as f64),
+                DataRef::String(text) => CellContent::Text(text.clone()),
+                DataRef::SharedString(text) => CellContent::Text((*text).to_owned()),
+                other => CellContent::Text(calamine::Data::from(other.clone()).to_string()),
             };
-            if matches!(&content, Cell::Text(text) if text.trim().is_empty()) {
+            if matches!(&content, CellContent::Text(text) if text.trim().is_empty()) {
                 continue;
             }
             sheet.cells.insert(cell.get_position(), content);

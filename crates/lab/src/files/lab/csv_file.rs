@@ -38,7 +38,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
         .flexible(true)
         .from_reader(rest);
     let mut row = csv::ByteRecord::new();
-    let mut table: Option<Table> = None;
+    let mut table: Option<ChannelTable> = None;
     loop {
         let line = skipped + reader.position().line() as usize;
         match reader.read_byte_record(&mut row) {
@@ -47,7 +47,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
             Err(e) => return Err(Error::input(Place::line(line), "a row", e.to_string())),
         }
         match &mut table {
-            None => table = Some(Table::begin(&row, style)),
+            None => table = Some(ChannelTable::begin(&row, style)),
             Some(table) => table.take(&row, line)?,
         }
     }
@@ -143,7 +143,7 @@ impl Style {
 }
 
 /// Columns being filled.
-struct Table {
+struct ChannelTable {
     style: Style,
     names: Vec<String>,
     units: Vec<Option<String>>,
@@ -153,7 +153,7 @@ struct Table {
     units_taken: bool,
 }
 
-impl Table {
+impl ChannelTable {
     /// From the first row.
     fn begin(row: &csv::ByteRecord, style: Style) -> Self {
         let numbers: Option<Vec<f64>> = row.iter().map(|cell| style.number(cell)).collect();

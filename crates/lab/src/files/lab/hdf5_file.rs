@@ -44,7 +44,7 @@ fn corrupt(place: &str, found: impl std::fmt::Display) -> Error {
 fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Result<ChannelSet> {
     let file = File::from_bytes(bytes).map_err(|e| corrupt("", e))?;
     let root = file.root();
-    let mut reader = Reader {
+    let mut reader = Hdf5Reader {
         set: ChannelSet::default(),
         numbers: 0,
         bytes_at_most: length.saturating_mul(PACKED_AT_MOST),
@@ -65,7 +65,7 @@ fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Re
     Ok(reader.set)
 }
 
-struct Reader {
+struct Hdf5Reader {
     set: ChannelSet,
     /// Numbers taken so far.
     numbers: u64,
@@ -73,7 +73,7 @@ struct Reader {
     separator: String,
 }
 
-impl Reader {
+impl Hdf5Reader {
     fn take_group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<()> {
         self.take_attributes(group, prefix);
         for name in group.datasets().map_err(|e| corrupt(prefix, e))? {

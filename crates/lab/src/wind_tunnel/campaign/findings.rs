@@ -19,7 +19,7 @@ const SPEED_OFF_AT_MOST: f64 = 0.05;
 
 /// Something that a user should look at.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Finding {
+pub struct RunFinding {
     /// Name of the run; empty for the campaign file.
     pub run: String,
     /// Recording: `in wind` or `still air`; empty for the run as a whole.
@@ -34,7 +34,7 @@ pub struct Finding {
     pub what: String,
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for RunFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.run.is_empty() {
             return write!(f, "{}", self.what);
@@ -53,7 +53,7 @@ impl fmt::Display for Finding {
     }
 }
 
-impl Finding {
+impl RunFinding {
     /// About a run as a whole.
     pub(super) fn of_run(run: &str, what: String) -> Self {
         Self {
@@ -83,8 +83,8 @@ pub(super) fn channel_findings(
     name: &str,
     samples: &[f64],
     must_change: bool,
-) -> Vec<Finding> {
-    let finding = |sample, samples, what| Finding {
+) -> Vec<RunFinding> {
+    let finding = |sample, samples, what| RunFinding {
         run: run.to_owned(),
         recording: recording.to_owned(),
         channel: Some(name.to_owned()),
@@ -118,9 +118,9 @@ pub(super) fn channel_findings(
 ///
 /// # Errors
 /// [`Error::Input`] when another motion than those stated moves most: then motion channels are exchanged, or the run is.
-pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<Finding>> {
+pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<RunFinding>> {
     let mut found = Vec::new();
-    let mut say = |what: String| found.push(Finding::of_run(&run.name, what));
+    let mut say = |what: String| found.push(RunFinding::of_run(&run.name, what));
     let measured = &run.in_wind.wind_speed_m_s;
     if let Some(still) = &run.still_air {
         let (in_wind, still_air) = (run.in_wind.sample_count(), still.sample_count());
@@ -207,7 +207,7 @@ fn deviation(samples: &[f64]) -> f64 {
 const AMPLITUDES: [(f64, f64); 2] = [(1e-3, 0.5), (5e-4, 0.6)];
 
 /// Hints about the numbers of the campaign file.
-pub(super) fn file_hints(campaign: &Campaign) -> Vec<Finding> {
+pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
     let mut said = Vec::new();
     match &campaign.rig {
         Some(rig) => {
@@ -238,7 +238,7 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<Finding> {
     }
     said.into_iter()
         .flatten()
-        .map(|odd| Finding::of_run("", odd.to_string()))
+        .map(|odd| RunFinding::of_run("", odd.to_string()))
         .collect()
 }
 
@@ -248,7 +248,7 @@ fn motion_hints(
     recording: &RawRecording,
     stated: &[Dof],
     width_m: f64,
-) -> Vec<Finding> {
+) -> Vec<RunFinding> {
     let mut found = Vec::new();
     for (dof, motion) in Dof::THREE.into_iter().zip(&recording.motion) {
         let (low, high) = extremes(motion.iter().copied());
@@ -275,7 +275,7 @@ fn motion_hints(
                 "{name}: {} motion of {amplitude:.3e} {unit} in amplitude on a model of {width_m} m: {units}?",
                 dof.name()
             );
-            found.push(Finding::of_run(run, what));
+            found.push(RunFinding::of_run(run, what));
         }
     }
     found

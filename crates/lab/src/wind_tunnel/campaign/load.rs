@@ -3,7 +3,7 @@
 use super::air::Air;
 use super::channel_map::ChannelMap;
 use super::file::{Campaign, RunBlock};
-use super::findings::{Finding, file_hints, run_findings};
+use super::findings::{RunFinding, file_hints, run_findings};
 use super::recording::{LoadedRecording, SAME_RATE};
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, positive};
@@ -21,7 +21,7 @@ pub struct CampaignReading {
     /// What each run is, in the order of the runs.
     pub runs: Vec<RunSummary>,
     /// What did not stop reading.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<RunFinding>,
 }
 
 /// What a run is.
@@ -120,7 +120,7 @@ impl Campaign {
         rig: &Rig,
         map: &ChannelMap,
         run: &RunBlock,
-    ) -> Result<(RawRun, RunSummary, Vec<Finding>)> {
+    ) -> Result<(RawRun, RunSummary, Vec<RunFinding>)> {
         let place = format!("run `{}`", run.name);
         let wind = LoadedRecording::new((self, rig), map, run, &run.in_wind, "in wind")?;
         let still = match &run.still_air {

@@ -3,7 +3,7 @@
 use super::channel::{CellChannel, ChannelRef};
 use super::channel_map::{ChannelMap, cell_quantity, described, sampling_of};
 use super::file::{Campaign, FileRef, RunBlock};
-use super::findings::{Finding, channel_findings, first_gap};
+use super::findings::{RunFinding, channel_findings, first_gap};
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
 use crate::files::lab::ChannelSet;
@@ -19,7 +19,7 @@ pub(super) struct LoadedRecording {
     pub channels: Vec<String>,
     /// Density, temperature, pressure as the file has them.
     pub air: [Option<f64>; 3],
-    pub findings: Vec<Finding>,
+    pub findings: Vec<RunFinding>,
 }
 
 impl LoadedRecording {
@@ -74,7 +74,7 @@ struct ChannelExtraction<'a> {
     /// Length and description of the first channel; all others must have it.
     first: Option<(usize, String)>,
     channels: Vec<String>,
-    findings: Vec<Finding>,
+    findings: Vec<RunFinding>,
 }
 
 impl ChannelExtraction<'_> {
@@ -155,7 +155,7 @@ impl ChannelExtraction<'_> {
             }
             Some(c) => {
                 let (run, recording) = self.of;
-                self.findings.push(Finding {
+                self.findings.push(RunFinding {
                     run: run.to_owned(),
                     recording: recording.to_owned(),
                     channel: Some(channel.name.clone()),

@@ -25,7 +25,7 @@ pub struct ClippedStretch {
 
 /// What was found in a run that can be processed.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Findings {
+pub(crate) struct RunCheck {
     /// Clipped stretches in wind.
     pub clipped_in_wind: Vec<ClippedStretch>,
     /// Clipped stretches in still air.
@@ -40,15 +40,15 @@ pub(crate) struct Findings {
 /// [`Error::Input`] naming run, recording, channel and sample: a speed or density that is not positive, no cells, too few
 /// samples, channels of unequal length, numbers that are not finite, different sampling frequencies, no motion, channels
 /// at their limit for more than a short while.
-pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<Findings> {
+pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<RunCheck> {
     let place = |what: &str| format!("run {}, {what}", run.name);
     positive(place("mean wind speed"), run.mean_speed_m_s)?;
     positive(place("air density"), run.air_density_kg_m3)?;
     let wind = &run.in_wind;
     check_recording(&place("in wind"), wind, rig)?;
-    let mut findings = Findings {
+    let mut findings = RunCheck {
         clipped_in_wind: clipped(&place("in wind"), wind, rig)?,
-        ..Findings::default()
+        ..RunCheck::default()
     };
     if let Some(still) = &run.still_air {
         check_recording(&place("still air"), still, rig)?;

@@ -1,7 +1,7 @@
 //! A run before any stage: checked, its test points found, its inertia asked for the lag.
 
 use super::body::StillAirInertia;
-use super::check::{Findings, check_run};
+use super::check::{RunCheck, check_run};
 use super::lag::still_air_inertia;
 use super::options::ProcessingOptions;
 use super::segmentation::{find_segments, moving_dof, whole_periods};
@@ -13,11 +13,11 @@ use crate::wind_tunnel::{RawRecording, RawRun, Rig};
 use std::ops::Range;
 
 /// A run that has been checked, with its test points and its lag.
-pub(super) struct Prepared<'a> {
+pub(super) struct PreparedRun<'a> {
     pub run: &'a RawRun,
     /// Degree of freedom that moves.
     pub dof: Dof,
-    pub findings: Findings,
+    pub findings: RunCheck,
     /// In samples of the recording in wind.
     pub segments: Vec<HarmonicSegment>,
     /// In samples of the recording in still air; empty without one.
@@ -25,7 +25,7 @@ pub(super) struct Prepared<'a> {
     pub still_air: Option<StillAirInertia>,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> PreparedRun<'a> {
     pub(crate) fn new(run: &'a RawRun, rig: &Rig, options: &ProcessingOptions) -> Result<Self> {
         let mut findings = check_run(run, rig)?;
         let width = rig.model_width_m;

@@ -4,7 +4,7 @@ use super::cells::CellShare;
 use super::coherent::{Parts, Regressors};
 use super::drift::CellDrift;
 use super::options::ProcessingOptions;
-use super::prepare::Prepared;
+use super::prepare::PreparedRun;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
 use super::rest::{CrossTalk, RemovedMeans, Rest, remove_means, rest, still_the_rest};
 use super::signals::{HarmonicSegment, SectionSignals, level};
@@ -49,7 +49,7 @@ struct AlignedRecordings {
 
 /// Takes a prepared run through all stages.
 pub(super) fn process_run(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedRun<'_>,
     campaign: &RawCampaign,
     dofs: &[Dof],
     lag_s: f64,
@@ -78,7 +78,7 @@ pub(super) fn process_run(
 
 /// A run on its way: every stage changes the signals and enters in the report what it did.
 struct RunInProgress<'a> {
-    prepared: &'a Prepared<'a>,
+    prepared: &'a PreparedRun<'a>,
     rig: &'a Rig,
     options: &'a ProcessingOptions,
     signals: SectionSignals,
@@ -92,7 +92,7 @@ struct RunInProgress<'a> {
 impl<'a> RunInProgress<'a> {
     /// Stages 3 to 6.
     fn in_step(
-        prepared: &'a Prepared<'a>,
+        prepared: &'a PreparedRun<'a>,
         rig: &'a Rig,
         lag_s: f64,
         options: &'a ProcessingOptions,
@@ -243,7 +243,7 @@ impl<'a> RunInProgress<'a> {
 
 /// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells.
 fn in_step(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedRun<'_>,
     rig: &Rig,
     lag_s: f64,
     degree: usize,

@@ -128,13 +128,13 @@ fn upward_passages(motion: &[f64], level: f64) -> Vec<f64> {
 }
 
 /// Passages of one frequency, in samples.
-struct Group {
+struct PassageGroup {
     first: f64,
     last: f64,
     period: f64,
 }
 
-fn groups_of_one_period(passages: &[f64]) -> Vec<Group> {
+fn groups_of_one_period(passages: &[f64]) -> Vec<PassageGroup> {
     let mut groups = Vec::new();
     let mut from = 0;
     while from + 1 < passages.len() {
@@ -149,7 +149,7 @@ fn groups_of_one_period(passages: &[f64]) -> Vec<Group> {
             to += 1;
         }
         if periods.len() >= PERIODS_AT_LEAST {
-            groups.push(Group {
+            groups.push(PassageGroup {
                 first: passages[from],
                 last: passages[to],
                 period: (passages[to] - passages[from]) / periods.len() as f64,

@@ -1,7 +1,7 @@
 //! What the load cells of a virtual campaign are made to say: forces of the rigid model about its centre of rotation, gusts,
 //! what measurement adds, and the channels of the cells.
 
-use super::plan::{Disturbances, ModelBody, Spike, StaticWind, Support, Turbulence};
+use super::plan::{Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence};
 use super::truth::AppliedSpike;
 use crate::wind_tunnel::{Record, Segment};
 use nalgebra::{Rotation3, Vector3};
@@ -69,16 +69,16 @@ pub(super) fn wind_coefficients(wind: &StaticWind, u: f64, w: f64) -> [f64; 3] {
 
 /// Downwind and vertical gust over the mean speed, one per sample.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Gusts {
+pub(super) struct GustSamples {
     pub u: Vec<f64>,
     pub w: Vec<f64>,
 }
 
-impl Gusts {
+impl GustSamples {
     /// A first-order process in each direction: variance `I²`, correlation `exp(−V τ/length)`, hence a spectrum that is
     /// flat below `V/(2π length)` Hz and falls as `f⁻²` above. None without turbulence.
     pub(crate) fn new(
-        turbulence: Option<&Turbulence>,
+        turbulence: Option<&TunnelTurbulence>,
         samples: usize,
         travelled_m_a_sample: f64,
         random: &mut ChaCha8Rng,

@@ -1,8 +1,8 @@
 //! Carrying out the plan of a virtual campaign.
 
 use super::forces::{
-    Drift, Gusts, Kinematics, Wrench, gravity_and_inertia, noise, place_spike, readings, spike_at,
-    wind_coefficients,
+    Drift, GustSamples, Kinematics, Wrench, gravity_and_inertia, noise, place_spike, readings,
+    spike_at, wind_coefficients,
 };
 use super::plan::VirtualCampaignPlan;
 use super::truth::{AppliedDisturbances, CampaignTruth, TruthPoint};
@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::section::Dof;
 use crate::signal::random_stream;
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::virtual_forces::TestPoints;
+use crate::wind_tunnel::virtual_forces::TransferColumn;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -37,7 +37,7 @@ impl VirtualCampaignPlan {
         for (i, record) in records.iter().enumerate() {
             let group = table.at_speed_group(i / dofs.len())?;
             let moving = dofs[i % dofs.len()];
-            let at = TestPoints::new(&group, dofs, moving)?;
+            let at = TransferColumn::new(&group, dofs, moving)?;
             for (p, k) in at.k.iter().enumerate() {
                 let column: Vec<_> = at.g.iter().map(|row| row[p]).collect();
                 push_points(&mut points, record, moving, p, *k, &column);
@@ -146,7 +146,7 @@ struct RunInMaking<'a> {
 
 /// The two recordings of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Air {
+enum RecordingKind {
     Wind,
     Still,
 }
@@ -191,8 +191,8 @@ impl<'a> RunInMaking<'a> {
         let header = &self.record.header;
         RawRun {
             name: header.name.clone(),
-            in_wind: self.recording(Air::Wind),
-            still_air: Some(self.recording(Air::Still)),
+            in_wind: self.recording(RecordingKind::Wind),
+            still_air: Some(self.recording(RecordingKind::Still)),
             mean_speed_m_s: header.mean_speed_m_s,
             air_density_kg_m3: header.air_density_kg_m3,
         }
@@ -208,8 +208,8 @@ impl<'a> RunInMaking<'a> {
     }
 
     /// Each purpose in each recording of each run draws from a stream of its own.
-    fn random(&self, air: Air, purpose: u64) -> ChaCha8Rng {
-        let stream = (2 * self.index as u64 + u64::from(air == Air::Still)) * 8 + purpose;
+    fn random(&self, air: RecordingKind, purpose: u64) -> ChaCha8Rng {
+        let stream = (2 * self.index as u64 + u64::from(air == RecordingKind::Still)) * 8 + purpose;
         random_stream(self.plan.tunnel.seed, stream)
     }
 
@@ -233,20 +233,20 @@ impl<'a> RunInMaking<'a> {
             .collect()
     }
 
-    fn recording(&self, air: Air) -> RawRecording {
+    fn recording(&self, air: RecordingKind) -> RawRecording {
         let (what, offset_s) = match air {
-            Air::Wind => ("in wind", 0.0),
-            Air::Still => ("still air", self.applied.still_air_offset_s),
+            RecordingKind::Wind => ("in wind", 0.0),
+            RecordingKind::Still => ("still air", self.applied.still_air_offset_s),
         };
         let header = &self.record.header;
         let seen = self.motion(offset_s);
         let felt = self.motion(offset_s + self.applied.force_lag_s);
         let travelled = header.mean_speed_m_s / header.sampling_hz;
         let gusts = match air {
-            Air::Wind => self.plan.turbulence.as_ref(),
-            Air::Still => None,
+            RecordingKind::Wind => self.plan.turbulence.as_ref(),
+            RecordingKind::Still => None,
         };
-        let gusts = Gusts::new(gusts, seen.len(), travelled, &mut self.random(air, 0));
+        let gusts = GustSamples::new(gusts, seen.len(), travelled, &mut self.random(air, 0));
         RawRecording {
             source: format!("{}, {what}", header.name),
             sampling_hz: header.sampling_hz,
@@ -256,10 +256,10 @@ impl<'a> RunInMaking<'a> {
         }
     }
 
-    fn wind_speed(&self, air: Air, gusts: &Gusts) -> Vec<f64> {
+    fn wind_speed(&self, air: RecordingKind, gusts: &GustSamples) -> Vec<f64> {
         let mean = match air {
-            Air::Wind => self.record.header.mean_speed_m_s,
-            Air::Still => 0.0,
+            RecordingKind::Wind => self.record.header.mean_speed_m_s,
+            RecordingKind::Still => 0.0,
         };
         let mut random = self.random(air, 1);
         let deviation = self.plan.disturbances.speed_noise_m_s;
@@ -270,7 +270,12 @@ impl<'a> RunInMaking<'a> {
         gusts.u.iter().map(&mut one).collect()
     }
 
-    fn cells(&self, air: Air, felt: &[Kinematics], gusts: &Gusts) -> Vec<[Vec<f64>; 6]> {
+    fn cells(
+        &self,
+        air: RecordingKind,
+        felt: &[Kinematics],
+        gusts: &GustSamples,
+    ) -> Vec<[Vec<f64>; 6]> {
         let drifts: [Drift; 2] = {
             let mut random = self.random(air, 2);
             std::array::from_fn(|_| Drift::new(&self.plan.disturbances, &mut random))
@@ -280,7 +285,7 @@ impl<'a> RunInMaking<'a> {
         for (sample, state) in felt.iter().enumerate() {
             let mut wrench =
                 gravity_and_inertia(&self.plan.model, self.plan.support.model_length_m, state);
-            if air == Air::Wind {
+            if air == RecordingKind::Wind {
                 self.add_wind(&mut wrench, sample, gusts);
             }
             wrench.add(noise(self.applied.noise, &mut random));
@@ -295,7 +300,7 @@ impl<'a> RunInMaking<'a> {
         cells
     }
 
-    fn add_wind(&self, wrench: &mut Wrench, sample: usize, gusts: &Gusts) {
+    fn add_wind(&self, wrench: &mut Wrench, sample: usize, gusts: &GustSamples) {
         let [drag, lift, moment] = self.wind_load(gusts.u[sample], gusts.w[sample]);
         wrench.add(Wrench::section(drag, lift, moment));
         let length = self.plan.support.model_length_m;

@@ -20,7 +20,7 @@ pub struct VirtualCampaignPlan {
     pub static_wind: StaticWind,
     /// Turbulence of the flow; left out, laminar.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub turbulence: Option<Turbulence>,
+    pub turbulence: Option<TunnelTurbulence>,
     /// What measurement adds.
     pub disturbances: Disturbances,
 }
@@ -76,7 +76,7 @@ pub struct StaticWind {
 /// Gusts: first-order coloured noise, one value for the whole span.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Turbulence {
+pub struct TunnelTurbulence {
     /// Standard deviation of the downwind gust over the mean speed.
     pub intensity_u: f64,
     /// Standard deviation of the vertical gust over the mean speed.

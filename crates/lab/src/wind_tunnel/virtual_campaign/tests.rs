@@ -210,7 +210,7 @@ fn lag_and_offset_are_those_of_the_plan() {
 fn gusts_have_their_intensity_and_length_and_push_as_the_slopes_say() {
     let mut plan = short();
     plan.tunnel.segment_s = 100.0;
-    plan.turbulence = Some(Turbulence {
+    plan.turbulence = Some(TunnelTurbulence {
         intensity_u: 0.05,
         intensity_w: 0.03,
         length_m: 0.4,
@@ -332,7 +332,7 @@ fn the_truth_holds_the_transfer_matrix() {
 #[test]
 fn plans_are_checked_and_survive_a_file() {
     let plan = VirtualCampaignPlan {
-        turbulence: Some(Turbulence {
+        turbulence: Some(TunnelTurbulence {
             intensity_u: 0.1,
             intensity_w: 0.05,
             length_m: 0.3,

@@ -1,7 +1,7 @@
 //! Numbers beyond what a number can hold.
 
 use super::*;
-use crate::variables::Value;
+use crate::variables::StartValue;
 
 /// A release that no number holds: neither what follows from it nor the run.
 #[test]
@@ -12,7 +12,7 @@ fn a_release_that_overflows_is_refused() {
         unit.ok(unit.enter());
         unit.set("initial_heave", 1e308);
         let all = unit.archive.resources.table.variables().iter();
-        let reals = all.filter(|v| matches!(v.value, Value::Real(_)));
+        let reals = all.filter(|v| matches!(v.value, StartValue::Real(_)));
         for variable in reals {
             let mut value = [0.0];
             match unit.try_get(&[&variable.name], &mut value) {

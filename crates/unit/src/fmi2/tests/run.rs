@@ -138,7 +138,7 @@ fn newer_rational_forms_move_as_in_process() {
         let archive = Archive::of(&trained.to_json().unwrap());
         let variable = archive.resources.table.find_name("filters").unwrap();
         let value = &archive.resources.table.variables()[variable].value;
-        assert_eq!(*value, crate::variables::Value::Integer(Some(states)));
+        assert_eq!(*value, crate::variables::StartValue::Integer(Some(states)));
         compare(archive);
     }
 }

@@ -33,7 +33,7 @@ fn reset_restores_every_default() {
         let first = run(&unit, 0);
         unit.ok(unit.reset());
         for v in &variables {
-            if let crate::variables::Value::Real(Some(start)) = v.value {
+            if let crate::variables::StartValue::Real(Some(start)) = v.value {
                 assert_eq!(unit.get([v.name.as_str()]), [start], "{}", v.name);
             }
         }

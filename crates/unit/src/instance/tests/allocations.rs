@@ -3,7 +3,7 @@
 use super::{KINDS, driven, place, start};
 use crate::instance::Instance;
 use crate::lifecycle::State;
-use crate::variables::{Causality, Value};
+use crate::variables::{Causality, StartValue};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -43,7 +43,8 @@ fn taken(what: impl FnOnce()) -> usize {
 /// Places of all real outputs, or inputs.
 fn real(unit: &Instance, causality: Causality) -> Vec<u32> {
     let all = unit.table().variables().iter().enumerate();
-    let read = all.filter(|(_, v)| v.causality == causality && matches!(v.value, Value::Real(_)));
+    let read =
+        all.filter(|(_, v)| v.causality == causality && matches!(v.value, StartValue::Real(_)));
     read.map(|(place, _)| place as u32).collect()
 }
 

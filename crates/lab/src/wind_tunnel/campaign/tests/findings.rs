@@ -1,11 +1,11 @@
 //! What is odd in recordings that can be read.
 
 use super::*;
-use crate::wind_tunnel::campaign::findings::Finding;
+use crate::wind_tunnel::campaign::findings::RunFinding;
 
 fn findings(a: &str, b: &str) -> Vec<String> {
     let reading = load(&small(), a, b).unwrap();
-    reading.findings.iter().map(Finding::to_string).collect()
+    reading.findings.iter().map(RunFinding::to_string).collect()
 }
 
 #[test]
