@@ -15,6 +15,7 @@ use crate::report::{
 };
 use crate::section::Dof;
 use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};
+use crate::text::csv_cell;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};
@@ -52,7 +53,7 @@ pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
                 let _ = writeln!(
                     text,
                     "{},{},{},{},{},{},{tested}",
-                    text_cell(&curve.model),
+                    csv_cell(&curve.model),
                     branch.name,
                     p.speed_m_s,
                     p.frequency_hz,
@@ -78,21 +79,6 @@ pub(super) fn write_curves(
     let drawn = &curves[..curves.len().min(MAX_CURVES)];
     let title = format!("{}: eigenvalues as the wind rises", study.name);
     figures::write(ROOTS, out, || root_locus_figure(drawn, &title))
-}
-
-/// A text of a user as a cell of a CSV file: quoted where it has to be, and never a formula of a spreadsheet.
-pub(super) fn text_cell(text: &str) -> String {
-    let formula = text.starts_with(['=', '+', '-', '@']) && text.parse::<f64>().is_err();
-    let text = if formula {
-        format!("'{text}")
-    } else {
-        text.to_owned()
-    };
-    if text.contains([',', '"', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text
-    }
 }
 
 /// Lines of all derivatives by their names: `V̂` and value.
@@ -246,23 +232,4 @@ pub(super) fn write_response(
     figures::write(RESPONSE, out, || {
         time_history_figure(&title, &panels, "Time t (s)")
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::text_cell;
-
-    #[test]
-    fn a_text_is_no_formula() {
-        for (text, cell) in [
-            ("=1+2", "'=1+2"),
-            ("@sum(a1)", "'@sum(a1)"),
-            ("-a, b", "\"'-a, b\""),
-            ("-12.5", "-12.5"),
-            ("say \"a\"", "\"say \"\"a\"\"\""),
-            ("Laguerre", "Laguerre"),
-        ] {
-            assert_eq!(text_cell(text), cell);
-        }
-    }
 }

@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::evidence::{lines_of, over_v_hat};
 use super::figures;
-use super::laboratory::{file_name, laboratory_page, line};
+use super::laboratory::{laboratory_page, line};
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages::RECORDS;
@@ -23,6 +23,7 @@ use crate::report::{
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
+use crate::text::file_name;
 use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, process};

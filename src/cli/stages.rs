@@ -15,6 +15,7 @@ use crate::study::{
     TrainedWithReport, UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty,
     state_intervals, train_one,
 };
+use crate::text::file_name;
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use crate::wind_tunnel::Record;
@@ -44,7 +45,7 @@ pub(crate) fn tunnel(
     let records = deck.virtual_records(study)?;
     let mut paths = Vec::with_capacity(records.len());
     for record in records {
-        let name = Path::new(RECORDS).join(format!("{}.csv", record.header.name));
+        let name = Path::new(RECORDS).join(format!("{}.csv", file_name(&record.header.name)));
         paths.push((out.write_record(&name, &record)?, record));
     }
     // the header of a record names it; a line alone is the whole notice

@@ -6,6 +6,7 @@ use crate::aerodynamics::{
 };
 use crate::error::{Error, Result, finite, positive};
 use crate::section::{Dof, SectionModel};
+use crate::text::without_control_characters;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -221,6 +222,8 @@ impl TrainedModel {
 
     /// Checks every value.
     pub fn validate(&self) -> Result<()> {
+        without_control_characters("name", &self.name)?;
+        self.provenance.validate()?;
         self.section.structure()?;
         self.model.validate()?;
         if self.schema_version < self.model.schema_version() {
@@ -247,6 +250,21 @@ impl TrainedModel {
             ));
         }
         self.experiment.validate()
+    }
+}
+
+impl Provenance {
+    fn validate(&self) -> Result<()> {
+        let texts = [
+            ("source", &self.source),
+            ("licence", &self.licence),
+            ("method", &self.method),
+            ("aerodeck_version", &self.aerodeck_version),
+        ];
+        let notes = self.notes.iter().map(|note| ("notes", note));
+        texts.into_iter().chain(notes).try_for_each(|(key, text)| {
+            without_control_characters(format!("provenance.{key}"), text)
+        })
     }
 }
 
@@ -347,6 +365,12 @@ mod tests {
         assert!(refusal(&text[..text.len() / 2]).contains("line"));
         let negative = text.replace("\"mass_kg_m\": 15.0", "\"mass_kg_m\": -15.0");
         assert!(refusal(&negative).contains("mass_kg_m"));
+        // a name goes to files and pages
+        let said = "expected a text without control characters, found one with them";
+        for (key, from) in [("name", "flat plate"), ("provenance.source", "R. T. Jones")] {
+            let obeyed = text.replace(from, "a\\u001b[31m");
+            assert_eq!(refusal(&obeyed), format!("{key}: {said}"));
+        }
     }
 
     /// Newer forms take the newer layout and survive it; a file of the older layout cannot hold them.

@@ -1,7 +1,7 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
 use super::super::answer::Answer;
-use super::super::evidence::{DerivativesShown, curves_csv, text_cell};
+use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
@@ -21,6 +21,7 @@ use crate::study::bridge::{
     bridge_flutter,
 };
 use crate::study::derivative_lines;
+use crate::text::csv_cell;
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
@@ -234,7 +235,7 @@ fn motion_csv(motion: &BridgeMotion) -> String {
         let _ = writeln!(
             text,
             "{},{},{},{},{},{},{},{}",
-            text_cell(&n.node),
+            csv_cell(&n.node),
             n.along_m,
             y[0],
             y[1],
@@ -258,7 +259,7 @@ fn animation_csv(motion: &BridgeMotion) -> String {
             let _ = writeln!(
                 text,
                 "{phase},{},{},{y},{x},{t}",
-                text_cell(&n.node),
+                csv_cell(&n.node),
                 n.along_m
             );
         }

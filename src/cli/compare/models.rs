@@ -14,6 +14,7 @@ use crate::report::{
     TransferPlot, derivatives_figure, time_history_figure, transfer_figure,
 };
 use crate::section::Dof;
+use crate::text::csv_cell;
 use std::fmt::Write as _;
 
 /// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)
@@ -239,14 +240,14 @@ fn transfer_table(results: &ModelsComparison) -> String {
                 let BandCheck { magnitude, phase } = inside(off);
                 let _ = writeln!(
                     text,
-                    "{},{},{:.4},{:.5},{:.6},{:.3},\"{}\",{:.3},{:.3},{magnitude},{phase}",
+                    "{},{},{:.4},{:.5},{:.6},{:.3},{},{:.3},{:.3},{magnitude},{phase}",
                     entry.force.name(),
                     entry.motion.name(),
                     point.frequency_hz,
                     point.k,
                     point.magnitude,
                     point.phase_deg,
-                    model.model,
+                    csv_cell(&model.model),
                     off.0,
                     off.1
                 );

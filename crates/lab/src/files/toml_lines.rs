@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Part, Place, Result};
 use crate::files::text::read_text;
+use crate::text::{has_control_characters, with_control_characters};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use toml::de::{DeArray, DeTable};
@@ -39,26 +40,15 @@ pub fn parse<T: DeserializeOwned>(
 /// broken, and tabs, are texts.
 fn without_control_characters(text: &str) -> Result<()> {
     // such a character stands there itself or is written as an escape
-    if !text.contains('\\') && !text.contains(is_refused) {
+    if !text.contains('\\') && !has_control_characters(text) {
         return Ok(());
     }
     let root: toml::Table = toml::from_str(text)
         .map_err(|e| Error::input("", "a file in TOML", e.message().to_owned()))?;
     match refused_text(&toml::Value::Table(root)) {
         None => Ok(()),
-        Some(path) => Err(with_line(
-            text,
-            Error::input(
-                path.as_str(),
-                "a text without control characters",
-                "one with them",
-            ),
-        )),
+        Some(path) => Err(with_line(text, with_control_characters(path.as_str()))),
     }
-}
-
-fn is_refused(c: char) -> bool {
-    c.is_control() && !['\n', '\r', '\t'].contains(&c)
 }
 
 /// Key of the first text with such a character.
@@ -68,7 +58,7 @@ fn refused_text(value: &toml::Value) -> Option<String> {
         false => format!("{key}.{rest}"),
     };
     match value {
-        toml::Value::String(text) => text.contains(is_refused).then(String::new),
+        toml::Value::String(text) => has_control_characters(text).then(String::new),
         toml::Value::Array(all) => all
             .iter()
             .enumerate()

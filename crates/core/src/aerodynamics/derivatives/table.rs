@@ -4,6 +4,7 @@ use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Place, Result, positive};
 use crate::section::Dof;
+use crate::text::without_control_characters;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
 
@@ -140,6 +141,8 @@ impl DerivativeTable {
         header: TableHeader,
         points: BTreeMap<Derivative, Vec<DerivativePoint>>,
     ) -> Result<Self> {
+        let name = name.into();
+        without_control_characters("name", &name)?;
         positive("width_m", width_m)?;
         check_complete(&points)?;
         for (derivative, of_one) in &points {
@@ -151,7 +154,7 @@ impl DerivativeTable {
         }
         check_speeds_agree(&points)?;
         Ok(Self {
-            name: name.into(),
+            name,
             width_m,
             header,
             points,
