@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach,
+    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, MovedOnset, Reach,
     RequiredSpeed, Verdict,
 };
 use std::sync::Arc;
@@ -16,7 +16,13 @@ use std::sync::Arc;
 const TABLES: &str = "the tables";
 const MODELS: &str = "the models";
 /// What can fail without another answer.
-const BESIDE: [&str; 4] = ["figures", "fewer modes", "scatter", "FMU"];
+const BESIDE: [&str; 5] = [
+    "figures",
+    "fewer modes",
+    "onset without constraints",
+    "scatter",
+    "FMU",
+];
 
 impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
@@ -46,6 +52,10 @@ impl BridgeStudy {
             flutter,
             divergence,
             growth: results.growth.clone(),
+            constraints: results.constraints.as_ref().map(|effect| MovedOnset {
+                without_m_s: effect.without_m_s,
+                with_m_s: effect.with_m_s,
+            }),
             failures: failed.iter().map(|f| failure(f)).collect(),
             mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
                 speed_m_s: mean.speed_m_s,
