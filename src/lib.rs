@@ -84,7 +84,7 @@ pub use aerodeck_live as live;
 
 pub use aerodeck_core::{
     Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, plausibility, response,
-    section, state_space, text, trained_model, units, verdict,
+    section, state_space, trained_model, units, verdict,
 };
 
 /// The program in the README is compiled and run with the tests.

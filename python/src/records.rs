@@ -3,9 +3,10 @@
 use crate::convert::{dof_names, dofs, from_python, rows, to_python};
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
+use aerodeck::error::without_control_characters;
+use aerodeck::files::text::file_name;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
-use aerodeck::text::{file_name, without_control_characters};
 use aerodeck::wind_tunnel::{
     Record, RecordHeader, RecordSource, Segment, TunnelPlan, read_record, write_record,
 };

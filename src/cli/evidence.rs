@@ -8,6 +8,7 @@ use super::stages::MAX_CURVES;
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
+use crate::files::text::csv_cell;
 use crate::flutter::FlutterCurves;
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, root_locus_figure,
@@ -15,7 +16,6 @@ use crate::report::{
 };
 use crate::section::Dof;
 use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};
-use crate::text::csv_cell;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};

@@ -2,10 +2,10 @@
 
 use super::output::OutputDir;
 use crate::error::counted;
+use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
 use crate::section::Dof;
-use crate::text::file_name;
 use crate::wind_tunnel::RawCampaign;
 use crate::wind_tunnel::processing::{ProcessingReport, RunReport};
 

@@ -13,6 +13,7 @@ use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
+use crate::files::text::file_name;
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
@@ -23,7 +24,6 @@ use crate::report::{
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
-use crate::text::file_name;
 use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, process};

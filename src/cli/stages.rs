@@ -5,6 +5,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
+use crate::files::text::file_name;
 use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
@@ -15,7 +16,6 @@ use crate::study::{
     TrainedWithReport, UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty,
     state_intervals, train_one,
 };
-use crate::text::file_name;
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use crate::wind_tunnel::Record;

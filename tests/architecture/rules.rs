@@ -24,7 +24,6 @@ const fn row(module: &'static str, may_use: &'static [&'static str]) -> Row {
 /// Direction of all imports. A module without a row is refused: write down what it may use.
 pub const ARROWS: &[Row] = &[
     row("error", &[]),
-    row("text", &[]),
     row("units", &[]),
     row("state_space", &[]),
     row("signal", &[]),
@@ -125,7 +124,7 @@ const BELOW_STUDY: &[&str] = &[
 ];
 
 /// Every module may use these.
-const FOR_ALL: &[&str] = &["error", "text"];
+const FOR_ALL: &[&str] = &["error"];
 
 /// Files are written for about 400 lines; this is where they must be split.
 pub const LINES_AT_MOST: usize = 420;

@@ -102,7 +102,7 @@ fn campaigns_and_bridges_with_such_names_are_refused() {
     assert!(named != nodes);
     fs::write(at.join("nodes.csv"), named).unwrap();
     let flutter = ["bridge", "flutter", "bridge.toml", "--out", "r"];
-    refused(at, &flutter, &["nodes.csv: line 2, column 1: ", REFUSED]);
+    refused(at, &flutter, &["nodes.csv: line 2: ", REFUSED]);
 }
 
 /// Every cell of a file that a spreadsheet would compute.

@@ -26,7 +26,6 @@ pub use similarity::{Similarity, similarities};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, counted, finite, non_negative, positive};
 use crate::section::{Dof, SectionModel, Translation};
-use crate::text::without_control_characters;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -121,7 +120,6 @@ impl Bridge {
             modes,
             groups,
         };
-        without_control_characters("name", &bridge.name)?;
         positive("air_density_kg_m3", air_density_kg_m3)?;
         check_nodes(&bridge.nodes)?;
         if bridge.modes.is_empty() {
@@ -272,7 +270,6 @@ impl Bridge {
         let mut owner: Vec<Option<&str>> = vec![None; self.nodes.len()];
         for group in &self.groups {
             let place = format!("section {}", group.name);
-            without_control_characters(&place[..], &group.name)?;
             positive(format!("{place}: width_m"), group.width_m)?;
             non_negative(format!("{place}: wind factor"), group.wind_factor)?;
             for &node in &group.nodes {
@@ -324,7 +321,6 @@ fn check_nodes(nodes: &[Node]) -> Result<()> {
     let mut before: Option<&Node> = None;
     for node in nodes {
         let place = format!("node {}", node.name);
-        without_control_characters(&place[..], &node.name)?;
         finite(format!("{place}: place along the bridge"), node.along_m)?;
         positive(format!("{place}: tributary length"), node.length_m)?;
         if let Some(b) = before.filter(|b| b.along_m >= node.along_m) {

@@ -3,7 +3,7 @@
 //! Every aerodynamic model is a transfer matrix `q̂(K) = G(K) r̂(K)` ([`aerodynamics`]) and, where it has one, a state-space
 //! realisation. A structure is `(M, R, K)` ([`section`], [`bridge`]). Their coupling at a wind speed is one linear system
 //! ([`aeroelastic`]), whose modes and onsets [`flutter`] finds and whose exact steps [`response`] takes. [`trained_model`] is what is
-//! saved, [`text`] what may be in a name, [`plausibility`] judges what is given, [`verdict`] what was found.
+//! saved, [`plausibility`] judges what is given, [`verdict`] what was found.
 // what is public can be reached from outside
 #![deny(unsafe_code, missing_docs, unreachable_pub)]
 // the process is the caller's: no abrupt end, and no word on its terminal
@@ -31,7 +31,6 @@ pub mod plausibility;
 pub mod response;
 pub mod section;
 pub mod state_space;
-pub mod text;
 pub mod trained_model;
 pub mod units;
 pub mod verdict;

@@ -4,9 +4,8 @@ use crate::aerodynamics::{
     DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel, Realizable,
     Realization, Transfer, TransferMatrix,
 };
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, finite, positive, without_control_characters};
 use crate::section::{Dof, SectionModel};
-use crate::text::without_control_characters;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -222,8 +221,17 @@ impl TrainedModel {
 
     /// Checks every value.
     pub fn validate(&self) -> Result<()> {
-        without_control_characters("name", &self.name)?;
-        self.provenance.validate()?;
+        let from = &self.provenance;
+        let texts = [
+            ("name", &self.name),
+            ("provenance.source", &from.source),
+            ("provenance.licence", &from.licence),
+            ("provenance.method", &from.method),
+        ];
+        let notes = from.notes.iter().map(|note| ("provenance.notes", note));
+        for (key, text) in texts.into_iter().chain(notes) {
+            without_control_characters(key, text)?;
+        }
         self.section.structure()?;
         self.model.validate()?;
         if self.schema_version < self.model.schema_version() {
@@ -250,21 +258,6 @@ impl TrainedModel {
             ));
         }
         self.experiment.validate()
-    }
-}
-
-impl Provenance {
-    fn validate(&self) -> Result<()> {
-        let texts = [
-            ("source", &self.source),
-            ("licence", &self.licence),
-            ("method", &self.method),
-            ("aerodeck_version", &self.aerodeck_version),
-        ];
-        let notes = self.notes.iter().map(|note| ("notes", note));
-        texts.into_iter().chain(notes).try_for_each(|(key, text)| {
-            without_control_characters(format!("provenance.{key}"), text)
-        })
     }
 }
 

@@ -19,7 +19,7 @@
 )]
 
 use aerodeck_core::{
-    aerodynamics, aeroelastic, error, flutter, section, state_space, text, trained_model, units,
+    aerodynamics, aeroelastic, error, flutter, section, state_space, trained_model, units,
 };
 use aerodeck_lab::{files, signal, wind_tunnel};
 use error::Error;

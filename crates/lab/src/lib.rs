@@ -18,7 +18,7 @@
     )
 )]
 
-use aerodeck_core::{aerodynamics, bridge, error, plausibility, section, text, units};
+use aerodeck_core::{aerodynamics, bridge, error, plausibility, section, units};
 use error::Error;
 
 pub mod files;

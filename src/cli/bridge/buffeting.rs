@@ -6,8 +6,8 @@ use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
 use crate::error::{Result, counted};
 use crate::files::bridge::read_field;
+use crate::files::text::csv_cell;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
-use crate::text::csv_cell;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

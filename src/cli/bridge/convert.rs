@@ -30,19 +30,13 @@ pub(crate) struct Args {
 
 /// Refuses to leave out the nodes that a doubt is seen by: what is written is judged as what was read.
 fn keeps_doubts(whole: &[Finding], thinned: &[Finding]) -> Result<()> {
-    let is_kept = |doubt: &&Finding| {
-        let mut same = thinned.iter().filter(|f| f.severity == doubt.severity);
-        same.any(|f| f.kind == doubt.kind && f.place == doubt.place)
+    let key = |f: &Finding| (f.severity, f.kind, f.place.clone());
+    let mut doubts = whole.iter().filter(|f| f.severity == Severity::Doubt);
+    let Some(lost) = doubts.find(|d| !thinned.iter().any(|f| key(f) == key(d))) else {
+        return Ok(());
     };
-    let doubts = whole.iter().filter(|f| f.severity == Severity::Doubt);
-    match doubts.into_iter().find(|d| !is_kept(d)) {
-        None => Ok(()),
-        Some(doubt) => Err(Error::input(
-            "--every",
-            "as many nodes as show what is odd about all of them",
-            doubt.to_string(),
-        )),
-    }
+    let expected = "as many nodes as show what is odd about all of them";
+    Err(Error::input("--every", expected, lost.to_string()))
 }
 
 /// Runs the command.

@@ -12,6 +12,7 @@ use super::files::{
 };
 use super::{account, summary};
 use crate::error::Result;
+use crate::files::text::csv_cell;
 use crate::flutter::BridgeMotion;
 use crate::report::{
     bridge_curves_figure, bridge_roots_figure, derivatives_figure, flutter_motion_figure,
@@ -21,7 +22,6 @@ use crate::study::bridge::{
     bridge_flutter,
 };
 use crate::study::derivative_lines;
-use crate::text::csv_cell;
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 

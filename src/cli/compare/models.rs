@@ -9,12 +9,12 @@ use crate::comparison::forces::{
     BandCheck, History, ModelsComparison, compare_models, inside, score_table,
 };
 use crate::error::{Result, counted};
+use crate::files::text::csv_cell;
 use crate::report::{
     DerivativePlot, DerivativesPlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve,
     TransferPlot, derivatives_figure, time_history_figure, transfer_figure,
 };
 use crate::section::Dof;
-use crate::text::csv_cell;
 use std::fmt::Write as _;
 
 /// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)

@@ -138,7 +138,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         }
     }
     let constraints = study.moved_onset(&by_model.search).unwrap_or_else(|e| {
-        failed.push(format!("onset without constraints: {e}"));
+        failed.push(format!("constraints: {e}"));
         None
     });
     let section = coupled(&study.by_model)?;

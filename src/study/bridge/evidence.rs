@@ -1,5 +1,6 @@
 //! What is known of a bridge, as evidence for its verdict.
 
+use super::super::evidence::moved_onset;
 use super::BridgeStudy;
 use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::aerodynamics::Transfer;
@@ -7,7 +8,7 @@ use crate::error::Result;
 use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, MovedOnset, Reach,
+    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach,
     RequiredSpeed, Verdict,
 };
 use std::sync::Arc;
@@ -16,13 +17,7 @@ use std::sync::Arc;
 const TABLES: &str = "the tables";
 const MODELS: &str = "the models";
 /// What can fail without another answer.
-const BESIDE: [&str; 5] = [
-    "figures",
-    "fewer modes",
-    "onset without constraints",
-    "scatter",
-    "FMU",
-];
+const BESIDE: [&str; 5] = ["figures", "fewer modes", "constraints", "scatter", "FMU"];
 
 impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
@@ -52,10 +47,7 @@ impl BridgeStudy {
             flutter,
             divergence,
             growth: results.growth.clone(),
-            constraints: results.constraints.as_ref().map(|effect| MovedOnset {
-                without_m_s: effect.without_m_s,
-                with_m_s: effect.with_m_s,
-            }),
+            constraints: results.constraints.as_ref().map(moved_onset),
             failures: failed.iter().map(|f| failure(f)).collect(),
             mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
                 speed_m_s: mean.speed_m_s,

@@ -70,22 +70,18 @@ impl BridgeStudy {
             }
         }
         let section = coupled(&bridge)?;
-        let with_m_s = with.onset().map(|o| o.at.speed_m_s);
+        let onset = with.onset();
         // most constraints move the onset by little: then its mode can be followed without another search
-        let followed = with
-            .onset()
-            .and_then(|o| NearbyOnset::of(&self.by_model, &o.at).ok()?.find(&section));
-        let without_m_s = match followed {
+        let nearby = onset.and_then(|o| NearbyOnset::of(&self.by_model, &o.at).ok());
+        let without_m_s = match nearby.and_then(|nearby| nearby.find(&section)) {
             Some(at) => Some(at.speed_m_s),
-            None => {
-                let found =
-                    find_onset("data alone", &section, &self.search(), self.tested_range())?;
-                found.onset().map(|o| o.at.speed_m_s)
-            }
+            None => find_onset("data alone", &section, &self.search(), self.tested_range())?
+                .onset()
+                .map(|o| o.at.speed_m_s),
         };
         Ok(Some(OnsetEffect {
             without_m_s,
-            with_m_s,
+            with_m_s: onset.map(|o| o.at.speed_m_s),
         }))
     }
 

@@ -6,7 +6,7 @@ use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Basis, Evidence, FlutterReading};
 use super::moved::constraints;
 use super::words::{found, k_range, speed};
-use crate::flutter::{BetweenSpeeds, FlutterSearch, Onset, OnsetInterval};
+use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
 
 /// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: codes ask for tests
@@ -220,11 +220,9 @@ impl Weighed<'_> {
             }
         }
         // with the scatter that decks show between speeds in the interval, also of other forces, it is known after all
-        let is_prior = |o: &Onset| {
-            o.interval.parts().and_then(|p| p.between_speeds) == Some(BetweenSpeeds::Prior)
-        };
-        let mut onsets = self.evidence.flutter.iter().filter_map(|r| r.onset());
-        let prior = onsets.any(is_prior);
+        let readings = self.evidence.flutter.iter();
+        let mut parts = readings.filter_map(|r| r.onset()?.interval.parts());
+        let prior = parts.any(|p| p.between_speeds == Some(BetweenSpeeds::Prior));
         if prior || self.evidence.test_speeds == Some(1) {
             let (severity, how) = match prior {
                 true => (Severity::Minor, "is taken from other decks"),
@@ -263,11 +261,9 @@ impl Weighed<'_> {
     fn moved(&self, first: &FlutterReading) -> Option<Doubt> {
         let moved = self.evidence.constraints?;
         // the interval may be that of other forces
-        let mut all = self.evidence.flutter.iter();
-        let with_ends = all.find(|r| r.ends_m_s().is_some());
-        constraints(moved, with_ends.unwrap_or(first), |speed_m_s| {
-            self.clears(speed_m_s)
-        })
+        let mut readings = self.evidence.flutter.iter();
+        let with_ends = readings.find(|r| r.ends_m_s().is_some());
+        constraints(moved, with_ends.unwrap_or(first), |v| self.clears(v))
     }
 
     fn of_input(&self, all: &mut Vec<Doubt>) {

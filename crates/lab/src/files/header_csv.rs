@@ -1,7 +1,6 @@
 //! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
-use crate::error::{Error, Place, Result, counted};
-use crate::text::without_control_characters;
+use crate::error::{Error, Place, Result, counted, without_control_characters};
 use std::io::Write;
 
 /// Reader of the table below the header of `text`.

@@ -1,8 +1,7 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
-use crate::error::{Error, Part, Place, Result};
+use crate::error::{Error, Part, Place, Result, has_control_characters};
 use crate::files::text::read_text;
-use crate::text::{has_control_characters, with_control_characters};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use toml::de::{DeArray, DeTable};
@@ -47,7 +46,14 @@ fn without_control_characters(text: &str) -> Result<()> {
         .map_err(|e| Error::input("", "a file in TOML", e.message().to_owned()))?;
     match refused_text(&toml::Value::Table(root)) {
         None => Ok(()),
-        Some(path) => Err(with_line(text, with_control_characters(path.as_str()))),
+        Some(path) => Err(with_line(
+            text,
+            Error::input(
+                path.as_str(),
+                "a text without control characters",
+                "one with them",
+            ),
+        )),
     }
 }
 

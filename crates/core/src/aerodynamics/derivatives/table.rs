@@ -2,9 +2,8 @@
 
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Place, Result, positive};
+use crate::error::{Error, Place, Result, positive, without_control_characters};
 use crate::section::Dof;
-use crate::text::without_control_characters;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
 
@@ -129,9 +128,8 @@ pub struct DerivativeTable {
 }
 
 impl DerivativeTable {
-    /// A table after checking it: positive width; the eight derivatives of heave and rotation present, others in
-    /// pairs; `V̂` positive and strictly monotone in each speed group of each derivative; finite values; mean
-    /// speeds everywhere or nowhere.
+    /// A table after checking it: positive width; the eight derivatives of heave and rotation present, others in pairs; `V̂` positive
+    /// and strictly monotone in each speed group of each derivative; finite values; mean speeds everywhere or nowhere.
     ///
     /// # Errors
     /// [`Error::Input`] naming the derivative and the point.

@@ -7,8 +7,8 @@ use crate::comparison::{
     magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
 };
 use crate::error::{Error, Result, positive};
+use crate::files::text::csv_cell;
 use crate::section::Dof;
-use crate::text::csv_cell;
 use crate::trained_model::Model;
 use crate::wind_tunnel::{Record, Segment, predicted_forces};
 use rayon::prelude::*;

@@ -20,8 +20,7 @@ use super::table::Table;
 use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, positive};
 use crate::files::header_csv::CommentHeader;
-use crate::files::text::read_text;
-use crate::text::{csv_cell, of_csv_cell};
+use crate::files::text::{csv_cell, of_csv_cell, read_text};
 use std::io::Write;
 use std::path::Path;
 

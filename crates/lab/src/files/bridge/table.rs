@@ -1,8 +1,7 @@
 //! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, without_control_characters};
 use crate::files::text::read_text;
-use crate::text::{has_control_characters, with_control_characters};
 use std::path::Path;
 
 /// Rows of a file at most: a thousand nodes by thousands of modes.
@@ -44,13 +43,9 @@ impl Table {
             if line.is_empty() || line.starts_with(['#', '*', '%']) {
                 continue;
             }
-            let cells = cells(line);
             // names of nodes and columns are shown and written
-            let obeyed = cells.iter().position(|c| has_control_characters(c));
-            if let Some(column) = obeyed {
-                let place = Place::line(i + 1).column(column + 1);
-                return Err(with_control_characters(place));
-            }
+            without_control_characters(Place::line(i + 1), line)?;
+            let cells = cells(line);
             let is_heading = cells.iter().all(|c| c.parse::<f64>().is_err());
             if table.rows.is_empty() && is_heading {
                 table.heading = cells;

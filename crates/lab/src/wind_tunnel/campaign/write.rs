@@ -9,7 +9,7 @@ use super::file::{
 use super::ntnu;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
-use crate::text::{csv_cell, file_name};
+use crate::files::text::{csv_cell, file_name};
 use crate::wind_tunnel::record_file::write_rows;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, write_record};
