@@ -129,6 +129,12 @@ fn names_are_no_formulas_in_the_files_of_a_campaign() {
         "c",
     ];
     succeeds(at, &made);
+    // a load cell is named by the user as well
+    let plan = fs::read_to_string(at.join("c/plan.toml")).unwrap();
+    let named = plan.replacen("name = \"near\"", "name = \"=near\"", 1);
+    assert!(named != plan);
+    fs::write(at.join("plan.toml"), named).unwrap();
+    succeeds(at, &[&made[..], &["--force"]].concat());
     let truth = fs::read_to_string(at.join("c/truth.csv")).unwrap();
     assert!(truth.contains("\n'=cmd|calc/..-vertical-"), "{truth}");
     for name in listing(at).iter().filter(|n| n.starts_with("c/")) {

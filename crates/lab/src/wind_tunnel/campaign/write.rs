@@ -174,7 +174,7 @@ fn csv_columns(rig: &Rig) -> Vec<(String, &'static str)> {
             } else {
                 "Nm"
             };
-            columns.push((format!("{}.{key}", cell.name), unit));
+            columns.push((csv_cell(&format!("{}.{key}", cell.name)), unit));
         }
     }
     columns
