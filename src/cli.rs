@@ -129,6 +129,9 @@ pub fn main() -> ExitCode {
     interrupt::install();
     let _temporary = interrupt::own_temporary_folder();
     let code = apology::guarded(|| {
+        if let Err(error) = readable_arguments() {
+            return report(&error, std::env::args_os().any(|a| a == "--json"));
+        }
         let cli = match Cli::try_parse() {
             Ok(cli) => cli,
             Err(error) => return usage(&error),
@@ -144,9 +147,7 @@ pub fn main() -> ExitCode {
             }
         };
         let progress = progress::Progress::new(!cli.quiet && !cli.json, cli.verbose);
-        let result = readable_arguments()
-            .and_then(|()| images())
-            .and_then(|()| run(&cli.command, &progress));
+        let result = images().and_then(|()| run(&cli.command, &progress));
         // a signal that is being obeyed ends the program with a code of its own
         let _busy = interrupt::uninterrupted();
         match result {

@@ -1,99 +1,33 @@
-//! What the program says of a required speed, from file to exit code: whole bridges, and exports.
+//! Verdicts from the file to the first line, where other tests look at the machine-readable answer or at the library alone.
 
-use crate::bridge::folder;
+use crate::bridges::{THREE, TWO, langenuen_text};
 use crate::command::{aerodeck, flowing, succeeds};
-use crate::report::fmu_page;
+use aerodeck::files::derivatives::{embedded, write_csv};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 use tempfile::TempDir;
 
-/// The verdict of the bridge of the folder after a change of its file, and the exit code.
-fn verdict_after(change: impl Fn(String) -> String) -> (Option<i32>, Value) {
-    let folder = folder();
-    let file = folder.path().join("bridge.toml");
-    fs::write(&file, change(fs::read_to_string(&file).unwrap())).unwrap();
-    let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
-    let (code, said, error) = aerodeck(folder.path(), &run);
-    let value: Value = serde_json::from_str(&said).expect(&error);
-    (Some(code), value["verdict"].clone())
-}
+/// The modes that carry the flutter of Langenuen.
+const EIGHT: &str = "select = [2, 3, 5, 12, 14, 16, 17, 23]\ndamping_ratio";
 
-/// A bridge without flutter that diverges meets no requirement above that; the search reaches the requirement.
-#[test]
-fn divergence_of_a_bridge_without_flutter_is_not_met() {
-    let (code, verdict) = verdict_after(|text| {
-        text.replace(
-            "\"LN21-5200\"\ninterpolation",
-            "\"flat plate\"\ninterpolation",
-        )
-        .replace("damping_ratio = 0.002", "damping_ratio = 0.5")
-        .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 200.0")
-    });
-    let headline = verdict["headline"].as_str().unwrap();
-    let (start, end) = (
-        "✗ NOT MET, required 200 m/s: static divergence at",
-        "no flutter up to 2",
-    );
-    assert!(
-        headline.starts_with(start) && headline.contains(end),
-        "{headline}"
-    );
-    assert_eq!(
-        (code, &verdict["outcome"]["below"]),
-        (Some(3), &"best_estimate".into())
-    );
-    assert_eq!(verdict["critical"]["governs"]["phenomenon"], "divergence");
-}
-
-/// The few tested nodes of a girder do not answer for the rest of it.
-#[test]
-fn a_girder_that_is_hardly_tested_is_not_met() {
-    let (code, verdict) = verdict_after(|text| {
-        let tested = "name = \"girder\"\nto = \"1011\"";
-        let rest = "[[section]]\nname = \"rest\"\nfrom = \"1016\"\nwidth_m = 31.0\nderivatives = \"flat plate\"\n\n";
-        text.replace("name = \"girder\"", tested).replace(
+/// A bridge of eight modes with a required speed.
+fn bridge(deck: &str, motions: &str, required: f64) -> String {
+    langenuen_text(deck, motions, "modified_akima")
+        .replace("damping_ratio", EIGHT)
+        .replace(
             "[flutter]",
-            &format!("{rest}[flutter]\nrequired_speed_m_s = 60.0"),
+            &format!("[flutter]\nrequired_speed_m_s = {required:?}"),
         )
-    });
-    assert_eq!((code, state(&verdict)), (Some(3), "cannot_be_judged"));
-    let untested = doubt(&verdict, "untested").unwrap();
-    let text = untested["text"].as_str().unwrap();
-    assert!(
-        text.starts_with("The forces of section rest (")
-            && text.ends_with(
-                "are those of Jones's rational functions of the flat plate, which no test of this deck confirms"
-            ),
-        "{text}"
-    );
-    assert_eq!(untested["severity"], "severe");
 }
 
-/// Static coefficients beside derivatives: where heave alone gallops by them, that governs.
-#[test]
-fn galloping_of_a_bridge_is_looked_at_beside_derivatives() {
-    let with_slope = |slope: &str| {
-        verdict_after(|text| {
-            let statics = format!("static = {{ drag = 0.02, lift_slope = {slope} }}\nmotions =");
-            text.replace("motions =", &statics)
-                .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
-        })
-    };
-    let (code, verdict) = with_slope("-8.0");
-    assert_eq!((code, state(&verdict)), (Some(3), "not_met"));
-    let governs = &verdict["critical"]["governs"];
-    assert_eq!(governs["phenomenon"], "galloping");
-    // Den Hartog: `2 ζ ω m = ½ ρ V B (−C_L′ − C_D)` at the slowest vertical mode, whose share in heave is not quite one
-    assert!(
-        (0.1..1.0).contains(&governs["best_m_s"].as_f64().unwrap()),
-        "{governs}"
-    );
-    let (code, verdict) = with_slope("4.5");
-    assert_eq!((code, state(&verdict)), (Some(0), "met"));
-}
-
-fn state(verdict: &Value) -> &str {
-    verdict["outcome"]["state"].as_str().unwrap()
+/// Exit code and verdict of the bridge of a file.
+fn verdict_of(folder: &Path, text: &str) -> (i32, Value) {
+    fs::write(folder.join("bridge.toml"), text).unwrap();
+    let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
+    let (code, said, error) = aerodeck(folder, &run);
+    let value: Value = serde_json::from_str(&said).expect(&error);
+    (code, value["verdict"].clone())
 }
 
 fn doubt<'a>(verdict: &'a Value, kind: &str) -> Option<&'a Value> {
@@ -101,126 +35,181 @@ fn doubt<'a>(verdict: &'a Value, kind: &str) -> Option<&'a Value> {
     doubts.iter().find(|d| d["kind"] == kind)
 }
 
-/// Tables of 0° say nothing of a deck that the mean wind turns by degrees; those of an angle near all of its angles do.
+/// People and scripts read the first line.
 #[test]
-fn a_deck_turned_by_the_mean_wind_is_doubted() {
-    let turned = |angle: &str| {
-        let (code, verdict) = verdict_after(|text| {
-            let statics = "static = { moment = -0.08, lift_slope = 4.5, moment_slope = 1.2 }";
-            text.replace("motions =", &format!("{angle}{statics}\nmotions ="))
-                .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
-        });
-        let doubts = verdict["doubts"].as_array().unwrap().clone();
-        let of_rotation = doubts.into_iter().find(|d| d["kind"] == "mean_rotation");
-        (code, of_rotation)
-    };
-    let (code, doubt) = turned("");
-    let doubt = doubt.unwrap();
-    let text = doubt["text"].as_str().unwrap();
-    assert!(text.starts_with("The deck stands at -"), "{text}");
-    assert!(
-        text.contains("the forces are those at 0.0°, assumed since no `angle_deg`"),
-        "{text}"
-    );
-    assert_eq!((code, &doubt["severity"]), (Some(3), &"severe".into()));
-    let degrees = text
-        .split_once("stands at ")
-        .unwrap()
-        .1
-        .split_once('°')
-        .unwrap()
-        .0;
-    // tests at half of it are near enough for the middle and for the ends, which do not turn
-    let degrees: f64 = degrees.parse().unwrap();
-    let (code, doubt) = turned(&format!("angle_deg = {:?}\n", 0.5 * degrees));
-    assert_eq!(code, Some(0));
-    assert!(doubt.is_none_or(|d| d["severity"] == "minor"));
+fn the_first_line_of_a_bridge_is_its_verdict() {
+    let folder = TempDir::new().unwrap();
+    for (required, code, words) in [
+        (60.0, 0, "✓ MET, required 60 m/s: flutter onset 7"),
+        (95.0, 3, "✗ NOT MET, required 95 m/s: flutter onset 7"),
+    ] {
+        fs::write(
+            folder.path().join("bridge.toml"),
+            bridge("LN21-5200", TWO, required),
+        )
+        .unwrap();
+        let run = ["bridge", "flutter", "bridge.toml", "--no-figures"];
+        let (found, said, error) = aerodeck(folder.path(), &run);
+        assert_eq!(found, code, "{error}");
+        let first = flowing(&said);
+        assert!(
+            first.starts_with(&format!("Langenuen LN21-5200: {words}")),
+            "{said}"
+        );
+    }
 }
 
-/// The table is the headline, the models give its interval; divergence counts by both; a requirement makes the exit code.
+/// A deck that pumps at 0° beside derivatives that are harmless: quasi-steady galloping is the critical speed.
 #[test]
-fn a_required_speed_of_a_bridge_is_judged() {
-    let folder = folder();
-    let at = folder.path();
-    let text = fs::read_to_string(at.join("bridge.toml")).unwrap();
-    let stated = |required: f64| {
-        let text = match text.contains("[flutter]") {
-            true => text.replace(
-                "[flutter]",
-                &format!("[flutter]\nrequired_speed_m_s = {required}"),
-            ),
-            false => format!("{text}\n[flutter]\nrequired_speed_m_s = {required}\n"),
-        };
-        fs::write(at.join("bridge.toml"), text).unwrap();
-        let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
-        let (code, said, error) = aerodeck(at, &run);
-        let value: Value = serde_json::from_str(&said).expect(&error);
-        (code, value["verdict"].clone())
-    };
-    let (code, verdict) = stated(60.0);
-    let headline = verdict["headline"].as_str().unwrap();
-    assert_eq!(code, 0, "{verdict:#}");
-    assert!(
-        headline.starts_with("✓ MET, required 60 m/s: flutter onset"),
-        "{headline}"
-    );
-    assert!(headline.contains("by the tables"), "{headline}");
-    let all = verdict["critical"]["others"].as_array().unwrap();
-    let divergence = all.iter().filter(|c| c["phenomenon"] == "divergence");
-    assert_eq!(divergence.count(), 2, "{verdict:#}");
-    let (code, verdict) = stated(95.0);
-    assert_eq!((code, &verdict["outcome"]["state"]), (3, &"not_met".into()));
-    assert_eq!(verdict["outcome"]["below"], "best_estimate");
-}
-
-/// A unit of a bridge that does not meet its requirement is packed, with that verdict in it and in the exit code.
-#[test]
-fn the_export_of_a_bridge_repeats_its_verdict() {
-    let folder = folder();
-    let at = folder.path();
-    let text = fs::read_to_string(at.join("bridge.toml")).unwrap();
-    let text = text.replace("[flutter]", "[flutter]\nrequired_speed_m_s = 95.0");
-    fs::write(at.join("bridge.toml"), text).unwrap();
-    let run = ["fmu", "export", "--bridge", "bridge.toml", "--out", "b.fmu"];
-    let (code, said, error) = aerodeck(at, &run);
-    assert_eq!(code, 3, "{said}{error}");
-    assert!(
-        flowing(&said).contains("✗ NOT MET, required 95 m/s: flutter onset"),
-        "{said}"
-    );
-    assert!(fmu_page(&at.join("b.fmu")).contains("NOT MET, required 95 m/s"));
-}
-
-/// The export of a model of its own says what the model answers, as the page in the archive does.
-#[test]
-fn the_export_of_a_model_says_what_it_answers() {
+fn galloping_of_a_section_is_not_met() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    succeeds(at, &["demo", "--no-figures", "--out", "d"]);
-    let export = [
-        "fmu",
-        "export",
-        "d/models/laguerre.json",
+    let deck =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/coefficients/synthetic_box_girder.csv");
+    let text = fs::read_to_string(deck).unwrap();
+    let (head, rows) = text.split_once("angle_deg,c_d,c_l,c_m\n").unwrap();
+    // dC_L/dα = −6 per rad, against which no drag helps
+    let row = |row: &str| {
+        let angle: f64 = row.split(',').next().unwrap().parse().unwrap();
+        format!("{angle},0.1,{:.4},0.0\n", -6.0 * angle.to_radians())
+    };
+    let rows: String = rows.lines().map(row).collect();
+    fs::write(
+        at.join("pumps.csv"),
+        format!("{head}angle_deg,c_d,c_l,c_m\n{rows}"),
+    )
+    .unwrap();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    let study = fs::read_to_string(at.join("s.toml")).unwrap();
+    let run = [
+        "study",
+        "s.toml",
+        "--no-figures",
         "--out",
-        "said.fmu",
+        "r",
+        "--set",
+        "flutter.required_speed_m_s=30.0",
     ];
-    let said = flowing(&succeeds(at, &export));
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 0, "{error}");
     assert!(
-        said.starts_with("Laguerre: flutter onset 36.9 m/s, 36.3–37.6"),
+        flowing(&said).starts_with("LN21-5200: ✓ MET, required 30 m/s"),
         "{said}"
     );
-    assert!(fmu_page(&at.join("said.fmu")).contains("flutter onset 36.9 m/s, 36.3–37.6"));
-    // what is odd about the section stands in both
-    let text = fs::read_to_string(at.join("d/models/laguerre.json")).unwrap();
-    let mut model: Value = serde_json::from_str(&text).unwrap();
-    let width = model["section"]["width_m"].as_f64().unwrap();
-    model["section"]["width_m"] = (0.5 * width).into();
-    fs::write(at.join("narrow.json"), model.to_string()).unwrap();
-    let said = flowing(&succeeds(
-        at,
-        &["fmu", "export", "narrow.json", "--out", "narrow.fmu"],
-    ));
-    for text in [said, fmu_page(&at.join("narrow.fmu"))] {
-        assert!(text.contains("were width_m the semi-chord"), "{text}");
-    }
+    fs::write(
+        at.join("s.toml"),
+        format!("{study}\n[coefficients]\nsource = \"pumps.csv\"\n"),
+    )
+    .unwrap();
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 3, "{error}");
+    let first = flowing(&said);
+    assert!(
+        first.starts_with("LN21-5200: ✗ NOT MET, required 30 m/s: galloping"),
+        "{said}"
+    );
+    let summary = fs::read_to_string(at.join("r/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(
+        summary["verdict"]["critical"]["governs"]["phenomenon"],
+        "galloping"
+    );
+}
+
+/// A table of one mean wind speed says as much of a bridge as of a section.
+#[test]
+fn one_test_speed_of_a_bridge_is_said() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let deck = embedded::deck("LN21-5200").unwrap();
+    let mut bytes = Vec::new();
+    write_csv(&deck.at_speed_group(0).unwrap(), &mut bytes).unwrap();
+    fs::write(at.join("one.csv"), bytes).unwrap();
+    let (_, both) = verdict_of(at, &bridge("LN21-5200", TWO, 60.0));
+    assert!(doubt(&both, "one_test_speed").is_none(), "{both:#}");
+    let text = bridge("LN21-5200", TWO, 60.0)
+        .replace("derivatives = \"LN21-5200\"", "derivatives = \"one.csv\"");
+    let (_, one) = verdict_of(at, &text);
+    let said = doubt(&one, "one_test_speed").unwrap_or_else(|| panic!("{one:#}"));
+    let text = said["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("Tests at one mean wind speed: how results scatter between speeds"),
+        "{text}"
+    );
+}
+
+/// The model of one deck beside the table of another: two answers, and neither is relied on.
+#[test]
+fn a_model_and_a_table_that_contradict_each_other_cannot_be_judged() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    succeeds(at, &["tunnel", "s.toml"]);
+    succeeds(at, &["train", "s.toml"]);
+    let with_model = |deck: &str| {
+        let model = "model = \"model.json\"\nmotions =";
+        verdict_of(at, &bridge(deck, TWO, 60.0).replace("motions =", model))
+    };
+    let (code, own) = with_model("LN21-5200");
+    assert_eq!(code, 0, "{own:#}");
+    assert!(doubt(&own, "contradiction").is_none(), "{own:#}");
+    let (code, other) = with_model("LN21-6100");
+    let said = doubt(&other, "contradiction").unwrap_or_else(|| panic!("{other:#}"));
+    let text = said["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("Contradiction: ")
+            && text.contains("by the tables")
+            && text.contains("by the models"),
+        "{text}"
+    );
+    assert_eq!((code, &said["severity"]), (3, &"severe".into()));
+    assert_eq!(other["outcome"]["state"], "cannot_be_judged");
+}
+
+/// Constraints on the fits of sections move the onset of a bridge as that of a section.
+#[test]
+fn constraints_that_move_the_onset_of_a_bridge_are_said() {
+    let folder = TempDir::new().unwrap();
+    let text = bridge("LN20-5500", THREE, 60.0);
+    let (_, held) = verdict_of(folder.path(), &text);
+    let said = doubt(&held, "constraints_moved_onset").unwrap_or_else(|| panic!("{held:#}"));
+    let words = said["text"].as_str().unwrap();
+    assert!(
+        words.starts_with("Constraints moved the onset: by the data alone 76."),
+        "{words}"
+    );
+    let [without, with] = ["without_m_s", "with_m_s"].map(|key| said[key].as_f64().unwrap());
+    assert!(without < 0.97 * with, "{words}");
+    // the data alone are what a fit without constraints gives
+    let form = "form = { kind = \"laguerre\", filters = 3 }";
+    let free = text.replace(
+        "motions =",
+        &format!("fit = {{ constraints = \"none\", {form} }}\nmotions ="),
+    );
+    let (_, free) = verdict_of(folder.path(), &free);
+    assert!(
+        doubt(&free, "constraints_moved_onset").is_none(),
+        "{free:#}"
+    );
+    let headline = free["headline"].as_str().unwrap();
+    let models = format!("the models: {without:.1} m/s");
+    assert!(headline.contains(&models), "{models}: {headline}");
+}
+
+/// The code of an archive has the rights of who checks it: the command says whether it ran.
+#[test]
+fn a_check_says_whether_code_was_run() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/rational.json");
+    fs::copy(model, at.join("model.json")).unwrap();
+    succeeds(at, &["fmu", "export", "model.json", "--out", "a.fmu"]);
+    let ran = succeeds(at, &["fmu", "check", "a.fmu"]);
+    assert!(
+        ran.contains("its code was run in this process: binaries/"),
+        "{ran}"
+    );
+    let looked = succeeds(at, &["fmu", "check", "a.fmu", "--no-run"]);
+    assert!(looked.contains("none of its code was run"), "{looked}");
+    assert!(!looked.contains("in this process"), "{looked}");
 }

@@ -158,6 +158,23 @@ pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
     }
 }
 
+/// Whether a text has control characters, which a terminal obeys and XML cannot hold; broken lines and tabs are texts.
+pub fn has_control_characters(text: &str) -> bool {
+    text.contains(|c: char| c.is_control() && !['\n', '\r', '\t'].contains(&c))
+}
+
+/// Refuses a text with control characters: names end up in files, pages, descriptions of FMUs and on terminals.
+pub fn without_control_characters(place: impl Into<Place>, text: &str) -> Result<()> {
+    match has_control_characters(text) {
+        false => Ok(()),
+        true => Err(Error::input(
+            place,
+            "a text without control characters",
+            "one with them",
+        )),
+    }
+}
+
 /// `value` if it is finite and positive.
 ///
 /// # Errors

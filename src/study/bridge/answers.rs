@@ -10,6 +10,7 @@ use crate::flutter::{
     divergence_speed, find_onset, motion_at_onset, pk_onset, static_deflection, static_part,
     trace_modes, unwanted_growth,
 };
+use crate::identification::OnsetEffect;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -71,6 +72,9 @@ pub struct BridgeFlutter {
     /// Mean rotation where it is farthest from the tests, at the onset or else at the required speed, where static coefficients are
     /// stated.
     pub mean_rotation: Option<BridgeRotation>,
+    /// What constraints on the fits of sections did to the onset; `None` where none hold one, or models were read from files.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub constraints: Option<OnsetEffect>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
 }
@@ -136,6 +140,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
             Err(e) => failed.push(format!("interval of the onset: {e}")),
         }
     }
+    let constraints = study.moved_onset(&by_model.search).unwrap_or_else(|e| {
+        failed.push(format!("constraints: {e}"));
+        None
+    });
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
@@ -176,6 +184,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         galloping_m_s: galloping.ok().flatten(),
         growth,
         mean_rotation,
+        constraints,
         failed,
     })
 }

@@ -1,5 +1,6 @@
 //! What is known of a bridge, as evidence for its verdict.
 
+use super::super::evidence::moved_onset;
 use super::BridgeStudy;
 use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::aerodynamics::Transfer;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 const TABLES: &str = "the tables";
 const MODELS: &str = "the models";
 /// What can fail without another answer.
-const BESIDE: [&str; 4] = ["figures", "fewer modes", "scatter", "FMU"];
+const BESIDE: [&str; 5] = ["figures", "fewer modes", "constraints", "scatter", "FMU"];
 
 impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
@@ -46,6 +47,7 @@ impl BridgeStudy {
             flutter,
             divergence,
             growth: results.growth.clone(),
+            constraints: results.constraints.as_ref().map(moved_onset),
             failures: failed.iter().map(|f| failure(f)).collect(),
             mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
                 speed_m_s: mean.speed_m_s,

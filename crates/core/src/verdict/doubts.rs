@@ -224,9 +224,10 @@ impl Weighed<'_> {
                 );
             }
         }
-        // with the scatter that decks show between speeds in the interval, it is known after all
-        let prior =
-            onset.interval.parts().and_then(|p| p.between_speeds) == Some(BetweenSpeeds::Prior);
+        // with the scatter that decks show between speeds in the interval, also of other forces, it is known after all
+        let readings = self.evidence.flutter.iter();
+        let mut parts = readings.filter_map(|r| r.onset()?.interval.parts());
+        let prior = parts.any(|p| p.between_speeds == Some(BetweenSpeeds::Prior));
         if prior || self.evidence.test_speeds == Some(1) {
             let (severity, how) = match prior {
                 true => (Severity::Minor, "is taken from other decks"),
@@ -264,7 +265,10 @@ impl Weighed<'_> {
 
     fn moved(&self, first: &FlutterReading) -> Option<Doubt> {
         let moved = self.evidence.constraints?;
-        constraints(moved, first, |speed_m_s| self.clears(speed_m_s))
+        // the interval may be that of other forces
+        let mut readings = self.evidence.flutter.iter();
+        let with_ends = readings.find(|r| r.ends_m_s().is_some());
+        constraints(moved, with_ends.unwrap_or(first), |v| self.clears(v))
     }
 
     fn of_input(&self, all: &mut Vec<Doubt>) {
