@@ -51,7 +51,7 @@ impl Scene {
     }
 
     /// An area within corners.
-    fn polygon(&mut self, corners: &[Px], fill: &str, rim: Stroke) {
+    pub(super) fn polygon(&mut self, corners: &[Px], fill: &str, rim: Stroke) {
         let way = path(corners);
         self.add(format_args!("<path d=\"{way}Z\" fill=\"{fill}\"{rim}/>"));
     }

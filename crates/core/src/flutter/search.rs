@@ -81,14 +81,20 @@ pub fn curve_speeds_m_s(lowest_m_s: f64, highest_m_s: f64, count: usize) -> Vec<
 /// # extern crate aerodeck_core as aerodeck;
 /// use aerodeck::aerodynamics::RationalModel;
 /// use aerodeck::aeroelastic::CoupledSection;
-/// use aerodeck::flutter::{OnsetSearch, find_onset};
+/// use aerodeck::flutter::{OnsetSearch, determinant_onset, find_onset};
 /// use aerodeck::section::SectionModel;
+/// use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 ///
 /// let structure = SectionModel::iabse_1_1a().structure()?;
-/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let plate = RationalModel::jones_flat_plate();
+/// let section = CoupledSection::with_model(&structure, &plate)?;
 /// let found = find_onset("plate", &section, &OnsetSearch::default(), None)?;
-/// // 77.48 m/s with Theodorsen's own function
-/// assert!((found.onset().expect("flutter").at.speed_m_s - 77.48).abs() < 0.5);
+/// // the determinant has the same root
+/// let k = ReducedFrequency::from_full_width;
+/// let range = ReducedFrequencyRange::between(k(0.02), k(10.0));
+/// let other = determinant_onset("plate", &structure, &plate, range, 100.0)?;
+/// let [a, b] = [found, other].map(|f| f.critical_speed_m_s().expect("flutter"));
+/// assert!((a / b - 1.0).abs() < 1e-9);
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 ///
