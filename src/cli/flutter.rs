@@ -38,11 +38,11 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let known = stages::read_uncertainties(&models, &directory)?;
     if args.all {
         let out = OutputDir::new(&directory)?;
-        return all_routes(&study, &deck, (&models, &known), (out, &failed), progress);
+        return all_routes(&study, &deck, &models, &known, out, &failed, progress);
     }
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
-    let verdict = verdict(&study, &deck, &results, (&models, &known), &failed)?;
+    let verdict = verdict(&study, &deck, &results, &models, &known, &failed)?;
     let figure = stages::flutter_figure(&study, &results, Some(&verdict), &mut out);
     attempt(&mut failed, "figure", figure)?;
     let curves = evidence::write_curves(&study, &results.curves, &mut out);
@@ -53,7 +53,8 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::deck_warnings(&deck));
     text.push('\n');
     text.push_str(&account::onsets(
-        (&results.onsets, &results.undetermined),
+        &results.onsets,
+        &results.undetermined,
         &results.unstable,
         &results.stable,
     ));
@@ -75,7 +76,8 @@ fn verdict(
     study: &Study,
     deck: &Deck,
     results: &FlutterStudy,
-    (models, known): (&[TrainedModel], &[KnownUncertainty]),
+    models: &[TrainedModel],
+    known: &[KnownUncertainty],
     failed: &[StageFailure],
 ) -> Result<Verdict> {
     let name = &study.exported()?.name;
@@ -95,8 +97,10 @@ fn verdict(
 fn all_routes(
     study: &Study,
     deck: &Deck,
-    (models, known): (&[TrainedModel], &[KnownUncertainty]),
-    (mut out, failed): (OutputDir, &[StageFailure]),
+    models: &[TrainedModel],
+    known: &[KnownUncertainty],
+    mut out: OutputDir,
+    failed: &[StageFailure],
     progress: &Progress,
 ) -> Result<Answer> {
     let stage = progress.stage("onset by every route");

@@ -281,7 +281,7 @@ impl Tests {
             let sum: f64 = transfers.iter().map(|g| g[(i, j)].norm_sqr()).sum();
             (sum / transfers.len() as f64).sqrt()
         };
-        let shifts = self.shifts((n, &size), random)?;
+        let shifts = self.shifts(n, &size, random)?;
         let component = self.noise / std::f64::consts::SQRT_2;
         let mut samples = Vec::new();
         let mut points: Vec<(usize, &f64, &DMatrix<Complex<f64>>)> = Vec::new();
@@ -313,7 +313,8 @@ impl Tests {
     /// variance that is drawn as measured decks have it.
     fn shifts(
         &self,
-        (n, size): (usize, &dyn Fn(usize, usize) -> f64),
+        n: usize,
+        size: &dyn Fn(usize, usize) -> f64,
         random: &mut ChaCha8Rng,
     ) -> Result<Vec<Vec<Complex<f64>>>> {
         let mut shifts = vec![vec![Complex::new(0.0, 0.0); n * n]; self.speeds];

@@ -13,7 +13,7 @@
 //! ```
 
 use super::modal_data::{BridgeModes, check_order};
-use super::table::Table;
+use super::table::{Table, TableRow};
 use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, positive};
 use crate::files::header_csv::CommentHeader;
@@ -46,9 +46,9 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     let mut nodes = Vec::with_capacity(table.rows.len());
     for row in &table.rows {
         nodes.push(Node {
-            name: Table::name(row, name),
-            along_m: Table::number(row, along)?,
-            length_m: Table::number(row, length)?,
+            name: row.name(name),
+            along_m: row.number(along)?,
+            length_m: row.number(length)?,
         });
     }
     check_order(&nodes)?;
@@ -62,13 +62,7 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
             .map(|part| table.required(&[&format!("{part}_{number}")]));
         let [v, l, r] = columns;
         let (v, l, r) = (v?, l?, r?);
-        let at = |row| {
-            Ok([
-                Table::number(row, v)?,
-                Table::number(row, l)?,
-                Table::number(row, r)?,
-            ])
-        };
+        let at = |row: &TableRow| Ok([row.number(v)?, row.number(l)?, row.number(r)?]);
         Ok(BridgeMode {
             number,
             frequency_hz,
