@@ -33,7 +33,8 @@ const RULE: [(f64, f64, f64); 8] = [
 ];
 
 struct QuadratureInterval {
-    ends: (f64, f64),
+    low: f64,
+    high: f64,
     value: Vec<f64>,
     error: Vec<f64>,
 }
@@ -48,7 +49,7 @@ pub(super) fn integrate(
 ) -> Result<(Vec<f64>, Vec<f64>)> {
     let mut pieces = Vec::with_capacity(breaks.len());
     for ends in breaks.windows(2) {
-        pieces.push(piece(&f, (ends[0], ends[1]))?);
+        pieces.push(piece(&f, ends[0], ends[1])?);
     }
     for _ in 0..MAX_HALVINGS {
         let (value, error) = totals(&pieces);
@@ -70,10 +71,10 @@ pub(super) fn integrate(
         let worst = (0..pieces.len())
             .max_by(|i, j| badness(&pieces[*i]).total_cmp(&badness(&pieces[*j])))
             .unwrap_or(0);
-        let (low, high) = pieces.swap_remove(worst).ends;
+        let QuadratureInterval { low, high, .. } = pieces.swap_remove(worst);
         let middle = 0.5 * (low + high);
-        pieces.push(piece(&f, (low, middle))?);
-        pieces.push(piece(&f, (middle, high))?);
+        pieces.push(piece(&f, low, middle)?);
+        pieces.push(piece(&f, middle, high)?);
     }
     Err(Error::Numerical(format!(
         "integration: {MAX_HALVINGS} halvings do not reach a relative error of {tolerance:.0e}"
@@ -90,8 +91,8 @@ fn totals(pieces: &[QuadratureInterval]) -> (Vec<f64>, Vec<f64>) {
     (sum(|p| &p.value), sum(|p| &p.error))
 }
 
-fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, ends: (f64, f64)) -> Result<QuadratureInterval> {
-    let (middle, half) = (0.5 * (ends.0 + ends.1), 0.5 * (ends.1 - ends.0));
+fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, low: f64, high: f64) -> Result<QuadratureInterval> {
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let mut kronrod: Vec<f64> = Vec::new();
     let mut gauss: Vec<f64> = Vec::new();
     for (x, by_kronrod, by_gauss) in RULE {
@@ -112,7 +113,8 @@ fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, ends: (f64, f64)) -> Result<Quadr
         .map(|(k, g)| (k - g).abs())
         .collect();
     Ok(QuadratureInterval {
-        ends,
+        low,
+        high,
         value: kronrod,
         error,
     })
@@ -126,7 +128,7 @@ mod tests {
     #[test]
     fn the_rule_is_exact_for_polynomials() {
         for degree in [0, 2, 10, 12, 22] {
-            let p = piece(&|x: f64| Ok(vec![x.powi(degree)]), (-1.0, 1.0)).unwrap();
+            let p = piece(&|x: f64| Ok(vec![x.powi(degree)]), -1.0, 1.0).unwrap();
             let exact = 2.0 / f64::from(degree + 1);
             assert!((p.value[0] - exact).abs() < 1e-15, "{degree}");
             assert!(degree > 13 || p.error[0] < 1e-15, "{degree}");

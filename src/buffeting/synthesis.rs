@@ -44,7 +44,8 @@ pub(crate) struct GustSample {
 pub(crate) fn synthesise(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
-    (step_s, samples): (f64, usize),
+    step_s: f64,
+    samples: usize,
     seed: u64,
 ) -> Result<GustSample> {
     problem.validate()?;

@@ -206,7 +206,7 @@ fn mean_squares(
     grid: &TimeGrid,
     seed: u64,
 ) -> Result<(Vec<f64>, [f64; 2])> {
-    let sample = synthesise(problem, speed, (grid.step_s, grid.samples), seed)?;
+    let sample = synthesise(problem, speed, grid.step_s, grid.samples, seed)?;
     let n = problem.structure.dofs.len();
     let mut stepper = Stepper::new(section.clone());
     let mut state = stepper.released(&vec![0.0; n], &vec![0.0; n])?;

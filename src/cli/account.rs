@@ -16,7 +16,8 @@ pub(crate) fn chain(
     study: &Study,
     deck: &Deck,
     summary: &Summary,
-    (files, verbose): (&str, bool),
+    files: &str,
+    verbose: bool,
 ) -> String {
     // what was assumed in reading the deck stands beside the deck
     let mut text = headline::account(&study.name, &summary.verdict, &deck.warnings());
@@ -49,7 +50,8 @@ pub(crate) fn chain(
     }
     text.push('\n');
     text.push_str(&onsets(
-        (&summary.onsets, &summary.undetermined),
+        &summary.onsets,
+        &summary.undetermined,
         &summary.unstable,
         &summary.stable,
     ));
@@ -190,7 +192,8 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
 
 /// The onsets side by side.
 pub(crate) fn onsets(
-    (onsets, undetermined): (&[Onset], &[Onset]),
+    onsets: &[Onset],
+    undetermined: &[Onset],
     unstable: &[UnstableStart],
     stable: &[OnsetSummary],
 ) -> String {

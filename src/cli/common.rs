@@ -40,7 +40,8 @@ pub(crate) fn folder_of(file: &Path) -> &Path {
 pub(crate) fn motion_columns<'a>(
     dofs: &'a [Dof],
     what: &'a str,
-    (linear, angular): (&'a str, &'a str),
+    linear: &'a str,
+    angular: &'a str,
 ) -> impl Iterator<Item = String> + 'a {
     dofs.iter().map(move |d| {
         let unit = if *d == Dof::Torsion { angular } else { linear };

@@ -9,7 +9,7 @@ use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::files::text::csv_cell;
-use crate::flutter::FlutterCurves;
+use crate::flutter::{CriticalPoint, FlutterCurves};
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, root_locus_figure,
     time_history_figure,
@@ -206,10 +206,10 @@ fn measured(table: &DerivativeTable, d: Derivative) -> Vec<PlottedSeries> {
 /// The released section of the exported model below, at and above its onset.
 pub(super) fn write_response(
     model: &TrainedModel,
-    onset: (f64, f64),
+    onset: &CriticalPoint,
     out: &mut OutputDir,
 ) -> Result<()> {
-    let (speed_m_s, frequency_hz) = onset;
+    let (speed_m_s, frequency_hz) = (onset.speed_m_s, onset.frequency_hz);
     let step = 1.0 / (PERIODS.1 * frequency_hz);
     let mut runs = Vec::with_capacity(AROUND_ONSET.len());
     for factor in AROUND_ONSET {
@@ -220,7 +220,7 @@ pub(super) fn write_response(
         } else {
             format!("{speed:.1} m/s ({percent:+} %)")
         };
-        let rows = simulated(model, speed, (PERIODS.0 / frequency_hz, step))?;
+        let rows = simulated(model, speed, PERIODS.0 / frequency_hz, step)?;
         runs.push((label, rows));
     }
     let runs: Vec<_> = runs

@@ -38,7 +38,7 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let known = stages::read_uncertainties(&models, &directory)?;
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
-    let verdict = verdict(&study, &deck, &results, (&models, &known), &failed)?;
+    let verdict = verdict(&study, &deck, &results, &models, &known, &failed)?;
     if args.all {
         let stage = progress.stage("onset by every route");
         let mut table = route_table(&study, &deck, &models)?;
@@ -56,7 +56,8 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::deck_warnings(&deck));
     text.push('\n');
     text.push_str(&account::onsets(
-        (&results.onsets, &results.undetermined),
+        &results.onsets,
+        &results.undetermined,
         &results.unstable,
         &results.stable,
     ));
@@ -78,7 +79,8 @@ fn verdict(
     study: &Study,
     deck: &Deck,
     results: &FlutterStudy,
-    (models, known): (&[TrainedModel], &[KnownUncertainty]),
+    models: &[TrainedModel],
+    known: &[KnownUncertainty],
     failed: &[StageFailure],
 ) -> Result<Verdict> {
     let name = &study.exported()?.name;

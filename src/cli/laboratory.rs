@@ -14,7 +14,8 @@ pub(super) fn laboratory_page(
     raw: &RawCampaign,
     report: &ProcessingReport,
     found: Option<&IdentifiedDerivatives>,
-    (notes, out): (&[String], &OutputDir),
+    notes: &[String],
+    out: &OutputDir,
 ) -> SectionsPage {
     let estimates = found.map_or(&[][..], |f| &f.estimates);
     let caption = "Points: test points of each mean speed, with 95 % intervals. Lines: theory.";

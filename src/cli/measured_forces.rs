@@ -3,6 +3,7 @@
 use super::figures;
 use super::output::OutputDir;
 use crate::error::Result;
+use crate::flutter::CriticalPoint;
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::section::Dof;
 use crate::study::RecordSet;
@@ -17,15 +18,16 @@ pub(super) const FORCES: &str = "forces";
 const PERIODS: f64 = 3.0;
 
 /// Three periods of one record per motion, as near to the onset in reduced frequency as the tests are; nothing without records.
-/// `onset` is its speed, m/s, and frequency, Hz; `origin` says in a word whether the forces were measured or made from a table.
+/// `origin` says in a word whether the forces were measured or made from a table.
 pub(super) fn write(
     model: &TrainedModel,
     records: &RecordSet,
-    onset: (f64, f64),
+    onset: &CriticalPoint,
     origin: &str,
     out: &mut OutputDir,
 ) -> Result<()> {
-    let wanted = ReducedFrequency::from_hertz(onset.1, model.section.width_m, onset.0);
+    let wanted =
+        ReducedFrequency::from_hertz(onset.frequency_hz, model.section.width_m, onset.speed_m_s);
     let mut chosen: Vec<RecordExcerpt> = Vec::new();
     for source in records.select(None)? {
         let header = source.header();

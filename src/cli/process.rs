@@ -98,8 +98,9 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
         write_derivatives(args, &raw, found, &mut out)?;
         match write_table(&raw, found, &mut out) {
             Ok(()) => {
-                let known = (base.as_ref(), section.as_ref());
-                let text = processed_study_text(&raw, known, TABLE, &names, &found.dofs)?;
+                let (base, section) = (base.as_ref(), section.as_ref());
+                let dofs = &found.dofs;
+                let text = processed_study_text(&raw, base, section, TABLE, &names, dofs)?;
                 let named = base.is_some() || section.is_some();
                 notes.extend(write_study(&text, args.force, named, &mut out)?);
             }
@@ -107,8 +108,8 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
             Err(e) => return Err(e),
         }
     }
-    let known = (&notes[..], &out);
-    let page = laboratory_page(&raw, &processed.report, derivatives.as_ref(), known);
+    let found = derivatives.as_ref();
+    let page = laboratory_page(&raw, &processed.report, found, &notes, &out);
     out.write(super::report::REPORT, sections_page(&page)?)?;
     let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
     let text = account(&raw, &processed, derivatives.as_ref()) + &remarks;
@@ -242,9 +243,9 @@ fn write_table(
         Ok(table) => table,
         Err(e) => {
             // one motion alone: its column, in the same columns
-            let head = (raw.section.as_str(), found.width_m, &header);
-            let mut text = Vec::new();
-            write_points(head, &found.points(), &mut text).map_err(|e| Error::io(TABLE, e))?;
+            let (points, mut text) = (found.points(), Vec::new());
+            write_points(&raw.section, found.width_m, &header, &points, &mut text)
+                .map_err(|e| Error::io(TABLE, e))?;
             out.write(TABLE, text)?;
             return Err(e);
         }

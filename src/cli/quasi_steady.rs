@@ -132,7 +132,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
             text.push_str(&account::onsets(
-                (std::slice::from_ref(onset.as_ref()), &[]),
+                std::slice::from_ref(onset.as_ref()),
+                &[],
                 &[],
                 &[],
             ));
@@ -202,7 +203,7 @@ fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {
     for kind in ["nonlinear", "linear"] {
         for (what, linear, angular) in [("", "m", "rad"), ("_rate", "m_s", "rad_s")] {
             let what = format!("{what}_{kind}");
-            columns.extend(motion_columns(&run.dofs, &what, (linear, angular)));
+            columns.extend(motion_columns(&run.dofs, &what, linear, angular));
         }
     }
     let _ = writeln!(text, "{}", columns.join(","));

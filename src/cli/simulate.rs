@@ -167,7 +167,7 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
         ("_acceleration", "m_s2", "rad_s2"),
         ("_force", "n_m", "n_m_m"),
     ] {
-        columns.extend(motion_columns(&dofs, name, (linear, angular)));
+        columns.extend(motion_columns(&dofs, name, linear, angular));
     }
     Ok(Trajectory {
         columns,
@@ -176,13 +176,14 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
     })
 }
 
-/// Rows of time (s) and motion of the released section, as `simulation.csv` has them; `run` is length and step, s.
+/// Rows of time (s) and motion of the released section, as `simulation.csv` has them, up to the time `stop` (s).
 pub(super) fn simulated(
     model: &TrainedModel,
     speed: f64,
-    run: (f64, f64),
+    stop: f64,
+    step: f64,
 ) -> Result<Vec<Vec<f64>>> {
-    simulate(model, speed, run.0, run.1).map(|t| t.rows)
+    simulate(model, speed, stop, step).map(|t| t.rows)
 }
 
 fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {

@@ -64,7 +64,8 @@ pub(crate) fn train(
     study: &Study,
     deck: &Deck,
     records: Option<&RecordSet>,
-    (out, failed): (&mut OutputDir, &mut Vec<StageFailure>),
+    out: &mut OutputDir,
+    failed: &mut Vec<StageFailure>,
     progress: &Progress,
 ) -> Result<Vec<TrainedWithReport>> {
     let mut trained = Vec::with_capacity(study.models.len());
@@ -248,7 +249,7 @@ pub(crate) fn routes_figure(
 
 /// Packs a model of a study with all runtimes that are there.
 pub(crate) fn export(
-    (model, known): (&TrainedModel, &KnownUncertainty),
+    own: &TrainedWithReport,
     study: &Study,
     verdict: &Verdict,
     growing: GrowthPolicy,
@@ -263,11 +264,11 @@ pub(crate) fn export(
     };
     let export = Export {
         label: label.dated()?,
-        bounds: onset_bounds(model, known)?,
+        bounds: onset_bounds(&own.model, &own.uncertainty)?,
         verdict: Some(verdict.clone()),
         ..growing.into()
     };
-    let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
+    let bytes = package(&own.model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
     drop(stage);
     Ok(bytes)
 }

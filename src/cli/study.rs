@@ -126,8 +126,8 @@ impl StudyStages<'_> {
     }
 
     fn train(&mut self, records: Option<&RecordSet>) -> Result<Vec<TrainedWithReport>> {
-        let aside = (&mut self.out, &mut self.failed);
-        let trained = stages::train(&self.study, &self.deck, records, aside, self.progress)?;
+        let (study, deck, out) = (&self.study, &self.deck, &mut self.out);
+        let trained = stages::train(study, deck, records, out, &mut self.failed, self.progress)?;
         let no_records = self.failed.iter().find(|f| f.stage == RECORDS);
         match no_records.filter(|_| trained.is_empty()) {
             Some(StageFailure { reason, .. }) => Err(Error::Numerical(format!(
@@ -155,8 +155,7 @@ impl StudyStages<'_> {
             self.failed.push(StageFailure::new("export", reason));
             return Ok(None);
         };
-        let known = (&own.model, &own.uncertainty);
-        let bytes = stages::export(known, &self.study, verdict, growing, self.progress);
+        let bytes = stages::export(own, &self.study, verdict, growing, self.progress);
         let Some(bytes) = self.attempt("export", bytes)? else {
             return Ok(None);
         };
@@ -238,7 +237,7 @@ impl StudyStages<'_> {
         let Some(onset) = headline::own_onset(results, &own.model.name) else {
             return Ok(());
         };
-        let at = (onset.at.speed_m_s, onset.at.frequency_hz);
+        let at = &onset.at;
         if let Some(records) = records {
             let made = self.study.deck.records.is_empty();
             let origin = if made {
@@ -304,8 +303,8 @@ impl StudyStages<'_> {
         let page = report::page(self.out.staging(), &self.out.target(""))?;
         self.out.write(REPORT, page)?;
         let written = shown(&self.out.commit()?);
-        let how = (&written[..], self.progress.verbose());
-        let text = account::chain(&self.study, &self.deck, &summary, how);
+        let verbose = self.progress.verbose();
+        let text = account::chain(&self.study, &self.deck, &summary, &written, verbose);
         Ok(Answer::new(text, &summary)?
             .passed_if(summary.failed.is_empty())
             .with_outcome_of(&summary.verdict))

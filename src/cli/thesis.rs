@@ -35,8 +35,14 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     let mut out = OutputDir::new(aside.path())?;
     let records = RecordSet::staged(stages::tunnel(&study, &deck, &mut out, progress)?)?;
     let mut failed = Vec::new();
-    let aside = (&mut out, &mut failed);
-    let trained = stages::train(&study, &deck, Some(&records), aside, progress)?;
+    let trained = stages::train(
+        &study,
+        &deck,
+        Some(&records),
+        &mut out,
+        &mut failed,
+        progress,
+    )?;
     let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {
@@ -48,7 +54,8 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     }
     text.push('\n');
     text.push_str(&account::onsets(
-        (&results.onsets, &results.undetermined),
+        &results.onsets,
+        &results.undetermined,
         &results.unstable,
         &results.stable,
     ));
@@ -61,8 +68,7 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
         if let Some(own) = trained.first()
             && let Some(onset) = headline::own_onset(&results, &own.model.name)
         {
-            let at = (onset.at.speed_m_s, onset.at.frequency_hz);
-            evidence::write_response(&own.model, at, &mut out)?;
+            evidence::write_response(&own.model, &onset.at, &mut out)?;
         }
         let page = thesis_page(&results, PRINTED_M_S, &out, progress)?;
         let mut left = OutputDir::new(folder)?;

@@ -31,8 +31,14 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
     };
     let mut out = OutputDir::new(&directory)?;
     let mut failed = Vec::new();
-    let aside = (&mut out, &mut failed);
-    let trained = stages::train(&study, &deck, Some(&records), aside, progress)?;
+    let trained = stages::train(
+        &study,
+        &deck,
+        Some(&records),
+        &mut out,
+        &mut failed,
+        progress,
+    )?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
     text.push_str(&account::deck_warnings(&deck));
     let mut growths = Vec::new();

@@ -139,7 +139,9 @@ pub fn package(
         .filter_map(|(name, text)| Some((name, text?)));
     assembled(
         &resources,
-        (listing, &label, version),
+        listing,
+        &label,
+        version,
         [(MODEL_FILE, json)].into_iter().chain(options),
         page,
         runtimes,
@@ -205,7 +207,9 @@ pub fn package_bridge(
     let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
     assembled(
         &resources,
-        (export.listing, label, version),
+        export.listing,
+        label,
+        version,
         files,
         page,
         runtimes,
@@ -215,7 +219,9 @@ pub fn package_bridge(
 /// The archive of what has been made.
 fn assembled(
     resources: &Resources,
-    (listing, label, version): (Listing, &Label, FmiVersion),
+    listing: Listing,
+    label: &Label,
+    version: FmiVersion,
     options: impl IntoIterator<Item = (&'static str, String)>,
     page: String,
     runtimes: &[Runtime],

@@ -11,7 +11,7 @@ use crate::flutter::{
     Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset, impedance, pk_onset,
     quasi_pk_mode, sanity_lines,
 };
-use crate::section::SectionModel;
+use crate::section::{Rotation, SectionModel, Translation};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::{PI, TAU};
 
@@ -120,8 +120,8 @@ pub(super) fn fung() -> Result<Vec<f64>> {
     let section = SectionModel::two_dof(
         2.0 * semi_chord,
         1.0,
-        (mass, heave_squared.sqrt() / TAU, 0.0),
-        (
+        Translation::new(mass, heave_squared.sqrt() / TAU, 0.0),
+        Rotation::new(
             mass * radius_squared * semi_chord * semi_chord,
             torsion_squared.sqrt() / TAU,
             0.0,
@@ -147,8 +147,8 @@ pub(super) fn typical(a: f64) -> Result<Vec<f64>> {
     let mut section = SectionModel::two_dof(
         2.0,
         1.0,
-        (mass, 0.4 / TAU, 0.0),
-        (0.24 * mass, 1.0 / TAU, 0.0),
+        Translation::new(mass, 0.4 / TAU, 0.0),
+        Rotation::new(0.24 * mass, 1.0 / TAU, 0.0),
     );
     section.axis_offset_m = Some(a);
     section.mass_offset_m = Some(0.1);

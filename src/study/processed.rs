@@ -18,7 +18,8 @@ const HEAD: &str =
 /// [`Study::from_toml`] refuses it until the section is stated there.
 pub(crate) fn processed_study_text(
     raw: &RawCampaign,
-    (base, section): (Option<&Study>, Option<&SectionModel>),
+    base: Option<&Study>,
+    section: Option<&SectionModel>,
     table: &str,
     records: &[PathBuf],
     dofs: &[Dof],

@@ -8,7 +8,7 @@ use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
 use aerodeck::aeroelastic::{CoupledSection, StaticEquilibrium, static_equilibria};
 use aerodeck::files::coefficients::embedded;
 
-use aerodeck::response::{Inputs, NonlinearSection, Stepper, largest_difference};
+use aerodeck::response::{GustyWind, Inputs, NonlinearSection, Stepper, largest_difference};
 use aerodeck::section::Structure;
 use aerodeck::section::{SectionModel, Translation};
 
@@ -95,7 +95,7 @@ fn distance(lateral: bool, size: f64) -> f64 {
     let initial = [rest.displacement.clone(), vec![0.0; n]].concat();
     let nonlinear = NonlinearSection::new(structure.clone(), theory.clone()).unwrap();
     let run = nonlinear
-        .run(&initial, (SPEED, &gusts), (0.01, 800), 1e-9)
+        .run(&initial, in_wind(SPEED, &gusts), 0.01, 800, 1e-9)
         .unwrap();
     let about: Vec<Vec<f64>> = run
         .rows
@@ -104,6 +104,10 @@ fn distance(lateral: bool, size: f64) -> f64 {
         .collect();
     let model = theory.linearised(rest.rotation_rad).unwrap();
     largest_difference(&linear(&structure, &model, &gusts), &about)
+}
+
+fn in_wind(speed_m_s: f64, gusts: &GustSeries) -> GustyWind<'_> {
+    GustyWind { speed_m_s, gusts }
 }
 
 #[test]
@@ -124,7 +128,13 @@ fn weightless_air_leaves_the_structure_alone() {
     let nonlinear = NonlinearSection::new(structure.clone(), theory(&structure)).unwrap();
     let calm = GustSeries::calm(2.0).unwrap();
     let run = nonlinear
-        .run(&[1e-6, 1e-6, 0.0, 0.0], (10.0, &calm), (0.02, 100), 1e-9)
+        .run(
+            &[1e-6, 1e-6, 0.0, 0.0],
+            in_wind(10.0, &calm),
+            0.02,
+            100,
+            1e-9,
+        )
         .unwrap();
     let omega = std::f64::consts::TAU * 2.0;
     let (zeta, t) = (0.003_f64, 2.0);
@@ -147,7 +157,13 @@ fn leaving_the_table_is_said_with_time_and_angle() {
     let nonlinear = NonlinearSection::new(structure.clone(), theory(&structure)).unwrap();
     let calm = GustSeries::calm(60.0).unwrap();
     let message = nonlinear
-        .run(&[0.0, 0.1, 0.0, 0.0], (120.0, &calm), (0.01, 6000), 1e-6)
+        .run(
+            &[0.0, 0.1, 0.0, 0.0],
+            in_wind(120.0, &calm),
+            0.01,
+            6000,
+            1e-6,
+        )
         .unwrap_err()
         .to_string();
     assert!(
@@ -155,7 +171,7 @@ fn leaving_the_table_is_said_with_time_and_angle() {
         "{message}"
     );
     let message = nonlinear
-        .run(&[0.0; 4], (10.0, &calm), (0.01, 6001), 1e-6)
+        .run(&[0.0; 4], in_wind(10.0, &calm), 0.01, 6001, 1e-6)
         .unwrap_err()
         .to_string();
     assert!(message.contains("at least 60.01 s of them"), "{message}");

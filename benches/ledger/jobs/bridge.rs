@@ -263,20 +263,22 @@ fn problem(bridge: &Bridge) -> SpanProblem<'_> {
     }
 }
 
-const TEN_MINUTES: (f64, usize) = (0.05, 12_000);
+const TEN_MINUTES: usize = 12_000;
 
 /// Turbulence of ten minutes at 100 strips.
 pub(crate) fn field() -> Job {
     let bridge = beam(100, 39);
     Job::new(move || {
-        black_box(turbulence_field(&problem(&bridge), 30.0, TEN_MINUTES, 1).expect("a field"));
+        black_box(
+            turbulence_field(&problem(&bridge), 30.0, STEP_S, TEN_MINUTES, 1).expect("a field"),
+        );
     })
 }
 
 /// Response of 39 modes to it.
 pub(crate) fn response() -> Job {
     let bridge = beam(100, 39);
-    let field = turbulence_field(&problem(&bridge), 30.0, TEN_MINUTES, 1).expect("a field");
+    let field = turbulence_field(&problem(&bridge), 30.0, STEP_S, TEN_MINUTES, 1).expect("a field");
     Job::new(move || {
         black_box(span_record(&problem(&bridge), &[50], 30.0, &field).expect("a response"));
     })

@@ -25,7 +25,7 @@ pub use similarity::{Similarity, similarities};
 
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, counted, finite, non_negative, positive};
-use crate::section::{Dof, SectionModel, Translation};
+use crate::section::{Dof, Rotation, SectionModel, Translation};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -248,17 +248,19 @@ impl Bridge {
             let found = own(dof).or_else(|| Dof::THREE.into_iter().find_map(other));
             found.ok_or_else(|| Error::input("modes", "modes that move", "none"))
         };
-        let (vertical, torsion) = (support(Dof::Vertical)?, support(Dof::Torsion)?);
-        let mut section =
-            SectionModel::two_dof(self.width_m(), self.air_density_kg_m3, vertical, torsion);
+        let translation = |dof: Dof| -> Result<Translation> {
+            let (mass, hertz, damping) = support(dof)?;
+            Ok(Translation::new(mass, hertz, damping))
+        };
+        let (inertia, hertz, damping) = support(Dof::Torsion)?;
+        let mut section = SectionModel::two_dof(
+            self.width_m(),
+            self.air_density_kg_m3,
+            translation(Dof::Vertical)?,
+            Rotation::new(inertia, hertz, damping),
+        );
         if dofs.contains(&Dof::Lateral) {
-            let (mass_kg_m, frequency_hz, damping_ratio) = support(Dof::Lateral)?;
-            section.lateral = Some(Translation {
-                mass_kg_m,
-                frequency_hz: Some(frequency_hz),
-                stiffness_n_m2: None,
-                damping_ratio,
-            });
+            section.lateral = Some(translation(Dof::Lateral)?);
         }
         Ok(section)
     }

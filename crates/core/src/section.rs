@@ -109,6 +109,18 @@ pub struct Translation {
     pub damping_ratio: f64,
 }
 
+impl Translation {
+    /// Of this natural frequency.
+    pub fn new(mass_kg_m: f64, frequency_hz: f64, damping_ratio: f64) -> Self {
+        Self {
+            mass_kg_m,
+            frequency_hz: Some(frequency_hz),
+            stiffness_n_m2: None,
+            damping_ratio,
+        }
+    }
+}
+
 /// Spring support of the rotation: mass moment of inertia with either frequency or stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -123,6 +135,18 @@ pub struct Rotation {
     pub stiffness_n: Option<f64>,
     /// Ratio to critical damping, dimensionless.
     pub damping_ratio: f64,
+}
+
+impl Rotation {
+    /// Of this natural frequency.
+    pub fn new(inertia_kg_m2_m: f64, frequency_hz: f64, damping_ratio: f64) -> Self {
+        Self {
+            inertia_kg_m2_m,
+            frequency_hz: Some(frequency_hz),
+            stiffness_n: None,
+            damping_ratio,
+        }
+    }
 }
 
 /// An elastically suspended deck section in smooth flow.
@@ -164,39 +188,34 @@ pub struct SectionModel {
 impl SectionModel {
     /// The section of Table 4.1 of the thesis (B 0.5 m, m 15 kg/m, J 0.6 kg·m²/m, 2 Hz, 5 Hz, ζ 0.3 %, ρ 1.19 kg/m³).
     pub fn table_4_1() -> Self {
-        Self::two_dof(0.5, 1.19, (15.0, 2.0, 0.003), (0.6, 5.0, 0.003))
+        let (heave, twist) = (
+            Translation::new(15.0, 2.0, 0.003),
+            Rotation::new(0.6, 5.0, 0.003),
+        );
+        Self::two_dof(0.5, 1.19, heave, twist)
     }
 
     /// The deck of IABSE Task Group 3.1, step 1.1a (B 31 m, m 22 740 kg/m, J 2.47e6 kg·m²/m, 0.100 and 0.278 Hz, ζ 0.3 %, ρ 1.22 kg/m³).
     pub fn iabse_1_1a() -> Self {
-        Self::two_dof(31.0, 1.22, (22_740.0, 0.100, 0.003), (2.47e6, 0.278, 0.003))
+        let heave = Translation::new(22_740.0, 0.100, 0.003);
+        Self::two_dof(31.0, 1.22, heave, Rotation::new(2.47e6, 0.278, 0.003))
     }
 
-    /// Width (m), density (kg/m³) and, for heave and rotation, (inertia, frequency in Hz, damping ratio).
+    /// A section that heaves and rotates.
     pub fn two_dof(
         width_m: f64,
         air_density_kg_m3: f64,
-        vertical: (f64, f64, f64),
-        torsion: (f64, f64, f64),
+        vertical: Translation,
+        torsion: Rotation,
     ) -> Self {
         Self {
             width_m,
             air_density_kg_m3,
             axis_offset_m: None,
             mass_offset_m: None,
-            vertical: Translation {
-                mass_kg_m: vertical.0,
-                frequency_hz: Some(vertical.1),
-                stiffness_n_m2: None,
-                damping_ratio: vertical.2,
-            },
+            vertical,
             lateral: None,
-            torsion: Rotation {
-                inertia_kg_m2_m: torsion.0,
-                frequency_hz: Some(torsion.1),
-                stiffness_n: None,
-                damping_ratio: torsion.2,
-            },
+            torsion,
         }
     }
 
@@ -274,9 +293,10 @@ impl SectionModel {
 fn rotation_support(place: &str, s: &Rotation) -> Result<Suspension> {
     support(
         place,
-        ("inertia_kg_m2_m", s.inertia_kg_m2_m),
+        ["inertia_kg_m2_m", "stiffness_n"],
+        s.inertia_kg_m2_m,
         s.frequency_hz,
-        ("stiffness_n", s.stiffness_n),
+        s.stiffness_n,
         s.damping_ratio,
     )
 }
@@ -284,9 +304,10 @@ fn rotation_support(place: &str, s: &Rotation) -> Result<Suspension> {
 fn translation_support(place: &str, s: &Translation) -> Result<Suspension> {
     support(
         place,
-        ("mass_kg_m", s.mass_kg_m),
+        ["mass_kg_m", "stiffness_n_m2"],
+        s.mass_kg_m,
         s.frequency_hz,
-        ("stiffness_n_m2", s.stiffness_n_m2),
+        s.stiffness_n_m2,
         s.damping_ratio,
     )
 }
@@ -304,9 +325,10 @@ pub struct Suspension {
 
 fn support(
     place: &str,
-    (inertia_key, inertia): (&str, f64),
+    [inertia_key, stiffness_key]: [&str; 2],
+    inertia: f64,
     frequency_hz: Option<f64>,
-    (stiffness_key, stiffness): (&str, Option<f64>),
+    stiffness: Option<f64>,
     damping_ratio: f64,
 ) -> Result<Suspension> {
     // the place is put together only where something is wrong: this is called for every sample of a random section

@@ -59,7 +59,7 @@ pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSe
         below = run.growth(speed)?;
     }
     if below.1.rate_per_s >= 0.0 {
-        return Ok(SteppedSearch::UnstableAtOrBelow(point(&below)));
+        return Ok(SteppedSearch::UnstableAtOrBelow(point(below.0, &below.1)));
     }
     if let Some(above) = above {
         return run.found(below, above, search.tolerance);
@@ -108,12 +108,13 @@ pub fn growth_by_stepping(
 ) -> Result<GrowthPoint> {
     let speed = positive("wind speed", speed_m_s)?;
     let step = positive("communication_step_s", communication_step_s)?;
-    Run::new(fmu, step)?.growth(speed).map(|at| point(&at))
+    let (speed, growth) = Run::new(fmu, step)?.growth(speed)?;
+    Ok(point(speed, &growth))
 }
 
-fn point((speed_m_s, growth): &At) -> GrowthPoint {
+fn point(speed_m_s: f64, growth: &Growth) -> GrowthPoint {
     GrowthPoint {
-        speed_m_s: *speed_m_s,
+        speed_m_s,
         growth_rate_per_s: growth.rate_per_s,
         frequency_hz: growth.frequency_rad_s / std::f64::consts::TAU,
     }
@@ -199,9 +200,8 @@ impl Run {
             if let Some(last) = &last
                 && (now.rate_per_s - last.rate_per_s).abs() <= AGREEMENT * scale
             {
-                let at = (speed, now);
-                self.points.push(point(&at));
-                return Ok(at);
+                self.points.push(point(speed, &now));
+                return Ok((speed, now));
             }
             last = Some(now);
             periods *= 2.0;

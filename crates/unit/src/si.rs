@@ -37,38 +37,42 @@ pub struct SiUnit {
 
 const fn coherent(
     name: &'static str,
-    (kg, m, s, rad): (i8, i8, i8, i8),
+    base: BaseExponents,
     display: &'static [DisplayUnit],
 ) -> SiUnit {
     SiUnit {
         name,
-        base: BaseExponents { kg, m, s, rad },
+        base,
         factor: 1.0,
         display,
     }
 }
 
+const fn exponents(kg: i8, m: i8, s: i8, rad: i8) -> BaseExponents {
+    BaseExponents { kg, m, s, rad }
+}
+
 const DEGREES_PER_RADIAN: f64 = 57.295_779_513_082_32;
 
 /// Length, m.
-pub(crate) static METRE: SiUnit = coherent("m", (0, 1, 0, 0), &[]);
+pub(crate) static METRE: SiUnit = coherent("m", exponents(0, 1, 0, 0), &[]);
 /// Speed, m/s, shown in km/h on request.
 pub(crate) static METRE_PER_SECOND: SiUnit = coherent(
     "m/s",
-    (0, 1, -1, 0),
+    exponents(0, 1, -1, 0),
     &[DisplayUnit {
         name: "km/h",
         factor: 3.6,
     }],
 );
 /// Rate of a dimensionless number, 1/s.
-pub(crate) static PER_SECOND: SiUnit = coherent("1/s", (0, 0, -1, 0), &[]);
+pub(crate) static PER_SECOND: SiUnit = coherent("1/s", exponents(0, 0, -1, 0), &[]);
 /// Acceleration, m/s².
-pub(crate) static METRE_PER_SECOND2: SiUnit = coherent("m/s2", (0, 1, -2, 0), &[]);
+pub(crate) static METRE_PER_SECOND2: SiUnit = coherent("m/s2", exponents(0, 1, -2, 0), &[]);
 /// Angle, rad, shown in degrees on request.
 pub(crate) static RADIAN: SiUnit = coherent(
     "rad",
-    (0, 0, 0, 1),
+    exponents(0, 0, 0, 1),
     &[DisplayUnit {
         name: "deg",
         factor: DEGREES_PER_RADIAN,
@@ -77,7 +81,7 @@ pub(crate) static RADIAN: SiUnit = coherent(
 /// Angular rate, rad/s.
 pub(crate) static RADIAN_PER_SECOND: SiUnit = coherent(
     "rad/s",
-    (0, 0, -1, 1),
+    exponents(0, 0, -1, 1),
     &[DisplayUnit {
         name: "deg/s",
         factor: DEGREES_PER_RADIAN,
@@ -86,26 +90,27 @@ pub(crate) static RADIAN_PER_SECOND: SiUnit = coherent(
 /// Angular acceleration, rad/s².
 pub(crate) static RADIAN_PER_SECOND2: SiUnit = coherent(
     "rad/s2",
-    (0, 0, -2, 1),
+    exponents(0, 0, -2, 1),
     &[DisplayUnit {
         name: "deg/s2",
         factor: DEGREES_PER_RADIAN,
     }],
 );
 /// Force, N.
-pub(crate) static NEWTON: SiUnit = coherent("N", (1, 1, -2, 0), &[]);
+pub(crate) static NEWTON: SiUnit = coherent("N", exponents(1, 1, -2, 0), &[]);
 /// Moment, N·m.
-pub(crate) static NEWTON_METRE: SiUnit = coherent("N.m", (1, 2, -2, 0), &[]);
+pub(crate) static NEWTON_METRE: SiUnit = coherent("N.m", exponents(1, 2, -2, 0), &[]);
 /// Force per length, N/m.
-pub(crate) static NEWTON_PER_METRE: SiUnit = coherent("N/m", (1, 0, -2, 0), &[]);
+pub(crate) static NEWTON_PER_METRE: SiUnit = coherent("N/m", exponents(1, 0, -2, 0), &[]);
 /// Moment per length, N·m/m.
-pub(crate) static NEWTON_METRE_PER_METRE: SiUnit = coherent("N.m/m", (1, 1, -2, 0), &[]);
+pub(crate) static NEWTON_METRE_PER_METRE: SiUnit = coherent("N.m/m", exponents(1, 1, -2, 0), &[]);
 /// Density, kg/m³.
-pub(crate) static KILOGRAM_PER_METRE3: SiUnit = coherent("kg/m3", (1, -3, 0, 0), &[]);
+pub(crate) static KILOGRAM_PER_METRE3: SiUnit = coherent("kg/m3", exponents(1, -3, 0, 0), &[]);
 /// Mass per length, kg/m.
-pub(crate) static KILOGRAM_PER_METRE: SiUnit = coherent("kg/m", (1, -1, 0, 0), &[]);
+pub(crate) static KILOGRAM_PER_METRE: SiUnit = coherent("kg/m", exponents(1, -1, 0, 0), &[]);
 /// Mass moment of inertia per length, kg·m²/m.
-pub(crate) static KILOGRAM_METRE2_PER_METRE: SiUnit = coherent("kg.m2/m", (1, 1, 0, 0), &[]);
+pub(crate) static KILOGRAM_METRE2_PER_METRE: SiUnit =
+    coherent("kg.m2/m", exponents(1, 1, 0, 0), &[]);
 /// Frequency, Hz: one cycle is 2π rad.
 pub(crate) static HERTZ: SiUnit = SiUnit {
     name: "Hz",

@@ -43,7 +43,8 @@ impl TurbulenceField {
 pub fn turbulence_field(
     problem: &SpanProblem<'_>,
     speed_m_s: f64,
-    (step_s, samples): (f64, usize),
+    step_s: f64,
+    samples: usize,
     seed: u64,
 ) -> Result<TurbulenceField> {
     problem.validate(speed_m_s)?;
@@ -62,17 +63,9 @@ pub fn turbulence_field(
             samples.to_string(),
         ));
     }
-    let factors = problem.wind_factors();
     let fourier = Fourier::new(samples);
     let gusts = GustComponent::BOTH.map(|component| {
-        let coefficients = coefficients(
-            problem,
-            component,
-            speed_m_s,
-            (step_s, samples),
-            seed,
-            &factors,
-        );
+        let coefficients = coefficients(problem, component, speed_m_s, step_s, samples, seed);
         let in_time = coefficients.into_iter().map(|x| fourier.sums(x));
         in_time.collect()
     });
@@ -89,10 +82,11 @@ fn coefficients(
     problem: &SpanProblem<'_>,
     component: GustComponent,
     speed: f64,
-    (step_s, samples): (f64, usize),
+    step_s: f64,
+    samples: usize,
     seed: u64,
-    factors: &[f64],
 ) -> Vec<Vec<Complex<f64>>> {
+    let factors = problem.wind_factors();
     let nodes = factors.len();
     let mut rows = vec![vec![Complex::<f64>::default(); samples]; nodes];
     let Some(gust) = problem.turbulence.component(component) else {

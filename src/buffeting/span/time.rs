@@ -78,7 +78,7 @@ pub fn span_record(
     let mut periodic = Periodic::new(coupled, speed_m_s, field.step_s, field.samples())?;
     let forces = modal_forces(problem, field, speed_m_s)?;
     let shapes = problem.bridge.shapes_at(nodes);
-    let found = run(&mut periodic, &forces, &shapes, (speed_m_s, field.step_s))?;
+    let found = run(&mut periodic, &forces, &shapes, speed_m_s, field.step_s)?;
     let list = |of: fn(&(f64, f64)) -> f64| -> Vec<[f64; 3]> {
         (0..nodes.len())
             .map(|n| std::array::from_fn(|i| of(&found[3 * n + i])))
@@ -148,13 +148,14 @@ pub(crate) fn span_ensemble(
     let mut runs = Vec::with_capacity(plan.records);
     for i in 0..plan.records {
         let seed = plan.seed.wrapping_add(i as u64);
-        let field = turbulence_field(problem, speed_m_s, (plan.step_s, samples), seed)?;
+        let field = turbulence_field(problem, speed_m_s, plan.step_s, samples, seed)?;
         let forces = modal_forces(problem, &field, speed_m_s)?;
         runs.push(run(
             &mut periodic,
             &forces,
             &shapes,
-            (speed_m_s, plan.step_s),
+            speed_m_s,
+            plan.step_s,
         )?);
         progress(i + 1, plan.records);
     }
@@ -218,7 +219,8 @@ fn run(
     periodic: &mut Periodic,
     forces: &[Vec<f64>],
     shapes: &DMatrix<f64>,
-    (speed, step): (f64, f64),
+    speed: f64,
+    step: f64,
 ) -> Result<Run> {
     let (modes, samples) = (forces.len(), forces[0].len());
     let stepper = &mut periodic.stepper;

@@ -57,7 +57,7 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
     let section = CoupledSection::with_model(problem.structure, model).unwrap();
     let grid = grid(problem, &section, speed, &plan).unwrap();
     let (stepped, _) = mean_squares(problem, &section, speed, &grid, 5).unwrap();
-    let sample = synthesise(problem, speed, (grid.step_s, grid.samples), 5).unwrap();
+    let sample = synthesise(problem, speed, grid.step_s, grid.samples, 5).unwrap();
     let n = problem.structure.dofs.len();
     let forward = FftPlanner::new().plan_fft_forward(grid.samples);
     let spectra: Vec<Vec<Complex<f64>>> = sample
@@ -178,7 +178,7 @@ fn gusts_have_the_stated_variance() {
     let mut expected = [0.0; 2];
     let variances: Vec<[f64; 2]> = (0..200)
         .map(|seed| {
-            let sample = synthesise(&problem, 40.0, (0.1, 6000), seed).unwrap();
+            let sample = synthesise(&problem, 40.0, 0.1, 6000, seed).unwrap();
             expected = sample.expected_variance;
             [
                 variance(sample.gusts.along_m_s()),
@@ -214,7 +214,7 @@ fn records_repeat_with_their_seed_and_plans_are_checked() {
         forces: &GustForces::flat_plate(),
         turbulence: &turbulence(Admittance::None),
     };
-    let record = |seed| synthesise(&problem, 40.0, (0.1, 64), seed).unwrap();
+    let record = |seed| synthesise(&problem, 40.0, 0.1, 64, seed).unwrap();
     assert_eq!(record(3), record(3));
     assert_ne!(record(3), record(4));
     let plan = TimePlan {
@@ -227,5 +227,5 @@ fn records_repeat_with_their_seed_and_plans_are_checked() {
     assert!(matches!(message, Error::Unstable(_)), "{message}");
     let message = buffeting_response(&problem, 80.0, None).unwrap_err();
     assert!(message.to_string().contains("2 growing roots"), "{message}");
-    assert!(synthesise(&problem, 40.0, (0.1, 63), 1).is_err());
+    assert!(synthesise(&problem, 40.0, 0.1, 63, 1).is_err());
 }

@@ -44,11 +44,13 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let ran = BridgeRun {
         text: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),
+        comparisons: Vec::new(),
+        failed,
     };
-    let summary = summary::leave(&ran, (&study, &results, &verdict), (&[], &failed), &mut out)?;
+    let summary = summary::leave(&ran, &study, &results, &verdict, &mut out)?;
     let answer_json =
         serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
-    let passed = failed.is_empty();
+    let passed = ran.failed.is_empty();
     let written = out.commit()?;
     text.push_str(&list(&written));
     Ok(Answer::new(text, &answer_json)?
@@ -74,7 +76,7 @@ fn trained(
 ) -> Result<(TrainedModel, KnownUncertainty)> {
     let records = RecordSet::staged(stages::tunnel(study, deck, out, progress)?)?;
     let mut failed = Vec::new();
-    let models = stages::train(study, deck, Some(&records), (out, &mut failed), progress)?;
+    let models = stages::train(study, deck, Some(&records), out, &mut failed, progress)?;
     // the model of the section alone is not what is exported here
     out.discard(stages::MODEL_FILE);
     let first = models.into_iter().next();

@@ -78,19 +78,20 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     let ran = summary::BridgeRun {
         text: args.bridge.text()?,
         command: args.command(scattered.is_some()),
+        comparisons,
+        failed,
     };
     if is_of_a_study(&out.target(SUMMARY)) {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
-        let said = (&comparisons[..], &failed[..]);
-        summary::leave(&ran, (&study, &results, &verdict), said, &mut out)?;
+        summary::leave(&ran, &study, &results, &verdict, &mut out)?;
     }
     let json = serde_json::json!({
-        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
+        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": ran.failed
     });
     Ok(out
         .answer(text, json)?
-        .passed_if(failed.is_empty())
+        .passed_if(ran.failed.is_empty())
         .with_outcome_of(&verdict))
 }
 

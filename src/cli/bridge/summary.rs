@@ -17,6 +17,10 @@ pub(super) struct BridgeRun {
     pub(super) text: String,
     /// The command that makes the results again.
     pub(super) command: String,
+    /// What was found beside the onset, in words.
+    pub(super) comparisons: Vec<String>,
+    /// Parts that failed, in words.
+    pub(super) failed: Vec<String>,
 }
 
 /// What `summary.json` holds.
@@ -33,11 +37,12 @@ pub(super) struct BridgeSummary<'a> {
     failed: &'a [String],
 }
 
-/// Leaves summary and page; `said` is what else was found, in words.
+/// Leaves summary and page.
 pub(super) fn leave<'a>(
-    ran: &BridgeRun,
-    (study, results, verdict): (&'a BridgeStudy, &'a BridgeFlutter, &Verdict),
-    (said, failed): (&[String], &'a [String]),
+    ran: &'a BridgeRun,
+    study: &'a BridgeStudy,
+    results: &'a BridgeFlutter,
+    verdict: &Verdict,
     out: &mut OutputDir,
 ) -> Result<BridgeSummary<'a>> {
     out.stage(REPORT)?;
@@ -49,7 +54,7 @@ pub(super) fn leave<'a>(
             bridge_file: ran.text.clone(),
             command: ran.command.clone(),
             verdict: verdict.clone(),
-            comparisons: [beside_the_onset(results), said.to_vec()].concat(),
+            comparisons: [beside_the_onset(results), ran.comparisons.clone()].concat(),
             nodes: study.by_model.nodes.len(),
             length_m: study.by_model.nodes.iter().map(|n| n.length_m).sum(),
             width_m: study.by_model.width_m(),
@@ -61,7 +66,7 @@ pub(super) fn leave<'a>(
         findings: &study.findings,
         onsets: results.onsets().collect(),
         flutter: results,
-        failed,
+        failed: &ran.failed,
     };
     out.write_json(SUMMARY, &summary)?;
     let page = report::page(out.staging(), &out.target(""))?;

@@ -69,7 +69,8 @@ impl Common {
 pub(super) fn compared<T>(
     compare: fn(&CompareOptions, OnRecords<'_>) -> Result<T>,
     options: &CompareOptions,
-    (progress, what): (&Progress, &'static str),
+    progress: &Progress,
+    what: &'static str,
 ) -> Result<T> {
     let stage = progress.steps(what);
     compare(options, &|done, of| stage.at(done as u64, of as u64))

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &CompareDecksArgs, progress: &Progress) -> Result<Answer
         .common
         .options(args.decks.clone(), args.trained_on.clone());
     let mut out = OutputDir::new(&args.common.out)?;
-    let results = compared(compare_decks, &options, (progress, "records"))?;
+    let results = compared(compare_decks, &options, progress, "records")?;
     out.write("decks_metrics.csv", score_table(&results.scores))?;
     for (stem, figure) in figures(&options, &results)? {
         drawn::write(&stem, &mut out, || Ok(figure))?;
@@ -77,8 +77,12 @@ fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(S
 /// The section of the page of the thesis.
 pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
     let options = common.options(THESIS_DECKS.map(str::to_owned).to_vec(), None);
-    let shown = (progress, "records of several girders");
-    let results = compared(compare_decks, &options, shown)?;
+    let results = compared(
+        compare_decks,
+        &options,
+        progress,
+        "records of several girders",
+    )?;
     let drawn = figures(&options, &results)?.into_iter();
     let drawn = drawn.map(|(stem, figure)| (format!("Figures 3.10 to 3.13: {stem}"), figure));
     let title = "3.5.4 Several girders, on rebuilt records";

@@ -34,7 +34,7 @@ pub(crate) struct CompareModelsArgs {
 pub(crate) fn run(args: &CompareModelsArgs, progress: &Progress) -> Result<Answer> {
     let options = args.common.options(vec![args.deck.clone()], None);
     let mut out = OutputDir::new(&args.common.out)?;
-    let results = compared(compare_models, &options, (progress, "records"))?;
+    let results = compared(compare_models, &options, progress, "records")?;
     out.write("models_metrics.csv", score_table(&results.scores))?;
     out.write("models_transfer.csv", transfer_table(&results))?;
     figures::write("models_transfer", &mut out, || transfer_functions(&results))?;
@@ -167,8 +167,8 @@ fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
 /// The section of the page of the thesis.
 pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
     let deck = "LN21-5200".to_owned();
-    let shown = (progress, "records of one girder");
-    let results = compared(compare_models, &common.options(vec![deck], None), shown)?;
+    let options = common.options(vec![deck], None);
+    let results = compared(compare_models, &options, progress, "records of one girder")?;
     let (first, second) = (transfer_functions(&results)?, derivatives(&results)?);
     let mut figures = vec![
         ("Transfer functions (Figures 3.18 to 3.22)".into(), first),
@@ -237,7 +237,7 @@ fn transfer_table(results: &ModelsComparison) -> String {
     for entry in &results.entries {
         for model in &entry.models {
             for (point, off) in entry.points.iter().zip(&model.points) {
-                let BandCheck { magnitude, phase } = inside(off);
+                let BandCheck { magnitude, phase } = inside(off.0, off.1);
                 let _ = writeln!(
                     text,
                     "{},{},{:.4},{:.5},{:.6},{:.3},{},{:.3},{:.3},{magnitude},{phase}",

@@ -264,7 +264,8 @@ impl BridgeStudy {
         turbulence_field(
             &self.problem(block)?,
             speed_m_s,
-            (plan.step_s, samples),
+            plan.step_s,
+            samples,
             plan.seed,
         )
     }

@@ -10,7 +10,7 @@ use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
 use crate::error::{Error, Result};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
-use crate::response::{Inputs, NonlinearSection, Stepper};
+use crate::response::{GustyWind, Inputs, NonlinearSection, Stepper};
 use crate::section::{Dof, Structure};
 use crate::verdict::{DivergenceReading, Evidence, FlutterReading, ForceBasis, Verdict};
 use serde::Serialize;
@@ -174,11 +174,13 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
     let start: Vec<f64> = (0..2 * n)
         .map(|i| released[i] + equilibrium.displacement.get(i).copied().unwrap_or(0.0))
         .collect();
-    let wind = (run.wind_speed_m_s, &gusts);
-    let grid = (run.step_s, steps);
+    let wind = GustyWind {
+        speed_m_s: run.wind_speed_m_s,
+        gusts: &gusts,
+    };
     let section = NonlinearSection::new(structure.clone(), theory)?;
-    let nonlinear = section.run(&start, wind, grid, STEP_TOLERANCE)?;
-    let about = linear_rows(&structure, &linear, &released, wind, grid)?;
+    let nonlinear = section.run(&start, wind, run.step_s, steps, STEP_TOLERANCE)?;
+    let about = linear_rows(&structure, &linear, &released, wind, run.step_s, steps)?;
     let with_rest = |row: Vec<f64>| -> Vec<f64> {
         let rest = equilibrium
             .displacement
@@ -226,7 +228,8 @@ fn gusts(
     let sample = synthesise(
         &problem,
         run.wind_speed_m_s,
-        (run.step_s, samples.max(16)),
+        run.step_s,
+        samples.max(16),
         run.seed,
     )?;
     Ok(sample.gusts)
@@ -237,23 +240,24 @@ fn linear_rows(
     structure: &Structure,
     linear: &LinearQuasiSteady,
     released: &[f64],
-    (speed, gusts): (f64, &GustSeries),
-    (step_s, steps): (f64, usize),
+    wind: GustyWind<'_>,
+    step_s: f64,
+    steps: usize,
 ) -> Result<Vec<Vec<f64>>> {
     let n = structure.dofs.len();
     let mut stepper = Stepper::new(CoupledSection::with_model(structure, linear)?);
     let mut state = stepper.released(&released[..n], &released[n..])?;
-    let half_rho_v = 0.5 * structure.air_density_kg_m3 * speed;
+    let half_rho_v = 0.5 * structure.air_density_kg_m3 * wind.speed_m_s;
     let buffeting = structure.forces_at_axis(linear.buffeting().clone());
     let force = |time: f64| -> Vec<f64> {
-        let (u, w) = gusts.at(time);
+        let (u, w) = wind.gusts.at(time);
         let rows = buffeting.row_iter().zip(&structure.dofs);
         rows.map(|(row, dof)| {
             half_rho_v * dof.force_scale(structure.width_m) * (row[0] * u + row[1] * w)
         })
         .collect()
     };
-    let mut inputs = Inputs::steady(speed, n);
+    let mut inputs = Inputs::steady(wind.speed_m_s, n);
     let mut rows = vec![state.values.clone()];
     for i in 0..steps {
         let (now, next) = (force(step_s * i as f64), force(step_s * (i + 1) as f64));

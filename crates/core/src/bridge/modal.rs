@@ -36,7 +36,8 @@ impl Bridge {
             DMatrix::from_diagonal(&DVector::from_iterator(self.modes.len(), values))
         };
         Structure::modal(
-            (self.width_m(), self.air_density_kg_m3),
+            self.width_m(),
+            self.air_density_kg_m3,
             [
                 diagonal(&|_, _| 1.0),
                 diagonal(&|omega, zeta| 2.0 * zeta * omega),

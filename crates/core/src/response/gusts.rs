@@ -42,6 +42,19 @@ struct LagSeries {
     last: f64,
 }
 
+/// A part of a step, over which one series reaches.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SeriesPart {
+    /// Time since the start of the step, s.
+    pub start: f64,
+    /// How long it is, s.
+    pub tau: f64,
+    /// Wind speed at its beginning, m/s.
+    pub wind: f64,
+    /// How much that changes over it, m/s.
+    pub change: f64,
+}
+
 /// Gusts over a piece of time, in each channel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GustCourse<'a> {
@@ -146,23 +159,22 @@ impl Gusts {
         s.last = s.largest;
     }
 
-    /// The force of order `k` in time over `tau` from `start` on, in wind that begins at `wind` and changes by `change`; adds
-    /// the lagging gusts of order `k + 1` to `sum`.
+    /// The force of order `k` over a part; adds the lagging gusts of order `k + 1` to `sum`.
     pub(super) fn next(
         &mut self,
         k: usize,
-        (start, tau): (f64, f64),
-        (wind, change): (f64, f64),
+        part: SeriesPart,
         course: GustCourse<'_>,
         sum: &mut [f64],
     ) -> &[f64] {
         let mut s = std::mem::take(&mut self.series);
-        let factor = tau / (k + 1) as f64;
+        let SeriesPart { wind, change, .. } = part;
+        let factor = part.tau / (k + 1) as f64;
         s.force.fill(0.0);
         for j in 0..self.channels {
             let gust = match k {
-                0 => course.at(j, start),
-                1 => tau * stated(course.rate, j),
+                0 => course.at(j, part.start),
+                1 => part.tau * stated(course.rate, j),
                 _ => 0.0,
             };
             let range = self.of_channel(j);

@@ -31,6 +31,28 @@ pub struct StripFlow {
     pub wind_factor: f64,
 }
 
+impl StripFlow {
+    /// The air that passes the strip in this mean wind (m/s), of this density (kg/m³).
+    pub fn in_air(&self, mean_wind_m_s: f64, density_kg_m3: f64) -> Airflow {
+        Airflow {
+            wind_m_s: mean_wind_m_s * self.wind_factor,
+            width_m: self.width_m,
+            density_kg_m3,
+        }
+    }
+}
+
+/// The air that passes a strip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Airflow {
+    /// Wind speed there, m/s.
+    pub wind_m_s: f64,
+    /// Width of the deck, m.
+    pub width_m: f64,
+    /// kg/m³.
+    pub density_kg_m3: f64,
+}
+
 /// What is known of the motion of one coordinate at a point of time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct KnownMotion {
@@ -196,7 +218,8 @@ impl PrescribedForces {
             advance(
                 &self.realization,
                 self.size,
-                (filters, &mut phase[0]),
+                filters,
+                &mut phase[0],
                 &way,
                 &mut self.buffers,
             )?;
@@ -213,7 +236,8 @@ impl PrescribedForces {
     pub fn ahead(
         &mut self,
         state: &[f64],
-        (s, flow): (usize, &StripFlow),
+        s: usize,
+        flow: &StripFlow,
         ahead_s: f64,
         density: f64,
         forces: &mut [ForceAhead],
@@ -222,7 +246,7 @@ impl PrescribedForces {
             forces.fill(ForceAhead::default());
             return Ok(());
         }
-        let wind = state[1] * flow.wind_factor;
+        let air = flow.in_air(state[1], density);
         self.load_courses(state, s, flow, 0.0);
         let strip = &state[self.strip(s)];
         let mut phase = strip[0];
@@ -232,18 +256,18 @@ impl PrescribedForces {
         let way = MotionInterval {
             courses: &self.courses,
             duration_s: ahead_s,
-            rate_per_s: wind / flow.width_m,
+            rate_per_s: air.wind_m_s / air.width_m,
             strips: (state.len() - SHARED) / self.per_strip(),
         };
         if ahead_s > 0.0 {
             let (realization, size) = (&self.realization, self.size);
-            let carried = (filters.as_mut_slice(), &mut phase);
-            advance(realization, size, carried, &way, &mut self.buffers)?;
+            let buffers = &mut self.buffers;
+            advance(realization, size, &mut filters, &mut phase, &way, buffers)?;
         }
         for course in &mut self.courses {
             *course = course.from(ahead_s);
         }
-        self.forces(&filters, (wind, flow.width_m, density), forces);
+        self.forces(&filters, air, forces);
         self.filters = filters;
         Ok(())
     }
@@ -301,12 +325,8 @@ impl PrescribedForces {
     }
 
     /// `½ρ s (V²(e₀ r + C z) + V B e₁ ṙ + B² e₂ r̈)` with the scale `s` of each force, and its rate.
-    fn forces(
-        &self,
-        filters: &[f64],
-        (wind, width, density): (f64, f64, f64),
-        forces: &mut [ForceAhead],
-    ) {
+    fn forces(&self, filters: &[f64], air: Airflow, forces: &mut [ForceAhead]) {
+        let (wind, width) = (air.wind_m_s, air.width_m);
         let mut motion = [[0.0; COEFFICIENTS]; Dof::THREE.len()];
         for (motion, course) in motion.iter_mut().zip(&self.courses) {
             *motion = course.derivatives();
@@ -317,7 +337,7 @@ impl PrescribedForces {
             (0..c.ncols()).map(|k| c[(i, k)] * z(k)).sum()
         };
         for (i, (force, dof)) in forces.iter_mut().zip(&self.dofs).enumerate() {
-            let scale = 0.5 * density * dof.force_scale(width);
+            let scale = 0.5 * air.density_kg_m3 * dof.force_scale(width);
             *force = match &self.realization {
                 Realization::Continuous(c) => {
                     let fed = |order: usize| {
@@ -353,13 +373,14 @@ fn unsettled() -> Error {
 fn advance(
     realization: &Realization,
     size: f64,
-    (filters, phase): (&mut [f64], &mut f64),
+    filters: &mut [f64],
+    phase: &mut f64,
     way: &MotionInterval,
     buffers: &mut Buffers,
 ) -> Result<()> {
     match realization {
         Realization::Continuous(c) => advance_continuous(c, size, filters, way, buffers),
-        Realization::Discrete(d) => advance_discrete(d, (filters, phase), way, buffers),
+        Realization::Discrete(d) => advance_discrete(d, filters, phase, way, buffers),
     }
 }
 

@@ -25,6 +25,15 @@ pub struct NonlinearSection {
     places: (usize, Option<usize>, usize),
 }
 
+/// A mean wind with gusts.
+#[derive(Debug, Clone, Copy)]
+pub struct GustyWind<'a> {
+    /// Mean speed, m/s.
+    pub speed_m_s: f64,
+    /// About the mean.
+    pub gusts: &'a GustSeries,
+}
+
 /// Motion of one run, and how exact it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NonlinearRun {
@@ -64,7 +73,7 @@ impl NonlinearSection {
         })
     }
 
-    /// Runs from the state `[q, q̇]` for `steps` steps of `step_s` in the mean wind `speed_m_s` with gusts.
+    /// Runs from the state `[q, q̇]` for `steps` steps of `step_s`.
     ///
     /// The Runge–Kutta step is halved until a further halving changes no quantity by more than `tolerance` of its
     /// largest value; the finer run is returned. Its error is about a fifteenth of the stated difference.
@@ -77,32 +86,34 @@ impl NonlinearSection {
     pub fn run(
         &self,
         initial: &[f64],
-        (speed_m_s, gusts): (f64, &GustSeries),
-        (step_s, steps): (f64, usize),
+        wind: GustyWind<'_>,
+        step_s: f64,
+        steps: usize,
         tolerance: f64,
     ) -> Result<NonlinearRun> {
-        positive("wind speed", speed_m_s)?;
+        positive("wind speed", wind.speed_m_s)?;
         positive("step size", step_s)?;
         positive("tolerance", tolerance)?;
         let n = self.structure.dofs.len();
         finite_numbers("initial state", initial, 2 * n)?;
         let duration = step_s * steps as f64;
         // the last step may end on the last gust but for rounding
-        if duration > gusts.duration_s() * (1.0 + 1e-9) {
+        if duration > wind.gusts.duration_s() * (1.0 + 1e-9) {
             return Err(Error::input(
                 "gusts",
                 format!("at least {duration} s of them"),
-                format!("{} s", gusts.duration_s()),
+                format!("{} s", wind.gusts.duration_s()),
             ));
         }
-        self.refined(initial, (speed_m_s, gusts), (step_s, steps), tolerance)
+        self.refined(initial, wind, step_s, steps, tolerance)
     }
 
     fn refined(
         &self,
         initial: &[f64],
-        wind: (f64, &GustSeries),
-        (step_s, steps): (f64, usize),
+        wind: GustyWind<'_>,
+        step_s: f64,
+        steps: usize,
         tolerance: f64,
     ) -> Result<NonlinearRun> {
         let fastest = (0..self.structure.dofs.len())
@@ -110,11 +121,11 @@ impl NonlinearSection {
             .fold(0.0, f64::max);
         let period = std::f64::consts::TAU / fastest;
         let mut substeps = (step_s / (FIRST_STEP * period)).ceil().max(1.0) as usize;
-        let mut coarse = self.rows(initial, wind, (step_s, steps), substeps)?;
+        let mut coarse = self.rows(initial, wind, step_s, steps, substeps)?;
         let mut step_error = f64::INFINITY;
         for _ in 0..MAX_HALVINGS {
             substeps *= 2;
-            let fine = self.rows(initial, wind, (step_s, steps), substeps)?;
+            let fine = self.rows(initial, wind, step_s, steps, substeps)?;
             step_error = largest_difference(&coarse, &fine);
             if step_error <= tolerance {
                 return Ok(NonlinearRun {
@@ -134,8 +145,9 @@ impl NonlinearSection {
     fn rows(
         &self,
         initial: &[f64],
-        wind: (f64, &GustSeries),
-        (step_s, steps): (f64, usize),
+        wind: GustyWind<'_>,
+        step_s: f64,
+        steps: usize,
         substeps: usize,
     ) -> Result<Vec<Vec<f64>>> {
         if steps as f64 * substeps as f64 > MAX_STEPS {
@@ -154,7 +166,7 @@ impl NonlinearSection {
                 // from the count, so that no rounding accumulates
                 let time = step_s * i as f64 + h * j as f64;
                 state = self
-                    .runge_kutta(&state, wind, (time, h))
+                    .runge_kutta(&state, wind, time, h)
                     .map_err(|e| at_time(e, time))?;
             }
             rows.push(state.as_slice().to_vec());
@@ -165,8 +177,9 @@ impl NonlinearSection {
     fn runge_kutta(
         &self,
         z: &DVector<f64>,
-        wind: (f64, &GustSeries),
-        (t, h): (f64, f64),
+        wind: GustyWind<'_>,
+        t: f64,
+        h: f64,
     ) -> Result<DVector<f64>> {
         let k1 = self.rate(z, wind, t)?;
         let k2 = self.rate(&(z + &k1 * (0.5 * h)), wind, t + 0.5 * h)?;
@@ -176,18 +189,13 @@ impl NonlinearSection {
     }
 
     /// `d/dt [q, q̇]`.
-    fn rate(
-        &self,
-        z: &DVector<f64>,
-        (speed, gusts): (f64, &GustSeries),
-        time: f64,
-    ) -> Result<DVector<f64>> {
+    fn rate(&self, z: &DVector<f64>, wind: GustyWind<'_>, time: f64) -> Result<DVector<f64>> {
         let s = &self.structure;
         let n = s.dofs.len();
-        let (u, w) = gusts.at(time);
+        let (u, w) = wind.gusts.at(time);
         let (vertical, lateral, torsion) = self.places;
         let wind = RelativeWind {
-            along_m_s: speed + u - lateral.map_or(0.0, |i| z[n + i]),
+            along_m_s: wind.speed_m_s + u - lateral.map_or(0.0, |i| z[n + i]),
             // of the reference point
             vertical_m_s: w - z[n + vertical] - s.axis_offset_m * z[n + torsion],
             rotation_m_s: s.width_m * z[n + torsion],

@@ -56,7 +56,7 @@ impl Stepper {
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
             let again = stays && sampled && next.phase == 0.0;
-            self.move_structure(next, inputs, (time, piece), again)?;
+            self.move_structure(next, inputs, time, piece, again)?;
             if sampled {
                 self.sampling()?.sample(&mut next.values);
                 next.phase = 0.0;
@@ -96,7 +96,7 @@ impl Stepper {
             state.values.resize(column.len(), 0.0);
             state.values[j] = 1.0;
             state.gusts.clear();
-            written = self.move_structure(&mut state, steady, (0.0, step), false);
+            written = self.move_structure(&mut state, steady, 0.0, step, false);
             if written.is_err() {
                 break;
             }
@@ -118,7 +118,8 @@ impl Stepper {
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        (time, piece): (f64, f64),
+        time: f64,
+        piece: f64,
         again: bool,
     ) -> Result<()> {
         if piece <= 0.0 {

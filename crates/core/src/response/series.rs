@@ -13,7 +13,7 @@
 //! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy. Gusts add their lags
 //! to the system and their force to `w`.
 
-use super::gusts::{GustCourse, Gusts};
+use super::gusts::{GustCourse, Gusts, SeriesPart};
 use super::packed::{Linked, Packed, apply};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -186,7 +186,7 @@ impl PowerSeries {
         let acting = acting.is_some();
         let tau = step / parts;
         for i in 0..parts as usize {
-            self.part(drive, (i as f64 * tau, tau), acting);
+            self.part(drive, i as f64 * tau, tau, acting);
         }
         let sum = &self.work.sum;
         if !sum.iter().chain(&self.work.gusts).all(|x| x.is_finite()) {
@@ -204,10 +204,16 @@ impl PowerSeries {
     }
 
     /// One part from the time `start` on.
-    fn part(&mut self, drive: &Drive<'_>, (start, tau): (f64, f64), gusts: bool) {
+    fn part(&mut self, drive: &Drive<'_>, start: f64, tau: f64, gusts: bool) {
         // rounding must not turn a wind that comes to rest into a negative one
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
+        let part = SeriesPart {
+            start,
+            tau,
+            wind,
+            change,
+        };
         self.accelerations(drive, start, tau);
         let norm = self.norm(wind + change.abs(), tau);
         let work = &mut self.work;
@@ -226,15 +232,13 @@ impl PowerSeries {
             self.aerodynamic.apply(filtered, &mut work.aerodynamic[0]);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
-                let time = (start, tau);
-                let force = gusts.next(k, time, (wind, change), drive.gust, &mut work.gusts);
+                let force = gusts.next(k, part, drive.gust, &mut work.gusts);
                 for (i, push) in work.by_gusts.iter_mut().enumerate() {
                     *push = (0..self.dofs).map(|j| self.force[(i, j)] * force[j]).sum();
                     pushed = f64::max(pushed, tau * push.abs());
                 }
             }
-            let factor = tau / (k + 1) as f64;
-            work.next_term(self.dofs, factor, self.rate, (wind, change), k);
+            work.next_term(self.dofs, part, self.rate, k);
             let size = f64::max(largest_of(&work.term), pushed);
             largest = if size > largest { size } else { largest };
             last = [size, last[0], last[1]];
@@ -279,14 +283,9 @@ impl Work {
     }
 
     /// Replaces the term by the next one and adds it to the sum.
-    fn next_term(
-        &mut self,
-        n: usize,
-        factor: f64,
-        rate: f64,
-        (wind, change): (f64, f64),
-        k: usize,
-    ) {
+    fn next_term(&mut self, n: usize, part: SeriesPart, rate: f64, k: usize) {
+        let SeriesPart { wind, change, .. } = part;
+        let factor = part.tau / (k + 1) as f64;
         let push = self.push.get(k);
         let [s, s_before] = &self.structure;
         let [g, g_before, g_first] = &self.aerodynamic;

@@ -1,6 +1,6 @@
 //! Gusts on strips whose motion is prescribed: their lags go on exactly from one point of time to the next.
 
-use super::prescribed::ForceAhead;
+use super::prescribed::{Airflow, ForceAhead};
 use crate::aerodynamics::GustForce;
 use crate::section::Dof;
 
@@ -45,17 +45,16 @@ impl StripGusts {
         before.copy_from_slice(&gust);
     }
 
-    /// Adds the force of the gusts `ahead_s` seconds after the newest point, until then running on at `rate` (m/s²), in a mean
-    /// wind (m/s) on a deck of this width (m) in air of this density (kg/m³).
+    /// Adds the force of the gusts `ahead_s` seconds after the newest point, until then running on at `rate` (m/s²).
     pub fn add_ahead(
         &self,
         strip: &[f64],
         rate: [f64; 2],
         ahead_s: f64,
-        (wind, width, density): (f64, f64, f64),
+        air: Airflow,
         forces: &mut [ForceAhead],
     ) {
-        let passing = wind / width;
+        let passing = air.wind_m_s / air.width_m;
         let gust = [0, 1].map(|j| strip[j] + ahead_s * rate[j]);
         let (mut passed, mut passed_rate) = (gust, rate);
         if !self.lags.is_empty() {
@@ -68,7 +67,7 @@ impl StripGusts {
             }
         }
         for ((force, dof), row) in forces.iter_mut().zip(&self.dofs).zip(&self.coefficients) {
-            let scale = 0.5 * density * wind * dof.force_scale(width);
+            let scale = 0.5 * air.density_kg_m3 * air.wind_m_s * dof.force_scale(air.width_m);
             force.force += scale * (row[0] * passed[0] + row[1] * passed[1]);
             force.rate += scale * (row[0] * passed_rate[0] + row[1] * passed_rate[1]);
         }
@@ -106,6 +105,12 @@ mod tests {
     use super::*;
     use crate::aerodynamics::RationalAdmittance;
 
+    const AIR: Airflow = Airflow {
+        wind_m_s: 30.0,
+        width_m: 20.0,
+        density_kg_m3: 1.25,
+    };
+
     #[test]
     fn a_lag_follows_its_equation() {
         // closed form for u = t, p = 2, from 1: g = t − ½ + 1.5 e^(−2t)
@@ -134,7 +139,7 @@ mod tests {
             gusts.take(&mut strip, [2.0, -1.0], None);
             gusts.take(&mut strip, [2.0, -1.0], Some(0.7));
             let mut forces = [ForceAhead::default(); 2];
-            gusts.add_ahead(&strip, [0.0; 2], 0.3, (30.0, 20.0, 1.25), &mut forces);
+            gusts.add_ahead(&strip, [0.0; 2], 0.3, AIR, &mut forces);
             let lift = 0.5 * 1.25 * 30.0 * 20.0 * (0.2 * 2.0 - 5.0);
             assert!((forces[0].force - lift).abs() < 1e-12 * lift.abs());
             assert!(forces[0].rate.abs() < 1e-9);
@@ -156,7 +161,7 @@ mod tests {
         gusts.take(&mut strip, [2.0, -1.0], Some(0.7));
         let at = |ahead| {
             let mut forces = [ForceAhead::default(); 2];
-            gusts.add_ahead(&strip, [0.3, -0.2], ahead, (30.0, 20.0, 1.25), &mut forces);
+            gusts.add_ahead(&strip, [0.3, -0.2], ahead, AIR, &mut forces);
             forces
         };
         let step = 1e-4;

@@ -41,7 +41,8 @@ impl Structure {
     /// A generalised coordinate counts as a rotation does: it has no unit, and its force is made dimensionless with
     /// `½ρV²B²`, a work per unit coordinate.
     pub fn modal(
-        (width_m, air_density_kg_m3): (f64, f64),
+        width_m: f64,
+        air_density_kg_m3: f64,
         [mass, damping, stiffness]: [DMatrix<f64>; 3],
         mode_names: Vec<String>,
     ) -> Self {

@@ -113,7 +113,7 @@ pub fn fit_discrete(
         per_input: parameters.iter().map(|(_, l)| *l).max().unwrap_or(0),
         constant: fit.static_term == StaticTerm::Estimated,
     };
-    let pass = discrete_pass(&records, (order, &alphas), (fit.weights, 0), progress)?;
+    let pass = discrete_pass(&records, order, &alphas, fit.weights, 0, progress)?;
     let systems = ForceSystems {
         counts: parameters.iter().map(|(_, filters)| *filters).collect(),
         systems: pass.systems(),
@@ -157,8 +157,10 @@ pub fn fit_discrete(
 /// input of each candidate; `stretches` as in [`PassPlan`].
 pub(crate) fn discrete_pass(
     records: &Records,
-    (order, alphas): (ColumnOrder, &[Vec<f64>]),
-    (weights, stretches): (TimeWeights, usize),
+    order: ColumnOrder,
+    alphas: &[Vec<f64>],
+    weights: TimeWeights,
+    stretches: usize,
     progress: OnProgress<'_>,
 ) -> Result<Pass> {
     let plan = PassPlan {

@@ -133,14 +133,16 @@ impl<'a> Dissipation<'a> {
                 if start.amax() == 0.0 {
                     return Ok(None);
                 }
-                let held = (stated.as_slice(), holds.as_slice());
-                return Ok(Some(self.solution(entries, at, &edges, held, equalities)));
+                let (free, coefficients) = at;
+                let held = held(&stated, &holds);
+                let solution = self.solution(entries, free, coefficients, &edges, held, equalities);
+                return Ok(Some(solution));
             }
         }
         for _ in 0..ROUNDS {
             let cone = |s: &Stated| {
                 let edge = &edges[s.condition.part];
-                s.cone(&self.motions, entries, (&at_start, edge), &equalities)
+                s.cone(&self.motions, entries, &at_start, edge, &equalities)
             };
             let cones: Vec<_> = stated.iter().map(cone).collect();
             let found = shortest(&cones, width)?;
@@ -150,8 +152,10 @@ impl<'a> Dissipation<'a> {
             holds = found.holds;
             let more = self.broken_between(&at.1, &edges, strictness);
             if more.is_empty() {
-                let held = (stated.as_slice(), holds.as_slice());
-                return Ok(Some(self.solution(entries, at, &edges, held, equalities)));
+                let (free, coefficients) = at;
+                let held = held(&stated, &holds);
+                let solution = self.solution(entries, free, coefficients, &edges, held, equalities);
+                return Ok(Some(solution));
             }
             stated.extend(more);
         }
@@ -202,21 +206,16 @@ impl<'a> Dissipation<'a> {
     fn solution(
         &self,
         entries: &[LinearEntry],
-        (free, coefficients): (DVector<f64>, Vec<Vec<f64>>),
+        free: DVector<f64>,
+        coefficients: Vec<Vec<f64>>,
         edges: &[TestedRangeEnd],
-        (stated, holds): (&[Stated], &[bool]),
+        held: Vec<&Stated>,
         equalities: Vec<DVector<f64>>,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let account = |e: &Equation| e.account(self.motions.count, &alone, &coefficients);
         let mut active: Vec<_> = self.equations.iter().map(account).collect();
         let mut gradients = equalities;
-        let mut held: Vec<&Stated> = stated
-            .iter()
-            .zip(holds)
-            .filter_map(|(s, held)| held.then_some(s))
-            .collect();
-        held.sort_by(|a, b| a.condition.order(&b.condition));
         for s in held {
             let (excesses, directions) = self.excesses(s, &coefficients, edges);
             for (m, excess) in excesses.iter().enumerate() {
@@ -224,7 +223,7 @@ impl<'a> Dissipation<'a> {
                     continue;
                 }
                 let direction = directions.column(m).into_owned();
-                let constraint = self.held_back((s, &direction), edges, (&alone, &coefficients));
+                let constraint = self.held_back(s, &direction, edges, &alone, &coefficients);
                 gradients.extend(self.free_gradient(s, &constraint, entries));
                 active.push(constraint);
             }
@@ -240,9 +239,11 @@ impl<'a> Dissipation<'a> {
     /// The constraint that a condition is in one direction of its motions.
     fn held_back(
         &self,
-        (stated, direction): (&Stated, &DVector<f64>),
+        stated: &Stated,
+        direction: &DVector<f64>,
         edges: &[TestedRangeEnd],
-        (alone, coefficients): (&[Vec<f64>], &[Vec<f64>]),
+        alone: &[Vec<f64>],
+        coefficients: &[Vec<f64>],
     ) -> ActiveConstraint {
         let Condition {
             kind, k, part, own, ..
@@ -282,4 +283,12 @@ impl<'a> Dissipation<'a> {
         let free = held - follows.gradient(&self.motions, &limit.weights, entries);
         (free.norm() > NOTHING_HELD * norm).then_some(free)
     }
+}
+
+/// The conditions that hold something, in their order.
+fn held<'a>(stated: &'a [Stated], holds: &[bool]) -> Vec<&'a Stated> {
+    let pairs = stated.iter().zip(holds);
+    let mut held: Vec<&Stated> = pairs.filter_map(|(s, held)| held.then_some(s)).collect();
+    held.sort_by(|a, b| a.condition.order(&b.condition));
+    held
 }

@@ -134,7 +134,7 @@ fn fit_linear(
     if bound.held.is_none() {
         return Ok(alone);
     }
-    let (poles, search) = choose_poles_together(&joint, &forms, fit, (tested, poles))?;
+    let (poles, search) = choose_poles_together(&joint, &forms, fit, tested, poles)?;
     let held = joint.at(&poles)?;
     let reports = held_reports(&held, entries, &poles)?;
     let model = model_of(dofs, fit, &reports)?;
@@ -142,7 +142,8 @@ fn fit_linear(
     let constraints = ConstraintReport::new(
         active,
         dofs,
-        (&alone.reports, &bound.bases),
+        &alone.reports,
+        &bound.bases,
         &reports,
         alone.model,
     );

@@ -326,8 +326,7 @@ impl GridAxis {
                     constant: true,
                 };
                 let alphas: Vec<Vec<f64>> = alphas.iter().map(|a| vec![*a; inputs]).collect();
-                let columns = (order, alphas.as_slice());
-                discrete_pass(records, columns, (*weights, 1), progress)
+                discrete_pass(records, order, &alphas, *weights, 1, progress)
             }
             Self::Continuous(poles, fit) => {
                 let task = RecordFit {
@@ -345,7 +344,7 @@ impl GridAxis {
                     stretches: 1,
                     ..Rows::THINNED
                 };
-                task.pass(&candidates, rows, (1, 1))
+                task.pass(&candidates, rows, 1, 1)
             }
         }
     }

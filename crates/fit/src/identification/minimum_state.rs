@@ -143,7 +143,7 @@ impl LagSearch<'_> {
                 } else {
                     let residuals = |poles: &[f64]| self.residuals_of_roger(&roger, poles);
                     if let Ok(found) =
-                        search_poles(self.states, (&fit.poles, *bounds), None, &residuals)
+                        search_poles(self.states, &fit.poles, *bounds, None, &residuals)
                     {
                         lags.push(found.chosen.poles);
                     }

@@ -116,7 +116,7 @@ impl<'a> RecordFit<'a> {
             counts.push(of_force.len());
             candidates.extend(of_force);
         }
-        let pass = self.pass(&candidates, Rows::ALL, (PASSES, PASSES))?;
+        let pass = self.pass(&candidates, Rows::ALL, PASSES, PASSES)?;
         let mut systems = pass.systems().into_iter();
         let fit = |(chains, count): (Vec<Vec<f64>>, usize)| {
             let systems = ForceSystems {
@@ -166,9 +166,8 @@ impl<'a> RecordFit<'a> {
         }
         let active = found.fitted.active().unwrap_or_default();
         let with = found.reports()?;
-        let compared = (reports.as_slice(), bases.as_slice());
         let dofs = &self.records.dofs;
-        let constraints = ConstraintReport::new(active, dofs, compared, &with, model);
+        let constraints = ConstraintReport::new(active, dofs, &reports, &bases, &with, model);
         Ok((found, constrained.search, Some(constraints)))
     }
 }

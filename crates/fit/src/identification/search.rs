@@ -147,7 +147,8 @@ impl Bounds {
 /// When no point of the grid can be fitted (the first such error).
 pub(crate) fn search_poles(
     count: usize,
-    (options, bounds): (&PoleSearch, Bounds),
+    options: &PoleSearch,
+    bounds: Bounds,
     entry: Option<(Dof, Dof)>,
     residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
 ) -> Result<SearchReport> {
@@ -322,13 +323,13 @@ mod tests {
                     misfit.chain([0.1]),
                 ))
             };
-            let found = search_poles(target.len(), (&options, BOUNDS), None, &residuals);
+            let found = search_poles(target.len(), &options, BOUNDS, None, &residuals);
             for (p, t) in found.unwrap().chosen.poles.iter().zip(&target) {
                 assert!((p / t - 1.0).abs() < 1e-5, "{p} {t}");
             }
         }
         let outside = |p: &[f64]| Ok(DVector::from_element(1, p[0] + 1.0));
-        let found = search_poles(1, (&options, BOUNDS), None, &outside).unwrap();
+        let found = search_poles(1, &options, BOUNDS, None, &outside).unwrap();
         assert!((found.chosen.poles[0] / BOUNDS.min - 1.0).abs() < 1e-6);
     }
 }

@@ -54,7 +54,8 @@ impl CoefficientUncertainty {
     /// The estimates of a fit with the blocks it was made from; `tested` holds their reduced frequencies where
     /// the scatter between mean speeds is asked.
     pub(super) fn new(
-        (assumption, tested): (String, Option<ReducedFrequencyRange>),
+        assumption: String,
+        tested: Option<ReducedFrequencyRange>,
         dofs: Vec<Dof>,
         coordinates: Coordinates,
         parameters: Vec<Parameter>,
@@ -120,7 +121,7 @@ impl CoefficientUncertainty {
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
         let (scatter, effects) =
-            speed_scatter::between_speeds((design, prior), &self.dofs, (&values, &own), &at)?;
+            speed_scatter::between_speeds(design, prior, &self.dofs, &values, &own, &at)?;
         self.assumption = format!("{}; {}", self.assumption, scatter.describe());
         for effect in &effects {
             self.covariance += &effect.columns * effect.columns.transpose();
@@ -267,8 +268,8 @@ impl CoefficientUncertainty {
                 chains,
                 searched,
             } if !searched.is_empty() => {
-                let of = (form, self.dofs.as_slice());
-                LinearModel::new(of, chains, searched, self.values()).map(Some)
+                let values = self.values();
+                LinearModel::new(form, &self.dofs, chains, searched, values).map(Some)
             }
             _ => Ok(None),
         }
@@ -373,8 +374,8 @@ impl CoefficientUncertainty {
         for (parameter, change) in moved.iter_mut().zip(step.iter()) {
             parameter.value += change;
         }
-        let assumption = ("blocks of one mean speed".into(), None);
-        Self::new(assumption, self.dofs.clone(), coordinates, moved, own)
+        let (assumption, dofs) = ("blocks of one mean speed".into(), self.dofs.clone());
+        Self::new(assumption, None, dofs, coordinates, moved, own)
     }
 
     /// Puts these standard errors and covariances in the place of those of a fit that took residuals for independent.

@@ -51,18 +51,21 @@ impl Expansion {
         Ok(expansion)
     }
 
-    /// Derivatives of the transfer function at `place` with coefficients `values` with respect to the searched poles, E×(number of
+    /// Derivatives of the transfer function `(i, j)` with coefficients `values` with respect to the searched poles, E×(number of
     /// these); zero for poles of other transfer functions.
     pub(super) fn slopes(
         &self,
-        (form, chain): (&Form, &[f64]),
+        form: &Form,
+        chain: &[f64],
         values: &[f64],
-        (place, searched): ((usize, usize), &[SearchedPole]),
+        i: usize,
+        j: usize,
+        searched: &[SearchedPole],
     ) -> Result<DMatrix<f64>> {
         let all = self.jacobian(form, &form.collapse(chain), values)?;
         let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
         for (m, pole) in searched.iter().enumerate() {
-            if pole.entry.is_none_or(|entry| entry == place) {
+            if pole.entry.is_none_or(|entry| entry == (i, j)) {
                 slopes.column_mut(m).copy_from(&all.column(pole.index));
             }
         }
@@ -137,7 +140,8 @@ pub(crate) struct LinearModel {
 impl LinearModel {
     /// For the chains of every transfer function, the estimates and the searched poles.
     pub(super) fn new(
-        (form, dofs): (&Form, &[Dof]),
+        form: &Form,
+        dofs: &[Dof],
         chains: &[Vec<Vec<f64>>],
         searched: &[SearchedPole],
         estimate: Vec<f64>,
@@ -149,7 +153,7 @@ impl LinearModel {
                 let expansion = Expansion::new(form, chain, true)?;
                 let count = expansion.native.ncols();
                 let values = &estimate[first..first + count];
-                let slopes = expansion.slopes((form, chain), values, ((i, j), searched))?;
+                let slopes = expansion.slopes(form, chain, values, i, j, searched)?;
                 entries.push((expansion.extended, expansion.native, slopes));
                 first += count;
             }

@@ -261,8 +261,8 @@ impl KnownDeck {
             noise_fraction: 0.0,
             ..plan.tunnel.clone()
         };
-        let scatter = (plan.speed_scatter, plan.run_scatter);
-        let records = ScatteredTunnel::new(&quiet, model.as_ref(), section.width_m, scatter)?;
+        let (width_m, speeds, runs) = (section.width_m, plan.speed_scatter, plan.run_scatter);
+        let records = ScatteredTunnel::new(&quiet, model.as_ref(), width_m, speeds, runs)?;
         let mut campaign = Self {
             true_onset_m_s: 0.0,
             bias_m_s: 0.0,

@@ -36,7 +36,9 @@ pub(crate) struct Block {
 impl Block {
     /// Rows, residuals and working variance of several forces, one below the other.
     pub(crate) fn stacked(
-        (name, speed_m_s, k): (String, Option<f64>, Option<f64>),
+        name: String,
+        speed_m_s: Option<f64>,
+        k: Option<f64>,
         parts: &[(DMatrix<f64>, DVector<f64>, f64)],
     ) -> Self {
         let blocks: Vec<Self> = parts
@@ -138,7 +140,7 @@ impl Design {
             Some(t) => t * inner * t.transpose(),
             None => inner,
         };
-        Self::of(blocks, (inverse, tangent), working)
+        Self::of(blocks, inverse, tangent, working)
     }
 
     /// The same fit with its rows put together in other blocks.
@@ -147,16 +149,13 @@ impl Design {
         let working = blocks.iter().fold(DMatrix::zeros(p, p), |sum, b| {
             sum + b.rows.tr_mul(&scaled(&b.rows, &b.variance))
         });
-        Self::of(
-            blocks,
-            (self.inverse.clone(), self.tangent.clone()),
-            working,
-        )
+        Self::of(blocks, self.inverse.clone(), self.tangent.clone(), working)
     }
 
     fn of(
         blocks: Vec<Block>,
-        (inverse, tangent): (DMatrix<f64>, Option<DMatrix<f64>>),
+        inverse: DMatrix<f64>,
+        tangent: Option<DMatrix<f64>>,
         working: DMatrix<f64>,
     ) -> Result<Self> {
         let mut design = Self {

@@ -87,7 +87,7 @@ impl ModelUncertainty {
         let error = onset_error(estimate, structure, onset, None)?;
         let blocks = resampled(Resampling::Blocks)?;
         let drawn = resampled(Resampling::Normal)?;
-        let speeds = speed_onsets(estimate, structure, onset, (&search, tested))?;
+        let speeds = speed_onsets(estimate, structure, onset, &search, tested)?;
         uncertainty.onset = Some(error);
         uncertainty.block_bootstrap = blocks;
         uncertainty.drawn_coefficients = drawn;

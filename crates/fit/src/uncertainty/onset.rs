@@ -58,20 +58,21 @@ pub(crate) fn onset_error(
     onset: &Onset,
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
-    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-    error_at(estimate, structure, at, degrees_of_freedom)
+    let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+    error_at(estimate, structure, speed_m_s, omega, degrees_of_freedom)
 }
 
 /// The same for an onset at a speed and circular frequency.
 pub(super) fn error_at(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
-    at: (f64, f64),
+    speed_m_s: f64,
+    omega: f64,
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
-    let gradient = onset_gradient(estimate, structure, at)?;
+    let gradient = onset_gradient(estimate, structure, speed_m_s, omega)?;
     Ok(OnsetError {
-        speed_m_s: at.0,
+        speed_m_s,
         standard_error_m_s: estimate.standard_error(&gradient)?,
         degrees_of_freedom: estimate
             .degrees_of_freedom(&gradient)
@@ -185,15 +186,17 @@ pub(crate) fn resample_onset(
     plan: &ResamplingPlan,
 ) -> Result<Option<ResampledOnset>> {
     let draws = ModelDraws::of(estimate)?;
-    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+    let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     let found: Vec<Option<Option<f64>>> = (0..plan.replicates)
         .into_par_iter()
         .map(|r| {
-            let Some(values) = drawn((estimate, &draws), plan, r)? else {
+            let Some(values) = drawn(estimate, &draws, plan, r)? else {
                 return Ok(None);
             };
             let model = draws.model_at(&values).ok();
-            Ok(Some(model.and_then(|m| solve(&m, structure, at, plan))))
+            Ok(Some(model.and_then(|m| {
+                solve(&m, structure, speed_m_s, omega, plan)
+            })))
         })
         .collect::<Result<_>>()?;
     if found.iter().any(Option::is_none) {
@@ -218,11 +221,12 @@ pub(crate) fn resample_onset(
 fn solve(
     model: &dyn Realizable,
     structure: &Structure,
-    at: (f64, f64),
+    speed_m_s: f64,
+    omega: f64,
     plan: &ResamplingPlan,
 ) -> Option<f64> {
     let section = CoupledSection::with_model(structure, model).ok()?;
-    if let Ok(Some(speed)) = onset_nearby(&section, at) {
+    if let Ok(Some(speed)) = onset_nearby(&section, speed_m_s, omega) {
         return Some(speed);
     }
     match find_onset("", &section, &plan.search, plan.tested) {
@@ -233,7 +237,8 @@ fn solve(
 
 /// Parameters of one replicate; `None` for blocks of an estimate that no longer knows its data.
 fn drawn(
-    (estimate, draws): (&CoefficientUncertainty, &ModelDraws<'_>),
+    estimate: &CoefficientUncertainty,
+    draws: &ModelDraws<'_>,
     plan: &ResamplingPlan,
     replicate: usize,
 ) -> Result<Option<Vec<f64>>> {
@@ -269,7 +274,8 @@ fn section_at(
 pub(crate) fn onset_gradient(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
-    (speed_m_s, omega): (f64, f64),
+    speed_m_s: f64,
+    omega: f64,
 ) -> Result<Vec<f64>> {
     let values = estimate.values();
     let section = section_at(structure, estimate, &values)?;
@@ -340,7 +346,8 @@ fn nearest(system: &CoupledSystem, target: Complex<f64>) -> Result<Complex<f64>>
 /// settle or ends up far away.
 pub(super) fn onset_nearby(
     section: &CoupledSection,
-    (speed_m_s, omega): (f64, f64),
+    speed_m_s: f64,
+    omega: f64,
 ) -> Result<Option<f64>> {
     let mut followed = Complex::new(0.0, omega);
     let (mut v0, mut v1) = (speed_m_s, speed_m_s * 1.001);

@@ -225,7 +225,8 @@ pub(super) fn coordinates_of(
 /// it. `first` is the first parameter of every transfer function; searched poles are the last.
 pub(super) fn tangent_of(
     report: &FitReport,
-    (form, poles): (&Form, &FreePoles),
+    form: &Form,
+    poles: &FreePoles,
     first: &[usize],
     parameters: usize,
 ) -> Result<Option<DMatrix<f64>>> {
@@ -237,24 +238,24 @@ pub(super) fn tangent_of(
     let mut held_squares = vec![0.0; gradients.len()];
     let n = report.entries.len().isqrt();
     for (e, entry) in report.entries.iter().enumerate() {
-        let place = (e / n, e % n);
+        let (i, j) = (e / n, e % n);
         let values = entry.values();
         let free = form.collapse(&entry.poles);
         let basis = Basis::new(form, &entry.poles)?;
         let each = gradients.iter_mut().zip(&mut held_squares);
         for ((gradient, square), active) in each.zip(&constraints.active) {
-            let own = active.gradient_beyond_limit(place, &basis);
+            let own = active.gradient_beyond_limit(i, j, &basis);
             gradient.as_mut_slice()[first[e]..][..own.len()].copy_from_slice(&own);
-            *square += norm_squared(&active.gradient(place, &basis));
+            *square += norm_squared(&active.gradient(i, j, &basis));
         }
         for (m, pole) in poles.searched.iter().enumerate() {
-            if pole.entry.is_some_and(|entry| entry != place) {
+            if pole.entry.is_some_and(|entry| entry != (i, j)) {
                 continue;
             }
             let step = 2.0 * STEP * free[pole.index];
             let (up, down) = moved_pole(form, &free, pole.index)?;
             for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
-                let value = |b: &Basis| beyond_limit(active, place, b, &values);
+                let value = |b: &Basis| beyond_limit(active, i, j, b, &values);
                 let at = parameters - poles.searched.len() + m;
                 gradient[at] += (value(&up) - value(&down)) / step;
             }
@@ -270,11 +271,12 @@ pub(super) fn tangent_of(
 /// What a transfer function adds to what a constraint holds beyond its limit.
 fn beyond_limit(
     active: &ActiveConstraint,
-    place: (usize, usize),
+    i: usize,
+    j: usize,
     basis: &Basis,
     values: &[f64],
 ) -> f64 {
-    let gradient = active.gradient_beyond_limit(place, basis);
+    let gradient = active.gradient_beyond_limit(i, j, basis);
     gradient.iter().zip(values).map(|(g, v)| g * v).sum()
 }
 

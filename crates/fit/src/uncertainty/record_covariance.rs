@@ -55,23 +55,21 @@ pub fn record_uncertainty(
     let form = report.form_fitted(&fit.form, &fit.own);
     let poles = free_poles(&form, &fit.poles, report);
     let (parameters, first) = parameters_of(report, &poles);
-    let entries = Entries::new(&form, (first, parameters.len()), report, &poles)?;
+    let entries = Entries::new(&form, first, parameters.len(), report, &poles)?;
     let rows = Rows {
         orthonormal: true,
         thinned: false,
         stretches: STRETCHES,
     };
-    let closed = task.pass(&entries.candidates(), rows, (1, 1))?.stretches;
+    let closed = task.pass(&entries.candidates(), rows, 1, 1)?.stretches;
     let (design, blocks) = sandwich(
         entries.blocks(&records.each, &closed)?,
         entries.tangent.clone(),
     )?;
     let searched = poles.sentence() + &held_sentence(report);
     CoefficientUncertainty::new(
-        (
-            format!("{blocks}; motions are exact; {searched}"),
-            Some(report.tested_range),
-        ),
+        format!("{blocks}; motions are exact; {searched}"),
+        Some(report.tested_range),
         records.dofs,
         coordinates_of(&form, report, poles.searched),
         parameters,
@@ -98,7 +96,8 @@ struct Entries {
 impl Entries {
     fn new(
         form: &Form,
-        (first, parameters): (Vec<usize>, usize),
+        first: Vec<usize>,
+        parameters: usize,
         report: &FitReport,
         poles: &FreePoles,
     ) -> Result<Self> {
@@ -109,7 +108,7 @@ impl Entries {
             expansions: Vec::new(),
             values: Vec::new(),
             slopes: Vec::new(),
-            tangent: tangent_of(report, (form, poles), &first, parameters)?,
+            tangent: tangent_of(report, form, poles, &first, parameters)?,
             first,
             parameters,
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
@@ -117,8 +116,8 @@ impl Entries {
         for (e, entry) in report.entries.iter().enumerate() {
             let expansion = Expansion::new(form, &entry.poles, searched)?;
             let values: Vec<f64> = entry.coefficients.iter().map(|c| c.value).collect();
-            let (place, chain) = ((e / inputs, e % inputs), (form, &entry.poles[..]));
-            let slopes = expansion.slopes(chain, &values, (place, &poles.searched))?;
+            let (i, j, searched) = (e / inputs, e % inputs, &poles.searched);
+            let slopes = expansion.slopes(form, &entry.poles, &values, i, j, searched)?;
             entries.expansions.push(expansion);
             entries.values.push(values);
             entries.slopes.push(slopes);
@@ -232,8 +231,10 @@ pub fn discrete_uncertainty(
     };
     let closed = discrete_pass(
         &records,
-        (order, &[vec![alpha; columns.inputs]]),
-        (fit.weights, STRETCHES),
+        order,
+        &[vec![alpha; columns.inputs]],
+        fit.weights,
+        STRETCHES,
         progress,
     )?
     .stretches;
@@ -246,10 +247,8 @@ pub fn discrete_uncertainty(
         .collect();
     let (design, blocks) = sandwich(gather(&records.each, parts), None)?;
     CoefficientUncertainty::new(
-        (
-            format!("{blocks}; motions are exact; α is given"),
-            Some(records.tested_range()?),
-        ),
+        format!("{blocks}; motions are exact; α is given"),
+        Some(records.tested_range()?),
         records.dofs.clone(),
         Coordinates::Discrete {
             alpha,

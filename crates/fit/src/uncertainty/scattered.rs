@@ -42,7 +42,8 @@ impl ScatteredTunnel {
         quiet: &TunnelPlan,
         model: &dyn Transfer,
         width_m: f64,
-        (speeds, runs): (f64, f64),
+        speeds: f64,
+        runs: f64,
     ) -> Result<Self> {
         let straight = quiet.records_from_model(model, "truth", width_m)?;
         let turned = if speeds > 0.0 || runs > 0.0 {

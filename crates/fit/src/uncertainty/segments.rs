@@ -118,8 +118,8 @@ pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows>) -
             })
             .collect();
         let k = hertz.map(|f| TAU * f / record_of.rate);
-        let test = (name, Some(record_of.mean_speed_m_s()), k);
-        out.blocks.push(Block::stacked(test, &scaled));
+        let speed_m_s = Some(record_of.mean_speed_m_s());
+        out.blocks.push(Block::stacked(name, speed_m_s, k, &scaled));
     }
     out
 }

@@ -73,13 +73,14 @@ pub(crate) fn speed_onsets(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,
-    (search, tested): (&OnsetSearch, ReducedFrequencyRange),
+    search: &OnsetSearch,
+    tested: ReducedFrequencyRange,
 ) -> Result<SpeedOnsets> {
     let mut found = SpeedOnsets::default();
     let mut alone = Vec::new();
     for (mean_speed_m_s, own) in estimate.at_each_speed() {
         let judged = own.and_then(|own| {
-            let error = own_onset(&own, structure, onset, (search, tested))?;
+            let error = own_onset(&own, structure, onset, search, tested)?;
             Ok((own, error))
         });
         let (error, reason) = match judged {
@@ -108,10 +109,10 @@ pub(crate) fn speed_onsets(
         .filter(|((z, limit), _, _)| z.abs() > *limit)
         .max_by(|x, y| x.0.0.abs().total_cmp(&y.0.0.abs()));
     if let Some(((z, _), a, b)) = worst {
-        let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-        let gradient = onset_gradient(estimate, structure, at)?;
-        let (force, motion) = greatest_part(estimate, &gradient, (a, b));
-        let (k_low, k_high) = band((force, motion), tested, (a, b))?;
+        let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+        let gradient = onset_gradient(estimate, structure, speed_m_s, omega)?;
+        let (force, motion) = greatest_part(estimate, &gradient, a, b);
+        let (k_low, k_high) = band(force, motion, tested, a, b)?;
         found.contradiction = Some(Contradiction {
             mean_speeds_m_s: [a.mean_speed_m_s, b.mean_speed_m_s],
             onsets_m_s: [a.error.speed_m_s, b.error.speed_m_s],
@@ -130,13 +131,14 @@ fn own_onset(
     own: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,
-    (search, tested): (&OnsetSearch, ReducedFrequencyRange),
+    search: &OnsetSearch,
+    tested: ReducedFrequencyRange,
 ) -> Result<OnsetError> {
     let model = own.model_at(&own.values())?;
     let section = CoupledSection::with_model(structure, &model)?;
-    let near = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-    let at = match onset_nearby(&section, near) {
-        Ok(Some(speed)) => (speed, near.1),
+    let omega = TAU * onset.at.frequency_hz;
+    let (speed_m_s, omega) = match onset_nearby(&section, onset.at.speed_m_s, omega) {
+        Ok(Some(speed)) => (speed, omega),
         _ => {
             let found = find_onset("", &section, search, Some(tested))?;
             let other = found.onset().ok_or_else(|| {
@@ -145,7 +147,7 @@ fn own_onset(
             (other.at.speed_m_s, TAU * other.at.frequency_hz)
         }
     };
-    error_at(own, structure, at, None)
+    error_at(own, structure, speed_m_s, omega, None)
 }
 
 /// Difference over its standard error, and the limit beyond which it is no chance.
@@ -161,7 +163,8 @@ fn z_of(a: &OnsetError, b: &OnsetError) -> (f64, f64) {
 fn greatest_part(
     estimate: &CoefficientUncertainty,
     gradient: &[f64],
-    (a, b): (&SpeedEstimate, &SpeedEstimate),
+    a: &SpeedEstimate,
+    b: &SpeedEstimate,
 ) -> (Dof, Dof) {
     let (a, b) = (a.estimate.values(), b.estimate.values());
     let own = estimate.own_coefficients();
@@ -179,9 +182,11 @@ fn greatest_part(
 /// Where a transfer function differs most, relative to itself: around the largest difference, as far as it is half of
 /// that, among the reduced frequencies that both speeds tested.
 fn band(
-    (force, motion): (Dof, Dof),
+    force: Dof,
+    motion: Dof,
     tested: ReducedFrequencyRange,
-    (a, b): (&SpeedEstimate, &SpeedEstimate),
+    a: &SpeedEstimate,
+    b: &SpeedEstimate,
 ) -> Result<(f64, f64)> {
     let ranges = [a, b].map(|s| s.estimate.tested_range().unwrap_or(tested));
     let low = ranges[0].min.full_width().max(ranges[1].min.full_width());

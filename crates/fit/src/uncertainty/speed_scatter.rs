@@ -118,9 +118,11 @@ pub(super) fn degrees_of_freedom(
 ///
 /// `own` lists the coefficients of every transfer function, row by row; `at` are points over all tested `K`.
 pub(super) fn between_speeds(
-    (design, prior): (&Design, SpeedPrior),
+    design: &Design,
+    prior: SpeedPrior,
     dofs: &[Dof],
-    (values, own): (&DVector<f64>, &[Vec<usize>]),
+    values: &DVector<f64>,
+    own: &[Vec<usize>],
     at: &[Slopes],
 ) -> Result<(SpeedScatter, Vec<Effect>)> {
     let blocks = design.blocks();
@@ -157,7 +159,7 @@ pub(super) fn between_speeds(
     };
     let turns = [ScatterDirection::Size, ScatterDirection::Phase];
     let units: Vec<[Option<UnitEffect>; 2]> = (0..n)
-        .map(|i| turns.map(|turn| judge.effect((i, n), turn, (values, own))))
+        .map(|i| turns.map(|turn| judge.effect(i, n, turn, values, own)))
         .collect();
     let ratios: Vec<f64> = units
         .iter()
@@ -174,7 +176,7 @@ pub(super) fn between_speeds(
     }
     let mut effects = Vec::new();
     for (i, (&force, units)) in dofs.iter().zip(units).enumerate() {
-        let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
+        let size: f64 = (0..n).map(|j| judge.mean_square(i, j)).sum::<f64>() / n as f64;
         let [size_ratio, phase_ratio] = [0, 1].map(|t| units[t].as_ref().and_then(|u| u.ratio));
         let [size, phase] = units.map(|unit| {
             let effect = unit.and_then(|u| u.drawn(of_deck, spare));
@@ -252,31 +254,34 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn mean_square(&self, entry: (usize, usize)) -> f64 {
-        let sum: f64 = self.common.iter().map(|s| s.value[entry].norm_sqr()).sum();
+    fn mean_square(&self, i: usize, j: usize) -> f64 {
+        let squares = self.common.iter().map(|s| s.value[(i, j)].norm_sqr());
+        let sum: f64 = squares.sum();
         sum / self.common.len() as f64
     }
 
     /// The effect of force `i` of `n`.
     fn effect(
         &self,
-        (i, n): (usize, usize),
+        i: usize,
+        n: usize,
         turn: ScatterDirection,
-        (values, own): (&DVector<f64>, &[Vec<usize>]),
+        values: &DVector<f64>,
+        own: &[Vec<usize>],
     ) -> Option<UnitEffect> {
         let parameters = values.len();
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let (mut of_speeds, mut of_blocks, mut weight) = (0.0, 0.0, 0.0);
         for j in 0..n {
-            let size = self.mean_square((i, j));
+            let size = self.mean_square(i, j);
             let own = &own[i * n + j];
             if size == 0.0 || own.is_empty() {
                 continue;
             }
-            let relative = self.relative_rows((i, j), turn, size.sqrt());
+            let relative = self.relative_rows(i, j, turn, size.sqrt());
             let square =
                 |m: &DMatrix<f64>| (&relative * m).norm_squared() / relative.nrows() as f64;
-            let moved = self.moved((i, j), turn, (values, own), size.sqrt());
+            let moved = self.moved(i, j, turn, values, own, size.sqrt());
             let mut scattered = DVector::zeros(parameters);
             for (p, value) in own.iter().zip(moved.iter()) {
                 scattered[*p] = *value;
@@ -299,18 +304,13 @@ impl Judge<'_> {
     }
 
     /// Change of an entry relative to itself with all parameters, one row per common `K`.
-    fn relative_rows(
-        &self,
-        entry: (usize, usize),
-        turn: ScatterDirection,
-        size: f64,
-    ) -> DMatrix<f64> {
+    fn relative_rows(&self, i: usize, j: usize, turn: ScatterDirection, size: f64) -> DMatrix<f64> {
         let parameters = self.common[0].slopes.len();
         DMatrix::from_fn(self.common.len(), parameters, |q, p| {
             let s = self.common[q];
-            let own = s.value[entry];
+            let own = s.value[(i, j)];
             let ratio =
-                s.slopes[p][entry] * own.conj() / own.norm_sqr().max((SMALL * size).powi(2));
+                s.slopes[p][(i, j)] * own.conj() / own.norm_sqr().max((SMALL * size).powi(2));
             match turn {
                 ScatterDirection::Size => ratio.re,
                 ScatterDirection::Phase => ratio.im,
@@ -322,11 +322,14 @@ impl Judge<'_> {
     /// over all tested `K`.
     fn moved(
         &self,
-        entry: (usize, usize),
+        i: usize,
+        j: usize,
         turn: ScatterDirection,
-        (values, own): (&DVector<f64>, &[usize]),
+        values: &DVector<f64>,
+        own: &[usize],
         size: f64,
     ) -> DVector<f64> {
+        let entry = (i, j);
         let as_it_is = || DVector::from_iterator(own.len(), own.iter().map(|p| values[*p]));
         if turn == ScatterDirection::Size {
             return as_it_is();

@@ -60,18 +60,16 @@ pub fn table_uncertainty(
         };
         columns.add_to(&mut runs, &form, entry, parameters.len())?;
     }
-    let tangent = tangent_of(report, (&form, &poles), &first, parameters.len())?;
+    let tangent = tangent_of(report, &form, &poles, &first, parameters.len())?;
     let blocks = runs.into_iter().map(MotionSamples::block).collect();
     let searched = poles.sentence() + &held_sentence(report);
     CoefficientUncertainty::new(
-        (
-            format!(
-                "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
+        format!(
+            "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
              fit together; correlated in any way within a test run (one motion, frequency and speed), independent \
              from run to run; sandwich of the runs with the small-sample correction CR2; {searched}"
-            ),
-            Some(report.tested_range),
         ),
+        Some(report.tested_range),
         dofs.to_vec(),
         coordinates_of(&form, report, poles.searched),
         parameters,

@@ -147,7 +147,7 @@ fn gradients_are_differences_of_onsets() {
     for (model, estimate) in [continuous, (model, discrete)] {
         let at = onset(&model);
         let omega = std::f64::consts::TAU * at.at.frequency_hz;
-        let gradient = onset_gradient(&estimate, &structure(), (at.at.speed_m_s, omega)).unwrap();
+        let gradient = onset_gradient(&estimate, &structure(), at.at.speed_m_s, omega).unwrap();
         let values = estimate.values();
         let largest = gradient.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
         for (p, g) in gradient.iter().enumerate() {

@@ -27,7 +27,8 @@ fn place(list: &str, unknown: &Unknown) -> String {
 fn same_members(
     d: &ModelDescription,
     f: &mut FmuFindings,
-    (list, found): (&str, &[Unknown]),
+    list: &str,
+    found: &[Unknown],
     expected: &BTreeSet<usize>,
     why: &str,
 ) {
@@ -71,7 +72,8 @@ pub(super) fn outputs(d: &ModelDescription, f: &mut FmuFindings) {
     same_members(
         d,
         f,
-        ("Outputs", &d.outputs),
+        "Outputs",
+        &d.outputs,
         &expected,
         "causality is output",
     );
@@ -98,7 +100,8 @@ pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
     same_members(
         d,
         f,
-        ("InitialUnknowns", &d.initial_unknowns),
+        "InitialUnknowns",
+        &d.initial_unknowns,
         &expected,
         "output, state or derivative with initial approx or calculated, or calculated parameter",
     );

@@ -115,7 +115,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     _value: *const fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: by the contract of the interface
-    unsafe { set_none(c, Call::SetInteger, DataType::Integer, (vr, nvr)) }
+    unsafe { set_none(c, Call::SetInteger, DataType::Integer, vr, nvr) }
 }
 
 /// Sets truth variables: there are none to set.
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     _value: *const fmi2Boolean,
 ) -> fmi2Status {
     // SAFETY: by the contract of the interface
-    unsafe { set_none(c, Call::SetBoolean, DataType::Boolean, (vr, nvr)) }
+    unsafe { set_none(c, Call::SetBoolean, DataType::Boolean, vr, nvr) }
 }
 
 /// Sets texts: there are none to set.
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn fmi2SetString(
     _value: *const fmi2String,
 ) -> fmi2Status {
     // SAFETY: by the contract of the interface
-    unsafe { set_none(c, Call::SetString, DataType::String, (vr, nvr)) }
+    unsafe { set_none(c, Call::SetString, DataType::String, vr, nvr) }
 }
 
 /// # Safety
@@ -148,7 +148,8 @@ unsafe fn set_none(
     c: fmi2Component,
     call: Call,
     of_type: DataType,
-    (vr, nvr): (*const fmi2ValueReference, usize),
+    vr: *const fmi2ValueReference,
+    nvr: usize,
 ) -> fmi2Status {
     // SAFETY: by the contract of this function
     unsafe {

@@ -98,10 +98,12 @@ impl From<Call> for Named<'_> {
     }
 }
 
-impl<'a> From<(Call, &'a str)> for Named<'a> {
+impl Call {
+    /// The call as a function of another name makes it.
     #[inline]
-    fn from((call, function): (Call, &'a str)) -> Self {
-        Self { call, function }
+    pub(crate) fn by(self, function: &str) -> Named<'_> {
+        let call = self;
+        Named { call, function }
     }
 }
 

@@ -32,20 +32,24 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
 ) -> fmi2Status {
     // SAFETY: handle and pointers are valid by the contract of the interface
     unsafe {
-        guarded(c, (Call::NewDiscreteStates, "UpdateDiscreteStates"), |_| {
-            for flag in [
-                discreteStatesNeedUpdate,
-                terminateSimulation,
-                nominalsOfContinuousStatesChanged,
-                valuesOfContinuousStatesChanged,
-                nextEventTimeDefined,
-            ] {
-                // what the importer has there need not be a truth value yet
-                *place(flag.cast::<u8>(), "flags")? = 0;
-            }
-            *place(nextEventTime, "nextEventTime")? = 0.0;
-            Ok(())
-        })
+        guarded(
+            c,
+            Call::NewDiscreteStates.by("UpdateDiscreteStates"),
+            |_| {
+                for flag in [
+                    discreteStatesNeedUpdate,
+                    terminateSimulation,
+                    nominalsOfContinuousStatesChanged,
+                    valuesOfContinuousStatesChanged,
+                    nextEventTimeDefined,
+                ] {
+                    // what the importer has there need not be a truth value yet
+                    *place(flag.cast::<u8>(), "flags")? = 0;
+                }
+                *place(nextEventTime, "nextEventTime")? = 0.0;
+                Ok(())
+            },
+        )
     }
 }
 
@@ -68,7 +72,7 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     unsafe {
         guarded(
             c,
-            (Call::CompletedIntegratorStep, "CompletedIntegratorStep"),
+            Call::CompletedIntegratorStep.by("CompletedIntegratorStep"),
             |component| {
                 *place(enterEventMode.cast::<u8>(), "enterEventMode")? = 0;
                 *place(terminateSimulation.cast::<u8>(), "terminateSimulation")? = 0;
@@ -149,7 +153,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfEventIndicators(
     // SAFETY: handle and pointer are valid by the contract of the interface
     unsafe {
         let call = Call::GetNominalsOfContinuousStates;
-        guarded(c, (call, "GetNumberOfEventIndicators"), |_| {
+        guarded(c, call.by("GetNumberOfEventIndicators"), |_| {
             *place(nEventIndicators, "nEventIndicators")? = 0;
             Ok(())
         })
@@ -165,7 +169,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfContinuousStates(
     // SAFETY: handle and pointer are valid by the contract of the interface
     unsafe {
         let call = Call::GetNominalsOfContinuousStates;
-        guarded(c, (call, "GetNumberOfContinuousStates"), |component| {
+        guarded(c, call.by("GetNumberOfContinuousStates"), |component| {
             *place(nContinuousStates, "nContinuousStates")? = component.instance.state_count();
             Ok(())
         })

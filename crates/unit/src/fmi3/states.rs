@@ -118,7 +118,7 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
     unsafe {
         guarded(
             c,
-            (Call::GetDirectionalDerivative, "GetAdjointDerivative"),
+            Call::GetDirectionalDerivative.by("GetAdjointDerivative"),
             |component| {
                 let unknowns = places(component, unknowns, nUnknowns, "unknowns")?;
                 let knowns = places(component, knowns, nKnowns, "knowns")?;

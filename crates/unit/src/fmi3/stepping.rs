@@ -57,7 +57,7 @@ pub unsafe extern "C" fn fmi3GetOutputDerivatives(
     unsafe {
         guarded(
             c,
-            (Call::GetRealOutputDerivatives, "GetOutputDerivatives"),
+            Call::GetRealOutputDerivatives.by("GetOutputDerivatives"),
             |component| {
                 let references = array(vr, nvr, "valueReferences")?;
                 let orders = array(orders, nvr, "orders")?;

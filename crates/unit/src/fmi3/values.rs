@@ -3,7 +3,7 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::life::{check_count, places};
-use crate::fmi2::guard::{array, array_mut, guarded};
+use crate::fmi2::guard::{Named, array, array_mut, guarded};
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2String, fmi2ValueReference};
 use crate::instance::DataType;
 use crate::lifecycle::Call;
@@ -20,7 +20,7 @@ pub unsafe extern "C" fn fmi3GetFloat64(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded(c, (Call::GetReal, "GetFloat64"), |component| {
+        guarded(c, Call::GetReal.by("GetFloat64"), |component| {
             let references = array(vr, nvr, "valueReferences")?;
             let values = array_mut(values, nValues, "values")?;
             let time = component.groups.time();
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn fmi3SetFloat64(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded(c, (Call::SetReal, "SetFloat64"), |component| {
+        guarded(c, Call::SetReal.by("SetFloat64"), |component| {
             let references = array(vr, nvr, "valueReferences")?;
             let values = array(values, nValues, "values")?;
             let places = component.groups.places(references)?;
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn fmi3GetInt32(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded(c, (Call::GetInteger, "GetInt32"), |component| {
+        guarded(c, Call::GetInteger.by("GetInt32"), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             check_count("values", places.len(), nValues)?;
             for (place, value) in places.iter().zip(array_mut(values, nValues, "values")?) {
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn fmi3GetBoolean(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded(c, (Call::GetBoolean, "GetBoolean"), |component| {
+        guarded(c, Call::GetBoolean.by("GetBoolean"), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             check_count("values", places.len(), nValues)?;
             // what the importer has there need not be a truth value yet
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn fmi3GetString(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded(c, (Call::GetString, "GetString"), |component| {
+        guarded(c, Call::GetString.by("GetString"), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             check_count("values", places.len(), nValues)?;
             for (place, value) in places.iter().zip(array_mut(values, nValues, "values")?) {
@@ -150,12 +150,14 @@ pub unsafe extern "C" fn fmi3GetString(
 /// `vr` is NULL or points to `nvr` references.
 unsafe fn none_to_set(
     c: fmi2Component,
-    (call, name, of_type): (Call, &str, DataType),
-    (vr, nvr): (*const fmi2ValueReference, usize),
+    call: Named<'_>,
+    of_type: DataType,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
 ) -> fmi2Status {
     // SAFETY: by the contract of this function
     unsafe {
-        guarded(c, (call, name), |component| {
+        guarded(c, call, |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             component.instance.refuse_to_set(&places, of_type)
         })
@@ -167,7 +169,7 @@ unsafe fn none_to_set(
 unsafe fn none_of_type(c: fmi2Component, call: Call, name: &str, nvr: usize) -> fmi2Status {
     // SAFETY: by the contract of this function
     unsafe {
-        guarded(c, (call, name), |_| match nvr {
+        guarded(c, call.by(name), |_| match nvr {
             0 => Ok(()),
             found => Err(Refusal::error(format!(
                 "there are no variables of this type, found {found} references"
@@ -189,7 +191,7 @@ macro_rules! none_to_set {
             _nValues: usize,
         ) -> fmi2Status {
             // SAFETY: by the contract of the interface
-            unsafe { none_to_set(c, (Call::$call, $short, DataType::$data), (vr, nvr)) }
+            unsafe { none_to_set(c, Call::$call.by($short), DataType::$data, vr, nvr) }
         }
     )*};
 }

@@ -19,24 +19,24 @@ impl Instance {
     /// Access to a variable that may be read now.
     pub(super) fn readable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (place, access) = self.typed(reference, wanted)?;
-        self.check_state(place, ("read", access.gettable))?;
+        self.check_state(place, "read", access.gettable)?;
         Ok((place, access))
     }
 
     /// Access to a variable that may be set now.
     pub(super) fn writable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (place, access) = self.typed(reference, wanted)?;
-        self.check_state(place, ("set", access.settable))?;
+        self.check_state(place, "set", access.settable)?;
         Ok((place, access))
     }
 
-    fn check_state(&self, place: usize, (verb, allowed): (&str, StateSet)) -> CallResult<()> {
+    fn check_state(&self, place: usize, verb: &str, allowed: StateSet) -> CallResult<()> {
         let state = self.memory.state;
         if allowed.contains(state) {
             return Ok(());
         }
         let variable = &self.table().variables()[place];
-        Err(not_in_state(variable, (verb, allowed), state))
+        Err(not_in_state(variable, verb, allowed, state))
     }
 
     /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.
@@ -70,7 +70,7 @@ fn wrong_reference(place: usize, wanted: DataType, table: &VariableTable) -> Ref
 }
 
 #[cold]
-fn not_in_state(v: &Variable, (verb, allowed): (&str, StateSet), state: State) -> Refusal {
+fn not_in_state(v: &Variable, verb: &str, allowed: StateSet, state: State) -> Refusal {
     let what = match v.causality {
         Causality::Input => "an input",
         Causality::Output => "an output",

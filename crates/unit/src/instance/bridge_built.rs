@@ -108,7 +108,8 @@ impl Built {
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        (time, step): (f64, f64),
+        time: f64,
+        step: f64,
         factor: f64,
     ) -> Result<()> {
         let Some(record) = self.turbulence.as_ref().filter(|_| factor != 0.0) else {

@@ -145,7 +145,7 @@ impl BridgeUnit {
             return Ok(vec![0.0; unknowns.len()]);
         };
         let step = parameter_step(memory.values[known]);
-        central_difference(resources, memory, (known, step), |other| {
+        central_difference(resources, memory, known, step, |other| {
             let changed = Built::new(resources, options, &other.values)?;
             let present = std::mem::replace(&mut self.built, changed);
             let found = self.unknowns(other, unknowns);

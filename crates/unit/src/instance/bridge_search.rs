@@ -27,7 +27,8 @@ impl OnsetCard {
     pub(super) fn of_followed(
         built: &Built,
         tested: Option<ReducedFrequencyRange>,
-        (limit, onset): (f64, FoundOnset),
+        limit: f64,
+        onset: &FoundOnset,
     ) -> Self {
         let mut card = Self::with_divergence(built, limit);
         let (speed, hertz) = (onset.speed_m_s, onset.frequency_hz);

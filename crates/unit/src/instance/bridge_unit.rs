@@ -311,9 +311,9 @@ impl Prepared for BridgeUnit {
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_own_inputs(memory);
         let factor = self.turbulence_factor(memory);
-        let span = (memory.time, step);
+        let (time, system) = (memory.time, &mut memory.system);
         self.built
-            .advance(&mut memory.system, &self.inputs, span, factor)?;
+            .advance(system, &self.inputs, time, step, factor)?;
         Ok(false)
     }
 
@@ -343,7 +343,7 @@ impl Prepared for BridgeUnit {
         let known = self.searched.as_ref();
         let followed = known.and_then(|known| known.followed(&mut self.built, limit));
         let card = match followed {
-            Some(onset) => OnsetCard::of_followed(&self.built, self.tested, (limit, onset)),
+            Some(onset) => OnsetCard::of_followed(&self.built, self.tested, limit, &onset),
             None => {
                 let (card, searched) = OnsetCard::of_bridge(&self.built, self.tested, limit);
                 self.searched = searched;

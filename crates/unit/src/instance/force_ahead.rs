@@ -68,12 +68,12 @@ impl ForceUnit {
         let each = work.flows.iter().zip(work.forces.chunks_mut(n));
         for (s, (flow, forces)) in each.enumerate() {
             self.forces
-                .ahead(state, (s, flow), ahead_s, density, forces)?;
+                .ahead(state, s, flow, ahead_s, density, forces)?;
             if let Some((strips, _)) = &self.gusts {
                 let of = strips.per_strip();
                 let strip = &gusts[s * of..(s + 1) * of];
                 let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
-                let air = (wind * flow.wind_factor, flow.width_m, density);
+                let air = flow.in_air(wind, density);
                 strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
             }
         }

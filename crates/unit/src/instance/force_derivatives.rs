@@ -48,7 +48,7 @@ impl Differentiable for ForceUnit {
             _ => RELATIVE_STEP * value.max(RELATIVE_STEP),
         };
         let renewed = self.renewed(memory);
-        central_difference(resources, memory, (known, step), |other| {
+        central_difference(resources, memory, known, step, |other| {
             Ok(self.unknowns(&mut other.clone(), renewed, unknowns)?)
         })
     }

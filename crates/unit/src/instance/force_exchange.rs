@@ -71,7 +71,7 @@ impl ForceUnit {
             .resize(self.coordinates(), ForceAhead::default());
         for (s, forces) in work.forces.chunks_mut(n).enumerate() {
             let flow = self.flow(&memory.values, s);
-            let air = (wind * flow.wind_factor, flow.width_m, density);
+            let air = flow.in_air(wind, density);
             let state = &memory.system.values[self.first()..];
             let filters = &state[self.forces.filters(s)];
             let motion = self.motion_now(memory, s);
@@ -106,9 +106,9 @@ impl ForceUnit {
         let filters = &state[self.forces.filters(s)];
         work.rates.clear();
         work.rates.resize(filters.len(), 0.0);
-        let air = (wind, flow.width_m);
+        let (width, rates) = (flow.width_m, &mut work.rates);
         self.forces
-            .filter_rates(filters, &displacement, air, &mut work.rates);
+            .filter_rates(filters, &displacement, wind, width, rates);
         let strip = self.gusts_now(memory, s, &mut work.strip);
         if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
             work.rates.extend(gusts.rates(strip, wind / flow.width_m));

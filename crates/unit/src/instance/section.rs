@@ -86,9 +86,10 @@ pub(super) fn plain_onset(
     model: &TrainedModel,
     table: &VariableTable,
     aerodynamics: &Realization,
-    (values, limit): (&[f64], f64),
+    values: &[f64],
+    limit: f64,
 ) -> Option<SweptOnset> {
-    let (structure, onset) = plain_without_samples(model, table, (values, limit))?;
+    let (structure, onset) = plain_without_samples(model, table, values, limit)?;
     if !matches!(model.model, Model::DiscreteLaguerre(_)) {
         return Some(onset);
     }
@@ -102,9 +103,10 @@ pub(super) fn plainly_stable_to(
     model: &TrainedModel,
     table: &VariableTable,
     aerodynamics: &Realization,
-    (values, limit): (&[f64], f64),
+    values: &[f64],
+    limit: f64,
 ) -> Option<f64> {
-    let (structure, onset) = plain_without_samples(model, table, (values, limit))?;
+    let (structure, onset) = plain_without_samples(model, table, values, limit)?;
     if matches!(model.model, Model::DiscreteLaguerre(_)) {
         let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
         if !stands_at_samples(&sampled, onset).ok()? {
@@ -118,7 +120,8 @@ pub(super) fn plainly_stable_to(
 fn plain_without_samples(
     model: &TrainedModel,
     table: &VariableTable,
-    (values, limit): (&[f64], f64),
+    values: &[f64],
+    limit: f64,
 ) -> Option<(Structure, SweptOnset)> {
     let tested = Some(model.tested_range);
     let forces = match &model.model {

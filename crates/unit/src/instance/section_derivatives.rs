@@ -42,7 +42,7 @@ impl Differentiable for SectionUnit {
             Source::Response | Source::State => self.by_state(memory, known)?,
             _ => {
                 let step = parameter_step(memory.values[known]);
-                return central_difference(resources, memory, (known, step), |other| {
+                return central_difference(resources, memory, known, step, |other| {
                     self.unknowns(resources, other, unknowns)
                 });
             }

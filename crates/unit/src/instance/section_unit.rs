@@ -146,8 +146,8 @@ impl SectionUnit {
         let Resources { model, table, .. } = resources;
         let speed_max_m_s = values[self.places.search_limit];
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        let asked = (values, speed_max_m_s);
-        if let Some(speed) = section::plainly_stable_to(model, table, &self.aerodynamics, asked) {
+        let (forces, limit) = (&self.aerodynamics, speed_max_m_s);
+        if let Some(speed) = section::plainly_stable_to(model, table, forces, values, limit) {
             return Ok(UnwantedGrowth::none_up_to(speed));
         }
         section::growth_of(model, &section, speed_max_m_s)
@@ -178,7 +178,7 @@ impl SectionUnit {
         let limit = values[self.places.search_limit];
         match section::coupled_section(model, table, &self.aerodynamics, values) {
             Ok(section) => {
-                let plain = section::plain_onset(model, table, &self.aerodynamics, (values, limit));
+                let plain = section::plain_onset(model, table, &self.aerodynamics, values, limit);
                 OnsetCard::search(model, &section, limit, plain)
             }
             Err(why) => OnsetCard::unknown(&why),

@@ -173,7 +173,8 @@ pub(super) fn parameter_step(value: f64) -> f64 {
 pub(super) fn central_difference(
     resources: &Resources,
     memory: &Memory,
-    (known, step): (usize, f64),
+    known: usize,
+    step: f64,
     mut at: impl FnMut(&Memory) -> CallResult<Vec<f64>>,
 ) -> CallResult<Vec<f64>> {
     let variable = &resources.table.variables()[known];

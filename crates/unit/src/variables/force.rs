@@ -38,7 +38,7 @@ pub(super) fn variables(
     table.extend(constants(model, model.model.realize().states())?);
     if let Realization::Continuous(c) = model.model.realize() {
         let lags = gusts.map_or(0, GustForce::states);
-        add_states(&mut table, options, (c.a.nrows(), lags));
+        add_states(&mut table, options, c.a.nrows(), lags);
     }
     fill_dependencies(&mut table, options.strips.len());
     Ok(table)
@@ -46,7 +46,7 @@ pub(super) fn variables(
 
 /// Filters and lagging gusts with their rates, for importers that integrate: each of all strips before the next, as arrays
 /// stand.
-fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, (filters, lags): (usize, usize)) {
+fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, filters: usize, lags: usize) {
     let strips = options.strips.len();
     for k in 0..filters + lags {
         for s in 0..strips {

@@ -12,13 +12,33 @@ use std::f64::consts::TAU;
 /// Smallest width, density and mass: positive, and small enough for any model deck.
 pub(super) const SMALLEST: f64 = 1e-6;
 
+/// How a variable is set, and when it changes.
+#[derive(Clone, Copy)]
+pub(super) struct VariableKind {
+    causality: Causality,
+    variability: Variability,
+}
+
+impl VariableKind {
+    const fn new(causality: Causality, variability: Variability) -> Self {
+        Self {
+            causality,
+            variability,
+        }
+    }
+}
+
 /// A real variable without start, unit or limits.
 pub(super) fn real(
     name: impl Into<String>,
     role: Role,
-    (causality, variability): (Causality, Variability),
+    kind: VariableKind,
     description: impl Into<String>,
 ) -> Variable {
+    let VariableKind {
+        causality,
+        variability,
+    } = kind;
     let initial = match causality {
         Causality::Input => None,
         Causality::Parameter => Some(Initial::Exact),
@@ -87,16 +107,19 @@ impl Variable {
     }
 }
 
-pub(super) const INPUT: (Causality, Variability) = (Causality::Input, Variability::Continuous);
-pub(super) const OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Continuous);
-pub(super) const DISCRETE: (Causality, Variability) = (Causality::Output, Variability::Discrete);
-pub(super) const TUNABLE: (Causality, Variability) = (Causality::Parameter, Variability::Tunable);
-pub(super) const FIXED: (Causality, Variability) = (Causality::Parameter, Variability::Fixed);
-pub(super) const CALCULATED: (Causality, Variability) =
-    (Causality::CalculatedParameter, Variability::Tunable);
-pub(super) const LOCAL: (Causality, Variability) = (Causality::Local, Variability::Constant);
+pub(super) const INPUT: VariableKind = VariableKind::new(Causality::Input, Variability::Continuous);
+pub(super) const OUTPUT: VariableKind =
+    VariableKind::new(Causality::Output, Variability::Continuous);
+pub(super) const DISCRETE: VariableKind =
+    VariableKind::new(Causality::Output, Variability::Discrete);
+pub(super) const TUNABLE: VariableKind =
+    VariableKind::new(Causality::Parameter, Variability::Tunable);
+pub(super) const FIXED: VariableKind = VariableKind::new(Causality::Parameter, Variability::Fixed);
+pub(super) const CALCULATED: VariableKind =
+    VariableKind::new(Causality::CalculatedParameter, Variability::Tunable);
+pub(super) const LOCAL: VariableKind = VariableKind::new(Causality::Local, Variability::Constant);
 /// A state or its rate.
-pub(super) const INNER: (Causality, Variability) = (Causality::Local, Variability::Continuous);
+pub(super) const INNER: VariableKind = VariableKind::new(Causality::Local, Variability::Continuous);
 pub(super) const SPEED: Option<&SiUnit> = Some(&si::METRE_PER_SECOND);
 
 /// `filters` is the number of the states of its forces.

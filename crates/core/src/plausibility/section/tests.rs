@@ -2,15 +2,15 @@
 
 use super::super::sentences;
 use super::*;
-use crate::section::Translation;
+use crate::section::{Rotation, Translation};
 
 /// A suspension bridge with a steel box of 26.4 m: 0.131 and 0.36 Hz.
 fn box_girder() -> SectionModel {
     SectionModel::two_dof(
         26.4,
         1.25,
-        (14_500.0, 0.131, 0.005),
-        (14_500.0 * 7.9 * 7.9, 0.36, 0.005),
+        Translation::new(14_500.0, 0.131, 0.005),
+        Rotation::new(14_500.0 * 7.9 * 7.9, 0.36, 0.005),
     )
 }
 
@@ -19,14 +19,14 @@ fn sections_of_bridges_and_models_are_plausible() {
     let footbridge = SectionModel::two_dof(
         4.0,
         1.25,
-        (1500.0, 1.1, 0.004),
-        (1500.0 * 1.2 * 1.2, 2.4, 0.004),
+        Translation::new(1500.0, 1.1, 0.004),
+        Rotation::new(1500.0 * 1.2 * 1.2, 2.4, 0.004),
     );
     let concrete = SectionModel::two_dof(
         22.0,
         1.25,
-        (38_000.0, 0.26, 0.01),
-        (38_000.0 * 6.2 * 6.2, 0.58, 0.01),
+        Translation::new(38_000.0, 0.26, 0.01),
+        Rotation::new(38_000.0 * 6.2 * 6.2, 0.58, 0.01),
     );
     let sections = [
         SectionModel::table_4_1(),

@@ -44,7 +44,7 @@ pub(super) fn advance_continuous(
     let part_s = way.duration_s / parts;
     for part in 0..parts as usize {
         let start = part as f64 * part_s;
-        series(c, state, (way, start, part_s), buffers);
+        series(c, state, way, start, part_s, buffers);
     }
     grown(state)
 }
@@ -72,7 +72,9 @@ fn grown(state: &[f64]) -> Result<()> {
 fn series(
     c: &ContinuousRealization,
     state: &mut [f64],
-    (way, start, part_s): (&MotionInterval, f64, f64),
+    way: &MotionInterval,
+    start: f64,
+    part_s: f64,
     buffers: &mut Buffers,
 ) {
     let Buffers { term, next } = buffers;
@@ -127,7 +129,8 @@ pub(super) fn add_product(matrix: &DMatrix<f64>, vector: &[f64], sum: &mut [f64]
 /// `S(k+1) = A S(k) + B r(k+1)` at every sample on the way, one each `Δs`; `phase` is the part of `Δs` since the last.
 pub(super) fn advance_discrete(
     d: &DiscreteRealization,
-    (state, phase): (&mut [f64], &mut f64),
+    state: &mut [f64],
+    phase: &mut f64,
     way: &MotionInterval,
     buffers: &mut Buffers,
 ) -> Result<()> {

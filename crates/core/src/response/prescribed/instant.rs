@@ -2,7 +2,7 @@
 
 use super::course::MotionCubic;
 use super::filters::add_product;
-use super::{ForceAhead, PrescribedForces};
+use super::{Airflow, ForceAhead, PrescribedForces};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
 use nalgebra::{DMatrix, DVector};
@@ -52,21 +52,20 @@ impl PrescribedForces {
         filters.copy_from_slice(settled.as_slice());
     }
 
-    /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate, in a wind (m/s)
-    /// on a deck of this width (m) in air of this density (kg/m³).
+    /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate.
     pub fn at_instant(
         &mut self,
         filters: &[f64],
         motion: &[[f64; 3]],
-        (wind, width, density): (f64, f64, f64),
+        air: Airflow,
         forces: &mut [ForceAhead],
     ) {
         self.courses.clear();
         for (dof, now) in self.dofs.iter().zip(motion) {
             self.courses
-                .push(MotionCubic::now(*now).times(dof.motion_scale(width)));
+                .push(MotionCubic::now(*now).times(dof.motion_scale(air.width_m)));
         }
-        self.forces(filters, (wind, width, density), forces);
+        self.forces(filters, air, forces);
     }
 
     /// `ż = (V/B)(A z + B r)` of a strip, 1/s; sampled filters have no rate.
@@ -74,7 +73,8 @@ impl PrescribedForces {
         &self,
         filters: &[f64],
         displacement: &[f64],
-        (wind, width): (f64, f64),
+        wind_m_s: f64,
+        width_m: f64,
         rates: &mut [f64],
     ) {
         let Realization::Continuous(c) = &self.realization else {
@@ -84,13 +84,15 @@ impl PrescribedForces {
         rates.fill(0.0);
         add_product(&c.a, filters, rates);
         let scaled = self.dofs.iter().zip(displacement);
-        let scaled = scaled.map(|(dof, x)| x * dof.motion_scale(width));
+        let scaled = scaled.map(|(dof, x)| x * dof.motion_scale(width_m));
         for (column, r) in c.b.column_iter().zip(scaled) {
             for (rate, b) in rates.iter_mut().zip(&column) {
                 *rate += b * r;
             }
         }
-        rates.iter_mut().for_each(|rate| *rate *= wind / width);
+        rates
+            .iter_mut()
+            .for_each(|rate| *rate *= wind_m_s / width_m);
     }
 
     fn dimensionless(&self, displacement: &[f64], width: f64) -> DVector<f64> {

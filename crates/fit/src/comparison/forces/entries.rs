@@ -73,7 +73,7 @@ pub struct BandCheck {
 }
 
 /// Whether a deviation of magnitude (percent) and phase (degrees) is inside the bands.
-pub fn inside((percent, degrees): &(f64, f64)) -> BandCheck {
+pub fn inside(percent: f64, degrees: f64) -> BandCheck {
     BandCheck {
         magnitude: percent.abs() <= MAGNITUDE_BAND_PERCENT,
         phase: degrees.abs() <= PHASE_BAND_DEG,
@@ -93,10 +93,10 @@ impl EntryComparison {
         };
         format!(
             "magnitude within ±15 % at {} of {} (worst {:+.0} %), phase within ±5° at {} (worst {:+.1}°)",
-            count(|p| inside(p).magnitude),
+            count(|p| inside(p.0, p.1).magnitude),
             points.len(),
             worst(|p| p.0),
-            count(|p| inside(p).phase),
+            count(|p| inside(p.0, p.1).phase),
             worst(|p| p.1),
         )
     }

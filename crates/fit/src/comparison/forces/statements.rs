@@ -89,7 +89,7 @@ pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<St
             .points
             .iter()
             .zip(&e.models[0].points)
-            .filter(|(_, m)| !inside(m).phase)
+            .filter(|(_, m)| !inside(m.0, m.1).phase)
             .map(|(p, _)| format!("{:.2}", p.frequency_hz))
             .collect();
         let list = if beyond.is_empty() {

@@ -29,7 +29,7 @@ pub(super) fn solve(
         let (residuals, meat) = point.residuals(force, &coefficients);
         let covariance = &inverse * meat * &inverse;
         for a in 0..point.active.len() {
-            let estimates = point.estimates((force, a), &coefficients, &covariance, &residuals);
+            let estimates = point.estimates(force, a, &coefficients, &covariance, &residuals);
             result.estimates.extend(estimates);
         }
     }
@@ -148,7 +148,8 @@ impl<'a> TestPointEquations<'a> {
     /// Both derivatives of a force by the `a`-th active motion, if some run drives it.
     fn estimates(
         &self,
-        (force, a): (usize, usize),
+        force: usize,
+        a: usize,
         coefficients: &DVector<f64>,
         covariance: &DMatrix<f64>,
         residuals: &[f64],

@@ -123,15 +123,15 @@ impl ConstraintKind {
 
 impl ActiveConstraint {
     /// Gradient of what it holds with respect to the coefficients of entry `(i, j)`.
-    pub(crate) fn gradient(&self, (i, j): (usize, usize), basis: &Basis) -> Vec<f64> {
+    pub(crate) fn gradient(&self, i: usize, j: usize, basis: &Basis) -> Vec<f64> {
         let row = self.kind.row(self.k, basis);
         let weight = self.weight(i, j);
         row.into_iter().map(|x| weight * x).collect()
     }
 
     /// The same of what it holds beyond its limit, where that follows the data.
-    pub(crate) fn gradient_beyond_limit(&self, (i, j): (usize, usize), basis: &Basis) -> Vec<f64> {
-        let mut gradient = self.gradient((i, j), basis);
+    pub(crate) fn gradient_beyond_limit(&self, i: usize, j: usize, basis: &Basis) -> Vec<f64> {
+        let mut gradient = self.gradient(i, j, basis);
         if let Some(limit) = &self.limit {
             let row = ConstraintKind::AboveTestedRange.row(Some(limit.k_max), basis);
             for (to, x) in gradient.iter_mut().zip(row) {
@@ -156,7 +156,7 @@ impl ActiveConstraint {
     fn of(&self, bases: &[Basis], coefficients: &[Vec<f64>]) -> f64 {
         let n = self.direction.len();
         let part = |(e, (basis, values)): (usize, (&Basis, &Vec<f64>))| -> f64 {
-            let gradient = self.gradient((e / n, e % n), basis);
+            let gradient = self.gradient(e / n, e % n, basis);
             gradient.iter().zip(values).map(|(g, v)| g * v).sum()
         };
         bases.iter().zip(coefficients).enumerate().map(part).sum()
@@ -202,7 +202,8 @@ impl ConstraintReport {
     pub(crate) fn new(
         mut active: Vec<ActiveConstraint>,
         dofs: &[Dof],
-        (alone, bases): (&[EntryReport], &[Basis]),
+        alone: &[EntryReport],
+        bases: &[Basis],
         with: &[EntryReport],
         unconstrained: Model,
     ) -> Self {

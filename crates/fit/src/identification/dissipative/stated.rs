@@ -140,7 +140,8 @@ impl Stated {
         &self,
         motions: &Motions<'_>,
         entries: &[LinearEntry],
-        (start, edge): (&[Vec<f64>], &TestedRangeEnd),
+        start: &[Vec<f64>],
+        edge: &TestedRangeEnd,
         equalities: &[DVector<f64>],
     ) -> Cone {
         let Condition {

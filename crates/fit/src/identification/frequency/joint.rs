@@ -66,20 +66,21 @@ pub(super) fn by_noise(
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
     pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
-        self.fit(poles, (true, Strictness::Everywhere))
+        self.fit(poles, true, Strictness::Everywhere)
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
     pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);
-        Ok(self.fit(poles, (native, Strictness::Sampled))?.residuals())
+        Ok(self.fit(poles, native, Strictness::Sampled)?.residuals())
     }
 
     fn fit(
         &self,
         poles: &[Vec<f64>],
-        (native, strictness): (bool, Strictness),
+        native: bool,
+        strictness: Strictness,
     ) -> Result<JointFit<'a>> {
         let basis = |poles: &Vec<f64>| {
             if native {

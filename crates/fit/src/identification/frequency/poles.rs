@@ -47,7 +47,8 @@ pub(super) fn choose_poles(
         let options = search_for(&fit.poles, form);
         reports.push(search_group(
             &group,
-            (&forms[members[0]], &options),
+            &forms[members[0]],
+            &options,
             tested,
             &residuals,
         )?);
@@ -64,7 +65,8 @@ pub(super) fn choose_poles_together(
     joint: &Joint<'_>,
     forms: &[EntryForm],
     fit: &FrequencyFit,
-    (tested, mut poles): (ReducedFrequencyRange, Vec<Vec<f64>>),
+    tested: ReducedFrequencyRange,
+    mut poles: Vec<Vec<f64>>,
 ) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
     let (forms, groups) = searched(forms, fit)?;
     let rounds = if groups.len() > 1 { 2 } else { 1 };
@@ -86,7 +88,8 @@ pub(super) fn choose_poles_together(
             if groups.len() > 1 {
                 options.start = Some(form.collapse(&poles[members[0]]));
             }
-            let report = search_group(&group, (&forms[members[0]], &options), tested, &residuals)?;
+            let first = &forms[members[0]];
+            let report = search_group(&group, first, &options, tested, &residuals)?;
             poles = at(&report.chosen.poles);
             reports.push(report);
         }
@@ -97,14 +100,15 @@ pub(super) fn choose_poles_together(
 /// Searches the poles that a group of entries shares.
 fn search_group(
     group: &[&EntrySamples],
-    (of, options): (&EntryForm, &PoleSearch),
+    of: &EntryForm,
+    options: &PoleSearch,
     tested: ReducedFrequencyRange,
     residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
 ) -> Result<SearchReport> {
     let form = &of.form;
     let bounds = Bounds::resolve(options, tested, form.free_poles())?;
     let name = of.alone.then(|| (group[0].force, group[0].motion));
-    let mut report = search_poles(form.free_poles(), (options, bounds), name, residuals)?;
+    let mut report = search_poles(form.free_poles(), options, bounds, name, residuals)?;
     report.force = form.poles_per_force().then_some(group[0].force);
     Ok(report)
 }

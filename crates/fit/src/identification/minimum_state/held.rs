@@ -47,8 +47,8 @@ impl LagSearch<'_> {
         let (mut fitted, active) = self.finish(dofs, &point, search)?;
         let bases = vec![self.roger_basis(&alone.reports[0].poles)?; self.entries.len()];
         fitted.constraints = active.map(|active| {
-            let before = (alone.reports.as_slice(), bases.as_slice());
-            ConstraintReport::new(active, dofs, before, &fitted.reports, alone.model)
+            let (before, with) = (&alone.reports, &fitted.reports);
+            ConstraintReport::new(active, dofs, before, &bases, with, alone.model)
         });
         Ok(fitted)
     }

@@ -58,7 +58,8 @@ impl RecordFit<'_> {
         &self,
         candidates: &[Vec<Vec<f64>>],
         rows: Rows,
-        number: (usize, usize),
+        number: usize,
+        passes: usize,
     ) -> Result<Pass> {
         let basis = |poles: &Vec<f64>| {
             if rows.orthonormal {
@@ -83,7 +84,7 @@ impl RecordFit<'_> {
             discard_s: self.fit.discard_s,
             stride: if rows.thinned { self.thinning() } else { 1 },
             stretches: rows.stretches,
-            number,
+            number: (number, passes),
         };
         pass_over(&self.records.each, &plan, self.progress, |record| {
             ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)

@@ -164,14 +164,15 @@ impl<'a> FittedSystems<'a> {
         let n = self.dofs.len();
         let report = |e: usize| {
             let (names, poles) = named(e)?;
-            self.report((e / n, e % n), names, poles)
+            self.report(e / n, e % n, names, poles)
         };
         (0..n * n).map(report).collect()
     }
 
     fn report(
         &self,
-        (i, j): (usize, usize),
+        i: usize,
+        j: usize,
         names: Vec<String>,
         poles: Vec<f64>,
     ) -> Result<EntryReport> {

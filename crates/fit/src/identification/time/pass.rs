@@ -167,7 +167,7 @@ pub(crate) fn pass_over<C: Columns>(
         .par_iter()
         .enumerate()
         .map(|(r, record)| {
-            let part = one_record((r, record), plan, &mut make(record)?);
+            let part = one_record(r, record, plan, &mut make(record)?);
             progress(FitProgress {
                 pass: plan.number.0,
                 passes: plan.number.1,
@@ -185,7 +185,8 @@ pub(crate) fn pass_over<C: Columns>(
 
 /// The stretches of one record.
 fn one_record<C: Columns>(
-    (index, record): (usize, &DimensionlessRecord),
+    index: usize,
+    record: &DimensionlessRecord,
     plan: &PassPlan,
     maker: &mut C,
 ) -> Result<Vec<Stretch>> {

@@ -121,7 +121,7 @@ impl RecordFit<'_> {
         }
         let everywhere = |chain: Vec<f64>| vec![chain; self.records.dofs.len()];
         let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
-        let passed = self.pass(&chains, Rows::THINNED, (pass, PASSES))?;
+        let passed = self.pass(&chains, Rows::THINNED, pass, PASSES)?;
         let systems = passed.systems();
         for (g, poles, at) in trials {
             let objective = groups[g].objective(&poles, &systems[at])?;

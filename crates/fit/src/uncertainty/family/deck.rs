@@ -7,7 +7,7 @@ use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetSearch, find_onset};
-use crate::section::{Dof, SectionModel, Structure, Translation};
+use crate::section::{Dof, Rotation, SectionModel, Structure, Translation};
 use crate::signal::random_stream;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix};
@@ -150,9 +150,24 @@ fn section(which: usize, sways: bool) -> SectionModel {
         0 => SectionModel::table_4_1(),
         1 => SectionModel::iabse_1_1a(),
         // a light streamlined deck, a heavy one of low torsional frequency, a small model of high damping
-        2 => SectionModel::two_dof(20.0, 1.25, (9_000.0, 0.12, 0.005), (4.0e5, 0.35, 0.005)),
-        3 => SectionModel::two_dof(36.0, 1.25, (31_000.0, 0.07, 0.003), (4.5e6, 0.14, 0.003)),
-        _ => SectionModel::two_dof(0.4, 1.2, (6.0, 3.0, 0.01), (0.11, 8.0, 0.01)),
+        2 => SectionModel::two_dof(
+            20.0,
+            1.25,
+            Translation::new(9_000.0, 0.12, 0.005),
+            Rotation::new(4.0e5, 0.35, 0.005),
+        ),
+        3 => SectionModel::two_dof(
+            36.0,
+            1.25,
+            Translation::new(31_000.0, 0.07, 0.003),
+            Rotation::new(4.5e6, 0.14, 0.003),
+        ),
+        _ => SectionModel::two_dof(
+            0.4,
+            1.2,
+            Translation::new(6.0, 3.0, 0.01),
+            Rotation::new(0.11, 8.0, 0.01),
+        ),
     };
     if sways {
         let heave = section.vertical.frequency_hz.unwrap_or(1.0);
@@ -266,7 +281,7 @@ impl Tests {
             let sum: f64 = transfers.iter().map(|g| g[(i, j)].norm_sqr()).sum();
             (sum / transfers.len() as f64).sqrt()
         };
-        let shifts = self.shifts((n, &size), random)?;
+        let shifts = self.shifts(n, &size, random)?;
         let component = self.noise / std::f64::consts::SQRT_2;
         let mut samples = Vec::new();
         let mut points: Vec<(usize, &f64, &DMatrix<Complex<f64>>)> = Vec::new();
@@ -298,7 +313,8 @@ impl Tests {
     /// variance that is drawn as measured decks have it.
     fn shifts(
         &self,
-        (n, size): (usize, &dyn Fn(usize, usize) -> f64),
+        n: usize,
+        size: &dyn Fn(usize, usize) -> f64,
         random: &mut ChaCha8Rng,
     ) -> Result<Vec<Vec<Complex<f64>>>> {
         let mut shifts = vec![vec![Complex::new(0.0, 0.0); n * n]; self.speeds];

@@ -89,7 +89,7 @@ impl Distribution {
             Self::Normal(given) => {
                 let mean = finite(at("mean"), given.mean.unwrap_or(nominal))?;
                 let deviation = given.deviation(place, mean)?;
-                gaussian(place, (mean, deviation), (given.lower, given.upper), false)
+                gaussian(place, mean, deviation, given.lower, given.upper, false)
             }
             Self::Lognormal(given) => {
                 let mean = positive(at("mean"), given.mean.unwrap_or(nominal))?;
@@ -98,9 +98,9 @@ impl Distribution {
                 let log = |key: &str, end: Option<f64>| {
                     end.map(|x| positive(at(key), x).map(f64::ln)).transpose()
                 };
-                let ends = (log("lower", given.lower)?, log("upper", given.upper)?);
-                let moments = (mean.ln() - 0.5 * variance, variance.sqrt());
-                gaussian(place, moments, ends, true)
+                let (lower, upper) = (log("lower", given.lower)?, log("upper", given.upper)?);
+                let (mean, deviation) = (mean.ln() - 0.5 * variance, variance.sqrt());
+                gaussian(place, mean, deviation, lower, upper, true)
             }
         }
     }
@@ -128,8 +128,10 @@ impl Gaussian {
 /// The transform of a Gaussian, cut where it has ends.
 fn gaussian(
     place: &str,
-    (mean, deviation): (f64, f64),
-    (lower, upper): (Option<f64>, Option<f64>),
+    mean: f64,
+    deviation: f64,
+    lower: Option<f64>,
+    upper: Option<f64>,
     exponential: bool,
 ) -> Result<Transform> {
     let transform = |ends| Transform::Gaussian {

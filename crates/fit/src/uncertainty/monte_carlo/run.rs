@@ -55,7 +55,7 @@ pub fn monte_carlo(
     };
     let finder = Finder::new(model, limit)?;
     let (values, _) = coefficients::of(&model.model);
-    let sampler = Sampler::new(plan, &model.section, (&values, covariance))?;
+    let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
     let nominal = finder.onset(&model.section, &values)?.0;
     let chunks = plan.samples.div_ceil(CHUNK);
     let done = AtomicUsize::new(0);

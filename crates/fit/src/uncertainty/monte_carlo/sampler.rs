@@ -43,7 +43,8 @@ impl Sampler {
     pub(super) fn new(
         plan: &MonteCarloPlan,
         section: &SectionModel,
-        (coefficients, covariance): (&[f64], Option<CovarianceFactor>),
+        coefficients: &[f64],
+        covariance: Option<CovarianceFactor>,
     ) -> Result<Self> {
         let mut parameters = Vec::with_capacity(plan.parameters.len());
         for (i, random) in plan.parameters.iter().enumerate() {

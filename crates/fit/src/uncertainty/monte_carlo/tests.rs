@@ -122,7 +122,7 @@ fn samples_are_those_of_single_searches() {
     let plan = plan(EVERYTHING);
     let model = jones();
     let (values, _) = coefficients::of(&model.model);
-    let sampler = sampler::Sampler::new(&plan, &model.section, (&values, None)).unwrap();
+    let sampler = sampler::Sampler::new(&plan, &model.section, &values, None).unwrap();
     let mut sample = sampler.empty();
     let mut speeds = Vec::new();
     for index in 0..1000 {

@@ -171,7 +171,7 @@ fn speeds_that_contradict_each_other_are_named() {
         let tested = table.tested_range(&Dof::TWO);
         let at = onset_within(&model, Some(tested));
         let search = OnsetSearch::default();
-        let speeds = speed_onsets(&estimate, &structure(), &at, (&search, tested)).unwrap();
+        let speeds = speed_onsets(&estimate, &structure(), &at, &search, tested).unwrap();
         assert_eq!(speeds.each.len(), 2, "{name}");
         if let Some(c) = &speeds.contradiction {
             contradictions += 1;

@@ -30,7 +30,7 @@ fn fit(constraints: Constraints, poles: PoleSearch) -> (FitReport, CoefficientUn
 
 /// Standard error of the quadratic form that a constraint holds.
 fn error(estimate: &CoefficientUncertainty, constraint: &ActiveConstraint, basis: &Basis) -> f64 {
-    let rows = (0..9).map(|e| constraint.gradient((e / 3, e % 3), basis));
+    let rows = (0..9).map(|e| constraint.gradient(e / 3, e % 3, basis));
     let mut gradient: Vec<f64> = rows.flatten().collect();
     gradient.resize(estimate.parameters.len(), 0.0);
     estimate.standard_error(&gradient).unwrap()

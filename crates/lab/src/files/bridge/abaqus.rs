@@ -47,7 +47,7 @@ fn column(path: &Path, expected: &str) -> Result<Vec<f64>> {
     let rows = table
         .rows
         .iter()
-        .map(|row| tables::positive(row, row.1.len() - 1, expected));
+        .map(|row| row.positive(row.cells.len() - 1, expected));
     rows.collect::<Result<_>>().map_err(|e| e.in_file(path))
 }
 
@@ -69,9 +69,9 @@ fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {
     for row in &table.rows {
         let mut values = [0.0; 6];
         for (value, column) in values.iter_mut().zip(columns) {
-            *value = Table::number(row, column)?;
+            *value = row.number(column)?;
         }
-        at.insert(Table::name(row, node), values);
+        at.insert(row.name(node), values);
     }
     let of_node = |(name, _): &(String, [f64; 3])| {
         at.get(name).copied().ok_or_else(|| {

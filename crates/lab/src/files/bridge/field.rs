@@ -112,11 +112,11 @@ fn parse(table: &Table) -> Result<FieldTable> {
     let times: Vec<f64> = table
         .rows
         .iter()
-        .map(|r| Table::number(r, time))
+        .map(|r| r.number(time))
         .collect::<Result<_>>()?;
     let step_s = step(&times, table)?;
     let samples = |columns: &[(usize, f64)]| -> Result<Vec<Vec<f64>>> {
-        let row = |c: &(usize, f64)| table.rows.iter().map(|r| Table::number(r, c.0)).collect();
+        let row = |c: &(usize, f64)| table.rows.iter().map(|r| r.number(c.0)).collect();
         columns.iter().map(row).collect()
     };
     Ok(FieldTable {
@@ -140,7 +140,7 @@ fn step(times: &[f64], table: &Table) -> Result<f64> {
     match times.windows(2).position(wrong) {
         None if mean > 0.0 => Ok(mean),
         at => {
-            let place = Place::line(table.rows[at.unwrap_or(0) + 1].0).column("time_s");
+            let place = Place::line(table.rows[at.unwrap_or(0) + 1].line).column("time_s");
             Err(Error::input(
                 place,
                 format!("times that rise by {mean} s"),

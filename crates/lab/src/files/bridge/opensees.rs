@@ -9,7 +9,7 @@
 //! `examples/export_modes_opensees.py` writes them.
 
 use super::modal_data::{ModalData, RawMode};
-use super::table::Table;
+use super::table::{Table, TableRow};
 use crate::error::{Error, Place, Result};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -46,13 +46,9 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
 }
 
 fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
-    let one = |row: &(usize, Vec<String>)| {
-        let at = [
-            Table::number(row, 1)?,
-            Table::number(row, 2)?,
-            Table::number(row, 3)?,
-        ];
-        Ok((Table::name(row, 0), at))
+    let one = |row: &TableRow| {
+        let at = [row.number(1)?, row.number(2)?, row.number(3)?];
+        Ok((row.name(0), at))
     };
     table.rows.iter().map(one).collect()
 }
@@ -82,20 +78,23 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
 
 fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {
     let wanted = 6 * nodes;
-    let (line, cells) = &table.rows[table.rows.len() - 1];
-    let leading = cells.len().checked_sub(wanted).filter(|time| *time <= 1);
+    let row = &table.rows[table.rows.len() - 1];
+    let leading = row
+        .cells
+        .len()
+        .checked_sub(wanted)
+        .filter(|time| *time <= 1);
     let Some(leading) = leading else {
         return Err(Error::input(
-            Place::line(*line),
+            Place::line(row.line),
             format!("{wanted} numbers, six for each of the {nodes} nodes of nodes.out"),
-            cells.len().to_string(),
+            row.cells.len().to_string(),
         ));
     };
-    let row = (*line, cells.clone());
     let part = |n: usize| {
         let mut u = [0.0; 6];
         for (d, value) in u.iter_mut().enumerate() {
-            *value = Table::number(&row, leading + 6 * n + d)?;
+            *value = row.number(leading + 6 * n + d)?;
         }
         Ok(u)
     };

@@ -16,7 +16,7 @@
 //! axes say, and straight, which a file of places along the girder alone would hide.
 
 use super::modal_data::{BridgeModes, check_order};
-use super::table::Table;
+use super::table::{Table, TableRow};
 use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, positive};
 use crate::files::header_csv::CommentHeader;
@@ -51,9 +51,9 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     let mut nodes = Vec::with_capacity(table.rows.len());
     for row in &table.rows {
         nodes.push(Node {
-            name: of_csv_cell(&Table::name(row, name)).to_owned(),
-            along_m: Table::number(row, along)?,
-            length_m: Table::number(row, length)?,
+            name: of_csv_cell(&row.name(name)).to_owned(),
+            along_m: row.number(along)?,
+            length_m: row.number(length)?,
         });
     }
     let offsets_m = offsets(&table)?;
@@ -68,13 +68,7 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
             .map(|part| table.required(&[&format!("{part}_{number}")]));
         let [v, l, r] = columns;
         let (v, l, r) = (v?, l?, r?);
-        let at = |row| {
-            Ok([
-                Table::number(row, v)?,
-                Table::number(row, l)?,
-                Table::number(row, r)?,
-            ])
-        };
+        let at = |row: &TableRow| Ok([row.number(v)?, row.number(l)?, row.number(r)?]);
         Ok(BridgeMode {
             number,
             frequency_hz,
@@ -99,7 +93,7 @@ fn offsets(table: &Table) -> Result<Vec<[f64; 2]>> {
     }
     let [downwind, up] = OFFSETS.map(|name| table.required(&[name]));
     let (downwind, up) = (downwind?, up?);
-    let at = |row| Ok([Table::number(row, downwind)?, Table::number(row, up)?]);
+    let at = |row: &TableRow| Ok([row.number(downwind)?, row.number(up)?]);
     table.rows.iter().map(at).collect()
 }
 

@@ -11,8 +11,15 @@ const ROWS_AT_MOST: usize = 5_000_000;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Table {
     pub(super) heading: Vec<String>,
-    /// Line in the file and cells.
-    pub(super) rows: Vec<(usize, Vec<String>)>,
+    pub(super) rows: Vec<TableRow>,
+}
+
+/// A row of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TableRow {
+    /// Line in the file.
+    pub(super) line: usize,
+    pub(super) cells: Vec<String>,
 }
 
 /// Cells of a line: between commas, semicolons or tabs, else between blanks.
@@ -58,7 +65,8 @@ impl Table {
                     "more",
                 ));
             }
-            table.rows.push((i + 1, cells));
+            let line = i + 1;
+            table.rows.push(TableRow { line, cells });
         }
         if table.rows.is_empty() {
             return Err(Error::input("", "rows of numbers", "none"));
@@ -84,10 +92,28 @@ impl Table {
         })
     }
 
+    /// All numbers of all rows, in order.
+    pub(super) fn all_numbers(&self) -> Result<Vec<f64>> {
+        let cells = self
+            .rows
+            .iter()
+            .flat_map(|row| (0..row.cells.len()).map(move |c| row.number(c)));
+        cells.collect()
+    }
+}
+
+impl TableRow {
+    fn place(&self, column: usize) -> Place {
+        Place::line(self.line).column(column + 1)
+    }
+
+    fn cell(&self, column: usize) -> &str {
+        self.cells.get(column).map_or("", String::as_str)
+    }
+
     /// The number in a cell.
-    pub(super) fn number(row: &(usize, Vec<String>), column: usize) -> Result<f64> {
-        let place = Place::line(row.0).column(column + 1);
-        let cell = row.1.get(column).map_or("", String::as_str);
+    pub(super) fn number(&self, column: usize) -> Result<f64> {
+        let (place, cell) = (self.place(column), self.cell(column));
         let number: Option<f64> = cell.parse().ok();
         number
             .filter(|x| x.is_finite())
@@ -95,34 +121,33 @@ impl Table {
     }
 
     /// The whole number in a cell.
-    pub(super) fn count(row: &(usize, Vec<String>), column: usize) -> Result<usize> {
-        let x = Self::number(row, column)?;
+    pub(super) fn count(&self, column: usize) -> Result<usize> {
+        let x = self.number(column)?;
         if x >= 0.0 && x.fract() == 0.0 {
             return Ok(x as usize);
         }
-        let place = Place::line(row.0).column(column + 1);
         Err(Error::input(
-            place,
+            self.place(column),
             "a whole number",
-            format!("`{}`", row.1[column]),
+            format!("`{}`", self.cell(column)),
         ))
     }
 
+    /// The positive number in a cell.
+    pub(super) fn positive(&self, column: usize, expected: &str) -> Result<f64> {
+        let x = self.number(column)?;
+        if x > 0.0 {
+            return Ok(x);
+        }
+        Err(Error::input(self.place(column), expected, x.to_string()))
+    }
+
     /// The name in a cell; numbers lose what a spreadsheet added to them (`12.0`).
-    pub(super) fn name(row: &(usize, Vec<String>), column: usize) -> String {
-        let cell = row.1.get(column).map_or("", String::as_str);
+    pub(super) fn name(&self, column: usize) -> String {
+        let cell = self.cell(column);
         match cell.parse::<f64>() {
             Ok(x) if x.fract() == 0.0 && x.abs() < 1e15 => format!("{x:.0}"),
             _ => cell.to_owned(),
         }
-    }
-
-    /// All numbers of all rows, in order.
-    pub(super) fn all_numbers(&self) -> Result<Vec<f64>> {
-        let cells = self
-            .rows
-            .iter()
-            .flat_map(|row| (0..row.1.len()).map(move |c| Self::number(row, c)));
-        cells.collect()
     }
 }

@@ -7,7 +7,7 @@
 //! Lines that begin with `#` are comments; columns stand in any order and others are ignored.
 
 use super::modal_data::{ModalData, RawMode};
-use super::table::Table;
+use super::table::{Table, TableRow};
 use crate::error::{Error, Place, Result};
 use std::collections::HashMap;
 use std::path::Path;
@@ -33,18 +33,14 @@ pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
     let x = table.required(&["x_m", "x"])?;
     let y = table.required(&["y_m", "y"])?;
     let z = table.required(&["z_m", "z"])?;
-    let one = |row: &(usize, Vec<String>)| {
-        let at = [
-            Table::number(row, x)?,
-            Table::number(row, y)?,
-            Table::number(row, z)?,
-        ];
-        Ok((Table::name(row, node), at))
+    let one = |row: &TableRow| {
+        let at = [row.number(x)?, row.number(y)?, row.number(z)?];
+        Ok((row.name(node), at))
     };
     let nodes: Vec<(String, [f64; 3])> = table.rows.iter().map(one).collect::<Result<_>>()?;
     for (i, (name, _)) in nodes.iter().enumerate() {
         if nodes[..i].iter().any(|n| n.0 == *name) {
-            let place = Place::line(table.rows[i].0);
+            let place = Place::line(table.rows[i].line);
             return Err(Error::input(
                 place,
                 "each node once",
@@ -59,25 +55,15 @@ fn modes(table: &Table, nodes: usize) -> Result<Vec<RawMode>> {
     let mode = table.required(&["mode"])?;
     let frequency = table.required(&["frequency_hz"])?;
     let mass = table.required(&["generalised_mass_kg", "generalised_mass"])?;
-    let one = |row: &(usize, Vec<String>)| {
+    let one = |row: &TableRow| {
         Ok(RawMode {
-            number: Table::count(row, mode)?,
-            frequency_hz: positive(row, frequency, "a positive frequency in Hz")?,
-            generalised_mass: positive(row, mass, "a positive generalised mass")?,
+            number: row.count(mode)?,
+            frequency_hz: row.positive(frequency, "a positive frequency in Hz")?,
+            generalised_mass: row.positive(mass, "a positive generalised mass")?,
             shape: vec![[f64::NAN; 6]; nodes],
         })
     };
     table.rows.iter().map(one).collect()
-}
-
-/// A positive number in a cell.
-pub(super) fn positive(row: &(usize, Vec<String>), column: usize, expected: &str) -> Result<f64> {
-    let x = Table::number(row, column)?;
-    if x > 0.0 {
-        return Ok(x);
-    }
-    let place = Place::line(row.0).column(column + 1);
-    Err(Error::input(place, expected, x.to_string()))
 }
 
 fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> Result<()> {
@@ -97,24 +83,24 @@ fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> R
         .map(|(i, m)| (m.number, i))
         .collect();
     for row in &table.rows {
-        let number = Table::count(row, mode)?;
+        let number = row.count(mode)?;
         let of_mode = mode_of.get(&number).ok_or_else(|| {
             Error::input(
-                Place::line(row.0),
+                Place::line(row.line),
                 format!("a mode of {MODES}"),
                 format!("mode {number}"),
             )
         })?;
-        let name = Table::name(row, node);
+        let name = row.name(node);
         let at = place_of.get(name.as_str()).ok_or_else(|| {
             Error::input(
-                Place::line(row.0),
+                Place::line(row.line),
                 format!("a node of {NODES}"),
                 format!("node {name}"),
             )
         })?;
         for (value, column) in modes[*of_mode].shape[*at].iter_mut().zip(parts) {
-            *value = Table::number(row, column)?;
+            *value = row.number(column)?;
         }
     }
     for m in modes {

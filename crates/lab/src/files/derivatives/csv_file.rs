@@ -162,11 +162,13 @@ pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Resul
 
 /// Writes points of a few derivatives, too few for a table, in the columns and convention of [`write_csv`]: what one motion alone tells.
 pub fn write_points(
-    (name, width_m, header): (&str, f64, &TableHeader),
+    name: &str,
+    width_m: f64,
+    header: &TableHeader,
     points: &BTreeMap<Derivative, Vec<DerivativePoint>>,
     out: &mut dyn Write,
 ) -> std::io::Result<()> {
-    write_head(out, (name, width_m, header), &Convention::default())?;
+    write_head(out, name, width_m, header, &Convention::default())?;
     writeln!(out, "{}", CSV_COLUMNS.join(","))?;
     for (derivative, of_one) in points {
         for (i, p) in of_one.iter().enumerate() {
@@ -189,7 +191,7 @@ pub fn write_csv_in(
     convention: &Convention,
     out: &mut dyn Write,
 ) -> std::io::Result<()> {
-    write_head(out, (&table.name, table.width_m, &table.header), convention)?;
+    write_head(out, &table.name, table.width_m, &table.header, convention)?;
     let mut columns = CSV_COLUMNS;
     columns[ARGUMENT] = convention.argument.name();
     writeln!(out, "{}", columns.join(","))?;

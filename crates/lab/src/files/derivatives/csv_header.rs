@@ -190,7 +190,9 @@ where
 /// Writes the header of a table in `convention`.
 pub(super) fn write_head(
     out: &mut dyn Write,
-    (name, width_m, header): (&str, f64, &TableHeader),
+    name: &str,
+    width_m: f64,
+    header: &TableHeader,
     convention: &Convention,
 ) -> std::io::Result<()> {
     CommentHeader::write_format(out, FORMATS[0])?;

@@ -186,7 +186,10 @@ fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Po
             sheets[2].0.title_words(),
         ));
     }
-    let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held, convention);
+    let columns = |i: usize| {
+        let (sheet, (name, prefix)) = &sheets[i];
+        read_columns(sheet, name, prefix, &held, convention)
+    };
     let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);
     let points = held.iter().map(|&d| {
         let (speeds, arguments, values) = (&speeds[&d], &arguments[&d], &values[&d]);
@@ -234,7 +237,8 @@ fn column_of(sheet: &Sheet, prefix: &str, name: &str) -> Option<u32> {
 /// The columns of one sheet that belong to the derivatives `held`.
 fn read_columns(
     sheet: &Sheet,
-    (name, prefix): (&str, &str),
+    name: &str,
+    prefix: &str,
     held: &[Derivative],
     convention: &Convention,
 ) -> Result<BTreeMap<Derivative, Vec<f64>>> {

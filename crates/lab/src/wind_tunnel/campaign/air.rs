@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result, positive};
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Gas constant of dry air, J/(kg·K).
 const DRY_AIR: f64 = 287.058;
@@ -56,13 +57,13 @@ impl Air {
     pub(crate) fn density(&self, place: &str) -> Result<f64> {
         let key = |name: &str| format!("{place}.{name}");
         match (self.density_kg_m3, self.temperature_c, self.pressure_pa) {
-            (Some(density), None, None) => within(&key("density_kg_m3"), density, (0.1, 10.0)),
+            (Some(density), None, None) => within(&key("density_kg_m3"), density, 0.1..=10.0),
             (None, Some(temperature), Some(pressure)) => {
-                let t = within(&key("temperature_c"), temperature, (-60.0, 100.0))?;
+                let t = within(&key("temperature_c"), temperature, -60.0..=100.0)?;
                 // hPa instead of Pa would pass for a near vacuum
-                let p = within(&key("pressure_pa"), pressure, (1e4, 1e6))?;
+                let p = within(&key("pressure_pa"), pressure, 1e4..=1e6)?;
                 let humidity = self.relative_humidity.unwrap_or(0.0);
-                let humidity = within(&key("relative_humidity"), humidity, (0.0, 1.0))?;
+                let humidity = within(&key("relative_humidity"), humidity, 0.0..=1.0)?;
                 let saturated = 611.21 * ((18.678 - t / 234.5) * (t / (257.14 + t))).exp();
                 let vapour = humidity * saturated;
                 let kelvin = t + ZERO_CELSIUS;
@@ -87,11 +88,11 @@ impl Air {
     }
 }
 
-fn within(place: &str, value: f64, (low, high): (f64, f64)) -> Result<f64> {
-    if (low..=high).contains(&value) {
+fn within(place: &str, value: f64, range: RangeInclusive<f64>) -> Result<f64> {
+    if range.contains(&value) {
         return Ok(value);
     }
-    let expected = format!("a number from {low} to {high}");
+    let expected = format!("a number from {} to {}", range.start(), range.end());
     Err(Error::input(place, expected, value.to_string()))
 }
 

@@ -79,7 +79,8 @@ pub(super) fn first_gap(samples: &[f64]) -> Option<(usize, usize)> {
 
 /// What is odd about one channel: clipped at its highest or lowest value, or not moving at all where it should.
 pub(super) fn channel_findings(
-    (run, recording): (&str, &str),
+    run: &str,
+    recording: &str,
     name: &str,
     samples: &[f64],
     must_change: bool,
@@ -173,7 +174,7 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
                 ));
             }
         }
-        let of_motion = motion_hints((&run.name, name), recording, motion, width_m);
+        let of_motion = motion_hints(&run.name, name, recording, motion, width_m);
         of_motion.into_iter().for_each(|f| say(f.what));
     }
     Ok(found)
@@ -244,7 +245,8 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
 
 /// Hints about the motions of a recording, of which `stated` are meant to move.
 fn motion_hints(
-    (run, name): (&str, &str),
+    run: &str,
+    name: &str,
     recording: &RawRecording,
     stated: &[Dof],
     width_m: f64,

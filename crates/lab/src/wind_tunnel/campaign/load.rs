@@ -122,10 +122,11 @@ impl Campaign {
         run: &RunBlock,
     ) -> Result<(RawRun, RunSummary, Vec<RunFinding>)> {
         let place = format!("run `{}`", run.name);
-        let wind = LoadedRecording::new((self, rig), map, run, &run.in_wind, "in wind")?;
+        let wind = LoadedRecording::new(self, rig, map, run, &run.in_wind, "in wind")?;
         let still = match &run.still_air {
             Some(file) => Some(LoadedRecording::new(
-                (self, rig),
+                self,
+                rig,
                 map,
                 run,
                 file,

@@ -25,7 +25,8 @@ pub(super) struct LoadedRecording {
 impl LoadedRecording {
     /// Reads the file, or the group of it.
     pub(crate) fn new(
-        (campaign, rig): (&Campaign, &Rig),
+        campaign: &Campaign,
+        rig: &Rig,
         map: &ChannelMap,
         run: &RunBlock,
         file: &FileRef,
@@ -200,7 +201,7 @@ impl ChannelExtraction<'_> {
                 format!("{} for {length} samples", samples[first]),
             ));
         }
-        let found = channel_findings(self.of, &channel.name, &samples, must_change);
+        let found = channel_findings(self.of.0, self.of.1, &channel.name, &samples, must_change);
         self.findings.extend(found);
         self.channels.push(channel.name.clone());
         Ok(samples)
