@@ -52,7 +52,7 @@ fn cannot_be_judged(shown: &Shown, required: &str, finding: &str) {
     let doubt = doubts
         .iter()
         .find(|d| d["text"].as_str().unwrap().contains(finding))
-        .expect(&verdict.to_string());
+        .unwrap_or_else(|| panic!("{verdict}"));
     assert_eq!(doubt["severity"], "severe");
     assert_eq!(verdict["outcome"]["state"], "cannot_be_judged");
 }
