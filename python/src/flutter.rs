@@ -13,18 +13,13 @@ use aerodeck::flutter::{
 };
 use aerodeck::plausibility::{Finding, of_section};
 use aerodeck::section::SectionModel;
-use aerodeck::study::{FlutterBlock, SpeedRange};
+use aerodeck::study::FlutterBlock;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use aerodeck::verdict::{Evidence, MovedOnset, RequiredSpeed, Verdict};
 use pyo3::prelude::*;
 
 /// Reduced frequencies in which the flat plate is searched.
 const PLATE_K: (f64, f64) = (0.02, 20.0);
-
-/// Wind speeds that follow from the section, as in a study that states none.
-pub fn usual_range(section: &SectionModel) -> SpeedRange {
-    FlutterBlock::default().range(section)
-}
 
 /// Find the flutter onset of a section.
 ///

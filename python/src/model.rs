@@ -171,7 +171,7 @@ impl Model {
                 "none".to_owned(),
             )
         })?;
-        let limit = crate::flutter::usual_range(&section).speed_max_m_s;
+        let limit = crate::section::usual_range(&section).speed_max_m_s;
         let experiment = self.stored.as_ref().map(|(_, e)| e.clone());
         Ok(TrainedModel {
             schema_version: self.model.schema_version(),

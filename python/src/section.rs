@@ -4,9 +4,15 @@ use crate::convert::{dof_names, from_python, shown, to_python};
 use crate::error::{raised, warned};
 use aerodeck::plausibility::of_section;
 use aerodeck::section::{Rotation, SectionModel, Translation};
+use aerodeck::study::{FlutterBlock, SpeedRange};
 use aerodeck::uncertainty::monte_carlo::SectionProperty;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+/// Wind speeds that follow from the section, as in a study that states none.
+pub fn usual_range(section: &SectionModel) -> SpeedRange {
+    FlutterBlock::default().range(section)
+}
 
 /// An elastically suspended deck section, per metre of span.
 ///

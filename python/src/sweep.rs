@@ -2,9 +2,8 @@
 
 use crate::convert::{dof_names, rows, shown};
 use crate::error::raised;
-use crate::flutter::usual_range;
 use crate::model::Model;
-use crate::section::Section;
+use crate::section::{Section, usual_range};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterCurves, ModePoint, trace_modes};
 use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArrayMethods};

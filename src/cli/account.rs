@@ -25,7 +25,7 @@ pub(crate) fn chain(
         text,
         "Answer    of the model {}, which the FMU holds; everything on one page: {}",
         summary.model,
-        super::report::REPORT
+        super::report::folder::REPORT
     );
     let s = &study.section;
     let _ = writeln!(text, "Deck      {}", deck.description());

@@ -5,16 +5,12 @@ mod args;
 mod buffeting;
 mod convert;
 pub(super) mod demo;
-mod files;
+pub(in crate::cli) mod files;
 mod flutter;
 mod show;
 mod summary;
 
 pub(crate) use args::read;
-pub(crate) use files::{
-    BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
-    shown_modes,
-};
 
 use super::answer::Answer;
 use super::progress::Progress;

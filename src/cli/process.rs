@@ -110,7 +110,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     }
     let found = derivatives.as_ref();
     let page = laboratory_page(&raw, &processed.report, found, &notes, &out);
-    out.write(super::report::REPORT, sections_page(&page)?)?;
+    out.write(super::report::folder::REPORT, sections_page(&page)?)?;
     let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
     let text = account(&raw, &processed, derivatives.as_ref()) + &remarks;
     let value = serde_json::json!({

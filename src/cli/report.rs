@@ -2,14 +2,13 @@
 
 mod bridge;
 mod curves;
-mod folder;
+pub(in crate::cli) mod folder;
 mod live;
 mod parts;
 mod variables;
 mod view;
 
 pub(crate) use bridge::{BridgeFacts, ModeFacts, SectionFacts};
-pub(super) use folder::{REPORT, SUMMARY, is_of_a_study};
 
 use super::answer::Answer;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
@@ -21,7 +20,7 @@ use crate::flutter::{Onset, OnsetMethod};
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
-use folder::{SummaryKind, digest, parsed};
+use folder::{REPORT, SUMMARY, SummaryKind, digest, parsed};
 use parts::{card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;

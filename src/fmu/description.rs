@@ -5,7 +5,7 @@
 
 use super::identity::MODEL_IDENTIFIER;
 use super::log_categories::LOG_CATEGORIES;
-use super::package::Label;
+use super::package::label::Label;
 use super::resources::Resources;
 use super::si::SiUnit;
 use super::standard::FmiTerm;

@@ -3,7 +3,7 @@
 use super::description::{described, experiment, log_categories, number, units};
 use super::groups::{Groups, array_of};
 use super::identity::MODEL_IDENTIFIER;
-use super::package::Label;
+use super::package::label::Label;
 use super::resources::Resources;
 use super::standard::FmiTerm;
 use super::variables::{Causality, InitialDependency, StartValue, Variable, VariableTable};

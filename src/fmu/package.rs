@@ -6,7 +6,7 @@
 mod bridge_page;
 mod documentation;
 mod growth;
-mod label;
+pub(in crate::fmu) mod label;
 mod runtime;
 mod terminals;
 

@@ -5,7 +5,7 @@ use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
-use super::super::report::{SUMMARY, is_of_a_study};
+use super::super::report::folder::{SUMMARY, is_of_a_study};
 use super::args::BridgeArgs;
 use super::files::{
     CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE, shown_modes,

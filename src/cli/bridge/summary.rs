@@ -1,7 +1,8 @@
 //! `summary.json` of a bridge and the page that is made from it.
 
 use super::super::output::OutputDir;
-use super::super::report::{self, BridgeFacts, ModeFacts, REPORT, SUMMARY, SectionFacts};
+use super::super::report::folder::{REPORT, SUMMARY};
+use super::super::report::{self, BridgeFacts, ModeFacts, SectionFacts};
 use super::account::beside_the_onset;
 use crate::error::Result;
 use crate::flutter::Onset;

@@ -3,7 +3,7 @@
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::account;
 use crate::cli::answer::Answer;
-use crate::cli::bridge::{self, BRIDGE_FMU};
+use crate::cli::bridge::{self, files::BRIDGE_FMU};
 use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
 use crate::cli::{headline, stages};

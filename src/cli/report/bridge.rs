@@ -4,7 +4,7 @@ use super::curves::curves_of;
 use super::folder::{SUMMARY, digest, parsed};
 use super::parts::{card, known, of_svg, round, row};
 use super::variables::variables_of;
-use crate::cli::bridge::{
+use crate::cli::bridge::files::{
     BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
     shown_modes,
 };
