@@ -51,7 +51,7 @@ pub(crate) fn synthesise(
     problem.validate()?;
     positive("wind speed", speed_m_s)?;
     positive("time step of the turbulence", step_s)?;
-    if !SAMPLES.contains(&samples) || samples % 2 != 0 {
+    if !SAMPLES.contains(&samples) || !samples.is_multiple_of(2) {
         let (least, most) = (SAMPLES.start(), SAMPLES.end());
         let expected = format!("an even number from {least} to {most}");
         let place = "samples of the turbulence";

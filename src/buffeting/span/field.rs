@@ -51,7 +51,7 @@ pub fn turbulence_field(
     positive("time step of the turbulence", step_s)?;
     let nodes = problem.bridge.nodes.len();
     let fits = 2 * nodes.saturating_mul(samples) <= NUMBERS_AT_MOST;
-    if !SAMPLES.contains(&samples) || samples % 2 != 0 || !fits {
+    if !SAMPLES.contains(&samples) || !samples.is_multiple_of(2) || !fits {
         let expected = format!(
             "an even number from {} to {} that fits into memory",
             SAMPLES.start(),
