@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let results = FirstOrderExample::default().run()?;
     for shown in first_order_figures(&results)? {
         let stem = format!("figure_{}", shown.number.replace('.', "_"));
-        let [svg, _png] = shown.figure.write(&folder, &stem)?;
+        let svg = shown.figure.write(&folder, &stem)?;
         println!("{}", svg.display());
     }
     let (lower, upper) = results.alpha_bounds;

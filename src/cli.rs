@@ -74,6 +74,9 @@ struct Cli {
     /// Neither draw nor write figures.
     #[arg(long, global = true)]
     no_figures: bool,
+    /// Figures as PNG images too (in programs built with `--features png`).
+    #[arg(long, global = true)]
+    png: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -126,6 +129,9 @@ pub fn main() -> ExitCode {
     interrupt::install();
     let _temporary = interrupt::own_temporary_folder();
     let code = apology::guarded(|| {
+        if let Err(error) = readable_arguments() {
+            return report(&error, std::env::args_os().any(|a| a == "--json"));
+        }
         let cli = match Cli::try_parse() {
             Ok(cli) => cli,
             Err(error) => return usage(&error),
@@ -133,8 +139,15 @@ pub fn main() -> ExitCode {
         if cli.no_figures {
             figures::leave_out();
         }
+        let images = || {
+            if cli.png {
+                figures::as_images_too()
+            } else {
+                Ok(())
+            }
+        };
         let progress = progress::Progress::new(!cli.quiet && !cli.json, cli.verbose);
-        let result = readable_arguments().and_then(|()| run(&cli.command, &progress));
+        let result = images().and_then(|()| run(&cli.command, &progress));
         // a signal that is being obeyed ends the program with a code of its own
         let _busy = interrupt::uninterrupted();
         match result {

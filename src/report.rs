@@ -1,7 +1,6 @@
 //! Figures and pages from result structs; nothing is computed here.
 //!
-//! A [`Figure`] is SVG text; its PNG is drawn with the font that is part of the program, so it looks the same on every
-//! machine. The same data always give the same bytes. Colours are those of Okabe and Ito, told apart by colour-blind
+//! A [`Figure`] is SVG text; with the feature `png` also an image, drawn with the font that is part of the program. The same data always give the same bytes. Colours are those of Okabe and Ito, told apart by colour-blind
 //! readers; what differs in colour only also differs in a line style or a marker where two kinds of thing meet.
 
 mod axes_sketch;
@@ -13,21 +12,23 @@ mod figure;
 mod first_order_figures;
 mod flutter_figures;
 mod font;
+mod geometry;
 mod heat_map;
 mod labels;
 mod legend;
 mod metrics_figure;
 mod panel;
 mod processing_figures;
+#[cfg(feature = "png")]
+mod raster;
 mod reliability_figure;
 mod response_figures;
 mod root_locus;
+mod scene;
 mod sections_page;
 mod series;
-
 mod study_page;
 mod style;
-mod text;
 mod transfer_figure;
 mod wind_figures;
 
@@ -37,12 +38,14 @@ pub(crate) use bridge_figures::bridge_roots_figure;
 pub(crate) use bridge_figures::flutter_motion_figure;
 pub(crate) use bridge_figures::modes_figure;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
-pub use figure::{Figure, PNG_SCALE};
+pub use figure::Figure;
 pub use first_order_figures::{ThesisFigure, first_order_figures};
 pub use flutter_figures::vf_vg_figure;
 pub(crate) use heat_map::{HeatMap, heat_map_figure};
 pub(crate) use metrics_figure::{MetricPanel, metrics_figure};
 pub(crate) use processing_figures::processing_figure;
+#[cfg(feature = "png")]
+pub use raster::PNG_SCALE;
 pub(crate) use reliability_figure::onset_distribution_figure;
 pub use response_figures::{TimePanel, time_history_figure};
 pub(crate) use root_locus::root_locus_figure;

@@ -3,6 +3,8 @@
 use crate::convert::{dof_names, dofs, from_python, rows, to_python};
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
+use aerodeck::error::without_control_characters;
+use aerodeck::files::text::file_name;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
 use aerodeck::wind_tunnel::{
@@ -64,6 +66,7 @@ impl Records {
         segments: Vec<(f64, f64, f64)>,
         name: &str,
     ) -> PyResult<Self> {
+        without_control_characters("name", name).map_err(raised)?;
         let dofs = self::dofs(&dofs)?;
         let shapes = [motion.shape(), force.shape()];
         if shapes[0] != shapes[1] || shapes[0][1] != dofs.len() {
@@ -125,11 +128,11 @@ impl Records {
             .map_err(raised)
     }
 
-    /// Write every record as `<name>.csv` into a folder; returns the paths.
+    /// Write every record as `<name>.csv` into a folder, with `_` for characters that not every path can hold; returns the paths.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
         py.detach(|| {
             let one = |record: &Record| {
-                let path = folder.join(format!("{}.csv", record.header.name));
+                let path = folder.join(format!("{}.csv", file_name(&record.header.name)));
                 let file = std::fs::File::create(&path)?;
                 write_record(record, &mut std::io::BufWriter::new(file)).map_err(raised)?;
                 Ok(path)

@@ -57,6 +57,17 @@ def test_onsets_by_both_routes_are_those_of_the_manual(bridge, onset):
         bridge.flutter(forces="nonsense")
 
 
+def test_what_is_odd_is_warned_of_and_doubted(tmp_path):
+    """Half the width of the deck: what is said on reading is a doubt of the verdict."""
+    path = tmp_path / "bridge.toml"
+    path.write_text(BRIDGE.replace("width_m = 31.0", "width_m = 15.5").replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0"))
+    with pytest.warns(aerodeck.AerodeckWarning, match="were width_m the semi-chord, B would be 31 m"):
+        odd = aerodeck.Bridge.read(path)
+    found = odd.flutter()
+    assert found.outcome == "cannot_be_judged", found.headline
+    assert sum("semi-chord" in w for w in found.warnings) == 1
+
+
 def test_damping_of_the_sweep_crosses_zero_at_the_onset(bridge, onset):
     speeds = onset.speed_m_s * np.array([0.25, 0.5, 0.75, 0.999, 1.001])
     curves = bridge.sweep(speeds)

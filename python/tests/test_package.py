@@ -179,7 +179,7 @@ def test_fmu_runs_in_fmpy_and_gives_the_same_motion(tmp_path, section, model):
         aerodeck.export_fmu(path, section, model)
 
 
-def test_errors_say_file_place_expected_and_found(tmp_path, section, model):
+def test_errors_say_file_place_expected_and_found(tmp_path, table, section, model):
     broken = tmp_path / "broken.json"
     broken.write_text('{"schema_version": 99}')
     with pytest.raises(aerodeck.InputError) as caught:
@@ -199,6 +199,18 @@ def test_errors_say_file_place_expected_and_found(tmp_path, section, model):
     with pytest.raises(aerodeck.InputError, match="options: .*unknown field `filtres`.*`weights`") as caught:
         aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"), filtres=1)
     assert "line" not in str(caught.value) and "column" not in str(caught.value)
+    slips = [
+        ("tunnel: .*unknown field `noise`.*`noise_fraction`", lambda: aerodeck.Records.virtual_tunnel(table, noise=0.1)),
+        ("section: .*unknown field `widht_m`.*`width_m`", lambda: aerodeck.Section.from_dict(section.to_dict() | {"widht_m": 1.0})),
+        ("parameters: .*unknown field `cov`", lambda: aerodeck.monte_carlo(
+            section, model, {"torsion.frequency_hz": {"kind": "lognormal", "cov": 0.05}}, samples=10)),
+        ("parameters: .*unknown field `sampels`.*`samples`", lambda: aerodeck.monte_carlo(
+            section, model, {"torsion.frequency_hz": {"kind": "lognormal", "coefficient_of_variation": 0.05}}, sampels=10)),
+    ]
+    for message, slip in slips:
+        with pytest.raises(aerodeck.InputError, match=message) as caught:
+            slip()
+        assert " line " not in str(caught.value) and "column" not in str(caught.value)
 
 
 def test_the_verdict_is_that_of_the_library(section, model, table):
@@ -239,6 +251,23 @@ def test_what_is_odd_is_warned_of_and_doubted(table, section, tmp_path):
     onset = aerodeck.flutter(halved, aerodeck.fit_laguerre(table), required_speed_m_s=30.0)
     assert onset.outcome == "cannot_be_judged"
     assert sum("semi-chord" in w for w in onset.warnings) == 1
+
+
+def test_names_that_a_terminal_obeys_are_refused(tmp_path, table, section, model):
+    model.save(tmp_path / "model.json", section)
+    text = (tmp_path / "model.json").read_text(encoding="utf-8")
+    (tmp_path / "model.json").write_text(text.replace('"name": "', '"name": "\\u001b[2J', 1), encoding="utf-8")
+    with pytest.raises(aerodeck.InputError, match="name: expected a text without control characters"):
+        aerodeck.Model.load(tmp_path / "model.json")
+    def named(name):
+        return aerodeck.Records.from_arrays(
+            np.zeros((64, 2)), np.zeros((64, 2)), sampling_hz=100.0, mean_speed_m_s=8.0, width_m=0.5,
+            air_density_kg_m3=1.2, name=name,
+        )
+
+    with pytest.raises(aerodeck.InputError, match="name: expected a text without control characters"):
+        named("a\x1b[31m")
+    assert [p.name for p in named("../=a|b").write(tmp_path)] == ["__a_b.csv"]
 
 
 def test_what_a_callback_raises_is_raised(table):

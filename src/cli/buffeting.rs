@@ -1,9 +1,9 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed.
 
 use super::answer::Answer;
-use super::figures;
 use super::progress::Progress;
 use super::wind::WindArgs;
+use super::{figures, headline};
 use crate::error::{Result, counted};
 use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
 use crate::study::{BuffetingStudy, WindStudy, buffeting_study};
@@ -41,10 +41,22 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
             buffeting_spectra_figure(&title, &results.dofs, spectra)
         })?;
     }
-    out.answer(
-        account(&study, &results),
-        serde_json::json!({ "buffeting": results, "findings": study.findings() }),
-    )
+    // a requirement is judged where it is stated, also beside a response to turbulence
+    let verdict = study
+        .speeds
+        .required()
+        .map(|_| study.verdict())
+        .transpose()?;
+    let headline = verdict
+        .iter()
+        .map(|v| headline::account(&study.name, v, &[]));
+    let text = headline.collect::<String>() + &account(&study, &results);
+    let value = serde_json::json!({ "verdict": verdict, "buffeting": results, "findings": study.findings() });
+    let answer = out.answer(text, value)?;
+    Ok(match &verdict {
+        Some(verdict) => answer.with_outcome_of(verdict),
+        None => answer,
+    })
 }
 
 fn account(study: &WindStudy, results: &BuffetingStudy) -> String {

@@ -2,6 +2,7 @@
 
 use super::answer::Answer;
 use super::common::folder_of;
+use super::figures;
 use super::output::OutputDir;
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
@@ -14,7 +15,7 @@ use crate::files::derivatives::{
     write_csv_in,
 };
 use crate::plausibility::{of_table, sentences};
-use crate::report::{PNG_SCALE, axes_sketch};
+use crate::report::axes_sketch;
 use crate::signal::extremes;
 use clap::Subcommand;
 use std::fmt::Write as _;
@@ -248,7 +249,7 @@ fn ranges(symbol: &str, derivative: &ExpressedDerivative, table: &ExpressedTable
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct NotationsArgs {
-    /// Folder into which a sketch of the axes is drawn (axes.svg, axes.png).
+    /// Folder into which a sketch of the axes is drawn (axes.svg).
     #[arg(long)]
     sketch: Option<PathBuf>,
 }
@@ -287,9 +288,7 @@ fn notations(args: &NotationsArgs) -> Result<Answer> {
     let Some(folder) = &args.sketch else {
         return Answer::new(text, &value);
     };
-    let figure = axes_sketch();
     let mut out = OutputDir::new(folder)?;
-    out.write("axes.svg", figure.svg())?;
-    out.write("axes.png", figure.png(PNG_SCALE)?)?;
+    figures::write("axes", &mut out, || Ok(axes_sketch()))?;
     out.answer(text, value)
 }

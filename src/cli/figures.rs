@@ -1,19 +1,36 @@
-//! Figures of results, unless `--no-figures` was said: an SVG for pages and a PNG for everything else.
+//! Figures of results: an SVG each, a PNG beside it with `--png`, nothing with `--no-figures`.
 
 use super::output::OutputDir;
-use crate::error::Result;
-use crate::report::{Figure, PNG_SCALE};
+use crate::error::{Error, Result};
+use crate::report::Figure;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Said once, at the start of the program.
 static WANTED: AtomicBool = AtomicBool::new(true);
+static IMAGES: AtomicBool = AtomicBool::new(false);
 
 /// Leaves out all figures.
 pub(super) fn leave_out() {
     WANTED.store(false, Ordering::Relaxed);
 }
 
-/// Draws and writes `stem.svg` and `stem.png`.
+/// Writes every figure as a PNG image too.
+///
+/// # Errors
+/// [`Error::Input`] where the program was built without the renderer.
+pub(super) fn as_images_too() -> Result<()> {
+    if cfg!(not(feature = "png")) {
+        return Err(Error::input(
+            "--png",
+            "a program built with `--features png` (figures are written as SVG, which browsers and word processors show)",
+            "one without",
+        ));
+    }
+    IMAGES.store(true, Ordering::Relaxed);
+    Ok(())
+}
+
+/// Draws and writes `stem.svg`, and `stem.png` where images are wanted.
 pub(super) fn write(
     stem: &str,
     out: &mut OutputDir,
@@ -23,7 +40,11 @@ pub(super) fn write(
         return Ok(());
     }
     let figure = draw()?;
-    let png = figure.png(PNG_SCALE)?;
     out.write(format!("{stem}.svg"), figure.svg())?;
-    out.write(format!("{stem}.png"), png)
+    #[cfg(feature = "png")]
+    if IMAGES.load(Ordering::Relaxed) {
+        let image = figure.png(crate::report::PNG_SCALE)?;
+        out.write(format!("{stem}.png"), image)?;
+    }
+    Ok(())
 }

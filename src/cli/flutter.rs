@@ -7,8 +7,8 @@ use super::progress::Progress;
 use super::{account, evidence, headline, routes, stages};
 use crate::error::Result;
 use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, OwnModel, StageFailure, Study, attempt, route_table,
-    section_evidence, state_route_intervals,
+    Deck, FlutterStudy, KnownUncertainty, OwnModel, RouteTable, StageFailure, Study, attempt,
+    route_table, section_evidence, state_route_intervals,
 };
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -36,13 +36,16 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let mut failed = Vec::new();
     let models = stages::read_models(&study, &directory, &mut failed)?;
     let known = stages::read_uncertainties(&models, &directory)?;
-    if args.all {
-        let out = OutputDir::new(&directory)?;
-        return all_routes(&study, &deck, &models, &known, out, &failed, progress);
-    }
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
     let verdict = verdict(&study, &deck, &results, &models, &known, &failed)?;
+    if args.all {
+        let stage = progress.stage("onset by every route");
+        let mut table = route_table(&study, &deck, &models)?;
+        state_route_intervals(&mut table, &study, &models, &known)?;
+        drop(stage);
+        return all_routes(&study, &deck, table, &verdict, out, &failed);
+    }
     let figure = stages::flutter_figure(&study, &results, Some(&verdict), &mut out);
     attempt(&mut failed, "figure", figure)?;
     let curves = evidence::write_curves(&study, &results.curves, &mut out);
@@ -97,27 +100,26 @@ fn verdict(
 fn all_routes(
     study: &Study,
     deck: &Deck,
-    models: &[TrainedModel],
-    known: &[KnownUncertainty],
+    mut table: RouteTable,
+    verdict: &Verdict,
     mut out: OutputDir,
     failed: &[StageFailure],
-    progress: &Progress,
 ) -> Result<Answer> {
-    let stage = progress.stage("onset by every route");
-    let mut table = route_table(study, deck, models)?;
-    state_route_intervals(&mut table, study, models, known)?;
-    drop(stage);
     // a figure that cannot be drawn does not take the table with it
     if let Err(e) = stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out) {
         table.left_out.push(format!("figure of all routes: {e}"));
     }
-    let mut text = format!("{}\n{}\n", study.name, deck.description());
+    let mut text = headline::account(&study.name, verdict, &deck.warnings());
+    let _ = writeln!(text, "{}", deck.description());
     text.push_str(&account::deck_warnings(deck));
     text.push('\n');
     text.push_str(&routes::account(&table, study.speeds().speed_max_m_s));
     text.push_str(&account::failures(failed));
     let value = serde_json::json!({
-        "routes": table, "failed": failed, "warnings": deck.warnings()
+        "verdict": verdict, "routes": table, "failed": failed, "warnings": deck.warnings()
     });
-    Ok(out.answer(text, value)?.passed_if(failed.is_empty()))
+    Ok(out
+        .answer(text, value)?
+        .passed_if(failed.is_empty())
+        .with_outcome_of(verdict))
 }

@@ -2,6 +2,7 @@
 
 use super::output::OutputDir;
 use crate::error::counted;
+use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
 use crate::section::Dof;
@@ -105,17 +106,6 @@ pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
     let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg"))).ok()?;
     let start = text.find("<svg")?;
     Some(text[start..].to_owned())
-}
-
-/// A name that can be part of a path everywhere.
-pub(super) fn file_name(name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let text: String = name
-        .chars()
-        .map(|c| if plain(c) { c } else { '_' })
-        .collect();
-    let trimmed = text.trim_matches('.');
-    if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
 }
 
 /// A run in one line.

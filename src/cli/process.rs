@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::evidence::{lines_of, over_v_hat};
 use super::figures;
-use super::laboratory::{file_name, laboratory_page, line};
+use super::laboratory::{laboratory_page, line};
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages::RECORDS;
@@ -13,6 +13,7 @@ use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
+use crate::files::text::file_name;
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,

@@ -189,9 +189,9 @@ pub(super) fn simulated(
 fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
     let mut text = format!(
         "# {}; {} at {speed} m/s\n# source: {}\n# licence: {}\n# per unit length of span; y and lift up, theta and moment nose-up\n",
-        model.name,
+        model.name.replace('\n', " "),
         model.model.kind(),
-        model.provenance.source,
+        model.provenance.source.replace('\n', " "),
         model.provenance.licence.replace('\n', " "),
     );
     let _ = writeln!(text, "{}", trajectory.columns.join(","));

@@ -5,6 +5,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
+use crate::files::text::file_name;
 use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
@@ -44,7 +45,7 @@ pub(crate) fn tunnel(
     let records = deck.virtual_records(study)?;
     let mut paths = Vec::with_capacity(records.len());
     for record in records {
-        let name = Path::new(RECORDS).join(format!("{}.csv", record.header.name));
+        let name = Path::new(RECORDS).join(format!("{}.csv", file_name(&record.header.name)));
         paths.push((out.write_record(&name, &record)?, record));
     }
     // the header of a record names it; a line alone is the whole notice

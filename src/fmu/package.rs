@@ -271,6 +271,43 @@ fn assembled(
 /// Packs the model and writes the archive: first beside its place, then moved there, so that no half a file is ever
 /// seen.
 ///
+/// ```
+/// use aerodeck::fmu::package::{GrowthPolicy, Overwrite, Runtime, write_fmu};
+/// use aerodeck::prelude::*;
+/// use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION};
+///
+/// let k = ReducedFrequency::from_full_width;
+/// let model = TrainedModel {
+///     schema_version: SCHEMA_VERSION,
+///     name: "flat plate".into(),
+///     section: SectionModel::iabse_1_1a(),
+///     model: Model::Rational(RationalModel::jones_flat_plate()),
+///     tested_range: ReducedFrequencyRange::between(k(0.02), k(10.0)),
+///     provenance: Provenance {
+///         source: "NACA Report 681".into(),
+///         licence: "none needed: a formula".into(),
+///         method: "Jones's approximation".into(),
+///         aerodeck_version: env!("CARGO_PKG_VERSION").into(),
+///         notes: Vec::new(),
+///     },
+///     experiment: Experiment {
+///         wind_speed_m_s: 30.0,
+///         initial_vertical_m: 0.1,
+///         initial_rotation_rad: 0.0,
+///         stop_time_s: 60.0,
+///         step_size_s: 0.05,
+///         onset_search_limit_m_s: 100.0,
+///     },
+/// };
+/// let folder = tempfile::tempdir().map_err(|e| Error::io("temporary folder", e))?;
+/// let fmu = folder.path().join("plate.fmu");
+/// let runtimes = Runtime::available()?;
+/// write_fmu(&fmu, &model, &runtimes, Overwrite::Refuse, GrowthPolicy::Refuse)?;
+/// // a file that is there is not lost
+/// assert!(write_fmu(&fmu, &model, &runtimes, Overwrite::Refuse, GrowthPolicy::Refuse).is_err());
+/// # Ok::<(), Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for a model that cannot be exported, and when the file is there and is not to be replaced;
 /// [`Error::Numerical`] for a model that grows where it should not; [`Error::Io`].

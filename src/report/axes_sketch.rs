@@ -1,42 +1,35 @@
 //! Sketch of the axes: heave up (this program, PoliMi) beside heave down (classical, Küssner/Starossek).
 
 use super::figure::Figure;
-use super::font::FAMILIES;
-use super::style::{BLACK, COLOURS};
+use super::geometry::Px;
+use super::scene::Scene;
+use super::style::{BLACK, COLOURS, GREY, Stroke};
 use crate::aerodynamics::derivatives::notation::Axes;
-use std::fmt::Write as _;
 
 /// Width and height of one panel, px.
-const PANEL: (f64, f64) = (400.0, 330.0);
+const PANEL: Px = Px::new(400.0, 330.0);
 /// Reference point of the deck in its panel.
-const CENTRE: (f64, f64) = (215.0, 165.0);
+const CENTRE: Px = Px::new(215.0, 165.0);
 /// Half the width of the deck, px.
 const HALF_WIDTH: f64 = 105.0;
 /// Rotation of the ghost that shows nose-up, deg.
 const NOSE_UP_DEG: f64 = 9.0;
-/// Radius of the arrow of rotation, px, and half its angle, deg.
-const TURN: (f64, f64) = (72.0, 33.0);
+/// Radius of the arrow of rotation, px.
+const TURN_RADIUS: f64 = 72.0;
+/// Half its angle, deg.
+const TURN_DEG: i32 = 33;
+const SIZE: u32 = 13;
 
 /// Two panels with the positive directions of motion and force in both axes, wind from the left.
 pub(crate) fn axes_sketch() -> Figure {
-    let (width, height) = (2.0 * PANEL.0, PANEL.1);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"{FAMILIES}\" font-size=\"13\" role=\"img\" \
-         aria-label=\"Positive directions of motion and force\">\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n"
-    );
+    let mut scene = Scene::new(2.0 * PANEL.x, PANEL.y);
     for (i, axes) in Axes::ALL.into_iter().enumerate() {
-        let _ = writeln!(svg, "<g transform=\"translate({} 0)\">", i as f64 * PANEL.0);
-        panel(&mut svg, axes);
-        svg.push_str("</g>\n");
+        scene.moved(Px::new(i as f64 * PANEL.x, 0.0), |s| panel(s, axes));
     }
-    svg.push_str("</svg>\n");
-    Figure::from_svg(svg)
+    scene.finish()
 }
 
-fn panel(svg: &mut String, axes: Axes) {
-    let (cx, cy) = CENTRE;
+fn panel(scene: &mut Scene, axes: Axes) {
     let (title, who, heave, sway, turn, down) = match axes {
         Axes::HeaveUp => (
             "heave_up",
@@ -55,132 +48,78 @@ fn panel(svg: &mut String, axes: Axes) {
             1.0,
         ),
     };
-    text(svg, (20.0, 26.0), BLACK, "font-weight=\"bold\"", title);
-    text(svg, (20.0, 45.0), BLACK, "", who);
-    let wind = COLOURS[0];
+    scene.group("font-weight=\"bold\"", |s| {
+        s.text(Px::new(20.0, 26.0), title, SIZE, BLACK)
+    });
+    scene.text(Px::new(20.0, 45.0), who, SIZE, BLACK);
+    let (wind, motion) = (COLOURS[0], COLOURS[1]);
     for dy in [-30.0, 0.0, 30.0] {
-        arrow(svg, wind, (18.0, cy + dy), (72.0, cy + dy));
+        let from = Px::new(18.0, CENTRE.y + dy);
+        arrow(scene, wind, &[from, from + Px::new(54.0, 0.0)]);
     }
-    text(svg, (18.0, cy - 42.0), wind, "", "wind V");
-    deck(
-        svg,
-        0.0,
-        "fill=\"#e8e8e8\" stroke=\"#333\" stroke-width=\"1.4\"",
-    );
-    let ghost = "fill=\"none\" stroke=\"#888\" stroke-width=\"1.1\" stroke-dasharray=\"5 4\"";
-    deck(svg, NOSE_UP_DEG, ghost);
-    let motion = COLOURS[1];
-    arrow(svg, motion, (cx, cy), (cx, cy + down * 98.0));
-    arrow(svg, motion, (cx, cy), (cx + 160.0, cy));
-    rotation(svg, motion);
-    let _ = writeln!(
-        svg,
-        "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"3.5\" fill=\"#333\"/>"
-    );
-    let beside = if down > 0.0 { cy + 96.0 } else { cy - 90.0 };
-    text(svg, (cx + 10.0, beside), motion, "", heave);
-    text(svg, (cx + 118.0, cy - 12.0), motion, "", sway);
-    text(svg, (cx - 148.0, cy - 62.0), motion, "", turn);
-    dimension(svg);
+    scene.text(Px::new(18.0, CENTRE.y - 42.0), "wind V", SIZE, wind);
+    scene.polygon(&deck(0.0), "#e8e8e8", Stroke::of(BLACK, 1.4));
+    let ghost = Stroke {
+        dash: Some("5 4"),
+        ..Stroke::of(GREY, 1.1)
+    };
+    scene.polygon(&deck(NOSE_UP_DEG), "none", ghost);
+    arrow(scene, motion, &[CENTRE, CENTRE + Px::new(0.0, down * 98.0)]);
+    arrow(scene, motion, &[CENTRE, CENTRE + Px::new(160.0, 0.0)]);
+    // it rises on the windward side
+    let around = (-TURN_DEG..=TURN_DEG).step_by(3).map(|angle_deg| {
+        let a = f64::from(180 - angle_deg).to_radians();
+        CENTRE + Px::new(TURN_RADIUS * a.cos(), -TURN_RADIUS * a.sin())
+    });
+    arrow(scene, motion, &around.collect::<Vec<_>>());
+    scene.circle(CENTRE, 3.5, BLACK, None);
+    let beside = if down > 0.0 { 96.0 } else { -90.0 };
+    scene.text(CENTRE + Px::new(10.0, beside), heave, SIZE, motion);
+    scene.text(CENTRE + Px::new(118.0, -12.0), sway, SIZE, motion);
+    scene.text(CENTRE + Px::new(-148.0, -62.0), turn, SIZE, motion);
+    dimension(scene);
 }
 
 /// The deck turned nose-up about the reference point: with the wind from the left that is clockwise.
-fn deck(svg: &mut String, turn_deg: f64, style: &str) {
-    let (cx, cy) = CENTRE;
+fn deck(turn_deg: f64) -> Vec<Px> {
     let h = HALF_WIDTH;
     let corners = [
-        (-h, 0.0),
-        (-0.6 * h, -14.0),
-        (0.6 * h, -14.0),
-        (h, 0.0),
-        (0.6 * h, 12.0),
-        (-0.6 * h, 12.0),
+        Px::new(-h, 0.0),
+        Px::new(-0.6 * h, -14.0),
+        Px::new(0.6 * h, -14.0),
+        Px::new(h, 0.0),
+        Px::new(0.6 * h, 12.0),
+        Px::new(-0.6 * h, 12.0),
     ];
-    let points: Vec<String> = corners
-        .iter()
-        .map(|(x, y)| format!("{:.1},{:.1}", cx + x, cy + y))
-        .collect();
-    let _ = writeln!(
-        svg,
-        "<polygon points=\"{}\" transform=\"rotate({turn_deg} {cx} {cy})\" {style}/>",
-        points.join(" ")
-    );
+    let (sin, cos) = turn_deg.to_radians().sin_cos();
+    let turned = |c: Px| CENTRE + Px::new(cos * c.x - sin * c.y, sin * c.x + cos * c.y);
+    corners.into_iter().map(turned).collect()
 }
 
-/// Arrow that rises on the windward side.
-fn rotation(svg: &mut String, colour: &str) {
-    let (cx, cy) = CENTRE;
-    let (radius, half) = TURN;
-    let at = |angle_deg: f64| {
-        let a = angle_deg.to_radians();
-        (cx + radius * a.cos(), cy - radius * a.sin())
-    };
-    let (start, end) = (at(180.0 + half), at(180.0 - half));
-    let _ = writeln!(
-        svg,
-        "<path d=\"M{:.1} {:.1}A{radius} {radius} 0 0 1 {:.1} {:.1}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
-        start.0, start.1, end.0, end.1
-    );
-    let tangent = (180.0 - half).to_radians();
-    head(svg, colour, end, (tangent.sin(), tangent.cos()));
-}
-
-fn arrow(svg: &mut String, colour: &str, from: (f64, f64), to: (f64, f64)) {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+/// A line with a head at its end, whose tip stands a little beyond.
+fn arrow(scene: &mut Scene, colour: &'static str, way: &[Px]) {
+    scene.polyline(way, Stroke::of(colour, 2.0));
+    let [.., before, end] = way else { return };
+    let (dx, dy) = (end.x - before.x, end.y - before.y);
     let length = dx.hypot(dy);
-    let _ = writeln!(
-        svg,
-        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
-        from.0, from.1, to.0, to.1
-    );
-    head(svg, colour, to, (dx / length, dy / length));
-}
-
-/// Arrow head with its tip a little beyond `at`, in the unit direction `(u, v)` of the page.
-fn head(svg: &mut String, colour: &str, at: (f64, f64), (u, v): (f64, f64)) {
-    let point = |along: f64, aside: f64| {
-        format!(
-            "{:.1},{:.1}",
-            at.0 + along * u - aside * v,
-            at.1 + along * v + aside * u
-        )
-    };
-    let _ = writeln!(
-        svg,
-        "<polygon points=\"{} {} {}\" fill=\"{colour}\"/>",
-        point(6.0, 0.0),
-        point(-5.0, 4.5),
-        point(-5.0, -4.5)
-    );
+    let (u, v) = (dx / length, dy / length);
+    let point =
+        |along: f64, aside: f64| *end + Px::new(along * u - aside * v, along * v + aside * u);
+    let head = [point(6.0, 0.0), point(-5.0, 4.5), point(-5.0, -4.5)];
+    scene.polygon(&head, colour, Stroke::of("none", 0.0));
 }
 
 /// Width B and semi-chord b under the deck.
-fn dimension(svg: &mut String) {
-    let (cx, _) = CENTRE;
-    let (left, right) = (cx - HALF_WIDTH, cx + HALF_WIDTH);
-    for (level, from, words) in [(285.0, left, "width B"), (310.0, cx, "b = B/2")] {
+fn dimension(scene: &mut Scene) {
+    let (left, right) = (CENTRE.x - HALF_WIDTH, CENTRE.x + HALF_WIDTH);
+    let thin = Stroke::of(BLACK, 1.0);
+    for (level, from, words) in [(285.0, left, "width B"), (310.0, CENTRE.x, "b = B/2")] {
         for x in [from, right] {
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{x} {}V{}\" stroke=\"#333\" stroke-width=\"1\"/>",
-                level - 7.0,
-                level + 7.0
-            );
+            scene.polyline(&[Px::new(x, level - 7.0), Px::new(x, level + 7.0)], thin);
         }
-        let _ = writeln!(
-            svg,
-            "<path d=\"M{from} {level}H{right}\" stroke=\"#333\" stroke-width=\"1\"/>"
-        );
-        text(svg, (right + 10.0, level + 4.0), "#333", "", words);
+        scene.polyline(&[Px::new(from, level), Px::new(right, level)], thin);
+        scene.text(Px::new(right + 10.0, level + 4.0), words, SIZE, BLACK);
     }
-}
-
-fn text(svg: &mut String, at: (f64, f64), colour: &str, style: &str, words: &str) {
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"{}\" fill=\"{colour}\" {style}>{words}</text>",
-        at.0, at.1
-    );
 }
 
 #[cfg(test)]
@@ -191,6 +130,5 @@ mod tests {
     #[test]
     fn the_page_shows_this_sketch() {
         assert_eq!(axes_sketch().svg(), include_str!("../../docs/axes.svg"));
-        assert!(axes_sketch().png(1.0).is_ok());
     }
 }

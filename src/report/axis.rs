@@ -1,7 +1,5 @@
 //! Range, ticks and tick labels of one axis.
 
-use std::sync::Arc;
-
 /// What an axis shows and how.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Axis {
@@ -127,26 +125,24 @@ impl Scale {
         }
     }
 
-    /// How ticks are written: as many decimals as the step has, powers of ten on a logarithmic axis.
-    pub(super) fn tick_label(&self) -> Arc<dyn Fn(f64) -> String + Send + Sync> {
+    /// How a tick is written: with as many decimals as the step has, as a power of ten on a logarithmic axis.
+    pub(super) fn tick_label(&self, tick: f64) -> String {
         if self.logarithmic {
-            return Arc::new(|exponent| format!("10{}", superscript(exponent.round() as i32)));
+            return format!("10{}", superscript(tick.round() as i32));
         }
         let largest = self.min.abs().max(self.max.abs());
         let exponent = largest.log10().floor() as i32;
-        if (-3..6).contains(&exponent) {
-            let decimals = (-self.step.log10().floor()).max(0.0) as usize;
-            return Arc::new(move |v| signed(format!("{v:.decimals$}")));
-        }
         let step_exponent = self.step.log10().floor() as i32;
+        if (-3..6).contains(&exponent) {
+            let decimals = (-step_exponent).max(0) as usize;
+            return signed(format!("{tick:.decimals$}"));
+        }
+        if tick == 0.0 {
+            return "0".to_owned();
+        }
         let decimals = (exponent - step_exponent).max(0) as usize;
-        Arc::new(move |v| {
-            if v == 0.0 {
-                return "0".to_owned();
-            }
-            let lead = v / 10f64.powi(exponent);
-            signed(format!("{lead:.decimals$}·10{}", superscript(exponent)))
-        })
+        let lead = tick / 10f64.powi(exponent);
+        signed(format!("{lead:.decimals$}·10{}", superscript(exponent)))
     }
 
     /// The ticks, between the ends.
@@ -195,8 +191,7 @@ mod tests {
     fn ticks_are_round_numbers_inside_the_range() {
         let scale = Axis::new("x").scale([-0.03, 0.29], 5);
         assert_eq!(scale.step, 0.1);
-        let label = scale.tick_label();
-        let labels: Vec<String> = scale.ticks().into_iter().map(|t| label(t)).collect();
+        let labels: Vec<String> = scale.ticks().iter().map(|t| scale.tick_label(*t)).collect();
         assert_eq!(labels, ["0.0", "0.1", "0.2", "0.3"]);
         let speed = Axis::new("V").tight().scale([0.0, 120.0], 6);
         assert_eq!((speed.min, speed.max, speed.step), (0.0, 120.0, 20.0));
@@ -214,18 +209,14 @@ mod tests {
     #[test]
     fn very_small_and_large_numbers_are_written_with_powers() {
         let scale = Axis::new("x").scale([-2e-7, 4e-7], 3);
-        assert_eq!(scale.tick_label()(-2e-7), "−2·10⁻⁷");
+        assert_eq!(scale.tick_label(-2e-7), "−2·10⁻⁷");
         assert_eq!(signed("-0.00".into()), "0.00");
         let log = Axis {
             logarithmic: true,
             ..Axis::new("x")
         };
         let scale = log.scale([1e-14, 1.0], 5);
-        let labels: Vec<String> = scale
-            .ticks()
-            .into_iter()
-            .map(scale.tick_label().as_ref())
-            .collect();
+        let labels: Vec<String> = scale.ticks().iter().map(|t| scale.tick_label(*t)).collect();
         assert_eq!(labels, ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
         assert_eq!(scale.place(1e-6), -6.0);
         assert!(!log.scale([0.0, 1.0], 5).logarithmic);

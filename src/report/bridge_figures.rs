@@ -84,11 +84,7 @@ impl Drawn<'_> {
 /// others grey.
 fn drawn<'a>(curves: &'a FlutterCurves, shown: &[String]) -> (Vec<Drawn<'a>>, Vec<Entry>) {
     let place = |name: &str| shown.iter().take(COLOURED).position(|s| s == name);
-    let others = Ink::Line {
-        colour: PALE_GREY,
-        dash: None,
-        width: 1.0,
-    };
+    let others = Ink::stroke(PALE_GREY, None, 1.0);
     let ink = |i: usize| Ink::line(COLOURS[i], dash(i));
     let branches = curves.branches.iter().filter(|b| !b.points.is_empty());
     let mut all: Vec<_> = branches.map(|b| (place(&b.name), b)).collect();

@@ -6,7 +6,7 @@ use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
-use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
+use super::style::{BLACK, GREY, Ink, Marker, Shape, colour, dash};
 use crate::error::{Error, Result};
 
 /// One derivative (or any other quantity that is measured and fitted).
@@ -88,14 +88,16 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
         } else {
             (190.0, 160.0)
         },
-        legend: vec![legend(plot, (&measured, &fitted, &reference))?],
+        legend: vec![legend(plot, &measured, &fitted, &reference)?],
     }
     .draw()
 }
 
 fn legend(
     plot: &DerivativesPlot,
-    (measured, fitted, reference): (&[String], &[String], &[String]),
+    measured: &[String],
+    fitted: &[String],
+    reference: &[String],
 ) -> Result<Vec<Entry>> {
     let mut all = Vec::new();
     if plot.derivatives.iter().any(|d| !d.bars.is_empty()) {
@@ -126,12 +128,12 @@ fn measured_ink(i: usize, count: usize) -> Result<Ink> {
     } else {
         colour(PLACE, (i + 3) % 7)?
     };
-    Ok(Ink::Dots {
+    Ok(Ink::Dots(Marker {
         colour,
         shape: SHAPES[i % SHAPES.len()],
         radius: 2.7,
         hollow: false,
-    })
+    }))
 }
 
 /// The abscissae of all panels: reduced velocities from zero, angles from the lowest.

@@ -1,15 +1,13 @@
 //! Panels in a grid with a title above and a legend below, put together into one figure.
 
 use super::figure::Figure;
-use super::font::{FAMILIES, text_width};
+use super::font::text_width;
+use super::geometry::Px;
 use super::legend::{Entry, LegendLayout, lay_out};
 use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
+use super::scene::Scene;
 use super::style::BLACK;
-use super::text::text;
 use crate::error::{Error, Result};
-use kuva::backend::svg::SvgBackend;
-use kuva::render::render::{Primitive, Scene};
-use uuid::Uuid;
 
 const TITLE_SIZE: u32 = 14;
 const TITLE_HEIGHT: f64 = 30.0;
@@ -60,21 +58,19 @@ impl Drawing {
             EDGE
         };
         let mut scene = Scene::new(grid_width.ceil(), (head + grid_height + foot).ceil());
-        scene.font_family = Some(FAMILIES.to_owned());
-        scene.text_color = Some(BLACK.to_owned());
         if let Some(title) = &self.title {
-            scene.add(text((left, EDGE + 16.0), title, TITLE_SIZE, BLACK));
+            scene.text(Px::new(left, EDGE + 16.0), title, TITLE_SIZE, BLACK);
         }
         let mut top = head;
         for (row, frame) in stacked.chunks(self.columns).zip(&frames) {
             for (column, panel) in row.iter().enumerate() {
-                let corner = (column as f64 * frame.width, top);
-                insert(&mut scene, panel.draw(*frame), corner);
+                let corner = Px::new(column as f64 * frame.width, top);
+                scene.moved(corner, |scene| panel.draw(scene, *frame));
             }
             top += frame.height;
         }
-        legend.draw(&mut scene, (left, top + EDGE));
-        Ok(Figure::from_svg(finished(&scene)))
+        legend.draw(&mut scene, Px::new(left, top + EDGE));
+        Ok(scene.finish())
     }
 
     /// The panels; those in one column with abscissae of their data alone get one for all.
@@ -133,110 +129,5 @@ impl Drawing {
             self.panels.chunks(self.columns).map(frame).collect(),
             legend,
         )
-    }
-}
-
-/// Puts the scene of a panel into that of the drawing. Clip paths are numbered anew: the library counts them over the
-/// life of the process, which would make every drawing differ.
-fn insert(scene: &mut Scene, panel: Scene, (x, y): (f64, f64)) {
-    let name = format!("{CLIP}{}", scene.defs.len());
-    let mut old = None;
-    scene.add(Primitive::GroupStart {
-        transform: Some(format!("translate({x:.2},{y:.2})")),
-        title: None,
-        extra_attrs: None,
-    });
-    for mut element in panel.elements {
-        if let Primitive::ClipStart { id, .. } = &mut element {
-            old = Some(std::mem::replace(id, name.clone()));
-        }
-        scene.add(element);
-    }
-    scene.add(Primitive::GroupEnd);
-    for definition in panel.defs {
-        scene.defs.push(match &old {
-            Some(old) => definition.replace(&format!("\"{old}\""), &format!("\"{name}\"")),
-            None => definition,
-        });
-    }
-}
-
-/// Name of a clip path before the figure has a name of its own.
-const CLIP: &str = "panel-clip-";
-
-/// The SVG text with a `viewBox`, so that pages can scale it, and with identifiers made from the content, so that
-/// several figures in one page do not share any.
-pub(super) fn finished(scene: &Scene) -> String {
-    let svg = SvgBackend::new().with_pretty(true).render_scene(scene);
-    let own = Uuid::new_v5(&Uuid::NAMESPACE_OID, svg.as_bytes()).simple();
-    let head = format!(
-        "<svg viewBox=\"0 0 {} {}\" role=\"img\" ",
-        scene.width, scene.height
-    );
-    let mark = format!("fig-{own}-");
-    with_subscripts(&svg.replacen("<svg ", &head, 1).replace(CLIP, &mark))
-}
-
-/// Every text with its subscripts.
-fn with_subscripts(svg: &str) -> String {
-    let parts = svg
-        .split_inclusive('>')
-        .map(|part| match part.split_once('<') {
-            Some((content, tag)) if content.contains('_') => {
-                format!("{}<{tag}", subscripted(content))
-            }
-            _ => part.to_owned(),
-        });
-    parts.collect()
-}
-
-/// `F_y` as a symbol with a subscript: a single letter, an underscore and one or two letters that end the word.
-fn subscripted(content: &str) -> String {
-    let mut text = String::new();
-    let mut rest = content;
-    while let Some((before, after)) = rest.split_once('_') {
-        let length = after
-            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .unwrap_or(after.len());
-        let (word, remaining) = after.split_at(length);
-        let mut backwards = before.chars().rev();
-        let symbol = backwards.next().is_some_and(char::is_alphabetic)
-            && backwards.next().is_none_or(|c| !c.is_alphanumeric());
-        text.push_str(before);
-        if symbol
-            && (1..=2).contains(&word.chars().count())
-            && word.chars().all(char::is_alphabetic)
-        {
-            text.push_str(&format!("<tspan dy=\"3\" font-size=\"9\">{word}</tspan>"));
-            let end = remaining.find('_').unwrap_or(remaining.len());
-            // what follows goes back to the line
-            if end > 0 {
-                text.push_str(&format!("<tspan dy=\"-3\">{}</tspan>", &remaining[..end]));
-            }
-            rest = &remaining[end..];
-        } else {
-            text.push('_');
-            text.push_str(word);
-            rest = remaining;
-        }
-    }
-    text + rest
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{subscripted, with_subscripts};
-
-    #[test]
-    fn symbols_get_subscripts_and_names_keep_their_underscores() {
-        let low = "<tspan dy=\"3\" font-size=\"9\">y</tspan>";
-        assert_eq!(subscripted("F_y"), format!("F{low}"));
-        let back = "<tspan dy=\"-3\"> (N/m)</tspan>";
-        assert_eq!(subscripted("f S_y (N/m)"), format!("f S{low}{back}"));
-        for name in ["wind_speed", "k_full", "run_1", "_x", "F_y2"] {
-            assert_eq!(subscripted(name), name);
-        }
-        let tag = "<a id=\"F_y\">plain</a>";
-        assert_eq!(with_subscripts(tag), tag);
     }
 }

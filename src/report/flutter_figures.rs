@@ -6,7 +6,9 @@ use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
 use super::series::{distinct, index_of};
-use super::style::{GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale};
+use super::style::{
+    GREY, Ink, Marker, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale,
+};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 use crate::verdict::{Outcome, Verdict};
@@ -305,12 +307,12 @@ fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
 }
 
 fn onset_marker(colour: &'static str, shape: Shape, hollow: bool) -> Ink {
-    Ink::Dots {
+    Ink::Dots(Marker {
         colour,
         shape,
         radius: 4.5,
         hollow,
-    }
+    })
 }
 
 /// The onset in words, for the legend.

@@ -1,43 +1,14 @@
 //! Where the labels of points go, so that they cover neither each other nor the curves.
 
 use super::font::text_width;
-
-/// A rectangle of the panel, px, y down.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Area {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) right: f64,
-    pub(super) bottom: f64,
-}
-
-impl Area {
-    fn overlap(&self, other: &Self) -> f64 {
-        let width = self.right.min(other.right) - self.left.max(other.left);
-        let height = self.bottom.min(other.bottom) - self.top.max(other.top);
-        width.max(0.0) * height.max(0.0)
-    }
-    fn size(&self) -> f64 {
-        (self.right - self.left) * (self.bottom - self.top)
-    }
-    /// The point of the area that is nearest to another.
-    pub(super) fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        (
-            x.clamp(self.left, self.right),
-            y.clamp(self.top, self.bottom),
-        )
-    }
-    fn contains(&self, (x, y): (f64, f64)) -> bool {
-        self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
-    }
-}
+use super::geometry::{Area, Px};
 
 /// Places for one label after the other.
 #[derive(Debug)]
 pub(super) struct Labels {
     frame: Area,
     /// Points to keep free: curves, sampled every few px.
-    drawn: Vec<(f64, f64)>,
+    drawn: Vec<Px>,
     /// Markers and the labels so far.
     taken: Vec<Area>,
 }
@@ -52,17 +23,17 @@ impl Labels {
     }
 
     /// Keeps a marker free of labels.
-    pub(super) fn occupy(&mut self, (x, y): (f64, f64), radius: f64) {
+    pub(super) fn occupy(&mut self, at: Px, radius: f64) {
         self.taken.push(Area {
-            left: x - radius,
-            top: y - radius,
-            right: x + radius,
-            bottom: y + radius,
+            left: at.x - radius,
+            top: at.y - radius,
+            right: at.x + radius,
+            bottom: at.y + radius,
         });
     }
 
     /// Keeps a polyline (px) free of labels.
-    pub(super) fn avoid(&mut self, points: &[(f64, f64)]) {
+    pub(super) fn avoid(&mut self, points: &[Px]) {
         // far outside the frame nothing can be covered
         let reach = (self.frame.right - self.frame.left) + (self.frame.bottom - self.frame.top);
         self.drawn.extend(points.first());
@@ -72,42 +43,40 @@ impl Labels {
     }
 
     /// The best area for `text` of `size` px near the point, now taken.
-    pub(super) fn place(&mut self, (x, y): (f64, f64), text: &str, size: f64) -> Area {
+    pub(super) fn place(&mut self, at: Px, text: &str, size: f64) -> Area {
         let (width, height) = (text_width(text, size) + 6.0, 1.35 * size);
         let mut best: Option<(f64, Area)> = None;
         for (ring, gap) in [7.0, 16.0, 28.0, 44.0, 64.0].into_iter().enumerate() {
             for (i, (dx, dy)) in DIRECTIONS.into_iter().enumerate() {
-                let left = x + dx * gap + 0.5 * (dx.signum() * dx.abs().ceil() - 1.0) * width;
-                let top = y + dy * gap + 0.5 * (dy.signum() * dy.abs().ceil() - 1.0) * height;
+                let left = at.x + dx * gap + 0.5 * (dx.signum() * dx.abs().ceil() - 1.0) * width;
+                let top = at.y + dy * gap + 0.5 * (dy.signum() * dy.abs().ceil() - 1.0) * height;
                 let area = Area {
                     left,
                     top,
                     right: left + width,
                     bottom: top + height,
                 };
-                let cost = self.cost(&area)
-                    + self.leader_cost((x, y), &area)
-                    + ring as f64
-                    + 0.01 * i as f64;
+                let cost =
+                    self.cost(&area) + self.leader_cost(at, &area) + ring as f64 + 0.01 * i as f64;
                 if best.is_none_or(|(lowest, _)| cost < lowest) {
                     best = Some((cost, area));
                 }
             }
         }
         let area = best.map_or(self.frame, |(_, area)| area);
-        self.avoid(&[(x, y), area.nearest((x, y))]);
+        self.avoid(&[at, area.nearest(at)]);
         self.taken.push(area);
         area
     }
 
     /// A line from the point to the area must not cross labels and markers other than its own, which holds the point.
-    fn leader_cost(&self, at: (f64, f64), area: &Area) -> f64 {
-        let crossed = |p: &(f64, f64)| {
-            let foreign = |t: &&Area| t.contains(*p) && !t.contains(at);
+    fn leader_cost(&self, at: Px, area: &Area) -> f64 {
+        let crossed = |p: Px| {
+            let foreign = |t: &&Area| t.contains(p) && !t.contains(at);
             self.taken.iter().filter(foreign).count()
         };
         sampled(at, area.nearest(at), f64::MAX)
-            .map(|p| 0.5 * crossed(&p) as f64)
+            .map(|p| 0.5 * crossed(p) as f64)
             .sum()
     }
 
@@ -120,15 +89,12 @@ impl Labels {
 }
 
 /// Points every 3 px from one end to the other, the first left out; at most as many as `reach` px hold.
-fn sampled(
-    (x0, y0): (f64, f64),
-    (x1, y1): (f64, f64),
-    reach: f64,
-) -> impl Iterator<Item = (f64, f64)> {
-    let steps = ((x1 - x0).hypot(y1 - y0).min(reach) / 3.0).ceil().max(1.0);
+fn sampled(from: Px, to: Px, reach: f64) -> impl Iterator<Item = Px> {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    let steps = (dx.hypot(dy).min(reach) / 3.0).ceil().max(1.0);
     (1..=steps as usize).map(move |i| {
         let t = i as f64 / steps;
-        (x0 + t * (x1 - x0), y0 + t * (y1 - y0))
+        from + Px::new(t * dx, t * dy)
     })
 }
 
@@ -158,9 +124,9 @@ mod tests {
     #[test]
     fn labels_of_one_point_do_not_overlap_and_stay_inside() {
         let mut labels = Labels::new(FRAME);
-        labels.avoid(&[(0.0, 100.0), (400.0, 100.0)]);
+        labels.avoid(&[Px::new(0.0, 100.0), Px::new(400.0, 100.0)]);
         let areas: Vec<Area> = (0..4)
-            .map(|_| labels.place((395.0, 100.0), "76.92 m/s", 11.0))
+            .map(|_| labels.place(Px::new(395.0, 100.0), "76.92 m/s", 11.0))
             .collect();
         for (i, a) in areas.iter().enumerate() {
             assert!((a.overlap(&FRAME) - a.size()).abs() < 1e-9);

@@ -1,11 +1,10 @@
 //! The legend below the panels: rows of samples and names, never over a curve.
 
 use super::font::text_width;
-use super::style::{BLACK, Ink, draw_marker};
-use super::text::text;
+use super::geometry::Px;
+use super::scene::Scene;
+use super::style::{BLACK, Ink};
 use crate::error::Result;
-use kuva::render::color::Color;
-use kuva::render::render::{Primitive, Scene};
 
 const SIZE: u32 = 11;
 const ROW: f64 = 18.0;
@@ -39,7 +38,7 @@ pub(super) fn entries(labels: &[String], ink: impl Fn(usize) -> Result<Ink>) -> 
 /// The entries with their places relative to the upper left corner.
 #[derive(Debug)]
 pub(super) struct LegendLayout<'a> {
-    placed: Vec<(&'a Entry, f64, f64)>,
+    placed: Vec<(&'a Entry, Px)>,
     pub(super) width: f64,
     pub(super) height: f64,
 }
@@ -74,7 +73,7 @@ impl<'a> LegendLayout<'a> {
     fn add_row(&mut self, entries: &'a [Entry], widths: &[f64]) {
         let mut x = 0.0;
         for (entry, width) in entries.iter().zip(widths) {
-            self.placed.push((entry, x, self.height));
+            self.placed.push((entry, Px::new(x, self.height)));
             x += width;
         }
         self.width = self.width.max(x - GAP);
@@ -85,44 +84,18 @@ impl<'a> LegendLayout<'a> {
 }
 
 impl LegendLayout<'_> {
-    pub(super) fn draw(&self, scene: &mut Scene, (left, top): (f64, f64)) {
-        for (entry, x, y) in &self.placed {
-            let (x, y) = (left + x, top + y + 0.5 * ROW);
-            draw_sample(scene, (x, y), entry.ink);
-            scene.add(text(
-                (x + SAMPLE + 8.0, y + 0.36 * f64::from(SIZE)),
-                &entry.label,
-                SIZE,
-                BLACK,
-            ));
+    /// Draws it with its upper left corner at `corner`.
+    pub(super) fn draw(&self, scene: &mut Scene, corner: Px) {
+        for (entry, place) in &self.placed {
+            let middle = corner + *place + Px::new(0.0, 0.5 * ROW);
+            match entry.ink {
+                Ink::Line(stroke) => {
+                    scene.polyline(&[middle, middle + Px::new(SAMPLE, 0.0)], stroke);
+                }
+                Ink::Dots(marker) => scene.marker(middle + Px::new(0.5 * SAMPLE, 0.0), marker),
+            }
+            let baseline = Px::new(SAMPLE + 8.0, 0.36 * f64::from(SIZE));
+            scene.text(middle + baseline, &entry.label, SIZE, BLACK);
         }
-    }
-}
-
-fn draw_sample(scene: &mut Scene, (x, y): (f64, f64), ink: Ink) {
-    match ink {
-        Ink::Line {
-            colour,
-            dash,
-            width,
-        } => scene.add(Primitive::Line {
-            x1: x,
-            y1: y,
-            x2: x + SAMPLE,
-            y2: y,
-            stroke: Color::from(colour),
-            stroke_width: width,
-            stroke_dasharray: dash.map(str::to_owned),
-        }),
-        Ink::Dots {
-            colour,
-            shape,
-            radius,
-            hollow,
-        } => draw_marker(
-            scene,
-            (x + 0.5 * SAMPLE, y),
-            (colour, shape, radius, hollow),
-        ),
     }
 }

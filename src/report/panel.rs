@@ -2,22 +2,18 @@
 
 use super::axis::{Axis, Scale};
 use super::font::text_width;
-use super::labels::{Area, Labels};
-use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, draw_marker};
-use super::text::text;
+use super::geometry::{Area, Px};
+use super::labels::Labels;
+use super::scene::{Anchor, Scene};
+use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, Stroke};
 use crate::error::{Error, Result};
-use kuva::TickFormat;
-use kuva::plot::annotations::{ReferenceLine, ShadedRegion};
-use kuva::plot::line::{LinePlot, LineStyle};
-use kuva::render::color::Color;
-use kuva::render::layout::{ComputedLayout, Layout};
-use kuva::render::plots::Plot;
-use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
-use kuva::render::theme::Theme;
 
 pub(super) const TICK_SIZE: u32 = 11;
 pub(super) const LABEL_SIZE: u32 = 12;
 const NOTE_SIZE: u32 = 11;
+const TICK_LENGTH: f64 = 4.0;
+/// Axes and rules.
+const THIN: Stroke = Stroke::of(BLACK, 0.9);
 /// Curves are drawn with at most this many points per px of the panel's width.
 const POINTS_PER_PX: usize = 4;
 /// Distance of a label from its point from which on a line leads to it, px.
@@ -133,178 +129,179 @@ impl Panel {
     /// Width of the widest tick label of the y axis, px.
     pub(super) fn tick_width(&self) -> f64 {
         let scale = self.scales().1;
-        let label = scale.tick_label();
-        scale
-            .ticks()
-            .into_iter()
-            .map(|t| text_width(&label(t), f64::from(TICK_SIZE)))
-            .fold(0.0, f64::max)
+        let width = |tick: &f64| text_width(&scale.tick_label(*tick), f64::from(TICK_SIZE));
+        scale.ticks().iter().map(width).fold(0.0, f64::max)
     }
 
-    /// Draws the panel into a scene of its own, axes labels and title included.
-    pub(super) fn draw(&self, frame: Frame) -> Scene {
+    /// Draws the panel, axes labels and title included.
+    pub(super) fn draw(&self, scene: &mut Scene, frame: Frame) {
+        let area = frame.axes();
         let (x, y) = self.scales();
-        let layout = layout(frame, x, y);
-        let map = ComputedLayout::from_layout(&layout);
-        let layout = self.with_regions(layout, x);
-        let inner = frame.width - frame.margins.left - frame.margins.right;
-        // without any plot the library would leave out the axes
-        let axes_only = Plot::Line(LinePlot::new());
-        let curves = self.series.iter().filter_map(|s| curve(s, (x, y), inner));
-        let plots = std::iter::once(axes_only).chain(curves).collect();
-        let mut scene = render_multiple(plots, layout);
-        let mut labels = Labels::new(Area {
-            left: frame.margins.left,
-            top: frame.margins.top,
-            right: frame.width - frame.margins.right,
-            bottom: frame.height - frame.margins.bottom,
+        let map = Map { area, x, y };
+        map.draw_axes(scene);
+        let rules = self.rules(&map);
+        scene.clipped(area, |scene| {
+            for (low, high) in &self.shaded {
+                let band = map.band(*low, *high);
+                if band.left < band.right {
+                    scene.filled(band, SHADE, SHADE_OPACITY);
+                }
+            }
+            for (rule, stroke) in &rules {
+                scene.polyline(rule, *stroke);
+            }
+            for series in &self.series {
+                if let Ink::Line(stroke) = series.ink {
+                    let points = thinned(&series.points, (area.right - area.left) as usize);
+                    scene.polyline(&map.all(&points), stroke);
+                }
+            }
         });
-        let px = |p: &(f64, f64)| (map.map_x(x.place(p.0)), map.map_y(y.place(p.1)));
+        let mut labels = Labels::new(area);
         for series in &self.series {
-            let points: Vec<(f64, f64)> = series.points.iter().map(px).collect();
-            if let Ink::Dots {
-                colour,
-                shape,
-                radius,
-                hollow,
-            } = series.ink
-            {
+            let points = map.all(&series.points);
+            if let Ink::Dots(marker) = series.ink {
                 for at in points {
-                    draw_marker(&mut scene, at, (colour, shape, radius, hollow));
-                    labels.occupy(at, radius + 1.5);
+                    scene.marker(at, marker);
+                    labels.occupy(at, marker.radius + 1.5);
                 }
             } else if !self.notes.is_empty() {
                 labels.avoid(&points);
             }
         }
-        self.keep_rules_free(&mut labels, &map, (x, y));
+        rules.iter().for_each(|(rule, _)| labels.avoid(rule));
         for note in &self.notes {
-            draw_note(&mut scene, &mut labels, px(&note.at), note);
+            draw_note(scene, &mut labels, map.px(note.at.0, note.at.1), note);
         }
-        self.write_labels(&mut scene, frame);
-        scene
+        self.write_labels(scene, frame);
     }
 
-    /// Keeps labels off the level and the uprights.
-    fn keep_rules_free(&self, labels: &mut Labels, map: &ComputedLayout, (x, y): (Scale, Scale)) {
-        if let Some(level) = self.level {
-            let at = map.map_y(level);
-            labels.avoid(&[(map.map_x(x.min), at), (map.map_x(x.max), at)]);
-        }
-        for (upright, _) in &self.uprights {
-            let at = map.map_x(*upright);
-            labels.avoid(&[(at, map.map_y(y.min)), (at, map.map_y(y.max))]);
-        }
-    }
-
-    /// Shaded regions, the level and the uprights.
-    fn with_regions(&self, mut layout: Layout, x: Scale) -> Layout {
-        for (low, high) in &self.shaded {
-            let (low, high) = (low.max(x.min), high.min(x.max));
-            if low < high {
-                layout = layout.with_shaded_region(
-                    ShadedRegion::vertical(low, high)
-                        .with_color(SHADE)
-                        .with_opacity(SHADE_OPACITY),
-                );
-            }
-        }
-        if let Some(level) = self.level {
-            layout = layout.with_reference_line(
-                ReferenceLine::horizontal(level)
-                    .with_color(BLACK)
-                    .with_stroke_width(0.9)
-                    .with_dasharray("none"),
-            );
-        }
-        for (at, colour) in &self.uprights {
-            layout = layout.with_reference_line(
-                ReferenceLine::vertical(*at)
-                    .with_color(*colour)
-                    .with_stroke_width(0.9)
-                    .with_dasharray("3 3"),
-            );
-        }
-        layout
+    /// The level and the uprights.
+    fn rules(&self, map: &Map) -> Vec<([Px; 2], Stroke)> {
+        let Area {
+            left,
+            top,
+            right,
+            bottom,
+        } = map.area;
+        let level = self.level.map(|level| {
+            let y = map.y_px(level);
+            ([Px::new(left, y), Px::new(right, y)], THIN)
+        });
+        let upright = |(at, colour): &(f64, &'static str)| {
+            let x = map.x_px(*at);
+            let dashed = Stroke {
+                dash: Some("3 3"),
+                ..Stroke::of(colour, 0.9)
+            };
+            ([Px::new(x, top), Px::new(x, bottom)], dashed)
+        };
+        level
+            .into_iter()
+            .chain(self.uprights.iter().map(upright))
+            .collect()
     }
 
     fn write_labels(&self, scene: &mut Scene, frame: Frame) {
-        let m = frame.margins;
-        let middle_x = 0.5 * (m.left + frame.width - m.right);
-        let middle_y = 0.5 * (m.top + frame.height - m.bottom);
-        let mut put = |at, label: &str, rotate: Option<f64>| {
-            let mut label = text(at, label, LABEL_SIZE, BLACK);
-            if let Primitive::Text {
-                anchor, rotate: r, ..
-            } = &mut label
-            {
-                (*anchor, *r) = (TextAnchor::Middle, rotate);
-            }
-            scene.add(label);
-        };
+        let middle = frame.axes().middle();
         if !self.x.label.is_empty() {
-            put((middle_x, frame.height - 8.0), &self.x.label, None);
+            let at = Px::new(middle.x, frame.height - 8.0);
+            scene.label(at, &self.x.label, LABEL_SIZE, Anchor::Middle);
         }
         if !self.y.label.is_empty() {
-            put((20.0, middle_y), &self.y.label, Some(-90.0));
+            scene.upright_label(Px::new(20.0, middle.y), &self.y.label, LABEL_SIZE);
         }
         if let Some(title) = &self.title {
-            put((middle_x, m.top - 8.0), title, None);
+            let at = Px::new(middle.x, frame.margins.top - 8.0);
+            scene.label(at, title, LABEL_SIZE, Anchor::Middle);
         }
     }
 }
 
-/// Axes, grid and ticks.
-fn layout(frame: Frame, x: Scale, y: Scale) -> Layout {
-    let theme = Theme {
-        grid_color: GRID.into(),
-        axis_color: BLACK.into(),
-        tick_color: BLACK.into(),
-        text_color: BLACK.into(),
-        ..Theme::light()
-    };
-    let m = frame.margins;
-    let mut layout = Layout::new((x.min, x.max), (y.min, y.max))
-        .with_width(frame.width)
-        .with_height(frame.height)
-        .with_theme(theme)
-        .with_box_axes()
-        .with_tick_size(TICK_SIZE)
-        .with_axis_line_width(0.9)
-        .with_tick_length(4.0)
-        .with_x_axis_min(x.min)
-        .with_x_axis_max(x.max)
-        .with_y_axis_min(y.min)
-        .with_y_axis_max(y.max)
-        .with_x_tick_step(x.step)
-        .with_y_tick_step(y.step)
-        .with_x_tick_format(TickFormat::Custom(x.tick_label()))
-        .with_y_tick_format(TickFormat::Custom(y.tick_label()))
-        .with_force_margins(m.left, m.right)
-        .with_force_margins_y(m.top, m.bottom);
-    layout.show_legend = false;
-    layout
+impl Frame {
+    /// The rectangle within the axes.
+    fn axes(&self) -> Area {
+        Area {
+            left: self.margins.left,
+            top: self.margins.top,
+            right: self.width - self.margins.right,
+            bottom: self.height - self.margins.bottom,
+        }
+    }
 }
 
-/// The line of a series; `None` for markers, which are drawn on top later.
-fn curve(series: &Series, (x, y): (Scale, Scale), width_px: f64) -> Option<Plot> {
-    let Ink::Line {
-        colour,
-        dash,
-        width,
-    } = series.ink
-    else {
-        return None;
-    };
-    let points = thinned(&series.points, width_px as usize);
-    let mut line = LinePlot::new()
-        .with_data(points.into_iter().map(|p| (x.place(p.0), y.place(p.1))))
-        .with_color(colour)
-        .with_stroke_width(width);
-    if let Some(dash) = dash {
-        line = line.with_line_style(LineStyle::Custom(dash.to_owned()));
+/// Where numbers stand in the rectangle within the axes.
+struct Map {
+    area: Area,
+    x: Scale,
+    y: Scale,
+}
+
+impl Map {
+    fn x_px(&self, value: f64) -> f64 {
+        self.x_px_of_place(self.x.place(value))
     }
-    Some(Plot::Line(line))
+
+    fn y_px(&self, value: f64) -> f64 {
+        self.y_px_of_place(self.y.place(value))
+    }
+
+    /// Of what stands on the axis: the number itself or its decimal logarithm.
+    fn x_px_of_place(&self, place: f64) -> f64 {
+        let part = (place - self.x.min) / (self.x.max - self.x.min);
+        self.area.left + part * (self.area.right - self.area.left)
+    }
+
+    fn y_px_of_place(&self, place: f64) -> f64 {
+        let part = (place - self.y.min) / (self.y.max - self.y.min);
+        self.area.bottom - part * (self.area.bottom - self.area.top)
+    }
+
+    fn px(&self, x: f64, y: f64) -> Px {
+        Px::new(self.x_px(x), self.y_px(y))
+    }
+
+    fn all(&self, points: &[(f64, f64)]) -> Vec<Px> {
+        points.iter().map(|p| self.px(p.0, p.1)).collect()
+    }
+
+    /// The rectangle between two values of x, as far as it lies within the axes.
+    fn band(&self, low: f64, high: f64) -> Area {
+        Area {
+            left: self.x_px(low).max(self.area.left),
+            right: self.x_px(high).min(self.area.right),
+            ..self.area
+        }
+    }
+
+    /// Grid, box, ticks and their labels.
+    fn draw_axes(&self, scene: &mut Scene) {
+        let Area {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.area;
+        let (grid, tick) = (Stroke::of(GRID, 1.0), Stroke::of(BLACK, 1.0));
+        let size = f64::from(TICK_SIZE);
+        for value in self.x.ticks() {
+            let x = self.x_px_of_place(value);
+            scene.polyline(&[Px::new(x, top), Px::new(x, bottom)], grid);
+            let end = bottom + TICK_LENGTH;
+            scene.polyline(&[Px::new(x, bottom), Px::new(x, end)], tick);
+            let label = Px::new(x, end + 0.93 * size);
+            scene.label(label, &self.x.tick_label(value), TICK_SIZE, Anchor::Middle);
+        }
+        for value in self.y.ticks() {
+            let y = self.y_px_of_place(value);
+            scene.polyline(&[Px::new(left, y), Px::new(right, y)], grid);
+            let end = left - TICK_LENGTH;
+            scene.polyline(&[Px::new(end, y), Px::new(left, y)], tick);
+            let label = Px::new(end - 3.0, y + 0.36 * size);
+            scene.label(label, &self.y.tick_label(value), TICK_SIZE, Anchor::End);
+        }
+        scene.outline(self.area, THIN);
+    }
 }
 
 /// A long history as the eye sees it: first, lowest, highest and last point of every px column.
@@ -330,32 +327,22 @@ fn thinned(points: &[(f64, f64)], width_px: usize) -> Vec<(f64, f64)> {
 
 /// A label with a white rim, so that it stays readable on grid lines and curves; far from its point a thin line leads
 /// to it.
-fn draw_note(scene: &mut Scene, labels: &mut Labels, at: (f64, f64), note: &Note) {
+fn draw_note(scene: &mut Scene, labels: &mut Labels, at: Px, note: &Note) {
     let area = labels.place(at, &note.text, f64::from(NOTE_SIZE));
     let end = area.nearest(at);
-    let distance = (end.0 - at.0).hypot(end.1 - at.1);
+    let (dx, dy) = (end.x - at.x, end.y - at.y);
+    let distance = dx.hypot(dy);
     if distance > LEADERLESS {
         let outside = 0.5 * LEADERLESS / distance;
-        scene.add(Primitive::Line {
-            x1: at.0 + outside * (end.0 - at.0),
-            y1: at.1 + outside * (end.1 - at.1),
-            x2: end.0,
-            y2: end.1,
-            stroke: Color::from(note.colour),
-            stroke_width: 0.7,
-            stroke_dasharray: None,
-        });
+        let start = at + Px::new(outside * dx, outside * dy);
+        scene.polyline(&[start, end], Stroke::of(note.colour, 0.7));
     }
     let baseline = area.bottom - 0.34 * f64::from(NOTE_SIZE);
-    scene.add(Primitive::GroupStart {
-        transform: None,
-        title: None,
-        extra_attrs: Some(RIM.to_owned()),
+    let at = Px::new(area.left + 3.0, baseline);
+    scene.group(RIM, |scene| {
+        scene.text(at, &note.text, NOTE_SIZE, RIM_COLOUR);
     });
-    let at = (area.left + 3.0, baseline);
-    scene.add(text(at, &note.text, NOTE_SIZE, RIM_COLOUR));
-    scene.add(Primitive::GroupEnd);
-    scene.add(text(at, &note.text, NOTE_SIZE, note.colour));
+    scene.text(at, &note.text, NOTE_SIZE, note.colour);
 }
 
 #[cfg(test)]

@@ -4,11 +4,12 @@ use super::axis::Axis;
 use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
-use super::panel::Panel;
+use super::panel::{Panel, Series};
 use super::style::{BLACK, Ink, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::processing::{RunReport, StageSignals};
+use std::ops::Range;
 
 const PLACE: &str = "processing of a run";
 /// Periods in the right column.
@@ -33,8 +34,8 @@ pub(crate) fn processing_figure(
         let samples = x.iter().enumerate();
         samples.map(|(k, v)| (k as f64 / rate, *v)).collect()
     };
-    let whole = (0.0, last.signals.force[force].len() as f64 / rate);
-    let columns = [whole, close_up(run, whole)];
+    let whole = 0.0..last.signals.force[force].len() as f64 / rate;
+    let windows = [whole.clone(), close_up(run, whole)];
     let shaded: Vec<(f64, f64)> = run
         .replaced
         .iter()
@@ -44,17 +45,26 @@ pub(crate) fn processing_figure(
     let motion_ink = Ink::stroke(colour(PLACE, 1)?, None, 1.1);
     let mut panels = Vec::with_capacity(2 * stages.len() + 2);
     for stage in stages {
-        let signal = (&stage.stage[..], points(&stage.signals.force[force]));
-        let label = force_label(dof);
-        let [mut left, right] = pair(columns, &shaded, ("", label), signal, force_ink);
+        let signal = Series {
+            name: stage.stage.clone(),
+            points: points(&stage.signals.force[force]),
+            ink: force_ink,
+        };
+        let axes = [Axis::new(""), Axis::new(force_label(dof))];
+        let [mut left, right] = pair(&windows, &shaded, axes, signal);
         left.title = Some(stage_title(run, &stage.stage, dof));
         panels.extend([left, right]);
     }
     let motion_name = format!("{} motion", run.dof.name());
     let unit = if run.dof == Dof::Torsion { "rad" } else { "m" };
     let label = format!("{} ({unit})", run.dof.symbol());
-    let signal = ("motion", points(&last.signals.motion[motion]));
-    let [mut left, right] = pair(columns, &[], ("t (s)", label), signal, motion_ink);
+    let signal = Series {
+        name: "motion".into(),
+        points: points(&last.signals.motion[motion]),
+        ink: motion_ink,
+    };
+    let axes = [Axis::new("t (s)"), Axis::new(label)];
+    let [mut left, right] = pair(&windows, &[], axes, signal);
     left.title = Some(motion_name.clone());
     let starts = run.segments.iter().map(|s| s.segment.start_s);
     left.uprights = starts.map(|t| (t, BLACK)).collect();
@@ -75,18 +85,27 @@ pub(crate) fn processing_figure(
     .draw()
 }
 
-/// One signal over the whole run, and close up.
+/// One signal over the whole run, and close up; axes of time and of the signal.
 fn pair(
-    [whole, close]: [(f64, f64); 2],
+    windows: &[Range<f64>; 2],
     shaded: &[(f64, f64)],
-    (time, label): (&str, String),
-    (name, samples): (&str, Vec<(f64, f64)>),
-    ink: Ink,
+    [time, y]: [Axis; 2],
+    signal: Series,
 ) -> [Panel; 2] {
-    let mut right = panel(time, String::new(), close, shaded);
-    right.add(name, inside(&samples, close), ink);
-    let mut left = panel(time, label, whole, shaded);
-    left.add(name, samples, ink);
+    let [whole, close] = windows;
+    let part = |range: &Range<f64>, y: Axis| {
+        let mut panel = Panel::new(time.clone(), y);
+        panel.x.range = Some((range.start, range.end));
+        panel.level = Some(0.0);
+        panel.shaded = shaded.to_vec();
+        panel
+    };
+    let mut right = part(close, Axis::new(""));
+    let inside = |p: &&(f64, f64)| close.start <= p.0 && p.0 <= close.end;
+    let points = signal.points.iter().filter(inside).copied().collect();
+    right.add(&signal.name, points, signal.ink);
+    let mut left = part(whole, y);
+    left.series.push(signal);
     [left, right]
 }
 
@@ -98,21 +117,6 @@ fn stage_title(run: &RunReport, stage: &str, dof: Dof) -> String {
     };
     let (peak, rms, unit) = (l.peak[force], l.rms[force], force_unit(dof));
     format!("{stage}: peak {peak:.4}, RMS {rms:.4} {unit}")
-}
-
-fn panel(t: &str, label: String, range: (f64, f64), shaded: &[(f64, f64)]) -> Panel {
-    let time = Axis {
-        range: Some(range),
-        ..Axis::new(t)
-    };
-    let mut panel = Panel::new(time, Axis::new(&label));
-    panel.level = Some(0.0);
-    panel.shaded = shaded
-        .iter()
-        .filter(|(a, b)| *b > range.0 && *a < range.1)
-        .map(|(a, b)| (a.max(range.0), b.min(range.1)))
-        .collect();
-    panel
 }
 
 fn force_unit(dof: Dof) -> &'static str {
@@ -129,7 +133,7 @@ fn force_label(dof: Dof) -> String {
 }
 
 /// A few periods around what was replaced, or of the test point in the middle.
-fn close_up(run: &RunReport, whole: (f64, f64)) -> (f64, f64) {
+fn close_up(run: &RunReport, whole: Range<f64>) -> Range<f64> {
     let rate = run.sampling_hz;
     let first = run
         .replaced
@@ -149,15 +153,7 @@ fn close_up(run: &RunReport, whole: (f64, f64)) -> (f64, f64) {
             0.5 * PERIODS / s.segment.frequency_hz,
         ),
         (Some(t), None) => (t, 1.0),
-        (None, None) => (0.5 * (whole.0 + whole.1), 1.0),
+        (None, None) => (0.5 * (whole.start + whole.end), 1.0),
     };
-    ((centre - half).max(whole.0), (centre + half).min(whole.1))
-}
-
-fn inside(points: &[(f64, f64)], (from, to): (f64, f64)) -> Vec<(f64, f64)> {
-    points
-        .iter()
-        .copied()
-        .filter(|(t, _)| (from..=to).contains(t))
-        .collect()
+    (centre - half).max(whole.start)..(centre + half).min(whole.end)
 }

@@ -2,8 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::verdict::Outcome;
-use kuva::render::color::Color;
-use kuva::render::render::{PathData, Primitive, Scene, build_path};
 
 /// Text, axes, zero lines.
 pub(super) const BLACK: &str = "#222222";
@@ -76,22 +74,41 @@ pub(super) enum Shape {
     Cross,
 }
 
+/// Colour, width in px and dashes of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stroke {
+    pub(super) colour: &'static str,
+    pub(super) width: f64,
+    pub(super) dash: Option<&'static str>,
+}
+
+impl Stroke {
+    /// A line without dashes.
+    pub(super) const fn of(colour: &'static str, width: f64) -> Self {
+        Self {
+            colour,
+            width,
+            dash: None,
+        }
+    }
+}
+
+/// A mark at a point; a hollow one says "with reservation". Lengths in px.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Marker {
+    pub(super) colour: &'static str,
+    pub(super) shape: Shape,
+    pub(super) radius: f64,
+    pub(super) hollow: bool,
+}
+
 /// How something is drawn, in the panel and in the legend alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ink {
-    /// A line of a width in px.
-    Line {
-        colour: &'static str,
-        dash: Option<&'static str>,
-        width: f64,
-    },
-    /// Separate markers; a hollow one says "with reservation".
-    Dots {
-        colour: &'static str,
-        shape: Shape,
-        radius: f64,
-        hollow: bool,
-    },
+    /// A line through the points.
+    Line(Stroke),
+    /// Separate markers.
+    Dots(Marker),
 }
 
 /// Width of the lines of the i-th branch, px.
@@ -111,77 +128,19 @@ impl Ink {
         dash: Option<&'static str>,
         width: f64,
     ) -> Self {
-        Self::Line {
+        Self::Line(Stroke {
             colour,
-            dash,
             width,
-        }
+            dash,
+        })
     }
 
     pub(super) fn dots(colour: &'static str, shape: Shape) -> Self {
-        Self::Dots {
+        Self::Dots(Marker {
             colour,
             shape,
             radius: 3.2,
             hollow: false,
-        }
+        })
     }
-}
-
-/// Draws a marker at a point of the scene, px; filled ones get a white rim that keeps neighbours apart.
-pub(super) fn draw_marker(
-    scene: &mut Scene,
-    (x, y): (f64, f64),
-    (colour, shape, radius, hollow): (&str, Shape, f64, bool),
-) {
-    let ink = Color::from(colour);
-    let white = Color::from("#ffffff");
-    let (fill, stroke, stroke_width) = if hollow {
-        (white, ink, 1.6)
-    } else {
-        (ink, white, 0.8)
-    };
-    let r = radius;
-    let corners: &[(f64, f64)] = match shape {
-        Shape::Circle => {
-            scene.add(Primitive::Circle {
-                cx: x,
-                cy: y,
-                r,
-                fill,
-                fill_opacity: None,
-                stroke: Some(stroke),
-                stroke_width: Some(stroke_width),
-            });
-            return;
-        }
-        Shape::Cross => {
-            for s in [-1.0, 1.0] {
-                scene.add(Primitive::Line {
-                    x1: x - r,
-                    y1: y - s * r,
-                    x2: x + r,
-                    y2: y + s * r,
-                    stroke: Color::from(colour),
-                    stroke_width: 1.8,
-                    stroke_dasharray: None,
-                });
-            }
-            return;
-        }
-        Shape::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
-        Shape::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
-    };
-    let outline: Vec<(f64, f64)> = corners
-        .iter()
-        .map(|(dx, dy)| (x + dx * r, y + dy * r))
-        .collect();
-    scene.add(Primitive::Path(Box::new(PathData {
-        d: build_path(&outline) + "Z",
-        fill: Some(fill),
-        stroke,
-        stroke_width,
-        opacity: None,
-        stroke_dasharray: None,
-    })));
 }

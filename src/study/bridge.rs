@@ -20,14 +20,17 @@ pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;
 use super::speeds::reaching;
+use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
 use crate::plausibility::{Finding, of_bridge, of_coefficients, sentences};
+use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Text of the bridge file of the demo.
 pub(crate) fn demo_bridge_text() -> &'static str {
@@ -165,6 +168,42 @@ impl BridgeStudy {
             Some([statics.lift, statics.drag, statics.moment])
         };
         self.section_of_group.iter().map(of).collect()
+    }
+
+    /// The bridge in the quasi-steady forces of heave and sway; `None` where no section with derivatives or a model states static
+    /// coefficients too.
+    ///
+    /// # Errors
+    /// As [`Bridge::new`].
+    pub(crate) fn by_coefficients(&self) -> Result<Option<Bridge>> {
+        let mut groups = Vec::new();
+        for (group, section) in self.by_model.groups.iter().zip(&self.section_of_group) {
+            let block = &self.file.sections[*section];
+            let of_motion = self.sections[*section].tested.is_some()
+                || block.derivatives.is_some()
+                || block.model.is_some();
+            let mut motions = block.motions.clone();
+            motions.retain(|d| *d != Dof::Torsion);
+            let Some(statics) = &block.statics else {
+                continue;
+            };
+            if !of_motion || motions.is_empty() {
+                continue;
+            }
+            let theory =
+                LinearQuasiSteady::new(&motions, statics.arms, 0.0, statics.coefficients());
+            groups.push(StripGroup {
+                forces: Arc::new(theory),
+                ..group.clone()
+            });
+        }
+        if groups.is_empty() {
+            return Ok(None);
+        }
+        let b = &self.by_model;
+        let (nodes, modes) = (b.nodes.clone(), b.modes.clone());
+        let bridge = Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)?;
+        Ok(Some(bridge))
     }
 
     /// Similarities of vertical and torsional modes.

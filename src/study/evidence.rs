@@ -1,13 +1,18 @@
 //! What is known of the section of a study, as evidence for its verdict.
 
+use super::intervals::interval_of;
 use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
+use crate::aerodynamics::Transfer;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, Instability, OnsetMethod, StableRange, judged_speeds, table_tested_from,
+    FlutterSearch, Instability, OnsetMethod, OnsetSearch, StableRange, find_onset, judged_speeds,
+    table_tested_from,
 };
-use crate::identification::FitReport;
+use crate::identification::{FitReport, OnsetEffect};
+use crate::plausibility::of_section;
 use crate::trained_model::TrainedModel;
+use crate::units::ReducedFrequency;
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
     MeanRotation, MovedOnset, Reach,
@@ -35,6 +40,7 @@ pub(crate) fn section_evidence(
     failed: &[StageFailure],
 ) -> Evidence {
     let name = own.model.map(|m| m.name.as_str());
+    let held = own.fit.and_then(|f| f.constraints.as_ref()?.onset.as_ref());
     let mut evidence = Evidence {
         required: study.flutter.required(),
         flutter: own
@@ -48,7 +54,7 @@ pub(crate) fn section_evidence(
             .find(|g| Some(g.model.as_str()) == name)
             .map(|g| g.growth.clone()),
         failures: failures(study, failed, name),
-        constraints: own.fit.and_then(moved),
+        constraints: held.map(moved_onset),
         test_speeds: own.uncertainty.and_then(one_test_speed),
         implausible: [deck.findings(), &study_findings(study)[..]].concat(),
         tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
@@ -78,6 +84,42 @@ pub(crate) fn section_evidence(
         });
     }
     evidence
+}
+
+/// What a saved model answers for its own section by itself: the onset with its interval, divergence, growth, and what is odd about
+/// the section. How it was fitted, and the table it was fitted to, are not known any more.
+///
+/// # Errors
+/// [`Error::Input`] for a section that is wrong.
+pub(crate) fn model_evidence(model: &TrainedModel, known: &KnownUncertainty) -> Result<Evidence> {
+    let structure = model.section.structure()?;
+    let section = CoupledSection::with_model(&structure, &model.model)?;
+    let search = OnsetSearch {
+        speed_max_m_s: model.experiment.onset_search_limit_m_s,
+        ..OnsetSearch::default()
+    };
+    let tested = model.tested_range;
+    let mut found = find_onset(&model.name, &section, &search, Some(tested))?;
+    if let FlutterSearch::Onset(onset) = &mut found {
+        onset.interval = interval_of(&structure, model, known, onset);
+        let warnings = known.iter().filter_map(|k| k.warning());
+        onset.warnings.extend(warnings);
+    }
+    let at_rest = model
+        .model
+        .transfer(ReducedFrequency::from_full_width(0.0))?;
+    Ok(Evidence {
+        test_speeds: one_test_speed(known),
+        implausible: of_section(&model.section),
+        ..Evidence::of_section(
+            &forces(&model.name, ""),
+            &section,
+            &at_rest,
+            tested,
+            &search,
+            found,
+        )
+    })
 }
 
 fn forces(model: &str, table: &str) -> String {
@@ -150,12 +192,12 @@ fn failures(study: &Study, failed: &[StageFailure], own: Option<&str>) -> Vec<Fa
         .collect()
 }
 
-fn moved(fit: &FitReport) -> Option<MovedOnset> {
-    let effect = fit.constraints.as_ref()?.onset.as_ref()?;
-    Some(MovedOnset {
+/// What constraints did to an onset.
+pub(super) fn moved_onset(effect: &OnsetEffect) -> MovedOnset {
+    MovedOnset {
         without_m_s: effect.without_m_s,
         with_m_s: effect.with_m_s,
-    })
+    }
 }
 
 /// 1 where the tests behind an interval are at one mean speed; else not known here.

@@ -110,11 +110,11 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 78_180),
-        ("code lines of the core", core, 16_560),
-        ("types", found.type_count(), 1_028),
+        ("code lines", found.line_count(), 78_291),
+        ("code lines of the core", core, 16_589),
+        ("types", found.type_count(), 1_031),
         ("names of several types", found.names_used_twice(), 1),
-        ("functions with a tuple parameter", found.with_tuples, 29),
+        ("functions with a tuple parameter", found.with_tuples, 2),
     ];
     for (directory, lines) in &found.lines {
         println!("{lines:>7}  code lines in {directory}");

@@ -70,7 +70,7 @@ pub const ARROWS: &[Row] = &[
     row("verdict", &["flutter+", "plausibility"]),
     row(
         "fmu",
-        &["flutter+", "response+", "trained_model+", "verdict"],
+        &["flutter+", "response+", "trained_model+", "verdict+"],
     ),
     row("fmu::fmi2", &["fmu"]),
     // a second shell over the guard of the first

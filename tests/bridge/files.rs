@@ -299,6 +299,16 @@ fn wrong_bridge_files_are_named_with_their_line() {
         &["modes.select: expected modes among 1, 2, found 7"],
     );
     refused(
+        |_| {
+            let arms = "static = { lift_slope = 4.0, arms = { vertical = 1e9 }";
+            text("csv", "").replace("static = { lift_slope = 4.0", arms)
+        },
+        &[
+            "bridge.toml: line ",
+            "section[0].static.arms.vertical: expected a part of the width, 100 at most, found 1",
+        ],
+    );
+    refused(
         |_| text("csv", "from = \"99\"\n"),
         &["section[0].from: expected a node of the bridge, 11 to 14, found `99`"],
     );
@@ -385,4 +395,17 @@ fn matlab_files_are_read() {
     }
     let message = study(folder.path(), &named).unwrap_err().to_string();
     assert!(message.contains("modes.span: expected span_m"), "{message}");
+    // a shape that does not move has no mass
+    let [w, mut shape] = arrays;
+    for x in shape.2.iter_mut().skip(1).step_by(3) {
+        *x = 0.0;
+    }
+    fs::write(folder.path().join("modes"), matlab::file(&[w, shape])).unwrap();
+    let message = study(folder.path(), &stated).unwrap_err().to_string();
+    assert!(
+        message.ends_with(
+            "modes: phi(2, 1, :): expected a shape with a finite mass, m ∫φ² dx > 0, found 0"
+        ),
+        "{message}"
+    );
 }

@@ -13,7 +13,7 @@ fn models_are_compared_in_both_domains() {
         "within ±15 % at",
         "M_phi",
         "thesis 3.5.5: rotation",
-        "models_transfer.png",
+        "models_transfer.svg",
     ] {
         assert!(text.contains(word), "`{word}` is not in:\n{text}");
     }
@@ -22,11 +22,11 @@ fn models_are_compared_in_both_domains() {
         "m/models_metrics.csv",
         "m/models_transfer.csv",
         "m/models_transfer.svg",
-        "m/models_derivatives.png",
+        "m/models_derivatives.svg",
         "m/models_metrics_vertical.svg",
         "m/models_metrics_torsion.svg",
         "m/models_history_vertical_0.5_hz.svg",
-        "m/models_history_torsion_2.0_hz.png",
+        "m/models_history_torsion_2.0_hz.svg",
     ] {
         assert!(
             files.iter().any(|f| f == name),

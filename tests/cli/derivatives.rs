@@ -135,7 +135,7 @@ fn tables_are_shown_in_any_notation() {
     assert!((value / (p1 * std::f64::consts::FRAC_2_PI) - 1.0).abs() < 1e-15);
     let list = succeeds(at, &["derivatives", "notations", "--sketch", "drawn"]);
     assert!(list.contains("k_semi = omega b/V") && list.contains("heave_down"));
-    assert!(at.join("drawn/axes.svg").is_file() && at.join("drawn/axes.png").is_file());
+    assert!(at.join("drawn/axes.svg").is_file());
 }
 
 /// The onset of a study does not depend on the notation its table is kept in; a wrong statement is refused.

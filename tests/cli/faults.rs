@@ -92,12 +92,16 @@ fn a_closed_standard_output_is_said() {
 fn names_that_are_no_text_are_refused() {
     use std::os::unix::ffi::OsStrExt as _;
     let name = std::ffi::OsStr::from_bytes(b"a\xff.toml");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_aerodeck"));
-    let output = command.arg("study").arg(name).output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).unwrap();
-    let expected = "error: arguments: expected names and paths in UTF-8, found a\u{fffd}.toml\n";
-    assert_eq!(said, expected);
+    // the second takes texts, at which the parser of the command line would stop without a name
+    for command in [&["study"][..], &["derivatives", "show"]] {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_aerodeck"));
+        let output = program.args(command).arg(name).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        let expected =
+            "error: arguments: expected names and paths in UTF-8, found a\u{fffd}.toml\n";
+        assert_eq!(said, expected);
+    }
 }
 
 /// The demo, as soon as it has begun to write aside.

@@ -69,7 +69,7 @@ fn flags_mean_the_same_in_every_command() {
     let all = commands(folder.path(), "");
     assert!(all.len() > 25, "{}", all.len());
     for (name, help) in &all {
-        for flag in ["--json", "--quiet", "--verbose", "--no-figures"] {
+        for flag in ["--json", "--quiet", "--verbose", "--no-figures", "--png"] {
             assert!(said(help, flag).is_some(), "{name} has no {flag}");
         }
         let out = said(help, "--out").is_some();

@@ -8,6 +8,9 @@ mod browser;
 #[path = "../common/command.rs"]
 mod command;
 
+#[path = "../common/girders.rs"]
+mod girders;
+
 mod bridge;
 mod campaign;
 mod compare;
@@ -15,9 +18,13 @@ mod derivatives;
 #[cfg(unix)]
 mod faults;
 mod flags;
+mod implausible;
+mod names;
 mod newcomer;
 mod onsets;
 mod process;
 mod report;
+mod required_speeds;
 mod select;
+mod verdicts;
 mod wind;

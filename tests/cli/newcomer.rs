@@ -28,7 +28,6 @@ fn the_demo_does_the_whole_chain() {
         "deck_section.fmu",
         "summary.json",
         "flutter.svg",
-        "flutter.png",
     ] {
         assert!(out.join(name).is_file(), "{name}");
     }

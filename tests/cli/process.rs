@@ -59,7 +59,6 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
         for file in [
             format!("records/{name}.csv"),
             format!("processing/{name}.svg"),
-            format!("processing/{name}.png"),
         ] {
             assert!(out.join(&file).is_file(), "{file}");
         }

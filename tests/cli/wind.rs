@@ -30,7 +30,7 @@ fn quasi_steady_runs_the_example() {
     for name in [
         "wind.toml",
         "coefficients.svg",
-        "equilibrium.png",
+        "equilibrium.svg",
         "quasi_steady_modes.svg",
         "quasi_steady_run.csv",
         "gusts.csv",
@@ -79,6 +79,50 @@ fn a_required_speed_of_a_wind_file_is_judged() {
         &["quasi-steady", "wind.toml", "--no-figures"],
     ));
     assert!(said.contains("No required speed is stated"), "{said}");
+}
+
+/// A requirement that stands in the file is judged by the response to turbulence too: by quasi-steady theory, or not at all.
+#[test]
+fn a_required_speed_is_judged_beside_buffeting() {
+    let folder = TempDir::new().unwrap();
+    let judged = |coefficients: bool| {
+        write(
+            &folder,
+            "[speeds]\n",
+            "[speeds]\nrequired_speed_m_s = 60.0\n",
+        );
+        let file = folder.path().join("wind.toml");
+        let mut text = fs::read_to_string(&file).unwrap();
+        if !coefficients {
+            let start = text.find("[coefficients]").unwrap();
+            let end = start + text[start..].find("\n\n").unwrap();
+            text.replace_range(start..end, "");
+            let lateral =
+                "lateral = { mass_kg_m = 22740.0, frequency_hz = 0.060, damping_ratio = 0.005 }\n";
+            text = text
+                .replace(lateral, "")
+                .replace("\"quasi-steady\"", "\"LN21-5200\"");
+        }
+        let text = text
+            .replace("speeds = 56", "speeds = 3")
+            .replace("speeds_m_s = [20.0, 35.0]", "speeds_m_s = []");
+        fs::write(&file, text).unwrap();
+        let (code, said, error) =
+            aerodeck(folder.path(), &["buffeting", "wind.toml", "--no-figures"]);
+        assert_eq!(code, 3, "{said}{error}");
+        flowing(&said)
+    };
+    let said = judged(true);
+    assert!(
+        said.starts_with("Synthetic box girder: ✗ NOT MET, required 60 m/s"),
+        "{said}"
+    );
+    let said = judged(false);
+    assert!(
+        said.starts_with("Synthetic box girder: ? CANNOT BE JUDGED, required 60 m/s")
+            && said.contains("Flutter was not searched"),
+        "{said}"
+    );
 }
 
 /// A table is the answer of the frequency domain; the time domain says what it takes instead and how far off that is.
@@ -156,7 +200,7 @@ fn buffeting_compares_both_domains() {
     }
     for name in [
         "buffeting.svg",
-        "buffeting_spectra_20.png",
+        "buffeting_spectra_20.svg",
         "buffeting.json",
     ] {
         assert!(listing(folder.path()).contains(&name.to_owned()), "{name}");

@@ -1,6 +1,6 @@
 //! Onset by every route: routes on one force model agree, and instabilities of one degree of freedom are named.
 
-use crate::command::{self, refused, succeeds};
+use crate::command::{self, aerodeck, refused, succeeds};
 use crate::matrix;
 use aerodeck::aerodynamics::derivatives::Derivative;
 use aerodeck::aerodynamics::derivatives::DerivativePoint;
@@ -229,6 +229,12 @@ fn a_deck_close_to_torsional_flutter() {
         assert!(text.contains(said), "`{said}` is not in: {text}");
     }
     let figure = fs::read_to_string(folder.path().join("routes.svg")).unwrap();
+    // the verdict stands above the table, and a requirement makes the exit code
+    let required = ["--set", "flutter.required_speed_m_s=80"];
+    let run = ["flutter", "study.toml", "--all"];
+    let (code, said, error) = aerodeck(folder.path(), &[&run[..], &required].concat());
+    assert_eq!(code, 3, "{error}");
+    assert!(said.contains("✗ NOT MET, required 80 m/s"), "{said}");
     assert!(figure.contains("flat plate, same structure"));
 }
 
@@ -338,7 +344,7 @@ fn monte_carlo_from_a_trained_model() {
     near(result["nominal_m_s"].as_f64().unwrap(), 36.920, 0.02);
     near(result["mean_m_s"].as_f64().unwrap(), 37.0, 1.0);
     assert_eq!(result["samples"], 3000);
-    assert!(at.join("monte_carlo.png").exists() && at.join("monte_carlo.json").exists());
+    assert!(at.join("monte_carlo.svg").exists() && at.join("monte_carlo.json").exists());
     let text = succeeds(at, &["monte-carlo", "scatter.toml", "--seed", "4"]);
     assert!(
         text.contains("Design    onset below 35.000 m/s") && text.contains("seed 4"),

@@ -13,7 +13,7 @@ use aerodeck::buffeting::{
 };
 use aerodeck::flutter::trace_modes;
 use aerodeck::response::{Inputs, Stepper};
-use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
+use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy, bridge_flutter};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -52,6 +52,26 @@ pub(crate) fn prepare_whole() {
             &bridges::langenuen("LN21-5200", bridges::TWO),
         );
     });
+}
+
+/// Flutter by table and by model in uniform wind.
+pub(crate) fn flutter() -> Job {
+    flutter_of("")
+}
+
+/// The same in the profile of docs/bridge.md.
+pub(crate) fn flutter_in_profile() -> Job {
+    flutter_of(
+        "[wind]\nprofile = [{ along_m = -617.5, factor = 0.9 }, { along_m = 617.5, factor = 1.0 }]\n",
+    )
+}
+
+fn flutter_of(wind: &str) -> Job {
+    let text = bridges::langenuen_text("LN21-5200", bridges::TWO, "modified_akima");
+    let study = bridges::read(&(text + wind));
+    Job::new(move || {
+        black_box(bridge_flutter(&study).expect("an answer"));
+    })
 }
 
 /// A step of the unit of all modes with readings at mid-span.

@@ -85,6 +85,21 @@ pub(crate) static ENTRIES: &[Entry] = &[
         ..PLAIN
     },
     Entry {
+        name: "bridge-profile",
+        what: "flutter of a bridge in a wind profile, table and model",
+        size: "39 modes, 50 speeds",
+        threads: Threads::All,
+        job: bridge::flutter_in_profile,
+        baseline: Baseline::Here {
+            name: "the same in uniform wind",
+            package: None,
+            job: bridge::flutter,
+            units: 1,
+            times: 1,
+        },
+        ..PLAIN
+    },
+    Entry {
         name: "bridge-buffeting",
         what: "both domains, two records of 600 s",
         size: "39 modes, 63 nodes, 12 000 samples",

@@ -31,6 +31,29 @@ use nalgebra::{Complex, DMatrix};
 pub type TransferMatrix = DMatrix<Complex<f64>>;
 
 /// A linear model of the self-excited forces.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::{Transfer, TransferMatrix};
+/// use aerodeck::section::Dof;
+/// use aerodeck::units::ReducedFrequency;
+/// use nalgebra::Complex;
+///
+/// /// A moment in phase with the rotation.
+/// struct Steady;
+///
+/// impl Transfer for Steady {
+///     fn dofs(&self) -> &[Dof] {
+///         &[Dof::Torsion]
+///     }
+///
+///     fn transfer(&self, _: ReducedFrequency) -> aerodeck::Result<TransferMatrix> {
+///         Ok(TransferMatrix::from_element(1, 1, Complex::new(1.2, 0.0)))
+///     }
+/// }
+///
+/// assert!(Steady.realizable().is_none() && Steady.known_range().is_none());
+/// ```
 pub trait Transfer: Send + Sync {
     /// Degrees of freedom, in the order of rows and columns of [`Transfer::transfer`].
     fn dofs(&self) -> &[Dof];
@@ -56,6 +79,15 @@ pub trait Transfer: Send + Sync {
 }
 
 /// A force model with a state-space realisation.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::{RationalModel, Realizable, Realization};
+///
+/// let plate = RationalModel::jones_flat_plate();
+/// let Realization::Continuous(filters) = plate.realize() else { panic!() };
+/// assert_eq!(filters.a.nrows(), 4); // two lags of two motions
+/// ```
 pub trait Realizable: Transfer {
     /// Its realisation in dimensionless time `s = Vt/B`; the frequency response is [`Transfer::transfer`].
     fn realize(&self) -> Realization;

@@ -37,6 +37,14 @@ impl fmt::Display for InputError {
 }
 
 /// Errors of the library.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::Error;
+///
+/// let error = Error::input("section.width_m", "a positive number", "-1");
+/// assert_eq!(error.to_string(), "section.width_m: expected a positive number, found -1");
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Wrong input: the caller can mend it.
@@ -147,6 +155,23 @@ pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
         0 => Ok(values),
         1 => Err(errors.remove(0)),
         _ => Err(Error::Several(errors)),
+    }
+}
+
+/// Whether a text has control characters, which a terminal obeys and XML cannot hold; broken lines and tabs are texts.
+pub fn has_control_characters(text: &str) -> bool {
+    text.contains(|c: char| c.is_control() && !['\n', '\r', '\t'].contains(&c))
+}
+
+/// Refuses a text with control characters: names end up in files, pages, descriptions of FMUs and on terminals.
+pub fn without_control_characters(place: impl Into<Place>, text: &str) -> Result<()> {
+    match has_control_characters(text) {
+        false => Ok(()),
+        true => Err(Error::input(
+            place,
+            "a text without control characters",
+            "one with them",
+        )),
     }
 }
 

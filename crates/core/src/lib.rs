@@ -4,23 +4,7 @@
 //! realisation. A structure is `(M, R, K)` ([`section`], [`bridge`]). Their coupling at a wind speed is one linear system
 //! ([`aeroelastic`]), whose modes and onsets [`flutter`] finds and whose exact steps [`response`] takes. [`trained_model`] is what is
 //! saved, [`plausibility`] judges what is given, [`verdict`] what was found.
-// what is public can be reached from outside
-#![deny(unsafe_code, missing_docs, unreachable_pub)]
-// the process is the caller's: no abrupt end, and no word on its terminal
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::todo,
-        clippy::unimplemented,
-        clippy::unreachable,
-        clippy::print_stdout,
-        clippy::print_stderr,
-        clippy::dbg_macro
-    )
-)]
+#![deny(unsafe_code)]
 
 pub mod aerodynamics;
 pub mod aeroelastic;

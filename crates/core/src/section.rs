@@ -15,6 +15,14 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A degree of freedom of the section.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::section::Dof;
+///
+/// assert_eq!(Dof::names(&Dof::TWO), "vertical, torsion");
+/// assert_eq!(Dof::Torsion.force_scale(31.0), 31.0 * 31.0); // a moment per metre over ½ρV²
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dof {

@@ -16,10 +16,40 @@ use crate::error::{Error, Result};
 use nalgebra::{Complex, ComplexField, DMatrix};
 
 /// Time basis of a continuous system.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::state_space::{Continuous, StateSpace};
+/// use nalgebra::DMatrix;
+///
+/// // ẍ + 0.2 ẋ + x = u
+/// let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -0.2]);
+/// let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
+/// let c = DMatrix::from_row_slice(1, 2, &[1.0, 0.0]);
+/// let oscillator = StateSpace::new(a, b, c.clone(), DMatrix::zeros(1, 1), Continuous)?;
+/// assert!((oscillator.freqresp(0.0)?[(0, 0)].re - 1.0).abs() < 1e-12);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Continuous;
 
 /// Time basis of a sampled system.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::state_space::{Continuous, Discrete, StateSpace};
+/// use nalgebra::DMatrix;
+///
+/// // ẍ + 0.2 ẋ + x = u
+/// let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -0.2]);
+/// let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
+/// let c = DMatrix::from_row_slice(1, 2, &[1.0, 0.0]);
+/// let oscillator = StateSpace::new(a, b, c.clone(), DMatrix::zeros(1, 1), Continuous)?;
+/// let step = oscillator.c2d(0.5)?;
+/// let sampled = StateSpace::new(step.phi, step.gamma_0, c, DMatrix::zeros(1, 1), Discrete { step: 0.5 })?;
+/// assert!(sampled.poles()?.iter().all(|z| z.norm() < 1.0));
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Discrete {
     /// Sampling step, in the time unit of the system (s, or dimensionless `Δs`).
@@ -29,6 +59,22 @@ pub struct Discrete {
 /// `ẋ = A x + B u` or `x(k+1) = A x(k) + B u(k)`, with `y = C x + D u`.
 ///
 /// The time basis is part of the type, so that a sampled system cannot be used as a continuous one.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::state_space::{Continuous, StateSpace};
+/// use nalgebra::DMatrix;
+///
+/// // ẍ + 0.2 ẋ + x = u
+/// let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -0.2]);
+/// let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
+/// let c = DMatrix::from_row_slice(1, 2, &[1.0, 0.0]);
+/// let oscillator = StateSpace::new(a, b, c.clone(), DMatrix::zeros(1, 1), Continuous)?;
+/// for pole in oscillator.poles()? {
+///     assert!((pole.norm() - 1.0).abs() < 1e-12 && (pole.re + 0.1).abs() < 1e-12);
+/// }
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StateSpace<T> {
     /// State matrix, n×n.
@@ -168,6 +214,21 @@ pub struct StateEquation {
 }
 
 /// One pole as a table of damping has it.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::state_space::{Continuous, StateSpace};
+/// use nalgebra::DMatrix;
+///
+/// // ẍ + 0.2 ẋ + x = u
+/// let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -0.2]);
+/// let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
+/// let c = DMatrix::from_row_slice(1, 2, &[1.0, 0.0]);
+/// let oscillator = StateSpace::new(a, b, c.clone(), DMatrix::zeros(1, 1), Continuous)?;
+/// let mode = oscillator.damp()?[0];
+/// assert!((mode.natural_frequency - 1.0).abs() < 1e-12 && (mode.damping_ratio - 0.1).abs() < 1e-12);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
     /// The pole `λ` in continuous time, in the inverse time unit.

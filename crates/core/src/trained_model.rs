@@ -4,7 +4,7 @@ use crate::aerodynamics::{
     DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel, Realizable,
     Realization, Transfer, TransferMatrix,
 };
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, finite, positive, without_control_characters};
 use crate::section::{Dof, SectionModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
@@ -21,6 +21,16 @@ pub const NEWEST_SCHEMA_VERSION: u32 = 2;
 const MAX_STATES: usize = 1000;
 
 /// The models that can be saved and exported.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::trained_model::Model;
+///
+/// let model = Model::Rational(RationalModel::jones_flat_plate());
+/// assert_eq!(model.kind(), "rational functions");
+/// assert_eq!(model.schema_version(), 1);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Model {
@@ -221,6 +231,17 @@ impl TrainedModel {
 
     /// Checks every value.
     pub fn validate(&self) -> Result<()> {
+        let from = &self.provenance;
+        let texts = [
+            ("name", &self.name),
+            ("provenance.source", &from.source),
+            ("provenance.licence", &from.licence),
+            ("provenance.method", &from.method),
+        ];
+        let notes = from.notes.iter().map(|note| ("provenance.notes", note));
+        for (key, text) in texts.into_iter().chain(notes) {
+            without_control_characters(key, text)?;
+        }
         self.section.structure()?;
         self.model.validate()?;
         if self.schema_version < self.model.schema_version() {
@@ -347,6 +368,12 @@ mod tests {
         assert!(refusal(&text[..text.len() / 2]).contains("line"));
         let negative = text.replace("\"mass_kg_m\": 15.0", "\"mass_kg_m\": -15.0");
         assert!(refusal(&negative).contains("mass_kg_m"));
+        // a name goes to files and pages
+        let said = "expected a text without control characters, found one with them";
+        for (key, from) in [("name", "flat plate"), ("provenance.source", "R. T. Jones")] {
+            let obeyed = text.replace(from, "a\\u001b[31m");
+            assert_eq!(refusal(&obeyed), format!("{key}: {said}"));
+        }
     }
 
     /// Newer forms take the newer layout and survive it; a file of the older layout cannot hold them.

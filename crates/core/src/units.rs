@@ -32,6 +32,17 @@ pub fn group_of(groups: &[Vec<f64>], value: f64) -> usize {
 }
 
 /// Reduced frequency `K = ωB/V` of the full deck width, dimensionless.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::units::{ReducedFrequency, ReducedVelocity};
+/// use std::f64::consts::TAU;
+///
+/// let k = ReducedFrequency::from_hertz(0.2, 31.0, 40.0); // 0.2 Hz, B = 31 m, 40 m/s
+/// assert!((k.full_width() - TAU * 0.2 * 31.0 / 40.0).abs() < 1e-15);
+/// assert_eq!(k.semi_chord(), 0.5 * k.full_width());
+/// assert!((ReducedVelocity::from(k).v_star() - 40.0 / (0.2 * 31.0)).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct ReducedFrequency(f64);

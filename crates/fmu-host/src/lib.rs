@@ -5,24 +5,7 @@
 //! call by call; [`simulate`] gives a table.
 //!
 //! The code of an FMU runs in this process: one that crashes takes it along.
-// what is public can be reached from outside
-#![deny(missing_docs, unreachable_pub)]
-// the process is the caller's: no abrupt end, and no word on its terminal
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::todo,
-        clippy::unimplemented,
-        clippy::unreachable,
-        clippy::print_stdout,
-        clippy::print_stderr,
-        clippy::dbg_macro,
-        clippy::undocumented_unsafe_blocks
-    )
-)]
+#![cfg_attr(not(test), deny(clippy::undocumented_unsafe_blocks))]
 
 use aerodeck_core::{error, flutter, state_space};
 use aerodeck_unit::{location, standard};

@@ -1,12 +1,12 @@
 //! `aerodeck bridge buffeting`: RMS and peak factors at named nodes.
 
 use super::super::answer::Answer;
-use super::super::evidence::text_cell;
 use super::super::progress::Progress;
 use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
 use crate::error::{Result, counted};
 use crate::files::bridge::read_field;
+use crate::files::text::csv_cell;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -176,7 +176,7 @@ fn spectra_csv(results: &BridgeBuffeting) -> String {
     let mut text = "# one-sided spectra of the displacements\nfrequency_hz".to_owned();
     for name in &results.nodes {
         for motion in ["vertical_m2_hz", "lateral_m2_hz", "rotation_rad2_hz"] {
-            let _ = write!(text, ",{}", text_cell(&format!("node[{name}].{motion}")));
+            let _ = write!(text, ",{}", csv_cell(&format!("node[{name}].{motion}")));
         }
     }
     text.push('\n');

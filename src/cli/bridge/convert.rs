@@ -4,7 +4,7 @@ use super::super::answer::Answer;
 use super::super::common::warn;
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, write_modes};
-use crate::plausibility::sentences;
+use crate::plausibility::{Finding, FindingSeverity, sentences};
 use std::path::PathBuf;
 
 /// Write the modes that a bridge file names as one compact CSV file, in the signs of this program
@@ -28,14 +28,30 @@ pub(crate) struct BridgeConvertArgs {
     licence: String,
 }
 
+/// Refuses to leave out the nodes that a doubt is seen by: what is written is judged as what was read.
+fn keeps_doubts(whole: &[Finding], thinned: &[Finding]) -> Result<()> {
+    let key = |f: &Finding| (f.severity, f.kind, f.place.clone());
+    let mut doubts = whole
+        .iter()
+        .filter(|f| f.severity == FindingSeverity::Doubt);
+    let Some(lost) = doubts.find(|d| !thinned.iter().any(|f| key(f) == key(d))) else {
+        return Ok(());
+    };
+    let expected = "as many nodes as show what is odd about all of them";
+    Err(Error::input("--every", expected, lost.to_string()))
+}
+
 /// Runs the command.
 pub(super) fn run(args: &BridgeConvertArgs) -> Result<Answer> {
     if args.every == 0 {
         return Err(Error::input("--every", "a number from 1 on", "0"));
     }
     let file = BridgeFile::read(&args.bridge)?;
-    let mut modes = file.read_modes()?.thinned(args.every);
-    warn(&args.bridge, &sentences(&modes.findings()));
+    let whole = file.read_modes()?;
+    let mut modes = whole.thinned(args.every);
+    let found = modes.findings();
+    keeps_doubts(&whole.findings(), &found)?;
+    warn(&args.bridge, &sentences(&found));
     if let Some(source) = &args.source {
         modes.source.clone_from(source);
     }

@@ -1,7 +1,7 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
 use super::super::answer::Answer;
-use super::super::evidence::{DerivativesShown, curves_csv, text_cell};
+use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
@@ -12,6 +12,7 @@ use super::files::{
 };
 use super::{account, summary};
 use crate::error::Result;
+use crate::files::text::csv_cell;
 use crate::flutter::BridgeMotion;
 use crate::report::{
     bridge_curves_figure, bridge_roots_figure, derivatives_figure, flutter_motion_figure,
@@ -235,7 +236,7 @@ fn motion_csv(motion: &BridgeMotion) -> String {
         let _ = writeln!(
             text,
             "{},{},{},{},{},{},{},{}",
-            text_cell(&n.node),
+            csv_cell(&n.node),
             n.along_m,
             y[0],
             y[1],
@@ -259,7 +260,7 @@ fn animation_csv(motion: &BridgeMotion) -> String {
             let _ = writeln!(
                 text,
                 "{phase},{},{},{y},{x},{t}",
-                text_cell(&n.node),
+                csv_cell(&n.node),
                 n.along_m
             );
         }

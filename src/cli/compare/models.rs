@@ -9,6 +9,7 @@ use crate::comparison::forces::{
     BandCheck, History, ModelsComparison, compare_models, inside, score_table,
 };
 use crate::error::{Result, counted};
+use crate::files::text::csv_cell;
 use crate::report::{
     DerivativePlot, DerivativesPlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve,
     TransferPlot, derivatives_figure, time_history_figure, transfer_figure,
@@ -239,14 +240,14 @@ fn transfer_table(results: &ModelsComparison) -> String {
                 let BandCheck { magnitude, phase } = inside(off.0, off.1);
                 let _ = writeln!(
                     text,
-                    "{},{},{:.4},{:.5},{:.6},{:.3},\"{}\",{:.3},{:.3},{magnitude},{phase}",
+                    "{},{},{:.4},{:.5},{:.6},{:.3},{},{:.3},{:.3},{magnitude},{phase}",
                     entry.force.name(),
                     entry.motion.name(),
                     point.frequency_hz,
                     point.k,
                     point.magnitude,
                     point.phase_deg,
-                    model.model,
+                    csv_cell(&model.model),
                     off.0,
                     off.1
                 );

@@ -6,7 +6,7 @@ use crate::cli::answer::Answer;
 use crate::cli::bridge::{self, BRIDGE_FMU};
 use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
-use crate::cli::stages;
+use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::files::coefficients::gust_force;
@@ -18,10 +18,12 @@ use crate::fmu::package::{
 };
 use crate::fmu::variables::Listing;
 use crate::study::bridge::BridgeExportOptions;
-use crate::study::uncertainty_beside;
+use crate::study::{model_evidence, uncertainty_beside};
 use crate::trained_model::TrainedModel;
+use crate::verdict::Verdict;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use std::path::{Path, PathBuf};
+use std::fmt::Write as _;
+use std::path::PathBuf;
 
 /// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
 ///
@@ -234,15 +236,7 @@ impl FmuExportArgs {
             named.join(", ")
         );
         let json = serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len(), "verdict": verdict });
-        Answer::new(text, &json)
-    }
-}
-
-/// The interval of the onset by the covariance that was saved with the model: beside it, or beside the folder it is in.
-fn saved_bounds(file: &Path, model: &TrainedModel) -> Result<Option<OnsetBounds>> {
-    match uncertainty_beside(file, model)? {
-        known @ Ok(_) => stages::onset_bounds(model, &known),
-        Err(_) => Ok(None),
+        Ok(Answer::new(text, &json)?.with_outcome_of(&verdict))
     }
 }
 
@@ -252,18 +246,25 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         return args.whole_bridge(progress);
     }
     let model = stages::read_model(&args.model)?;
-    let (default_name, bounds) = match args.kind {
-        ExportKind::Section => (stages::FMU_FILE, saved_bounds(&args.model, &model)?),
+    let (default_name, evidence) = match args.kind {
+        ExportKind::Section => {
+            let known = uncertainty_beside(&args.model, &model)?;
+            (stages::FMU_FILE, Some(model_evidence(&model, &known)?))
+        }
         ExportKind::Force => ("deck_force.fmu", None),
     };
+    let verdict = evidence.as_ref().map(Verdict::of);
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
         growing: stages::growing(args.allow_unstable),
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
-        bounds,
-        verdict: None,
+        bounds: evidence.as_ref().and_then(|e| {
+            let onset = e.flutter.first()?.search.onset()?;
+            OnsetBounds::of(&onset.interval)
+        }),
+        verdict: verdict.clone(),
         label: args.label()?,
         version: args.fmi,
         listing: args.listing(),
@@ -286,8 +287,13 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let growth = growth_of(&model)?;
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform.to_string()).collect();
-    let mut text = format!(
-        "wrote {}: {}{}, {}, for {}\n",
+    let headline = verdict
+        .iter()
+        .map(|v| headline::account(&model.name, v, &[]));
+    let mut text: String = headline.collect();
+    let _ = writeln!(
+        text,
+        "wrote {}: {}{}, {}, for {}",
         path.display(),
         match strips {
             None => String::new(),
@@ -301,6 +307,6 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::growth(&model.name, &growth));
     Answer::new(
         text,
-        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth }),
+        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict }),
     )
 }

@@ -11,6 +11,7 @@ use crate::fmu::standard::FmiVersion;
 use crate::fmu::variables::{
     Causality, Listing, Role, SectionParameter, StartValue, Variability, Variable,
 };
+use crate::plausibility::of_section;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -228,14 +229,12 @@ fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<Stri
             let at_rest = ReducedFrequency::from_full_width(0.0);
             let at_rest = model.model.transfer(at_rest)?;
             let tested = model.tested_range;
-            own = Verdict::of(&Evidence::of_section(
-                "the model",
-                &section,
-                &at_rest,
-                tested,
-                &search,
-                found,
-            ));
+            let evidence =
+                Evidence::of_section("the model", &section, &at_rest, tested, &search, found);
+            own = Verdict::of(&Evidence {
+                implausible: of_section(&model.section),
+                ..evidence
+            });
             &own
         }
     };

@@ -6,6 +6,13 @@ use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
 use crate::trained_model::TrainedModel;
 
 /// What becomes of a model that grows below its onset.
+///
+/// ```
+/// use aerodeck::fmu::package::{Export, GrowthPolicy};
+///
+/// let export = Export::from(GrowthPolicy::Allow);
+/// assert_eq!(export.growing, GrowthPolicy::Allow);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GrowthPolicy {
     /// It is not packed.

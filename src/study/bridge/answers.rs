@@ -10,6 +10,7 @@ use crate::flutter::{
     divergence_speed, find_onset, motion_at_onset, pk_onset, static_deflection, static_part,
     trace_modes, unwanted_growth,
 };
+use crate::identification::OnsetEffect;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -63,11 +64,17 @@ pub struct BridgeFlutter {
     pub divergence_m_s: Option<f64>,
     /// The same by the static slopes that tables have at their lowest tested reduced frequency; `None` without tables.
     pub table_divergence: Option<TableDivergence>,
+    /// Where heave and sway alone gallop by quasi-steady theory, m/s, looked at where sections with derivatives or a model state
+    /// static coefficients too; `None` where they do not up to the highest speed.
+    pub galloping_m_s: Option<f64>,
     /// Growth of the bridge by its models below their onset, where nothing was tested; `None` where the scan failed.
     pub growth: Option<UnwantedGrowth>,
     /// Mean rotation where it is farthest from the tests, at the onset or else at the required speed, where static coefficients are
     /// stated.
     pub mean_rotation: Option<BridgeRotation>,
+    /// What constraints on the fits of sections did to the onset; `None` where none hold one, or models were read from files.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub constraints: Option<OnsetEffect>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
 }
@@ -133,6 +140,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
             Err(e) => failed.push(format!("interval of the onset: {e}")),
         }
     }
+    let constraints = study.moved_onset(&by_model.search).unwrap_or_else(|e| {
+        failed.push(format!("constraints: {e}"));
+        None
+    });
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
@@ -151,6 +162,8 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let of_tables = table_divergence(study).map_err(|e| noted("divergence of the tables", e));
     let growth = unwanted_growth(&section, &search, tested);
     let growth = growth.map_err(|e| noted("scan for growth", e)).ok();
+    let galloping =
+        galloping(study, &search).map_err(|e| noted("galloping by static coefficients", e));
     // where the answer is: by the tables first, which are the headline
     let critical = answers.iter().chain([&by_model]);
     let critical = critical
@@ -168,8 +181,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         left_out,
         divergence_m_s,
         table_divergence: of_tables.ok().flatten(),
+        galloping_m_s: galloping.ok().flatten(),
         growth,
         mean_rotation,
+        constraints,
         failed,
     })
 }
@@ -207,6 +222,16 @@ fn table_divergence(study: &BridgeStudy) -> Result<Option<TableDivergence>> {
         lower_m_s: speed_m_s.map(|v| assumed.lower_m_s(v)),
         assumed: assumed.explain(),
     }))
+}
+
+/// Onset of heave and sway alone in quasi-steady forces, as a theory of coupled motions is no answer beside derivatives. Sections
+/// without static coefficients are left in still air: nothing is known of their part.
+fn galloping(study: &BridgeStudy, search: &OnsetSearch) -> Result<Option<f64>> {
+    let Some(bridge) = study.by_coefficients()? else {
+        return Ok(None);
+    };
+    let found = find_onset("static coefficients", &coupled(&bridge)?, search, None)?;
+    Ok(found.critical_speed_m_s())
 }
 
 fn search_speeds(search: &OnsetSearch) -> Vec<f64> {

@@ -1,5 +1,6 @@
 //! What is known of a bridge, as evidence for its verdict.
 
+use super::super::evidence::moved_onset;
 use super::BridgeStudy;
 use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::aerodynamics::Transfer;
@@ -7,8 +8,8 @@ use crate::error::Result;
 use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
-    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation, Reach,
-    RequiredSpeed, Verdict,
+    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
+    MeanRotation, Reach, RequiredSpeed, UntestedPart, Verdict,
 };
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ use std::sync::Arc;
 const TABLES: &str = "the tables";
 const MODELS: &str = "the models";
 /// What can fail without another answer.
-const BESIDE: [&str; 4] = ["figures", "fewer modes", "scatter", "FMU"];
+const BESIDE: [&str; 5] = ["figures", "fewer modes", "constraints", "scatter", "FMU"];
 
 impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
@@ -46,6 +47,7 @@ impl BridgeStudy {
             flutter,
             divergence,
             growth: results.growth.clone(),
+            constraints: results.constraints.as_ref().map(moved_onset),
             failures: failed.iter().map(|f| failure(f)).collect(),
             mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
                 speed_m_s: mean.speed_m_s,
@@ -58,6 +60,11 @@ impl BridgeStudy {
                 .iter()
                 .filter_map(|s| s.rotation_amplitude_deg)
                 .reduce(f64::min),
+            untested: self.untested(),
+            galloping: results.galloping_m_s.map(|speed_m_s| GallopingReading {
+                forces: "static coefficients".to_owned(),
+                speed_m_s,
+            }),
             implausible: self.findings.clone(),
             remarks,
             ..Evidence::default()
@@ -71,6 +78,29 @@ impl BridgeStudy {
     pub fn verdict(&self) -> Result<Verdict> {
         let results = bridge_flutter(self)?;
         Ok(Verdict::of(&self.evidence(&results, &results.failed)))
+    }
+
+    /// Sections without a test, where others have one.
+    fn untested(&self) -> Vec<UntestedPart> {
+        if self.tested_range().is_none() {
+            // the whole answer is
+            return Vec::new();
+        }
+        let forces = self.by_model.forces();
+        let shares = forces.shares();
+        let blocks = self.file.sections.iter().zip(&self.sections);
+        blocks
+            .filter(|(_, section)| section.tested.is_none())
+            .map(|(block, section)| UntestedPart {
+                section: block.name.clone(),
+                forces: section.method.clone(),
+                share: shares
+                    .iter()
+                    .filter(|(group, _)| group.name == block.name)
+                    .map(|(_, share)| share)
+                    .sum(),
+            })
+            .collect()
     }
 
     /// The speeds at which every mode is among the tests of every section.

@@ -45,6 +45,8 @@ pub struct SectionForceModels {
     pub rotation_amplitude_deg: Option<f64>,
     /// What a user should know of the fit.
     pub notes: Vec<String>,
+    /// What the data alone would give where constraints hold the fit; `None` where none do, or a model was read from a file.
+    pub unconstrained: Option<Arc<dyn Transfer>>,
     /// How far the data leave the coefficients of the model open, or why that is not known; `None` for stated coefficients.
     pub uncertainty: std::result::Result<Option<CoefficientUncertainty>, String>,
     /// Degrees of freedom of the onset of the section that a model was trained for: they stand for those of the bridge's where
@@ -104,6 +106,7 @@ impl SectionForceModels {
                 angle_deg,
                 rotation_amplitude_deg,
                 notes: Vec::new(),
+                unconstrained: None,
                 degrees_of_freedom: known
                     .as_ref()
                     .ok()
@@ -156,6 +159,7 @@ impl SectionForceModels {
             angle_deg: None,
             rotation_amplitude_deg: None,
             notes: Vec::new(),
+            unconstrained: None,
             uncertainty: Ok(None),
             degrees_of_freedom: None,
         })
@@ -186,6 +190,7 @@ impl SectionForceModels {
             angle_deg: None,
             rotation_amplitude_deg: None,
             notes: Vec::new(),
+            unconstrained: None,
             uncertainty: Ok(None),
             degrees_of_freedom: None,
         }
@@ -290,6 +295,9 @@ fn by_table(
             .iter()
             .map(|n| format!("section {}: {n}", block.name))
             .collect(),
+        unconstrained: report
+            .constraints
+            .map(|held| Arc::from(held.unconstrained as Box<dyn Transfer>)),
         uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
         degrees_of_freedom: None,
     };

@@ -3,7 +3,8 @@
 use super::BridgeStudy;
 use super::answers::coupled;
 use crate::error::{Error, Result};
-use crate::flutter::{BetweenSpeeds, NearbyOnset, Onset, OnsetInterval};
+use crate::flutter::{BetweenSpeeds, FlutterSearch, NearbyOnset, Onset, OnsetInterval, find_onset};
+use crate::identification::OnsetEffect;
 use crate::uncertainty::{CoefficientUncertainty, OnsetError};
 use std::sync::Arc;
 
@@ -52,6 +53,36 @@ impl BridgeStudy {
             between_speeds,
         };
         Ok(error.interval())
+    }
+
+    /// The onset that the data alone would give, beside the one under the constraints that hold fits of sections; `None` where none do.
+    ///
+    /// # Errors
+    /// As [`find_onset`].
+    pub(super) fn moved_onset(&self, with: &FlutterSearch) -> Result<Option<OnsetEffect>> {
+        if self.sections.iter().all(|s| s.unconstrained.is_none()) {
+            return Ok(None);
+        }
+        let mut bridge = self.by_model.clone();
+        for (group, section) in bridge.groups.iter_mut().zip(&self.section_of_group) {
+            if let Some(forces) = &self.sections[*section].unconstrained {
+                group.forces = forces.clone();
+            }
+        }
+        let section = coupled(&bridge)?;
+        let onset = with.onset();
+        // most constraints move the onset by little: then its mode can be followed without another search
+        let nearby = onset.and_then(|o| NearbyOnset::of(&self.by_model, &o.at).ok());
+        let without_m_s = match nearby.and_then(|nearby| nearby.find(&section)) {
+            Some(at) => Some(at.speed_m_s),
+            None => find_onset("data alone", &section, &self.search(), self.tested_range())?
+                .onset()
+                .map(|o| o.at.speed_m_s),
+        };
+        Ok(Some(OnsetEffect {
+            without_m_s,
+            with_m_s: onset.map(|o| o.at.speed_m_s),
+        }))
     }
 
     /// Slopes of the onset over the coefficients of one section, m/s.

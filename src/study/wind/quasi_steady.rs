@@ -80,6 +80,28 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
     })
 }
 
+impl WindStudy {
+    /// What a wind file can say of its required speed: by quasi-steady theory, where it has static coefficients.
+    ///
+    /// # Errors
+    /// As [`quasi_steady_study`].
+    pub(crate) fn verdict(&self) -> Result<Verdict> {
+        if self.coefficients.is_none() {
+            return Ok(Verdict::of(&Evidence {
+                required: self.speeds.required(),
+                implausible: self.findings(),
+                ..Evidence::default()
+            }));
+        }
+        let structure = self.section()?.structure()?;
+        let theory = self.quasi_steady()?;
+        let name = format!("quasi-steady, {}", theory.coefficients().name());
+        let search = self.speed_range()?.search();
+        let onset = quasi_steady_onset(&name, &structure, &theory, &search)?;
+        Ok(Verdict::of(&evidence(self, &onset)?))
+    }
+}
+
 /// What quasi-steady theory says of a section, as evidence: no test of it stands behind.
 fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Result<Evidence> {
     let forces = "quasi-steady theory";

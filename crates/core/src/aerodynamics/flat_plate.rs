@@ -10,6 +10,19 @@ use nalgebra::{Complex, DMatrix};
 use std::f64::consts::PI;
 
 /// Self-excited forces on a thin plate in potential flow.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::{FlatPlate, Transfer};
+/// use aerodeck::units::ReducedFrequency;
+/// use std::f64::consts::{FRAC_PI_2, PI};
+///
+/// // in steady flow a rotation gives the lift slope 2π and about mid-chord the moment slope π/2
+/// let steady = FlatPlate::default().transfer(ReducedFrequency::from_full_width(0.0))?;
+/// assert!((steady[(0, 1)].re - 2.0 * PI).abs() < 1e-12);
+/// assert!((steady[(1, 1)].re - FRAC_PI_2).abs() < 1e-12);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlatPlate {
     /// Keep the apparent rotary inertia of the air (the `π/64` term of `A3*`). Participants of the IABSE

@@ -73,6 +73,19 @@ impl Lags {
 }
 
 /// Rational-function model with lags shared by all entries, or lags of each force.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::{FlatPlate, RationalModel, Transfer};
+/// use aerodeck::units::ReducedFrequency;
+///
+/// // Jones's two lags are Theodorsen's plate within two per cent
+/// let k = ReducedFrequency::from_full_width(0.4);
+/// let (jones, exact) = (RationalModel::jones_flat_plate().transfer(k)?, FlatPlate::default().transfer(k)?);
+/// let lift_by_rotation = (jones[(0, 1)], exact[(0, 1)]);
+/// assert!((lift_by_rotation.0 / lift_by_rotation.1 - 1.0).norm() < 0.02);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RationalModel {

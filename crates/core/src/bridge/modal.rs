@@ -84,6 +84,20 @@ impl ModalForces {
         ranges.reduce(ReducedFrequencyRange::intersection)
     }
 
+    /// Part of each group in what the wind does to all modes, 0 to 1: in the sum over them of the work of unit forces `G = I`, with
+    /// the pressure and the width of the group.
+    pub fn shares(&self) -> Vec<(&StripGroup, f64)> {
+        let work = |(group, sums): &(StripGroup, GroupSums)| {
+            let n = group.forces.dofs().len();
+            let unit = DMatrix::<f64>::identity(n, n);
+            sums.modal(group.width_m, &unit).trace() * self.pressure_ratio(group)
+        };
+        let each: Vec<f64> = self.groups.iter().map(work).collect();
+        let all: f64 = each.iter().sum();
+        let groups = self.groups.iter().map(|(group, _)| group);
+        groups.zip(each.into_iter().map(|w| w / all)).collect()
+    }
+
     /// Filters and feed-through on the modal coordinates.
     ///
     /// # Errors

@@ -10,6 +10,23 @@ use serde::Serialize;
 const SAME_SPEED: f64 = 1e-3;
 
 /// Answer of a search.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{FlutterSearch, OnsetSearch, find_onset};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let search = OnsetSearch { speed_max_m_s: 40.0, speeds: 80 };
+/// match find_onset("plate", &section, &search, None)? {
+///     FlutterSearch::StableUpTo(range) => assert_eq!(range.to_m_s, 40.0),
+///     found => panic!("{}", found.explain()), // it flutters near 77 m/s
+/// }
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FlutterSearch {

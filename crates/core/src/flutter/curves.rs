@@ -100,6 +100,22 @@ pub(super) fn empty_branches(structure: &Structure, points: usize) -> Vec<ModeBr
 
 /// Follows the structural modes of `section` from still air over the increasing `speeds_m_s`.
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{trace_modes};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let curves = trace_modes("plate", &section, &[20.0, 50.0, 90.0])?;
+/// let torsion = curves.branches.iter().find(|b| b.name == "torsion").expect("its branch");
+/// let damping: Vec<f64> = torsion.points.iter().map(|p| p.damping_ratio).collect();
+/// assert!(damping[1] > 0.0 && damping[2] < 0.0); // it flutters between
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for speeds that do not increase. Where modes cannot be told apart the branches end.
 pub fn trace_modes(

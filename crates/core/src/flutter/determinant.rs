@@ -55,6 +55,22 @@ pub(super) fn self_excited(
 /// Says nothing outside `range`: a table cannot be searched where it was not measured. A mode that grows already at the
 /// highest `K` of the range is unstable at and below the speed that belongs to it.
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::FlatPlate;
+/// use aerodeck::flutter::determinant_onset;
+/// use aerodeck::section::SectionModel;
+/// use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let plate = FlatPlate { rotary_inertia: false };
+/// let k = ReducedFrequency::from_full_width;
+/// let range = ReducedFrequencyRange::between(k(0.02), k(10.0));
+/// let found = determinant_onset("plate", &structure, &plate, range, 120.0)?;
+/// assert!((found.onset().expect("flutter").at.speed_m_s - 77.48).abs() < 0.01);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for an empty range and forces that say nothing in it; [`Error::Numerical`] when the roots cannot be
 /// computed.

@@ -15,6 +15,23 @@ const SPEEDS: usize = 400;
 ///
 /// `static_transfer` is `G` at `K = 0`, n×n.
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::{FlatPlate, Transfer};
+/// use aerodeck::flutter::divergence_speed;
+/// use aerodeck::section::SectionModel;
+/// use aerodeck::units::ReducedFrequency;
+/// use std::f64::consts::PI;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let steady = FlatPlate::default().transfer(ReducedFrequency::from_full_width(0.0))?;
+/// let found = divergence_speed(&structure, &steady)?.expect("a plate diverges");
+/// // k_θ = ½ρV²B² π/2
+/// let closed = (4.0 * structure.stiffness[(1, 1)] / (PI * structure.air_density_kg_m3)).sqrt() / structure.width_m;
+/// assert!((found / closed - 1.0).abs() < 1e-12);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Numerical`] when a degree of freedom has no stiffness or the numbers are not finite.
 pub fn divergence_speed(

@@ -7,6 +7,23 @@ use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 
 /// A flutter onset.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{OnsetSearch, find_onset};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let found = find_onset("plate", &section, &OnsetSearch::default(), None)?;
+/// let onset = found.onset().expect("flutter below 100 m/s");
+/// assert_eq!(onset.branch, "torsion");
+/// let (at, width_m) = (&onset.at, structure.width_m);
+/// assert!((at.speed_m_s / (at.frequency_hz * width_m) / at.reduced_velocity.v_star() - 1.0).abs() < 1e-12);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Onset {
     /// Onset speed `V_F` and the frequency there.

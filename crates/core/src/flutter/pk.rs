@@ -107,6 +107,19 @@ pub fn quasi_pk_mode(
 /// First wind speed at which a mode of the p-k iteration loses its damping; `tested` as in
 /// [`find_onset`](super::find_onset).
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::FlatPlate;
+/// use aerodeck::flutter::{OnsetSearch, pk_onset};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let plate = FlatPlate { rotary_inertia: false };
+/// let found = pk_onset("plate", &structure, &plate, &OnsetSearch::default(), None)?;
+/// assert!((found.onset().expect("flutter").at.speed_m_s - 77.48).abs() < 0.01);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for a search range that is none.
 pub fn pk_onset(

@@ -14,6 +14,16 @@ use serde::{Deserialize, Serialize};
 const SCANNED_STATES: usize = 700;
 
 /// Where and how densely to look.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::flutter::OnsetSearch;
+///
+/// let search = OnsetSearch { speed_max_m_s: 60.0, speeds: 3 };
+/// assert_eq!(search.speeds_m_s()?, [20.0, 40.0, 60.0]);
+/// assert!(OnsetSearch { speeds: 1, ..search }.speeds_m_s().is_err());
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OnsetSearch {
@@ -66,6 +76,27 @@ pub fn curve_speeds_m_s(lowest_m_s: f64, highest_m_s: f64, count: usize) -> Vec<
 /// speeds, or of modes that cannot be told apart, is found too. See [`FlutterSearch`] for which one is the answer.
 /// `tested` is the range of reduced frequencies in which the model was tested: a mode that grows already where it
 /// enters it is unstable at and below that speed, whatever the model says outside.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{OnsetSearch, determinant_onset, find_onset};
+/// use aerodeck::section::SectionModel;
+/// use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let plate = RationalModel::jones_flat_plate();
+/// let section = CoupledSection::with_model(&structure, &plate)?;
+/// let found = find_onset("plate", &section, &OnsetSearch::default(), None)?;
+/// // the determinant has the same root
+/// let k = ReducedFrequency::from_full_width;
+/// let range = ReducedFrequencyRange::between(k(0.02), k(10.0));
+/// let other = determinant_onset("plate", &structure, &plate, range, 100.0)?;
+/// let [a, b] = [found, other].map(|f| f.critical_speed_m_s().expect("flutter"));
+/// assert!((a / b - 1.0).abs() < 1e-9);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::Input`] for a search range that is none; [`Error::Numerical`] when eigenvalues cannot be computed.

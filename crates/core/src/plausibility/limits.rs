@@ -17,24 +17,22 @@ pub struct Limits {
 const LENGTHS: &[(&str, f64)] = &[("mm", 1e-3), ("cm", 1e-2), ("m", 1e3)];
 pub(super) const FREQUENCIES: &[(&str, f64)] = &[("rad/s", 1.0 / TAU), ("mHz", 1e-3)];
 
+impl Limits {
+    const fn of_length(least_m: f64, most_m: f64) -> Self {
+        Self {
+            unit: "m",
+            usual: (least_m, most_m),
+            meant: LENGTHS,
+        }
+    }
+}
+
 /// Width or depth of a section model, m.
-pub const MODEL_WIDTH: Limits = Limits {
-    unit: "m",
-    usual: (0.02, 5.0),
-    meant: LENGTHS,
-};
+pub const MODEL_WIDTH: Limits = Limits::of_length(0.02, 5.0);
 /// Length of a section model, and places on its rig, m.
-pub const MODEL_LENGTH: Limits = Limits {
-    unit: "m",
-    usual: (0.05, 20.0),
-    meant: LENGTHS,
-};
+pub const MODEL_LENGTH: Limits = Limits::of_length(0.05, 20.0);
 /// Width of a deck, model or bridge, m.
-pub const DECK_WIDTH: Limits = Limits {
-    unit: "m",
-    usual: (0.02, 100.0),
-    meant: LENGTHS,
-};
+pub const DECK_WIDTH: Limits = Limits::of_length(0.02, 100.0);
 /// Mean wind speed, m/s.
 pub const WIND_SPEED: Limits = Limits {
     unit: "m/s",

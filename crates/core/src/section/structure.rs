@@ -4,6 +4,17 @@ use super::Dof;
 use nalgebra::DMatrix;
 
 /// Matrices of the suspended section, per unit length: `M q̈ + R q̇ + K q = F`.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::section::SectionModel;
+/// use std::f64::consts::TAU;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let heave_hz = structure.still_air_rad_s().next().expect("a motion") / TAU;
+/// assert!((heave_hz - 0.1).abs() < 1e-12);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
     /// Degrees of freedom, in the order of rows and columns.

@@ -1,13 +1,13 @@
 //! Eigenvalues of a real Hessenberg matrix by Francis's double shift (Martin, Peters and Wilkinson 1970).
 //!
-//! For the matrices on which the iteration of the linear-algebra library never ends: it forms its first column as `h₁₁² − tr h₁₁ + det`,
+//! The iteration of the linear-algebra library never ends on some of our matrices: it forms its first column as `h₁₁² − tr h₁₁ + det`,
 //! which cancels to nothing beside equal eigenvalues, such as the lag states of several motions in nearly still air, and it has no
 //! exceptional shifts. Here the column is divided by `h₂₁` before it is summed, and every tenth sweep takes another shift.
 
 use nalgebra::{Complex, DMatrix};
 
-/// Sweeps for one eigenvalue, exceptional shifts included; three are usual.
-const MAX_SWEEPS: usize = 60;
+/// Sweeps at most for a row of the matrix, exceptional shifts included; three are usual.
+const MAX_SWEEPS_A_ROW: usize = 30;
 /// Sweeps between two exceptional shifts.
 const EXCEPTIONAL: usize = 10;
 
@@ -58,6 +58,8 @@ pub(super) fn append_eigenvalues(
     // what exceptional shifts took off the diagonal
     let mut taken = 0.0;
     let mut size = h.nrows();
+    let mut left = MAX_SWEEPS_A_ROW * size;
+    // for the eigenvalue at hand
     let mut sweeps = 0;
     while size > 0 {
         let last = size - 1;
@@ -66,9 +68,7 @@ pub(super) fn append_eigenvalues(
             1 => found.push(Complex::new(h[(last, last)] + taken, 0.0)),
             2 => found.extend(pair(h, last).map(|l| l + taken)),
             _ => {
-                if sweeps == MAX_SWEEPS {
-                    return None;
-                }
+                left = left.checked_sub(1)?;
                 let exceptional = sweeps > 0 && sweeps % EXCEPTIONAL == 0;
                 let shifts = if exceptional {
                     exceptional_shifts(h, last, &mut taken)
@@ -90,17 +90,28 @@ pub(super) fn append_eigenvalues(
     Some(())
 }
 
-/// First row of the block that ends at `last`: the subdiagonal entry before it is negligible.
+/// First row of the block that ends at `last`: the subdiagonal entry before it is negligible, beside the diagonal and in what it
+/// changes of the eigenvalues (Ahues and Tisseur 1997), which matters where rows differ in size.
 fn deflate(h: &mut DMatrix<f64>, last: usize, norm: f64) -> usize {
     for l in (1..=last).rev() {
         let beside = h[(l - 1, l - 1)].abs() + h[(l, l)].abs();
         let scale = if beside > 0.0 { beside } else { norm };
-        if h[(l, l - 1)].abs() <= f64::EPSILON * scale {
+        if h[(l, l - 1)].abs() <= f64::EPSILON * scale && changes_nothing(h, l) {
             h[(l, l - 1)] = 0.0;
             return l;
         }
     }
     0
+}
+
+/// Whether the entry before the diagonal of row `l` may be dropped without a change of the eigenvalues of its 2 × 2 block.
+fn changes_nothing(h: &DMatrix<f64>, l: usize) -> bool {
+    let sorted = |a: f64, b: f64| (a.abs().max(b.abs()), a.abs().min(b.abs()));
+    let (beside, least) = sorted(h[(l, l - 1)], h[(l - 1, l)]);
+    let (apart, below) = sorted(h[(l, l)], h[(l - 1, l - 1)] - h[(l, l)]);
+    let sum = beside + apart;
+    sum == 0.0
+        || least * (beside / sum) <= (f64::EPSILON * below * (apart / sum)).max(f64::MIN_POSITIVE)
 }
 
 /// Eigenvalues of the 2 × 2 block that ends at `last`.

@@ -3,10 +3,7 @@
 use super::complex;
 use super::francis::{append_eigenvalues, hessenberg_eigenvalues, reduce};
 use crate::error::{Error, Result};
-use nalgebra::{Complex, DMatrix, DVector, Hessenberg, Schur};
-
-/// More QR sweeps than any well-posed matrix needs; without a limit a few matrices never end.
-const MAX_SCHUR_SWEEPS_PER_ROW: usize = 60;
+use nalgebra::{Complex, DMatrix, DVector, Hessenberg};
 
 /// Scales rows and columns by powers of two until their norms agree (Parlett & Reinsch 1969): `D⁻¹ A D`.
 ///
@@ -63,12 +60,7 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
             "eigenvalues: a matrix entry is not finite".into(),
         ));
     }
-    let sweeps = MAX_SCHUR_SWEEPS_PER_ROW * a.nrows();
-    let balanced = balance(a);
-    if let Some(schur) = Schur::try_new(balanced.clone(), f64::EPSILON, sweeps) {
-        return Ok(schur.complex_eigenvalues().iter().copied().collect());
-    }
-    hessenberg_eigenvalues(Hessenberg::new(balanced).unpack_h())
+    hessenberg_eigenvalues(Hessenberg::new(balance(a)).unpack_h())
         .ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))
 }
 

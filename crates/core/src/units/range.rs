@@ -40,6 +40,16 @@ impl ReducedFrequencyGap {
 pub type LowerEnd = (ReducedFrequency, Option<ReducedFrequencyGap>);
 
 /// A closed range of reduced frequencies, e.g. the one in which a model was tested, with the gaps in it.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+///
+/// let k = ReducedFrequency::from_full_width;
+/// let tested = ReducedFrequencyRange::spanning([0.2, 0.3, 0.45, 1.5].map(k)).expect("tests");
+/// assert!(tested.contains(k(0.4)));
+/// assert!(!tested.contains(k(0.9))); // no test is near
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ReducedFrequencyRange {
     /// Lowest `K`.

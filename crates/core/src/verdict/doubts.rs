@@ -3,7 +3,7 @@
 use super::below::not_judged_below;
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Evidence, FlutterReading, ForceBasis};
+use super::evidence::{Evidence, FlutterReading, ForceBasis, UntestedPart};
 use super::moved::constraints;
 use super::words::{found, k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
@@ -12,6 +12,10 @@ use crate::plausibility;
 /// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: codes ask for tests
 /// at 0 and ±3°, and beyond half of that step those of the next angle would be nearer.
 const ROTATION_DEG: (f64, f64) = (1.0, 1.5);
+
+/// Share of a bridge in the wind from which on forces without a test bear on its onset: less changes an onset by less than the
+/// interval of one that is well tested.
+const UNTESTED_SHARE: f64 = 0.05;
 
 /// All of them, the gravest first.
 pub(super) fn all(evidence: &Evidence, critical: &Critical) -> Vec<Doubt> {
@@ -81,6 +85,7 @@ impl Weighed<'_> {
                     .settled_by("measured derivatives of this deck"),
             );
         }
+        all.extend(self.evidence.untested.iter().map(untested));
         let warnings = match &first.search {
             FlutterSearch::Onset(onset) => &onset.warnings[..],
             FlutterSearch::UnstableAtOrBelow(start) => &start.warnings[..],
@@ -219,9 +224,10 @@ impl Weighed<'_> {
                 );
             }
         }
-        // with the scatter that decks show between speeds in the interval, it is known after all
-        let prior =
-            onset.interval.parts().and_then(|p| p.between_speeds) == Some(BetweenSpeeds::Prior);
+        // with the scatter that decks show between speeds in the interval, also of other forces, it is known after all
+        let readings = self.evidence.flutter.iter();
+        let mut parts = readings.filter_map(|r| r.onset()?.interval.parts());
+        let prior = parts.any(|p| p.between_speeds == Some(BetweenSpeeds::Prior));
         if prior || self.evidence.test_speeds == Some(1) {
             let (severity, how) = match prior {
                 true => (Severity::Minor, "is taken from other decks"),
@@ -259,7 +265,10 @@ impl Weighed<'_> {
 
     fn moved(&self, first: &FlutterReading) -> Option<Doubt> {
         let moved = self.evidence.constraints?;
-        constraints(moved, first, |speed_m_s| self.clears(speed_m_s))
+        // the interval may be that of other forces
+        let mut readings = self.evidence.flutter.iter();
+        let with_ends = readings.find(|r| r.ends_m_s().is_some());
+        constraints(moved, with_ends.unwrap_or(first), |v| self.clears(v))
     }
 
     fn of_input(&self, all: &mut Vec<Doubt>) {
@@ -312,6 +321,22 @@ impl Weighed<'_> {
 
 fn remark(text: &str) -> Doubt {
     Doubt::new(Severity::Minor, DoubtKind::Remark, text)
+}
+
+fn untested(part: &UntestedPart) -> Doubt {
+    let severity = match part.share < UNTESTED_SHARE {
+        true => Severity::Minor,
+        false => Severity::Severe,
+    };
+    let text = format!(
+        "The forces of section {} ({:.0} % of what the wind does to the modes) are those of {}, which no test of this deck \
+         confirms",
+        part.section,
+        100.0 * part.share,
+        part.forces
+    );
+    Doubt::new(severity, DoubtKind::Untested, text)
+        .settled_by(format!("measured derivatives of section {}", part.section))
 }
 
 fn contradiction(first: &FlutterReading, second: &FlutterReading) -> Doubt {

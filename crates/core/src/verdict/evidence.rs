@@ -30,6 +30,8 @@ pub struct Evidence {
     pub failures: Vec<Failure>,
     /// What constraints on the fit did to the onset.
     pub constraints: Option<MovedOnset>,
+    /// Parts of the structure whose forces rest on no test, beside others that were tested.
+    pub untested: Vec<UntestedPart>,
     /// Number of mean wind speeds of the tests; `None` where it is not known or there are no tests.
     pub test_speeds: Option<usize>,
     /// Input that does not look right.
@@ -177,6 +179,17 @@ pub struct GallopingReading {
     pub forces: String,
     /// Onset, m/s.
     pub speed_m_s: f64,
+}
+
+/// A part of a structure whose forces no test confirms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UntestedPart {
+    /// Name of the section.
+    pub section: String,
+    /// What its forces are made from, in words.
+    pub forces: String,
+    /// Its part of what the wind does to all modes, 0 to 1.
+    pub share: f64,
 }
 
 /// A stage that failed.

@@ -1,51 +1,11 @@
 //! The forms that a continuous model may have.
 
+mod feed_through;
+
+pub use feed_through::FeedThrough;
+
 use crate::error::{Error, Result, counted, positive};
 use serde::{Deserialize, Serialize};
-
-/// Feed-through of the motion (`e0`), its rate (`e1`) and its acceleration (`e2`), each on or off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FeedThrough {
-    /// Motion.
-    pub e0: bool,
-    /// Rate.
-    pub e1: bool,
-    /// Acceleration (added mass of the air).
-    pub e2: bool,
-}
-
-impl Default for FeedThrough {
-    fn default() -> Self {
-        Self {
-            e0: true,
-            e1: true,
-            e2: true,
-        }
-    }
-}
-
-impl FeedThrough {
-    pub(crate) fn none() -> Self {
-        Self {
-            e0: false,
-            e1: false,
-            e2: false,
-        }
-    }
-
-    /// Derivative orders that are on.
-    pub(crate) fn orders(self) -> impl Iterator<Item = usize> {
-        [self.e0, self.e1, self.e2]
-            .into_iter()
-            .enumerate()
-            .filter_map(|(order, on)| on.then_some(order))
-    }
-
-    pub(crate) fn count(self) -> usize {
-        self.orders().count()
-    }
-}
 
 /// Fewest filters of a form that leaves their number to the data: those of the thesis.
 pub const LEAST_CHOSEN: usize = 3;
@@ -57,6 +17,14 @@ pub const LEAST_CHOSEN: usize = 3;
 pub const MOST_CHOSEN: usize = 5;
 
 /// Form of a continuous model.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_fit::*; }
+/// use aerodeck::identification::Form;
+///
+/// let form: Form = serde_json::from_str(r#"{ "kind": "rational", "lags": 2 }"#).expect("a form");
+/// assert_eq!(form, Form::Rational { lags: 2, added_mass: true });
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Form {

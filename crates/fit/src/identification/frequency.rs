@@ -28,6 +28,19 @@ use poles::{choose_poles, choose_poles_together};
 /// minimises the relative weighted residuals of all entries together, or of each entry (force) that has poles of its own.
 /// In the minimum-state form the entries share everything, and one search finds all of it.
 ///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{FrequencyFit, fit_table};
+/// use aerodeck::section::Dof;
+///
+/// let table = embedded::deck("LN21-5200")?;
+/// let fitted = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
+/// // as many filters as the data determine
+/// assert_eq!(fitted.report.entries[0].poles.len(), 5);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for impossible options, samples that are not finite, entries without samples or with too few.
 pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -> Result<Fitted> {

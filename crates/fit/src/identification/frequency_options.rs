@@ -5,7 +5,6 @@ use super::dissipative::Constraints;
 use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
-use super::report::FitReport;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -79,6 +78,19 @@ pub enum FrequencyWeights {
 }
 
 /// Fit of a continuous model to a table or any other transfer matrix.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{FrequencyFit, FrequencyWeights, fit_table};
+/// use aerodeck::section::Dof;
+///
+/// let table = embedded::deck("LN21-5200")?;
+/// let fit = FrequencyFit { weights: FrequencyWeights::Derivatives, ..FrequencyFit::default() };
+/// let fitted = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?;
+/// assert!(fitted.report.weights.contains("derivatives"), "{}", fitted.report.weights);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FrequencyFit {
@@ -112,14 +124,6 @@ impl FrequencyFit {
         Self {
             form: self.form.for_rows(rows, most),
             ..self.clone()
-        }
-    }
-
-    /// The form with the number of filters that a fit has chosen, where it was left open.
-    pub(crate) fn form_of(&self, report: &FitReport) -> Form {
-        match report.entries.first() {
-            Some(entry) if self.own.is_empty() => self.form.as_fitted(&entry.poles),
-            _ => self.form.clone(),
         }
     }
 

@@ -5,7 +5,6 @@ use super::dissipative::{Constraints, FitRequirements};
 use super::form::{Form, PoleSearch};
 use super::frequency_options::{QuasiSteadyLimit, limits_by_entry, validate_limits};
 use super::own::{OwnFilters, StaticTerm, validate_own};
-use super::report::FitReport;
 use super::time::record::Records;
 use crate::error::{Result, non_negative, positive};
 use crate::section::Dof;
@@ -30,6 +29,21 @@ pub enum TimeWeights {
 }
 
 /// Fit of a continuous model to forced-vibration records.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{Form, TimeFit, fit_records};
+/// use aerodeck::section::Dof;
+/// use aerodeck::wind_tunnel::{RecordSource, TunnelPlan};
+///
+/// let plan = TunnelPlan { sampling_hz: 50.0, segment_s: 12.0, ..TunnelPlan::default() };
+/// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
+/// let records: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+/// let fit = TimeFit { form: Form::Rational { lags: 1, added_mass: false }, ..TimeFit::default() };
+/// assert_eq!(fit_records(&records, &fit, &|_| ())?.model.kind(), "rational functions");
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TimeFit {
@@ -72,14 +86,6 @@ impl TimeFit {
         Self {
             form: self.form.for_rows(rows, most),
             ..self.clone()
-        }
-    }
-
-    /// The form with the number of filters that a fit has chosen, where it was left open.
-    pub(crate) fn form_of(&self, report: &FitReport) -> Form {
-        match report.entries.first() {
-            Some(entry) if self.own.is_empty() => self.form.as_fitted(&entry.poles),
-            _ => self.form.clone(),
         }
     }
 

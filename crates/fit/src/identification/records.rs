@@ -26,6 +26,21 @@ use crate::wind_tunnel::RecordSource;
 /// The poles follow from a few passes over the records, each of which evaluates a whole grid of candidates; the last
 /// pass fits the chosen ones to every sample.
 ///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{TimeFit, fit_records};
+/// use aerodeck::section::Dof;
+/// use aerodeck::wind_tunnel::{RecordSource, TunnelPlan};
+///
+/// let plan = TunnelPlan { sampling_hz: 50.0, segment_s: 12.0, ..TunnelPlan::default() };
+/// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
+/// let records: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+/// let fitted = fit_records(&records, &TimeFit::default(), &|_| ())?;
+/// assert!(fitted.report.method.contains("4 record(s) in the time domain"));
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for impossible options, records that do not fit together, are too short, contain numbers that are
 /// not finite or do not move a degree of freedom; for poles per transfer function, records that move two at once.

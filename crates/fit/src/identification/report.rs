@@ -2,7 +2,8 @@
 
 use super::dissipative::ConstraintReport;
 use super::entry_report::EntryReport;
-use super::form::PoleSearch;
+use super::form::{Form, PoleSearch};
+use super::own::OwnFilters;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -15,6 +16,19 @@ pub(crate) const CANCELLATION_LIMIT: f64 = 30.0;
 pub(crate) const CONDITION_LIMIT: f64 = 1e8;
 
 /// A fitted model with the account of its fit.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{Fitted, FrequencyFit, fit_table};
+/// use aerodeck::section::Dof;
+///
+/// let table = embedded::deck("LN21-5200")?;
+/// let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
+/// assert_eq!(model.kind(), "continuous Laguerre");
+/// assert_eq!(report.entries.len(), 4);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Fitted {
     /// The model.
@@ -141,6 +155,15 @@ pub struct AlphaGuideline {
 }
 
 impl FitReport {
+    /// The form that was asked for, with the number of filters that the fit has chosen where it was left open and no force has
+    /// filters of its own.
+    pub(crate) fn form_fitted(&self, asked: &Form, own: &[OwnFilters]) -> Form {
+        match self.entries.first() {
+            Some(entry) if own.is_empty() => asked.as_fitted(&entry.poles),
+            _ => asked.clone(),
+        }
+    }
+
     /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
     pub(crate) fn judge(&mut self, poles: &PoleSearch) {
         let mut notes = Vec::new();

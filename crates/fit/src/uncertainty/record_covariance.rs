@@ -52,7 +52,7 @@ pub fn record_uncertainty(
         records: &records,
         progress,
     };
-    let form = fit.form_of(report);
+    let form = report.form_fitted(&fit.form, &fit.own);
     let poles = free_poles(&form, &fit.poles, report);
     let (parameters, first) = parameters_of(report, &poles);
     let entries = Entries::new(&form, first, parameters.len(), report, &poles)?;

@@ -41,7 +41,7 @@ pub fn table_uncertainty(
         ));
     }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
-    let form = fit.form_of(report);
+    let form = report.form_fitted(&fit.form, &fit.own);
     let poles = free_poles(&form, &fit.poles, report);
     let (parameters, first) = parameters_of(report, &poles);
     let first_pole = parameters.len() - poles.searched.len();

@@ -152,27 +152,6 @@ impl Slave {
         Ok(values)
     }
 
-    /// `fmi2SetRealInputDerivatives` of the given orders (1 is the first derivative).
-    pub fn set_input_derivatives(
-        &mut self,
-        references: &[u32],
-        orders: &[i32],
-        values: &[f64],
-    ) -> Result<()> {
-        same_length(references, orders.len())?;
-        same_length(references, values.len())?;
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2SetRealInputDerivatives", |f, c| unsafe {
-            (f.set_real_input_derivatives)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                orders.as_ptr(),
-                values.as_ptr(),
-            )
-        })
-    }
-
     /// `fmi2GetRealOutputDerivatives` of the given orders.
     pub(crate) fn output_derivatives(
         &self,

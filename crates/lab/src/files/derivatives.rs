@@ -31,6 +31,17 @@ pub fn is_table_file(name: &str) -> bool {
 }
 
 /// The table of that name: an embedded deck, or a file whose path is read against `directory`.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
+/// use aerodeck::aerodynamics::derivatives::Derivative;
+/// use aerodeck::files::derivatives::named_table;
+///
+/// let deck = named_table("LN21-5200", "".as_ref())?;
+/// assert!(deck.points(Derivative::A1).iter().all(|p| p.value < 0.0));
+/// assert!(named_table("no deck", "".as_ref()).is_err());
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 pub fn named_table(name: &str, directory: &Path) -> Result<DerivativeTable> {
     if is_table_file(name) {
         read_table(directory.join(name))
@@ -75,6 +86,20 @@ impl TableWords<'_> {
 }
 
 /// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::{embedded, read_table, write_csv};
+///
+/// let folder = tempfile::tempdir().map_err(|e| aerodeck::Error::io("temporary folder", e))?;
+/// let file = folder.path().join("deck.csv");
+/// let deck = embedded::deck("LN21-5200")?;
+/// let mut text = Vec::new();
+/// write_csv(&deck, &mut text).expect("memory");
+/// std::fs::write(&file, text).map_err(|e| aerodeck::Error::io(&file, e))?;
+/// assert_eq!(read_table(&file)?.width_m, deck.width_m);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 pub fn read_table(path: impl AsRef<Path>) -> Result<DerivativeTable> {
     read_table_with(path, &ReadOptions::default()).map(|read| read.table)
 }

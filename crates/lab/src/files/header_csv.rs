@@ -1,6 +1,6 @@
 //! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
-use crate::error::{Error, Place, Result, counted};
+use crate::error::{Error, Place, Result, counted, without_control_characters};
 use std::io::Write;
 
 /// Reader of the table below the header of `text`.
@@ -71,6 +71,7 @@ impl CommentHeader {
             return Ok(true);
         }
         let place = Place::line(self.lines);
+        without_control_characters(&place, comment)?;
         let (key, value) = comment.split_once(':').ok_or_else(|| {
             Error::input(
                 &place,

@@ -1,4 +1,4 @@
-//! Text files, whose encoding is UTF-8.
+//! Text files, whose encoding is UTF-8, and texts of users in them and in their names.
 
 use crate::error::{Error, Result};
 use std::path::Path;
@@ -17,6 +17,48 @@ pub fn read_text(path: &Path) -> Result<String> {
     })
 }
 
+/// First characters of cells that spreadsheets take for formulas.
+const FORMULA: [char; 4] = ['=', '+', '-', '@'];
+
+/// A text of a user as a cell of a CSV file: quoted where it has to be, and never a formula of a spreadsheet.
+///
+/// ```
+/// use aerodeck_lab::files::text::{csv_cell, of_csv_cell};
+///
+/// assert_eq!(csv_cell("=1+2, all"), "\"'=1+2, all\"");
+/// assert_eq!(of_csv_cell("'=1+2"), "=1+2");
+/// ```
+pub fn csv_cell(text: &str) -> String {
+    let formula = text.starts_with(FORMULA) && text.parse::<f64>().is_err();
+    let text = if formula {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    };
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text
+    }
+}
+
+/// The text that [`csv_cell`] made an unquoted cell of.
+pub fn of_csv_cell(cell: &str) -> &str {
+    let text = cell.strip_prefix('\'');
+    text.filter(|t| t.starts_with(FORMULA)).unwrap_or(cell)
+}
+
+/// A name that can be part of a path everywhere: nothing in it leads to another folder.
+pub fn file_name(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let text: String = name
+        .chars()
+        .map(|c| if plain(c) { c } else { '_' })
+        .collect();
+    let trimmed = text.trim_matches('.');
+    if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,5 +71,21 @@ mod tests {
         let said = read_text(&path).unwrap_err().to_string();
         let expected = "study.toml: line 2: expected text in UTF-8, found the byte 0xe9 (Latin-1?)";
         assert!(said.ends_with(expected), "{said}");
+    }
+
+    #[test]
+    fn a_text_is_no_formula() {
+        for (text, cell) in [
+            ("=1+2", "'=1+2"),
+            ("@sum(a1)", "'@sum(a1)"),
+            ("-a, b", "\"'-a, b\""),
+            ("-12.5", "-12.5"),
+            ("say \"a\"", "\"say \"\"a\"\"\""),
+            ("Laguerre", "Laguerre"),
+        ] {
+            assert_eq!(csv_cell(text), cell);
+        }
+        assert_eq!(of_csv_cell("'=1+2"), "=1+2");
+        assert_eq!(of_csv_cell("'s"), "'s");
     }
 }

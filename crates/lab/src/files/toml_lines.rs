@@ -1,6 +1,6 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
-use crate::error::{Error, Place, PlaceStep, Result};
+use crate::error::{Error, Place, PlaceStep, Result, has_control_characters};
 use crate::files::text::read_text;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ pub fn parse<T: DeserializeOwned>(
 /// broken, and tabs, are texts.
 fn without_control_characters(text: &str) -> Result<()> {
     // such a character stands there itself or is written as an escape
-    if !text.contains('\\') && !text.contains(is_refused) {
+    if !text.contains('\\') && !has_control_characters(text) {
         return Ok(());
     }
     let root: toml::Table = toml::from_str(text)
@@ -57,10 +57,6 @@ fn without_control_characters(text: &str) -> Result<()> {
     }
 }
 
-fn is_refused(c: char) -> bool {
-    c.is_control() && !['\n', '\r', '\t'].contains(&c)
-}
-
 /// Key of the first text with such a character.
 fn refused_text(value: &toml::Value) -> Option<String> {
     let below = |key: &str, rest: String| match rest.starts_with('[') || rest.is_empty() {
@@ -68,7 +64,7 @@ fn refused_text(value: &toml::Value) -> Option<String> {
         false => format!("{key}.{rest}"),
     };
     match value {
-        toml::Value::String(text) => text.contains(is_refused).then(String::new),
+        toml::Value::String(text) => has_control_characters(text).then(String::new),
         toml::Value::Array(all) => all
             .iter()
             .enumerate()

@@ -6,7 +6,7 @@
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
-use crate::error::{Error, Place, Result, counted};
+use crate::error::{Error, Place, Result, counted, without_control_characters};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
@@ -98,6 +98,7 @@ pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
 /// [`Error::Input`] naming a record that cannot be read; [`Error::Io`] naming the record when `out` fails.
 pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
     let header = record.header();
+    without_control_characters("name", &header.name)?;
     let io = |e| Error::io(&header.name, e);
     write_head(header, out).map_err(io)?;
     let mut first = 0;

@@ -60,6 +60,20 @@ pub trait RecordSource: Sync {
 }
 
 /// A record in memory.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::section::Dof;
+/// use aerodeck::wind_tunnel::TunnelPlan;
+///
+/// let plan = TunnelPlan { sampling_hz: 50.0, segment_s: 12.0, ..TunnelPlan::default() };
+/// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
+/// let record = &records[0];
+/// assert_eq!(record.header.dofs, Dof::TWO);
+/// assert_eq!(record.motion[0].len(), record.force[1].len());
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// What is known besides the samples.

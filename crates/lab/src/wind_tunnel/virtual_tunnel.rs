@@ -29,6 +29,18 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A series of forced-vibration tests; the default is Table 3.2 of the thesis.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::section::Dof;
+/// use aerodeck::wind_tunnel::TunnelPlan;
+///
+/// let plan = TunnelPlan { sampling_hz: 50.0, segment_s: 12.0, ..TunnelPlan::default() };
+/// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
+/// assert_eq!(records.len(), 4); // two motions at the two speeds of the table
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TunnelPlan {

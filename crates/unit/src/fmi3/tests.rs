@@ -9,6 +9,8 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 
+mod unknown;
+
 type Messages = Mutex<Vec<String>>;
 
 unsafe extern "C" fn collect(
@@ -137,6 +139,13 @@ impl Unit {
         let at = values.as_mut_ptr();
         self.ok(unsafe { fmi3GetFloat64(self.handle, vr.as_ptr(), 1, at, count) });
         values
+    }
+
+    fn flag(&self, name: &str) -> bool {
+        let vr = [self.reference(name)];
+        let mut value = true;
+        self.ok(unsafe { fmi3GetBoolean(self.handle, vr.as_ptr(), 1, &raw mut value, 1) });
+        value
     }
 
     fn set(&self, name: &str, values: &[f64]) {

@@ -26,17 +26,14 @@ pub(super) struct DofNames {
     pub quantities: [&'static str; 3],
 }
 
-const TRANSLATION_UNITS: [&SiUnit; 4] = [
-    &si::METRE,
-    &si::METRE_PER_SECOND,
-    &si::METRE_PER_SECOND2,
-    &si::NEWTON_PER_METRE,
-];
-const TRANSLATION_QUANTITIES: [&str; 3] = ["Length", "Velocity", "Acceleration"];
-
-static HEAVE: DofNames = DofNames {
+const HEAVE: DofNames = DofNames {
     responses: ["heave", "heave_rate", "heave_acceleration", "lift"],
-    units: TRANSLATION_UNITS,
+    units: [
+        &si::METRE,
+        &si::METRE_PER_SECOND,
+        &si::METRE_PER_SECOND2,
+        &si::NEWTON_PER_METRE,
+    ],
     external: "external_lift",
     initial: ["initial_heave", "initial_heave_rate"],
     support: ["mass", "heave_frequency", "heave_damping_ratio"],
@@ -45,21 +42,17 @@ static HEAVE: DofNames = DofNames {
     motion: "vertical displacement, positive up",
     force: "vertical force per unit length of span, positive up",
     force_quantity: "ForcePerLength",
-    quantities: TRANSLATION_QUANTITIES,
+    quantities: ["Length", "Velocity", "Acceleration"],
 };
 
 static SWAY: DofNames = DofNames {
     responses: ["sway", "sway_rate", "sway_acceleration", "drag"],
-    units: TRANSLATION_UNITS,
     external: "external_drag",
     initial: ["initial_sway", "initial_sway_rate"],
     support: ["sway_mass", "sway_frequency", "sway_damping_ratio"],
-    inertia_unit: &si::KILOGRAM_PER_METRE,
-    inertia_quantity: "MassPerLength",
     motion: "lateral displacement, positive downwind",
     force: "lateral force per unit length of span, positive downwind",
-    force_quantity: "ForcePerLength",
-    quantities: TRANSLATION_QUANTITIES,
+    ..HEAVE
 };
 
 static ROTATION: DofNames = DofNames {

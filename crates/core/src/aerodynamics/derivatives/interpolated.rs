@@ -10,6 +10,13 @@ use nalgebra::{Complex, DMatrix};
 use serde::{Deserialize, Serialize};
 
 /// What an interpolated table says outside the tested range.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::derivatives::Extrapolation;
+///
+/// assert_eq!(Extrapolation::default(), Extrapolation::Refuse);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Extrapolation {
@@ -22,6 +29,27 @@ pub enum Extrapolation {
 }
 
 /// A measured table between its points. Each derivative is interpolated at its own points; `G` follows from (1.17).
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::Transfer;
+/// use aerodeck::aerodynamics::derivatives::{
+///     Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, TableHeader,
+/// };
+/// use aerodeck::section::Dof;
+/// use aerodeck::units::ReducedFrequency;
+///
+/// let point = |v_hat, value| DerivativePoint { mean_speed_m_s: None, v_hat, value };
+/// let eight = Derivative::ALL.into_iter().filter(|d| !d.to_string().contains(['P', '5', '6']));
+/// let points = eight.map(|d| (d, vec![point(2.0, -0.5), point(4.0, -1.2)])).collect();
+/// let table = DerivativeTable::new("a deck", 0.5, TableHeader::default(), points)?;
+/// let between = InterpolatedTable::new(&table, &Dof::TWO, Extrapolation::Refuse)?;
+/// // G = K² (H4* + i H1*) at a tested point, where K = 1/V̂
+/// let lift_by_heave = between.transfer(ReducedFrequency::from_v_hat(2.0))?[(0, 0)];
+/// assert!((lift_by_heave.im + 0.5 / 4.0).abs() < 1e-12);
+/// assert!(between.transfer(ReducedFrequency::from_v_hat(9.0)).is_err());
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterpolatedTable {
     name: String,

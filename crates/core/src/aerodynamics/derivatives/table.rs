@@ -2,7 +2,7 @@
 
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Place, Result, positive};
+use crate::error::{Error, Place, Result, positive, without_control_characters};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
@@ -128,9 +128,8 @@ pub struct DerivativeTable {
 }
 
 impl DerivativeTable {
-    /// A table after checking it: positive width; the eight derivatives of heave and rotation present, others in
-    /// pairs; `V̂` positive and strictly monotone in each speed group of each derivative; finite values; mean
-    /// speeds everywhere or nowhere.
+    /// A table after checking it: positive width; the eight derivatives of heave and rotation present, others in pairs; `V̂` positive
+    /// and strictly monotone in each speed group of each derivative; finite values; mean speeds everywhere or nowhere.
     ///
     /// # Errors
     /// [`Error::Input`] naming the derivative and the point.
@@ -140,6 +139,8 @@ impl DerivativeTable {
         header: TableHeader,
         points: BTreeMap<Derivative, Vec<DerivativePoint>>,
     ) -> Result<Self> {
+        let name = name.into();
+        without_control_characters("name", &name)?;
         positive("width_m", width_m)?;
         check_complete(&points)?;
         for (derivative, of_one) in &points {
@@ -151,7 +152,7 @@ impl DerivativeTable {
         }
         check_speeds_agree(&points)?;
         Ok(Self {
-            name: name.into(),
+            name,
             width_m,
             header,
             points,

@@ -29,6 +29,30 @@ pub struct FilterTerm {
 ///
 /// One [`FilterTerm`] per motion when the poles are shared; one per motion and force when every transfer function has
 /// its own pole.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::{FilterBank, FilterTerm, LaguerreModel, Realizable, Realization};
+/// use aerodeck::section::Dof;
+/// use nalgebra::DMatrix;
+///
+/// let one = |x| DMatrix::from_element(1, 1, x);
+/// let model = LaguerreModel {
+///     dofs: vec![Dof::Torsion],
+///     e0: one(1.2),
+///     e1: one(-0.4),
+///     e2: one(0.0),
+///     terms: vec![FilterTerm {
+///         input: 0,
+///         poles: FilterBank::new(vec![0.5; 3])?,
+///         coefficients: DMatrix::from_row_slice(1, 3, &[0.1, -0.05, 0.02]),
+///     }],
+/// };
+/// model.validate()?;
+/// let Realization::Continuous(filters) = model.realize() else { panic!() };
+/// assert_eq!(filters.a.nrows(), 3);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LaguerreModel {

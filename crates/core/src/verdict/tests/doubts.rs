@@ -81,6 +81,12 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
     one.flutter[0].search = FlutterSearch::Onset(Box::new(first));
     assert_eq!(words(&one), "MET");
     assert_eq!(Verdict::of(&one).doubts[0].kind, DoubtKind::OneTestSpeed);
+    // the interval of models beside tables says so as well
+    let mut beside = of(30.0, vec![found("the tables", 36.9, 0.0)]);
+    beside.flutter.push(one.flutter[0].clone());
+    assert_eq!(words(&beside), "MET");
+    let doubts = Verdict::of(&beside).doubts;
+    assert!(doubts.iter().any(|d| d.kind == DoubtKind::OneTestSpeed));
     one.flutter = vec![found("the model", 36.9, 0.3)];
     one.test_speeds = Some(2);
     assert_eq!(words(&one), "MET");

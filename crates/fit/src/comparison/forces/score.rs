@@ -7,6 +7,7 @@ use crate::comparison::{
     magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
 };
 use crate::error::{Error, Result, positive};
+use crate::files::text::csv_cell;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::wind_tunnel::{Record, Segment, predicted_forces};
@@ -185,9 +186,9 @@ pub fn score_table(scores: &[Score]) -> String {
         let values = metrics.values().map(|v| format!("{v:.6}")).join(",");
         let _ = writeln!(
             text,
-            "{},\"{}\",{:.3},{},{},{},{frequency_hz:.4},{values},{:.4}",
-            case.deck,
-            case.model,
+            "{},{},{:.3},{},{},{},{frequency_hz:.4},{values},{:.4}",
+            csv_cell(&case.deck),
+            csv_cell(&case.model),
             case.speed_m_s,
             case.held_out,
             case.motion.name(),

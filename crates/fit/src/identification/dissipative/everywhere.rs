@@ -9,8 +9,8 @@ use super::Dissipation;
 use super::edge::TestedRangeEnd;
 use super::report::ConstraintKind;
 use super::stated::{Condition, Stated};
-use crate::state_space::golden_section;
-use nalgebra::{DMatrix, Schur, SymmetricEigen};
+use crate::state_space::{eigenvalues, golden_section};
+use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Imaginary part of an eigenvalue, relative, that rounding of a double one can leave.
 const NEARLY_REAL: f64 = 1e-2;
@@ -131,10 +131,10 @@ impl Dissipation<'_> {
             }
         }
         let inner = a - b * inverse * c;
-        let eigenvalues = Schur::try_new(inner, f64::EPSILON, 10_000)?.complex_eigenvalues();
         let real = |z: &&nalgebra::Complex<f64>| z.re > 0.0 && z.im.abs() < NEARLY_REAL * z.re;
         Some(
-            eigenvalues
+            eigenvalues(&inner)
+                .ok()?
                 .iter()
                 .filter(real)
                 .map(|z| z.re.sqrt())

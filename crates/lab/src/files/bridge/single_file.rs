@@ -8,16 +8,19 @@
 //! # units: along_m and length_m in m; vertical, lateral in m and rotation in rad per unit of the modal coordinate
 //! # generator: …
 //! # mode: 1, 0.0551 Hz, 10203440 kg
-//! node,along_m,length_m,vertical_1,lateral_1,rotation_1
-//! 1001,-617.5,2.0,…
+//! node,along_m,length_m,downwind_m,up_m,vertical_1,lateral_1,rotation_1
+//! 1001,-617.5,2.0,0,31.2,…
 //! ```
+//!
+//! The places downwind and up are left out where they are not known. No force needs them: they show whether the nodes run as the
+//! axes say, and straight, which a file of places along the girder alone would hide.
 
 use super::modal_data::{BridgeModes, check_order};
 use super::table::{Table, TableRow};
 use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, positive};
 use crate::files::header_csv::CommentHeader;
-use crate::files::text::read_text;
+use crate::files::text::{csv_cell, of_csv_cell, read_text};
 use std::io::Write;
 use std::path::Path;
 
@@ -25,6 +28,8 @@ const FORMAT: &str = "aerodeck bridge modes 1";
 const AXES: &str = "vertical up, lateral downwind, rotation nose-up";
 const UNITS: &str = "along_m and length_m in m; vertical, lateral in m and rotation in rad per unit of the modal coordinate";
 const MODE: &str = "mode";
+/// Columns of the places across the girder.
+const OFFSETS: [&str; 2] = ["downwind_m", "up_m"];
 const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
 
 pub(super) fn read(path: &Path) -> Result<BridgeModes> {
@@ -46,11 +51,12 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     let mut nodes = Vec::with_capacity(table.rows.len());
     for row in &table.rows {
         nodes.push(Node {
-            name: row.name(name),
+            name: of_csv_cell(&row.name(name)).to_owned(),
             along_m: row.number(along)?,
             length_m: row.number(length)?,
         });
     }
+    let offsets_m = offsets(&table)?;
     check_order(&nodes)?;
     let modes = header.all(MODE).map(|entry| {
         let (number, frequency_hz, generalised_mass) = mode_line(&entry.value)
@@ -76,8 +82,19 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
         source: header.text("source"),
         modes: modes.collect::<Result<_>>()?,
         nodes,
-        offsets_m: Vec::new(),
+        offsets_m,
     })
+}
+
+/// Places downwind and up, of a file that knows them.
+fn offsets(table: &Table) -> Result<Vec<[f64; 2]>> {
+    if OFFSETS.iter().all(|name| table.column(&[name]).is_none()) {
+        return Ok(Vec::new());
+    }
+    let [downwind, up] = OFFSETS.map(|name| table.required(&[name]));
+    let (downwind, up) = (downwind?, up?);
+    let at = |row: &TableRow| Ok([row.number(downwind)?, row.number(up)?]);
+    table.rows.iter().map(at).collect()
 }
 
 fn mode_line(value: &str) -> Option<(usize, f64, f64)> {
@@ -112,12 +129,19 @@ pub fn write_modes(
         CommentHeader::write_line(out, MODE, line)?;
     }
     write!(out, "node,along_m,length_m")?;
+    if !modes.offsets_m.is_empty() {
+        write!(out, ",{}", OFFSETS.join(","))?;
+    }
     for m in &modes.modes {
         write!(out, ",vertical_{0},lateral_{0},rotation_{0}", m.number)?;
     }
     writeln!(out)?;
     for (i, node) in modes.nodes.iter().enumerate() {
-        write!(out, "{},{},{}", node.name, node.along_m, node.length_m)?;
+        let name = csv_cell(&node.name);
+        write!(out, "{name},{},{}", node.along_m, node.length_m)?;
+        if let Some([downwind, up]) = modes.offsets_m.get(i) {
+            write!(out, ",{downwind},{up}")?;
+        }
         for x in modes.modes.iter().flat_map(|m| m.shape[i]) {
             // what is below the figures of the program that made it is zero
             let x = if x.abs() < 1e-9 { 0.0 } else { x };

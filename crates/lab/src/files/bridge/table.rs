@@ -1,6 +1,6 @@
 //! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, without_control_characters};
 use crate::files::text::read_text;
 use std::path::Path;
 
@@ -50,6 +50,8 @@ impl Table {
             if line.is_empty() || line.starts_with(['#', '*', '%']) {
                 continue;
             }
+            // names of nodes and columns are shown and written
+            without_control_characters(Place::line(i + 1), line)?;
             let cells = cells(line);
             let is_heading = cells.iter().all(|c| c.parse::<f64>().is_err());
             if table.rows.is_empty() && is_heading {

@@ -9,6 +9,7 @@ use super::file::{
 use super::ntnu;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
+use crate::files::text::{csv_cell, file_name};
 use crate::wind_tunnel::record_file::write_rows;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, write_record};
@@ -77,7 +78,7 @@ fn write_truth(
     for p in &made.truth.points {
         let line = format!(
             "{},{},{},{},{},{},{}\n",
-            p.run,
+            csv_cell(&p.run),
             p.motion.name(),
             p.force.name(),
             p.frequency_hz,
@@ -92,7 +93,8 @@ fn write_truth(
         .map_err(|e| Error::Numerical(e.to_string()))?;
     write_text(&place(Path::new("disturbances.json"))?, &applied)?;
     for record in &made.truth.records {
-        let path = place(&Path::new("truth").join(format!("{}.csv", record.header.name)))?;
+        let path =
+            place(&Path::new("truth").join(format!("{}.csv", file_name(&record.header.name))))?;
         let file = File::create(&path).map_err(|e| Error::io(&path, e))?;
         write_record(record, &mut BufWriter::new(file))?;
     }
@@ -108,9 +110,10 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
         let n = truth.header.dofs.len();
         let moves = |j: &usize| truth.motion[*j].iter().any(|x| *x != 0.0);
         let file = |what: &str| match format {
-            FileFormat::Csv => {
-                FileRef::File(PathBuf::from(format!("runs/{}-{what}.csv", run.name)))
-            }
+            FileFormat::Csv => FileRef::File(PathBuf::from(format!(
+                "runs/{}-{what}.csv",
+                file_name(&run.name)
+            ))),
             FileFormat::Ntnu => FileRef::Group {
                 file: PathBuf::from(NTNU_FILE),
                 group: format!("{}-{what}", run.name),
@@ -171,7 +174,7 @@ fn csv_columns(rig: &Rig) -> Vec<(String, &'static str)> {
             } else {
                 "Nm"
             };
-            columns.push((format!("{}.{key}", cell.name), unit));
+            columns.push((csv_cell(&format!("{}.{key}", cell.name)), unit));
         }
     }
     columns

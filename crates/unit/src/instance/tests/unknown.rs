@@ -27,6 +27,49 @@ fn an_onset_that_is_not_there_is_the_limit() {
     assert!(!flag(&mut unit, "onset_found") && flag(&mut unit, "stable_below_onset"));
 }
 
+/// Of a bridge as of a section: what cannot be computed for its parameters is zero and not found, with a notice that says so.
+/// The search limit would read as safe.
+#[test]
+fn what_a_bridge_cannot_be_searched_for_is_zero() {
+    let mut unit = instance(Kind::Bridge, false).unwrap();
+    unit.enter_initialization();
+    for density in [1e300, 1.25, 1e200, f64::MAX] {
+        let own = place(&unit, "air_density");
+        unit.set_reals(&[own], &[density]).unwrap();
+        unit.take_notices();
+        let [onset, frequency, margin, wind] = read(
+            &mut unit,
+            [
+                "onset_speed",
+                "onset_frequency",
+                "flutter_margin",
+                "wind_speed",
+            ],
+        );
+        let notices = unit.take_notices().join("\n");
+        let known = density == 1.25;
+        assert_eq!(
+            flag(&mut unit, "onset_found"),
+            known,
+            "{density}: {notices}"
+        );
+        if known {
+            assert!(onset > 0.0 && frequency > 0.0 && !notices.contains("not known"));
+            continue;
+        }
+        assert_eq!(
+            (onset, frequency, margin),
+            (0.0, 0.0, -wind),
+            "{density}: {notices}"
+        );
+        assert!(!flag(&mut unit, "stable_below_onset"));
+        assert!(
+            notices.contains("flutter onset") && notices.contains("not known for these parameters"),
+            "{density}: {notices}"
+        );
+    }
+}
+
 /// Filters of a bridge are those of all its modes: as many as continuous states beyond coordinates and rates.
 #[test]
 fn a_bridge_counts_its_filters() {

@@ -86,6 +86,10 @@ impl Problem {
                 .collect();
             let uneven = &at.w + self.transposed(&at.z);
             let infeasible = short.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+            // the maximum passes over what is not a number
+            if !(gap + moved.iter().flatten().sum::<f64>()).is_finite() {
+                break;
+            }
             let size = at.w.norm_squared().max(f64::MIN_POSITIVE);
             let error = (gap / size)
                 .max(infeasible * infeasible / size)
@@ -93,7 +97,7 @@ impl Problem {
             if error < best.0 {
                 best = (error, at.clone());
             }
-            if error.is_nan() || error < GAP {
+            if error < GAP {
                 break;
             }
             match self.step(&at, &short, &uneven, gap) {

@@ -146,6 +146,14 @@ fn a_unit_behind_a_name_is_no_other_column() {
     let read = |h1: &str| parse(&text(h1), "wide", &ReadOptions::default());
     let table = read("H1 [-]").unwrap().table;
     assert_eq!(table.points(Derivative::H1)[0].value, -1.0);
-    let notes = read("H1_up").unwrap_err().to_string();
-    assert!(notes.contains("H1"), "{notes}");
+    // the argument is there: it is not blamed for a derivative that is not
+    let said = read("H1_up").unwrap_err().to_string();
+    assert!(
+        said.starts_with("derivatives: expected points for H1"),
+        "{said}"
+    );
+    assert!(said.contains("found none for H1"), "{said}");
+    for word in ["v_star", "argument"] {
+        assert!(!said.contains(word), "{word}: {said}");
+    }
 }

@@ -1,0 +1,226 @@
+//! What the program says of a required speed, from file to exit code: whole bridges, and exports.
+
+use crate::bridge::folder;
+use crate::command::{aerodeck, flowing, succeeds};
+use crate::report::fmu_page;
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
+
+/// The verdict of the bridge of the folder after a change of its file, and the exit code.
+fn verdict_after(change: impl Fn(String) -> String) -> (Option<i32>, Value) {
+    let folder = folder();
+    let file = folder.path().join("bridge.toml");
+    fs::write(&file, change(fs::read_to_string(&file).unwrap())).unwrap();
+    let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
+    let (code, said, error) = aerodeck(folder.path(), &run);
+    let value: Value = serde_json::from_str(&said).expect(&error);
+    (Some(code), value["verdict"].clone())
+}
+
+/// A bridge without flutter that diverges meets no requirement above that; the search reaches the requirement.
+#[test]
+fn divergence_of_a_bridge_without_flutter_is_not_met() {
+    let (code, verdict) = verdict_after(|text| {
+        text.replace(
+            "\"LN21-5200\"\ninterpolation",
+            "\"flat plate\"\ninterpolation",
+        )
+        .replace("damping_ratio = 0.002", "damping_ratio = 0.5")
+        .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 200.0")
+    });
+    let headline = verdict["headline"].as_str().unwrap();
+    let (start, end) = (
+        "✗ NOT MET, required 200 m/s: static divergence at",
+        "no flutter up to 2",
+    );
+    assert!(
+        headline.starts_with(start) && headline.contains(end),
+        "{headline}"
+    );
+    assert_eq!(
+        (code, &verdict["outcome"]["below"]),
+        (Some(3), &"best_estimate".into())
+    );
+    assert_eq!(verdict["critical"]["governs"]["phenomenon"], "divergence");
+}
+
+/// The few tested nodes of a girder do not answer for the rest of it.
+#[test]
+fn a_girder_that_is_hardly_tested_is_not_met() {
+    let (code, verdict) = verdict_after(|text| {
+        let tested = "name = \"girder\"\nto = \"1011\"";
+        let rest = "[[section]]\nname = \"rest\"\nfrom = \"1016\"\nwidth_m = 31.0\nderivatives = \"flat plate\"\n\n";
+        text.replace("name = \"girder\"", tested).replace(
+            "[flutter]",
+            &format!("{rest}[flutter]\nrequired_speed_m_s = 60.0"),
+        )
+    });
+    assert_eq!((code, state(&verdict)), (Some(3), "cannot_be_judged"));
+    let untested = doubt(&verdict, "untested").unwrap();
+    let text = untested["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("The forces of section rest (")
+            && text.ends_with(
+                "are those of Jones's rational functions of the flat plate, which no test of this deck confirms"
+            ),
+        "{text}"
+    );
+    assert_eq!(untested["severity"], "severe");
+}
+
+/// Static coefficients beside derivatives: where heave alone gallops by them, that governs.
+#[test]
+fn galloping_of_a_bridge_is_looked_at_beside_derivatives() {
+    let with_slope = |slope: &str| {
+        verdict_after(|text| {
+            let statics = format!("static = {{ drag = 0.02, lift_slope = {slope} }}\nmotions =");
+            text.replace("motions =", &statics)
+                .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
+        })
+    };
+    let (code, verdict) = with_slope("-8.0");
+    assert_eq!((code, state(&verdict)), (Some(3), "not_met"));
+    let governs = &verdict["critical"]["governs"];
+    assert_eq!(governs["phenomenon"], "galloping");
+    // Den Hartog: `2 ζ ω m = ½ ρ V B (−C_L′ − C_D)` at the slowest vertical mode, whose share in heave is not quite one
+    assert!(
+        (0.1..1.0).contains(&governs["best_m_s"].as_f64().unwrap()),
+        "{governs}"
+    );
+    let (code, verdict) = with_slope("4.5");
+    assert_eq!((code, state(&verdict)), (Some(0), "met"));
+}
+
+fn state(verdict: &Value) -> &str {
+    verdict["outcome"]["state"].as_str().unwrap()
+}
+
+fn doubt<'a>(verdict: &'a Value, kind: &str) -> Option<&'a Value> {
+    let doubts = verdict["doubts"].as_array().unwrap();
+    doubts.iter().find(|d| d["kind"] == kind)
+}
+
+/// Tables of 0° say nothing of a deck that the mean wind turns by degrees; those of an angle near all of its angles do.
+#[test]
+fn a_deck_turned_by_the_mean_wind_is_doubted() {
+    let turned = |angle: &str| {
+        let (code, verdict) = verdict_after(|text| {
+            let statics = "static = { moment = -0.08, lift_slope = 4.5, moment_slope = 1.2 }";
+            text.replace("motions =", &format!("{angle}{statics}\nmotions ="))
+                .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
+        });
+        let doubts = verdict["doubts"].as_array().unwrap().clone();
+        let of_rotation = doubts.into_iter().find(|d| d["kind"] == "mean_rotation");
+        (code, of_rotation)
+    };
+    let (code, doubt) = turned("");
+    let doubt = doubt.unwrap();
+    let text = doubt["text"].as_str().unwrap();
+    assert!(text.starts_with("The deck stands at -"), "{text}");
+    assert!(
+        text.contains("the forces are those at 0.0°, assumed since no `angle_deg`"),
+        "{text}"
+    );
+    assert_eq!((code, &doubt["severity"]), (Some(3), &"severe".into()));
+    let degrees = text
+        .split_once("stands at ")
+        .unwrap()
+        .1
+        .split_once('°')
+        .unwrap()
+        .0;
+    // tests at half of it are near enough for the middle and for the ends, which do not turn
+    let degrees: f64 = degrees.parse().unwrap();
+    let (code, doubt) = turned(&format!("angle_deg = {:?}\n", 0.5 * degrees));
+    assert_eq!(code, Some(0));
+    assert!(doubt.is_none_or(|d| d["severity"] == "minor"));
+}
+
+/// The table is the headline, the models give its interval; divergence counts by both; a requirement makes the exit code.
+#[test]
+fn a_required_speed_of_a_bridge_is_judged() {
+    let folder = folder();
+    let at = folder.path();
+    let text = fs::read_to_string(at.join("bridge.toml")).unwrap();
+    let stated = |required: f64| {
+        let text = match text.contains("[flutter]") {
+            true => text.replace(
+                "[flutter]",
+                &format!("[flutter]\nrequired_speed_m_s = {required}"),
+            ),
+            false => format!("{text}\n[flutter]\nrequired_speed_m_s = {required}\n"),
+        };
+        fs::write(at.join("bridge.toml"), text).unwrap();
+        let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
+        let (code, said, error) = aerodeck(at, &run);
+        let value: Value = serde_json::from_str(&said).expect(&error);
+        (code, value["verdict"].clone())
+    };
+    let (code, verdict) = stated(60.0);
+    let headline = verdict["headline"].as_str().unwrap();
+    assert_eq!(code, 0, "{verdict:#}");
+    assert!(
+        headline.starts_with("✓ MET, required 60 m/s: flutter onset"),
+        "{headline}"
+    );
+    assert!(headline.contains("by the tables"), "{headline}");
+    let all = verdict["critical"]["others"].as_array().unwrap();
+    let divergence = all.iter().filter(|c| c["phenomenon"] == "divergence");
+    assert_eq!(divergence.count(), 2, "{verdict:#}");
+    let (code, verdict) = stated(95.0);
+    assert_eq!((code, &verdict["outcome"]["state"]), (3, &"not_met".into()));
+    assert_eq!(verdict["outcome"]["below"], "best_estimate");
+}
+
+/// A unit of a bridge that does not meet its requirement is packed, with that verdict in it and in the exit code.
+#[test]
+fn the_export_of_a_bridge_repeats_its_verdict() {
+    let folder = folder();
+    let at = folder.path();
+    let text = fs::read_to_string(at.join("bridge.toml")).unwrap();
+    let text = text.replace("[flutter]", "[flutter]\nrequired_speed_m_s = 95.0");
+    fs::write(at.join("bridge.toml"), text).unwrap();
+    let run = ["fmu", "export", "--bridge", "bridge.toml", "--out", "b.fmu"];
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 3, "{said}{error}");
+    assert!(
+        flowing(&said).contains("✗ NOT MET, required 95 m/s: flutter onset"),
+        "{said}"
+    );
+    assert!(fmu_page(&at.join("b.fmu")).contains("NOT MET, required 95 m/s"));
+}
+
+/// The export of a model of its own says what the model answers, as the page in the archive does.
+#[test]
+fn the_export_of_a_model_says_what_it_answers() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["demo", "--no-figures", "--out", "d"]);
+    let export = [
+        "fmu",
+        "export",
+        "d/models/laguerre.json",
+        "--out",
+        "said.fmu",
+    ];
+    let said = flowing(&succeeds(at, &export));
+    assert!(
+        said.starts_with("Laguerre: flutter onset 36.9 m/s, 36.3–37.6"),
+        "{said}"
+    );
+    assert!(fmu_page(&at.join("said.fmu")).contains("flutter onset 36.9 m/s, 36.3–37.6"));
+    // what is odd about the section stands in both
+    let text = fs::read_to_string(at.join("d/models/laguerre.json")).unwrap();
+    let mut model: Value = serde_json::from_str(&text).unwrap();
+    let width = model["section"]["width_m"].as_f64().unwrap();
+    model["section"]["width_m"] = (0.5 * width).into();
+    fs::write(at.join("narrow.json"), model.to_string()).unwrap();
+    let said = flowing(&succeeds(
+        at,
+        &["fmu", "export", "narrow.json", "--out", "narrow.fmu"],
+    ));
+    for text in [said, fmu_page(&at.join("narrow.fmu"))] {
+        assert!(text.contains("were width_m the semi-chord"), "{text}");
+    }
+}

@@ -1,0 +1,215 @@
+//! Verdicts from the file to the first line, where other tests look at the machine-readable answer or at the library alone.
+
+use crate::bridges::{THREE, TWO, langenuen_text};
+use crate::command::{aerodeck, flowing, succeeds};
+use aerodeck::files::derivatives::{embedded, write_csv};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// The modes that carry the flutter of Langenuen.
+const EIGHT: &str = "select = [2, 3, 5, 12, 14, 16, 17, 23]\ndamping_ratio";
+
+/// A bridge of eight modes with a required speed.
+fn bridge(deck: &str, motions: &str, required: f64) -> String {
+    langenuen_text(deck, motions, "modified_akima")
+        .replace("damping_ratio", EIGHT)
+        .replace(
+            "[flutter]",
+            &format!("[flutter]\nrequired_speed_m_s = {required:?}"),
+        )
+}
+
+/// Exit code and verdict of the bridge of a file.
+fn verdict_of(folder: &Path, text: &str) -> (i32, Value) {
+    fs::write(folder.join("bridge.toml"), text).unwrap();
+    let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
+    let (code, said, error) = aerodeck(folder, &run);
+    let value: Value = serde_json::from_str(&said).expect(&error);
+    (code, value["verdict"].clone())
+}
+
+fn doubt<'a>(verdict: &'a Value, kind: &str) -> Option<&'a Value> {
+    let doubts = verdict["doubts"].as_array().unwrap();
+    doubts.iter().find(|d| d["kind"] == kind)
+}
+
+/// People and scripts read the first line.
+#[test]
+fn the_first_line_of_a_bridge_is_its_verdict() {
+    let folder = TempDir::new().unwrap();
+    for (required, code, words) in [
+        (60.0, 0, "✓ MET, required 60 m/s: flutter onset 7"),
+        (95.0, 3, "✗ NOT MET, required 95 m/s: flutter onset 7"),
+    ] {
+        fs::write(
+            folder.path().join("bridge.toml"),
+            bridge("LN21-5200", TWO, required),
+        )
+        .unwrap();
+        let run = ["bridge", "flutter", "bridge.toml", "--no-figures"];
+        let (found, said, error) = aerodeck(folder.path(), &run);
+        assert_eq!(found, code, "{error}");
+        let first = flowing(&said);
+        assert!(
+            first.starts_with(&format!("Langenuen LN21-5200: {words}")),
+            "{said}"
+        );
+    }
+}
+
+/// A deck that pumps at 0° beside derivatives that are harmless: quasi-steady galloping is the critical speed.
+#[test]
+fn galloping_of_a_section_is_not_met() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let deck =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("data/coefficients/synthetic_box_girder.csv");
+    let text = fs::read_to_string(deck).unwrap();
+    let (head, rows) = text.split_once("angle_deg,c_d,c_l,c_m\n").unwrap();
+    // dC_L/dα = −6 per rad, against which no drag helps
+    let row = |row: &str| {
+        let angle: f64 = row.split(',').next().unwrap().parse().unwrap();
+        format!("{angle},0.1,{:.4},0.0\n", -6.0 * angle.to_radians())
+    };
+    let rows: String = rows.lines().map(row).collect();
+    fs::write(
+        at.join("pumps.csv"),
+        format!("{head}angle_deg,c_d,c_l,c_m\n{rows}"),
+    )
+    .unwrap();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    let study = fs::read_to_string(at.join("s.toml")).unwrap();
+    let run = [
+        "study",
+        "s.toml",
+        "--no-figures",
+        "--out",
+        "r",
+        "--set",
+        "flutter.required_speed_m_s=30.0",
+    ];
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 0, "{error}");
+    assert!(
+        flowing(&said).starts_with("LN21-5200: ✓ MET, required 30 m/s"),
+        "{said}"
+    );
+    fs::write(
+        at.join("s.toml"),
+        format!("{study}\n[coefficients]\nsource = \"pumps.csv\"\n"),
+    )
+    .unwrap();
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 3, "{error}");
+    let first = flowing(&said);
+    assert!(
+        first.starts_with("LN21-5200: ✗ NOT MET, required 30 m/s: galloping"),
+        "{said}"
+    );
+    let summary = fs::read_to_string(at.join("r/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(
+        summary["verdict"]["critical"]["governs"]["phenomenon"],
+        "galloping"
+    );
+}
+
+/// A table of one mean wind speed says as much of a bridge as of a section.
+#[test]
+fn one_test_speed_of_a_bridge_is_said() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let deck = embedded::deck("LN21-5200").unwrap();
+    let mut bytes = Vec::new();
+    write_csv(&deck.at_speed_group(0).unwrap(), &mut bytes).unwrap();
+    fs::write(at.join("one.csv"), bytes).unwrap();
+    let (_, both) = verdict_of(at, &bridge("LN21-5200", TWO, 60.0));
+    assert!(doubt(&both, "one_test_speed").is_none(), "{both:#}");
+    let text = bridge("LN21-5200", TWO, 60.0)
+        .replace("derivatives = \"LN21-5200\"", "derivatives = \"one.csv\"");
+    let (_, one) = verdict_of(at, &text);
+    let said = doubt(&one, "one_test_speed").unwrap_or_else(|| panic!("{one:#}"));
+    let text = said["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("Tests at one mean wind speed: how results scatter between speeds"),
+        "{text}"
+    );
+}
+
+/// The model of one deck beside the table of another: two answers, and neither is relied on.
+#[test]
+fn a_model_and_a_table_that_contradict_each_other_cannot_be_judged() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    succeeds(at, &["tunnel", "s.toml"]);
+    succeeds(at, &["train", "s.toml"]);
+    let with_model = |deck: &str| {
+        let model = "model = \"model.json\"\nmotions =";
+        verdict_of(at, &bridge(deck, TWO, 60.0).replace("motions =", model))
+    };
+    let (code, own) = with_model("LN21-5200");
+    assert_eq!(code, 0, "{own:#}");
+    assert!(doubt(&own, "contradiction").is_none(), "{own:#}");
+    let (code, other) = with_model("LN21-6100");
+    let said = doubt(&other, "contradiction").unwrap_or_else(|| panic!("{other:#}"));
+    let text = said["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("Contradiction: ")
+            && text.contains("by the tables")
+            && text.contains("by the models"),
+        "{text}"
+    );
+    assert_eq!((code, &said["severity"]), (3, &"severe".into()));
+    assert_eq!(other["outcome"]["state"], "cannot_be_judged");
+}
+
+/// Constraints on the fits of sections move the onset of a bridge as that of a section.
+#[test]
+fn constraints_that_move_the_onset_of_a_bridge_are_said() {
+    let folder = TempDir::new().unwrap();
+    let text = bridge("LN20-5500", THREE, 60.0);
+    let (_, held) = verdict_of(folder.path(), &text);
+    let said = doubt(&held, "constraints_moved_onset").unwrap_or_else(|| panic!("{held:#}"));
+    let words = said["text"].as_str().unwrap();
+    assert!(
+        words.starts_with("Constraints moved the onset: by the data alone 76."),
+        "{words}"
+    );
+    let [without, with] = ["without_m_s", "with_m_s"].map(|key| said[key].as_f64().unwrap());
+    assert!(without < 0.97 * with, "{words}");
+    // the data alone are what a fit without constraints gives
+    let form = "form = { kind = \"laguerre\", filters = 3 }";
+    let free = text.replace(
+        "motions =",
+        &format!("fit = {{ constraints = \"none\", {form} }}\nmotions ="),
+    );
+    let (_, free) = verdict_of(folder.path(), &free);
+    assert!(
+        doubt(&free, "constraints_moved_onset").is_none(),
+        "{free:#}"
+    );
+    let headline = free["headline"].as_str().unwrap();
+    let models = format!("the models: {without:.1} m/s");
+    assert!(headline.contains(&models), "{models}: {headline}");
+}
+
+/// The code of an archive has the rights of who checks it: the command says whether it ran.
+#[test]
+fn a_check_says_whether_code_was_run() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/rational.json");
+    fs::copy(model, at.join("model.json")).unwrap();
+    succeeds(at, &["fmu", "export", "model.json", "--out", "a.fmu"]);
+    let ran = succeeds(at, &["fmu", "check", "a.fmu"]);
+    assert!(
+        ran.contains("its code was run in this process: binaries/"),
+        "{ran}"
+    );
+    let looked = succeeds(at, &["fmu", "check", "a.fmu", "--no-run"]);
+    assert!(looked.contains("none of its code was run"), "{looked}");
+    assert!(!looked.contains("in this process"), "{looked}");
+}
