@@ -83,7 +83,7 @@ pub fn determinant_onset(
 ) -> Result<FlutterSearch> {
     let k_min = positive("range of reduced frequencies", range.min.full_width())?;
     let k_max = positive("range of reduced frequencies", range.max.full_width())?;
-    let problem = DeterminantProblem { structure, model };
+    let problem = StructureInWind { structure, model };
     let at = |i: usize| {
         // both ends exactly, so that a table is not asked beyond its last point
         match i {
@@ -158,7 +158,7 @@ pub fn table_tested_from(
     range: ReducedFrequencyRange,
 ) -> Result<Option<TestedFrom>> {
     let k = positive("range of reduced frequencies", range.max.full_width())?;
-    let problem = DeterminantProblem {
+    let problem = StructureInWind {
         structure,
         model: table,
     };
@@ -204,12 +204,13 @@ fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>>
         .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
 }
 
-struct DeterminantProblem<'a> {
-    structure: &'a Structure,
-    model: &'a dyn Transfer,
+/// A structure in the forces of a model.
+pub(super) struct StructureInWind<'a> {
+    pub(super) structure: &'a Structure,
+    pub(super) model: &'a dyn Transfer,
 }
 
-impl DeterminantProblem<'_> {
+impl StructureInWind<'_> {
     /// Roots at the reduced frequency `k` with the rows whose modes they are: those of the structure without air, followed
     /// while the air comes to its density.
     fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, usize)>> {

@@ -3,7 +3,7 @@
 use super::answer::{Findings, UnstableStart};
 use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::onset::Onset;
-use super::scan::{AERODYNAMIC, COARSE, FINE, Scan};
+use super::scan::{AERODYNAMIC, Scan};
 use super::tracking::{SLOPE_STEP, mode_shape};
 use crate::error::Result;
 use crate::state_space::damping_ratio;
@@ -17,11 +17,8 @@ impl Scan<'_> {
     /// Adds growth from still air up to a speed that is not among the findings yet; what lies above an answer inside the
     /// tested range does not matter.
     pub(super) fn add_missed(&self, found: &mut Findings, to_m_s: f64) -> Result<()> {
-        let spacing = if found.warnings.is_empty() {
-            COARSE
-        } else {
-            FINE
-        };
+        // without warnings the structural modes were followed
+        let coarse = found.warnings.is_empty();
         let speeds = found
             .crossings
             .iter()
@@ -30,7 +27,7 @@ impl Scan<'_> {
             .filter(|(_, k)| self.tested.is_none_or(|range| range.spans(*k)))
             .map(|(speed, _)| speed)
             .fold(to_m_s, f64::min);
-        for band in self.bands(0.0, to_m_s, spacing)? {
+        for band in self.bands(0.0, to_m_s, coarse)? {
             let at = self.at(band.from_m_s)?;
             if let Some(lambda) = at.fastest.filter(|_| !found.knows(band.from_m_s)) {
                 if band.from_start {

@@ -7,9 +7,9 @@
 
 use super::answer::{Findings, FlutterSearch, choose};
 use super::curves::{FlutterCurves, ModePoint, empty_branches};
+use super::determinant::StructureInWind;
 use super::following::{Follower, OnsetWatch, dimensionless, growing};
 use super::judged::{StableRange, damps_fast_motion, entry_reason};
-use super::pk_following::Iteration;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
@@ -43,7 +43,7 @@ pub fn pk_curves(
         }
         last = speed;
     }
-    let iteration = Iteration { structure, model };
+    let iteration = StructureInWind { structure, model };
     let mut branches = empty_branches(structure, speeds_m_s.len());
     iteration.march(speeds_m_s, &mut |_, at| {
         let asked = speeds_m_s.binary_search_by(|v| v.total_cmp(&at.speed));
@@ -86,7 +86,7 @@ pub fn quasi_pk_mode(
         .map(|i| speed_m_s * i as f64 / STEPS_TO_MODE as f64)
         .collect();
     let (mut found, mut last) = (None, None);
-    let iteration = Iteration { structure, model };
+    let iteration = StructureInWind { structure, model };
     iteration.march(&speeds, &mut |_, at| {
         let lambda = at.mode(dof).map(|m| m.lambda);
         found = lambda.filter(|_| at.speed == speed_m_s);
@@ -129,7 +129,7 @@ pub fn pk_onset(
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {
-    let iteration = Iteration { structure, model };
+    let iteration = StructureInWind { structure, model };
     let known = model.known_range();
     let watch = OnsetWatch {
         model: name,

@@ -1,14 +1,13 @@
 //! Modes of the p-k iteration followed over wind speed by what they are: small changes and like shapes from step to step.
 
 use super::critical_point::OnsetMethod;
-use super::determinant::damping_slope;
+use super::determinant::{StructureInWind, damping_slope};
 use super::following::{
     EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
 use super::judged::{Exit, RangePassages};
 use super::onset::Onset;
 use super::quasi_pk::{pk_mode, pk_mode_at};
-use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{ValueAt, eigenvalues, eigenvector, first_order, root};
@@ -39,16 +38,11 @@ pub(super) struct StartingMode {
 /// Called with the modes at two neighbouring speeds.
 pub(super) type OnStep<'a> = &'a mut dyn FnMut(&Modes, &Modes) -> Result<()>;
 
-pub(super) struct Iteration<'a> {
-    pub(super) structure: &'a Structure,
-    pub(super) model: &'a dyn Transfer,
-}
-
 fn same_root(a: &Mode, b: &Mode) -> bool {
     (a.lambda - b.lambda).norm() <= SEPARATION * a.lambda.norm()
 }
 
-impl Iteration<'_> {
+impl StructureInWind<'_> {
     /// Follows every mode from where it is first known over the rising `speeds`, and further to where it leaves the range
     /// of the model. `on_step` sees both ends of every step, also those where a mode enters or leaves.
     pub(super) fn march(
@@ -274,7 +268,7 @@ impl Iteration<'_> {
     }
 }
 
-impl Follower for Iteration<'_> {
+impl Follower for StructureInWind<'_> {
     const METHOD: OnsetMethod = OnsetMethod::PkIteration;
 
     fn structure(&self) -> &Structure {

@@ -15,16 +15,10 @@ use std::f64::consts::TAU;
 
 /// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
 const NEARLY_STILL: f64 = 0.01;
-/// Spacing of a scan by itself.
-pub(super) const FINE: SpeedSpacing = SpeedSpacing {
-    ratio: 1.05,
-    part: 1.0 / 120.0,
-};
+/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
+const FINE: (f64, f64) = (1.05, 1.0 / 120.0);
 /// The same where the structural modes are followed besides.
-pub(super) const COARSE: SpeedSpacing = SpeedSpacing {
-    ratio: 1.12,
-    part: 1.0 / 50.0,
-};
+const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
 /// Branch of an eigenvalue that belongs to no structural mode.
 pub(super) const AERODYNAMIC: &str = "aerodynamic";
 /// Relative width to which the ends of a band are halved.
@@ -99,7 +93,7 @@ pub fn growth_scan(
     to_m_s: f64,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<Vec<GrowthBand>> {
-    Scan::new("", section, tested).bands(from_m_s, to_m_s, FINE)
+    Scan::new("", section, tested).bands(from_m_s, to_m_s, false)
 }
 
 /// The fastest growing oscillations at one speed.
@@ -122,13 +116,6 @@ impl ScanPoint {
     fn rate(&self) -> f64 {
         self.fastest.map_or(f64::NEG_INFINITY, |z| z.re)
     }
-}
-
-/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SpeedSpacing {
-    ratio: f64,
-    part: f64,
 }
 
 /// A section whose eigenvalues are looked at.
@@ -184,7 +171,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Speeds of a scan, m/s.
-    fn speeds(&self, from_m_s: f64, to_m_s: f64, spacing: SpeedSpacing) -> Result<Vec<f64>> {
+    fn speeds(&self, from_m_s: f64, to_m_s: f64, coarse: bool) -> Result<Vec<f64>> {
         non_negative("lowest wind speed", from_m_s)?;
         positive("highest wind speed", to_m_s)?;
         if from_m_s >= to_m_s {
@@ -194,23 +181,25 @@ impl<'a> Scan<'a> {
                 to_m_s.to_string(),
             ));
         }
+        let (ratio, part) = if coarse { COARSE } else { FINE };
         let mut all = Vec::new();
         let mut speed = from_m_s.max(self.lowest(to_m_s)?);
         while speed < to_m_s {
             all.push(speed);
-            speed = (spacing.ratio * speed).min(speed + to_m_s * spacing.part);
+            speed = (ratio * speed).min(speed + to_m_s * part);
         }
         all.push(to_m_s);
         Ok(all)
     }
 
+    /// Every band of growth between two speeds; `coarse` where the structural modes are followed besides.
     pub(super) fn bands(
         &self,
         from_m_s: f64,
         to_m_s: f64,
-        spacing: SpeedSpacing,
+        coarse: bool,
     ) -> Result<Vec<GrowthBand>> {
-        let grid = self.speeds(from_m_s, to_m_s, spacing)?;
+        let grid = self.speeds(from_m_s, to_m_s, coarse)?;
         let points = match critical_speeds(self.section) {
             Some(critical) => self.between(&critical, &grid)?,
             None => {

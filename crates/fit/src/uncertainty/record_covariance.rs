@@ -220,30 +220,27 @@ pub fn discrete_uncertainty(
         ));
     };
     let records = Records::read(records, fit.static_term)?;
-    let columns = DiscreteParameters {
-        inputs: records.dofs.len(),
-        filters,
-    };
+    let inputs = records.dofs.len();
     let order = ColumnOrder {
-        inputs: columns.inputs,
+        inputs,
         per_input: filters,
         constant: true,
     };
     let closed = discrete_pass(
         &records,
         order,
-        &[vec![alpha; columns.inputs]],
+        &[vec![alpha; inputs]],
         fit.weights,
         STRETCHES,
         progress,
     )?
     .stretches;
-    let parameters = columns.parameters(model, &records.dofs);
+    let parameters = discrete_parameters(order, model, &records.dofs);
     let values = DVector::from_iterator(parameters.len(), parameters.iter().map(|p| p.value));
     let parts = closed
         .iter()
-        .flat_map(|stretch| (0..columns.inputs).map(move |i| (stretch, i)))
-        .map(|(stretch, i)| columns.part(stretch, i, &values))
+        .flat_map(|stretch| (0..inputs).map(move |i| (stretch, i)))
+        .map(|(stretch, i)| discrete_rows(order, stretch, i, &values))
         .collect();
     let (design, blocks) = sandwich(gather(&records.each, parts), None)?;
     CoefficientUncertainty::new(
@@ -261,62 +258,59 @@ pub fn discrete_uncertainty(
 }
 
 /// The parameters of a discrete model, force by force: its constant, then the filters of every input.
-struct DiscreteParameters {
-    inputs: usize,
-    filters: usize,
+fn discrete_parameters(
+    order: ColumnOrder,
+    model: &DiscreteLaguerre,
+    dofs: &[Dof],
+) -> Vec<Parameter> {
+    let mut parameters = Vec::with_capacity(order.inputs * order.width(order.inputs));
+    for (i, &force) in dofs.iter().enumerate() {
+        let mut push = |name: String, motion, value| {
+            parameters.push(Parameter {
+                name,
+                force: Some(force),
+                motion,
+                value,
+                standard_error: 0.0,
+            });
+        };
+        push("static".into(), None, model.static_term[i]);
+        for (term, &motion) in model.terms.iter().zip(dofs) {
+            for l in 0..order.per_input {
+                push(format!("c{l}"), Some(motion), term.coefficients[(i, l)]);
+            }
+        }
+    }
+    parameters
 }
 
-impl DiscreteParameters {
-    /// Parameters of one force.
-    fn each(&self) -> usize {
-        1 + self.inputs * self.filters
+/// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
+fn discrete_rows(
+    order: ColumnOrder,
+    stretch: &Stretch,
+    i: usize,
+    values: &DVector<f64>,
+) -> StretchRows {
+    let factor = &stretch.factors[0];
+    let weight = stretch.weights[i];
+    let first = i * order.width(order.inputs);
+    let mut columns = DMatrix::zeros(factor.columns(), values.len());
+    columns[(0, first)] = 1.0;
+    for (s, &j) in stretch.set.iter().enumerate() {
+        for l in 0..order.per_input {
+            let row = 1 + l * stretch.set.len() + s;
+            columns[(row, first + 1 + j * order.per_input + l)] = 1.0;
+        }
     }
-
-    fn parameters(&self, model: &DiscreteLaguerre, dofs: &[Dof]) -> Vec<Parameter> {
-        let mut parameters = Vec::with_capacity(self.inputs * self.each());
-        for (i, &force) in dofs.iter().enumerate() {
-            let mut push = |name: String, motion, value| {
-                parameters.push(Parameter {
-                    name,
-                    force: Some(force),
-                    motion,
-                    value,
-                    standard_error: 0.0,
-                });
-            };
-            push("static".into(), None, model.static_term[i]);
-            for (term, &motion) in model.terms.iter().zip(dofs) {
-                for l in 0..self.filters {
-                    push(format!("c{l}"), Some(motion), term.coefficients[(i, l)]);
-                }
-            }
-        }
-        parameters
-    }
-
-    /// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
-    fn part(&self, stretch: &Stretch, i: usize, values: &DVector<f64>) -> StretchRows {
-        let factor = &stretch.factors[0];
-        let weight = stretch.weights[i];
-        let first = i * self.each();
-        let mut columns = DMatrix::zeros(factor.columns(), values.len());
-        columns[(0, first)] = 1.0;
-        for (s, &j) in stretch.set.iter().enumerate() {
-            for l in 0..self.filters {
-                let row = 1 + l * stretch.set.len() + s;
-                columns[(row, first + 1 + j * self.filters + l)] = 1.0;
-            }
-        }
-        let fitted = &columns * values;
-        StretchRows {
-            record: stretch.record,
-            stretch: stretch.stretch,
-            segment: stretch.segment,
-            group: (stretch.set.clone(), i),
-            weight,
-            rows: factor.upper() * columns * weight,
-            residual: (factor.projected().column(i) - factor.upper() * fitted) * weight,
-            total: factor.total_sum(i) * weight * weight,
-        }
+    let fitted = &columns * values;
+    StretchRows {
+        record: stretch.record,
+        stretch: stretch.stretch,
+        segment: stretch.segment,
+        group: (stretch.set.clone(), i),
+        weight,
+        rows: factor.upper() * columns * weight,
+        residual: (factor.projected().column(i) - factor.upper() * fitted) * weight,
+        total: factor.total_sum(i) * weight * weight,
     }
 }

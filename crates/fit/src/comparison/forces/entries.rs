@@ -114,14 +114,17 @@ pub(super) fn compare_entries(
         for (j, &motion) in dofs.iter().enumerate() {
             let measured = measured(group, force, motion);
             let hz = |k: ReducedFrequency| k.circular(group.width_m, speed_m_s) / TAU;
-            let mut unwrapped = Unwrapped::new(0.0);
+            let mut phase_deg = 0.0;
             let points: Vec<TestPoint> = measured
                 .iter()
-                .map(|(k, g)| TestPoint {
-                    frequency_hz: hz(*k),
-                    k: k.full_width(),
-                    magnitude: g.norm(),
-                    phase_deg: unwrapped.next(g.arg().to_degrees()),
+                .map(|(k, g)| {
+                    phase_deg = unwrapped(g.arg().to_degrees(), phase_deg);
+                    TestPoint {
+                        frequency_hz: hz(*k),
+                        k: k.full_width(),
+                        magnitude: g.norm(),
+                        phase_deg,
+                    }
                 })
                 .collect();
             let mut comparison = EntryComparison {
@@ -185,31 +188,21 @@ fn curve(
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Ok(Vec::new());
     };
-    let mut unwrapped = Unwrapped::new(first.phase_deg);
+    let mut phase_deg = first.phase_deg;
     (0..CURVE_POINTS)
         .map(|i| {
             let part = i as f64 / (CURVE_POINTS as f64 - 1.0);
             let k = ReducedFrequency::from_full_width(first.k + part * (last.k - first.k));
             let g = at(k)?;
-            Ok((hz(k), g.norm(), unwrapped.next(g.arg().to_degrees())))
+            phase_deg = unwrapped(g.arg().to_degrees(), phase_deg);
+            Ok((hz(k), g.norm(), phase_deg))
         })
         .collect()
 }
 
-/// Phases without jumps.
-struct Unwrapped {
-    last: f64,
-}
-
-impl Unwrapped {
-    fn new(near: f64) -> Self {
-        Self { last: near }
-    }
-
-    fn next(&mut self, degrees: f64) -> f64 {
-        self.last = degrees + 360.0 * ((self.last - degrees) / 360.0).round();
-        self.last
-    }
+/// A phase in degrees without a jump from the last one.
+fn unwrapped(degrees: f64, last: f64) -> f64 {
+    degrees + 360.0 * ((last - degrees) / 360.0).round()
 }
 
 /// The derivatives that couple `dofs`, measured at one speed and according to the models.

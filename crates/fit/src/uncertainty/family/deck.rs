@@ -150,24 +150,18 @@ fn section(which: usize, sways: bool) -> SectionModel {
         0 => SectionModel::table_4_1(),
         1 => SectionModel::iabse_1_1a(),
         // a light streamlined deck, a heavy one of low torsional frequency, a small model of high damping
-        2 => SectionModel::two_dof(
-            20.0,
-            1.25,
-            Translation::new(9_000.0, 0.12, 0.005),
-            Rotation::new(4.0e5, 0.35, 0.005),
-        ),
-        3 => SectionModel::two_dof(
-            36.0,
-            1.25,
-            Translation::new(31_000.0, 0.07, 0.003),
-            Rotation::new(4.5e6, 0.14, 0.003),
-        ),
-        _ => SectionModel::two_dof(
-            0.4,
-            1.2,
-            Translation::new(6.0, 3.0, 0.01),
-            Rotation::new(0.11, 8.0, 0.01),
-        ),
+        2 => {
+            let heave = Translation::new(9_000.0, 0.12, 0.005);
+            SectionModel::two_dof(20.0, 1.25, heave, Rotation::new(4.0e5, 0.35, 0.005))
+        }
+        3 => {
+            let heave = Translation::new(31_000.0, 0.07, 0.003);
+            SectionModel::two_dof(36.0, 1.25, heave, Rotation::new(4.5e6, 0.14, 0.003))
+        }
+        _ => {
+            let heave = Translation::new(6.0, 3.0, 0.01);
+            SectionModel::two_dof(0.4, 1.2, heave, Rotation::new(0.11, 8.0, 0.01))
+        }
     };
     if sways {
         let heave = section.vertical.frequency_hz.unwrap_or(1.0);
