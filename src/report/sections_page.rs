@@ -26,7 +26,7 @@ pub(crate) struct PageSection {
 
 #[derive(Template)]
 #[template(path = "sections.html")]
-struct Page<'a> {
+struct SectionsTemplate<'a> {
     page: &'a SectionsPage,
     generator: &'static str,
 }
@@ -34,7 +34,7 @@ struct Page<'a> {
 /// The page as HTML text; the same content always gives the same bytes.
 pub(crate) fn sections_page(page: &SectionsPage) -> Result<String> {
     let generator = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));
-    Page { page, generator }
+    SectionsTemplate { page, generator }
         .render()
         .map_err(|e| Error::Numerical(format!("report: {e}")))
 }

@@ -112,14 +112,14 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 78_291),
-        ("code lines of the core", core, 16_589),
+        ("code lines", found.line_count(), 78_300),
+        ("code lines of the core", core, 16_600),
         ("types", found.type_count(), 1_031),
-        ("names of several types", found.names_used_twice(), 1),
+        ("names of several types", found.names_used_twice(), 0),
         (
             "functions with a tuple parameter",
             found.with_tuples.len(),
-            2,
+            0,
         ),
     ];
     for (directory, lines) in &found.lines {

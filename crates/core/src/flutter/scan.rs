@@ -294,7 +294,7 @@ impl<'a> Scan<'a> {
             left.grows() || right.grows() || steps > PEAK_STEPS
         };
         let higher = |a: &ScanPoint, b: &ScanPoint| a.rate() > b.rate();
-        let (_, [left, right]) = golden_section((low, high), |v| self.at(v), higher, done)?;
+        let (_, [left, right]) = golden_section(low..high, |v| self.at(v), higher, done)?;
         let highest = if higher(&left, &right) { left } else { right };
         Ok(highest.grows().then_some(highest))
     }

@@ -1,6 +1,7 @@
 //! Zeros and extrema of functions of one number.
 
 use crate::error::Result;
+use std::ops::Range;
 
 /// Relative width of the bracket at which the root search stops: rounding of eigenvalues.
 const ROOT_TOLERANCE: f64 = 1e-13;
@@ -97,11 +98,15 @@ pub fn boundary<E>(
 /// `at` gives the value at a number, `left_is_higher` compares two, `done` is asked before each step with the width of the
 /// interval and the two values.
 pub fn golden_section<T, E>(
-    (mut low, mut high): (f64, f64),
+    bracket: Range<f64>,
     mut at: impl FnMut(f64) -> std::result::Result<T, E>,
     left_is_higher: impl Fn(&T, &T) -> bool,
     mut done: impl FnMut(f64, &T, &T) -> bool,
 ) -> std::result::Result<((f64, f64), [T; 2]), E> {
+    let Range {
+        start: mut low,
+        end: mut high,
+    } = bracket;
     let mut left = high - GOLDEN * (high - low);
     let mut right = low + GOLDEN * (high - low);
     let (mut at_left, mut at_right) = (at(left)?, at(right)?);

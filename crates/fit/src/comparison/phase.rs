@@ -205,7 +205,7 @@ fn place_of_maximum(function: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
         steps > ITERATIONS
     };
     let at = |x| Ok::<_, Infallible>(function(x));
-    let Ok(((low, high), _)) = golden_section((low, high), at, f64::gt, done);
+    let Ok(((low, high), _)) = golden_section(low..high, at, f64::gt, done);
     0.5 * (low + high)
 }
 

@@ -257,7 +257,8 @@ pub(crate) const LEAST_NOISE: f64 = 0.01;
 pub(crate) fn relative_noise(
     residual_sum: f64,
     total_sum: f64,
-    (rows, unknowns): (usize, usize),
+    rows: usize,
+    unknowns: usize,
 ) -> f64 {
     let relative = |v: f64| (v * rows as f64 / total_sum).sqrt().max(LEAST_NOISE);
     match variance(residual_sum, rows, unknowns) {

@@ -206,7 +206,7 @@ impl Search<'_> {
         } else {
             (high - low) / (grid_points as f64 - 1.0)
         };
-        let ends = ((centre - step).max(low), (centre + step).min(high));
+        let ends = (centre - step).max(low)..(centre + step).min(high);
         let at = |x: f64| self.evaluate(&[x.exp()]);
         golden_section(ends, at, f64::lt, |width, _, _| width <= GOLDEN_TOLERANCE)?;
         self.best()

@@ -46,7 +46,7 @@ impl Dissipation<'_> {
             if values[at] <= ROUNDING || values[at] < values[low].max(values[high]) {
                 continue;
             }
-            let ends = (all[low].ln(), all[high].ln());
+            let ends = all[low].ln()..all[high].ln();
             let mut best = (values[at], all[at]);
             let look = |x: f64| {
                 let value = excess(x.exp());

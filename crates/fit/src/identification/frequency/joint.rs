@@ -52,7 +52,7 @@ pub(super) fn by_noise(
     for (e, entry) in entries.iter().enumerate() {
         let fit = entry.fit(&Basis::new(form, &poles[e])?)?;
         let residual = fit.factor.residual_sum(fit.unknowns, 0);
-        noisy[e] /= relative_noise(residual, entry.total(), (entry.rows.len(), fit.unknowns));
+        noisy[e] /= relative_noise(residual, entry.total(), entry.rows.len(), fit.unknowns);
         before += by_size[e].powi(2) * residual;
         after += noisy[e].powi(2) * residual;
     }

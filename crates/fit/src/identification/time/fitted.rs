@@ -284,7 +284,7 @@ impl JointTimeFit {
         let columns = factor.columns();
         let (total, residual) = (factor.total_sum(0), factor.residual_sum(columns, 0));
         let share = if total > 0.0 {
-            let noise = relative_noise(residual, total, (factor.rows(), columns));
+            let noise = relative_noise(residual, total, factor.rows(), columns);
             (total * count).sqrt().recip() / noise
         } else {
             1.0
