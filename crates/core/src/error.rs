@@ -9,6 +9,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// Result of every fallible function of the crate.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// fn onset_m_s() -> aerodeck::Result<f64> {
+///     Err(aerodeck::Error::Numerical("no onset".into()))
+/// }
+/// assert!(onset_m_s().is_err());
+/// ```
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// A problem in something the user supplied.

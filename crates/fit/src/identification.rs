@@ -7,6 +7,7 @@ pub mod derivatives;
 pub(crate) mod discrete;
 pub(crate) mod dissipative;
 mod entry_report;
+mod fit;
 pub(crate) mod form;
 mod frequency;
 pub(crate) mod frequency_options;
@@ -31,6 +32,7 @@ pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
 };
 pub use entry_report::{Coefficient, EntryReport};
+pub use fit::{FitOptions, fit};
 pub use form::{FeedThrough, Form, LEAST_CHOSEN, MOST_CHOSEN, PoleSearch};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
