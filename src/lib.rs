@@ -10,8 +10,8 @@
 //! use aerodeck::prelude::*;
 //!
 //! # fn main() -> Result<()> {
-//! let table = named_table("LN21-5200", "".as_ref())?; // or read_table("workbook.xlsx")
-//! let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
+//! let table = named_table("LN21-5200", "".as_ref())?; // or "workbook.xlsx"
+//! let Fitted { model, report } = fit(&table.samples(&Dof::TWO)[..], &FrequencyFit::default())?;
 //!
 //! let structure = SectionModel::table_4_1().structure()?;
 //! let section = CoupledSection::with_model(&structure, &model)?;

@@ -61,4 +61,4 @@ pub use search::{curve_speeds_m_s, find_onset_of_modes, judged_speeds};
 pub use sweep::at_samples;
 pub use sweep::stands_at_samples;
 pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};
-pub use unwanted::{UnwantedGrowth, unwanted_growth};
+pub use unwanted::{UnwantedGrowth, unwanted_growth, unwanted_growth_below};

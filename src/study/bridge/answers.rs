@@ -7,8 +7,8 @@ use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
     AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, UnwantedGrowth,
-    divergence_speed, find_onset, motion_at_onset, pk_onset, static_deflection, static_part,
-    trace_modes, unwanted_growth,
+    divergence_speed, find_onset, find_onset_of_modes, motion_at_onset, pk_onset,
+    static_deflection, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::identification::OnsetEffect;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -160,7 +160,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let divergence_m_s = divergence_speed(&study.by_model.structure(), &at_rest)?;
     let mut noted = |what: &str, e: crate::Error| failed.push(format!("{what}: {e}"));
     let of_tables = table_divergence(study).map_err(|e| noted("divergence of the tables", e));
-    let growth = unwanted_growth(&section, &search, tested);
+    let growth = unwanted_growth_below(Some(&by_model.search), &section, &search, tested);
     let growth = growth.map_err(|e| noted("scan for growth", e)).ok();
     let galloping =
         galloping(study, &search).map_err(|e| noted("galloping by static coefficients", e));
@@ -311,7 +311,8 @@ fn fewer_modes(
         let part = study
             .by_model
             .with_modes(|i| modes.contains(&study.by_model.modes[i].number))?;
-        let found = find_onset(
+        // the whole bridge was searched: the modes that are left are followed alone
+        let found = find_onset_of_modes(
             "fewer modes",
             &coupled(&part)?,
             search,

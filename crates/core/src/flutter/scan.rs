@@ -10,6 +10,8 @@ use crate::error::{Error, Result, non_negative, positive};
 use crate::state_space::{boundary, golden_section};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -25,6 +27,9 @@ pub(super) const AERODYNAMIC: &str = "aerodynamic";
 const EDGE_TOLERANCE: f64 = 1e-11;
 /// Relative distance from a critical speed, known to rounding, at which both sides of it are looked at.
 const BESIDE: f64 = 1e-7;
+/// States up to which one thread is faster than sharing the speeds among several.
+#[cfg(feature = "parallel")]
+const ALONE: usize = 40;
 /// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
 const PEAK_STEPS: usize = 24;
 
@@ -242,6 +247,10 @@ impl<'a> Scan<'a> {
     }
 
     fn all_at(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
+        #[cfg(feature = "parallel")]
+        if self.section.states() > ALONE {
+            return speeds.par_iter().map(|v| self.at(*v)).collect();
+        }
         speeds.iter().map(|v| self.at(*v)).collect()
     }
 
@@ -274,14 +283,17 @@ impl<'a> Scan<'a> {
 
     /// Adds growth that is met only between the speeds looked at.
     fn add_peaks(&self, points: &mut Vec<ScanPoint>) -> Result<()> {
-        let mut peaks = Vec::new();
-        for three in points.windows(3) {
+        let is_peak = |three: &&[ScanPoint]| {
             let rate = |i: usize| three[i].rate();
-            if !three[1].grows() && rate(1) >= rate(0) && rate(1) >= rate(2) {
-                peaks.extend(self.peak(three[0].speed, three[2].speed)?);
-            }
-        }
-        points.extend(peaks);
+            !three[1].grows() && rate(1) >= rate(0) && rate(1) >= rate(2)
+        };
+        let around: Vec<&[ScanPoint]> = points.windows(3).filter(is_peak).collect();
+        let highest = |three: &&[ScanPoint]| self.peak(three[0].speed, three[2].speed);
+        #[cfg(feature = "parallel")]
+        let peaks: Result<Vec<_>> = around.par_iter().map(highest).collect();
+        #[cfg(not(feature = "parallel"))]
+        let peaks: Result<Vec<_>> = around.iter().map(highest).collect();
+        points.extend(peaks?.into_iter().flatten());
         points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok(())
     }

@@ -38,9 +38,22 @@ pub fn unwanted_growth(
 ) -> Result<UnwantedGrowth> {
     // a search that fails leaves the whole range to the scan
     let answer = find_onset(OnsetMethod::Eigenvalues.name(), section, search, tested).ok();
+    unwanted_growth_below(answer.as_ref(), section, search, tested)
+}
+
+/// The same below the answer of [`find_onset`] for this section, where that is known.
+///
+/// # Errors
+/// As [`unwanted_growth`].
+pub fn unwanted_growth_below(
+    answer: Option<&FlutterSearch>,
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<UnwantedGrowth> {
     let highest = search.speed_max_m_s;
     // the scan ends at the first speed, growth counts that begins below the second
-    let (limit, below) = match answer.as_ref().and_then(FlutterSearch::critical) {
+    let (limit, below) = match answer.and_then(FlutterSearch::critical) {
         Some(at) if tested.is_some_and(|range| at.reduced_frequency > range.max) => {
             // no mode grows inside the tested range: the answer itself is made up
             (highest, at.speed_m_s * (1.0 + BELOW))

@@ -19,37 +19,44 @@ struct Shifts {
     w: f64,
 }
 
-/// Makes a matrix upper Hessenberg by elimination with pivots, which keeps its eigenvalues.
+/// Makes a matrix upper Hessenberg by elimination with pivots, which keeps its eigenvalues: half the work of reflections.
 pub(super) fn reduce(a: &mut DMatrix<f64>) {
     let n = a.nrows();
     for k in 1..n.saturating_sub(1) {
-        let column = a.column(k - 1);
-        let pivot = k + column.rows(k, n - k).iamax();
+        let pivot = k + a.column(k - 1).rows(k, n - k).iamax();
         a.swap_rows(k, pivot);
         a.swap_columns(k, pivot);
         let head = a[(k, k - 1)];
         if head == 0.0 {
             continue;
         }
-        for i in k + 1..n {
-            let factor = a[(i, k - 1)] / head;
-            a[(i, k - 1)] = 0.0;
-            if factor != 0.0 {
-                (k..n).for_each(|j| a[(i, j)] -= factor * a[(k, j)]);
-                (0..n).for_each(|j| a[(j, k)] += factor * a[(j, i)]);
-            }
+        // the factors stand where the zeros will be
+        let (before, columns) = a.as_mut_slice().split_at_mut(k * n);
+        let factors = &mut before[(k - 1) * n + k + 1..];
+        factors.iter_mut().for_each(|f| *f /= head);
+        for column in columns.chunks_exact_mut(n) {
+            let (above, below) = column.split_at_mut(k + 1);
+            subtract(below, factors, above[k]);
         }
+        let (column, others) = columns.split_at_mut(n);
+        for (other, factor) in others.chunks_exact(n).zip(&*factors) {
+            subtract(column, other, -factor);
+        }
+        factors.fill(0.0);
     }
 }
 
-/// Eigenvalues of an upper Hessenberg matrix; `None` when the iteration does not converge.
-pub(super) fn hessenberg_eigenvalues(mut h: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let mut found = Vec::with_capacity(h.nrows());
-    append_eigenvalues(&mut h, &mut found)?;
-    Some(found)
+/// `from −= factor what`.
+fn subtract(from: &mut [f64], what: &[f64], factor: f64) {
+    if factor != 0.0 {
+        from.iter_mut()
+            .zip(what)
+            .for_each(|(x, w)| *x -= factor * w);
+    }
 }
 
-/// The same in place; takes no memory where there is room for them.
+/// Appends the eigenvalues of an upper Hessenberg matrix, which is spoilt; `None` when the iteration does not converge. Takes no
+/// memory where there is room for them.
 pub(super) fn append_eigenvalues(
     h: &mut DMatrix<f64>,
     found: &mut Vec<Complex<f64>>,
@@ -205,7 +212,7 @@ fn sweep(h: &mut DMatrix<f64>, first: usize, last: usize, shifts: Shifts) {
     }
 }
 
-/// Householder reflection of `column` to `−s e₁`, from both sides.
+/// Householder reflection of `column` to `−s e₁`, from both sides; of two rows where the third is none.
 fn reflect(
     h: &mut DMatrix<f64>,
     k: usize,
@@ -216,15 +223,33 @@ fn reflect(
     column: [f64; 3],
 ) {
     let head = column[0] + s;
-    let left: [f64; 3] = [head / s, column[1] / s, column[2] / s];
-    let right: [f64; 3] = [1.0, column[1] / head, column[2] / head];
-    for j in k..=last {
-        let p: f64 = (0..rows).map(|i| right[i] * h[(k + i, j)]).sum();
-        (0..rows).for_each(|i| h[(k + i, j)] -= p * left[i]);
+    let left = [head / s, column[1] / s, column[2] / s];
+    let right = [1.0, column[1] / head, column[2] / head];
+    let n = h.nrows();
+    let entries = h.as_mut_slice();
+    for column in entries[k * n..(last + 1) * n].chunks_exact_mut(n) {
+        let block = &mut column[k..k + rows];
+        let p: f64 = block.iter().zip(right).map(|(x, r)| x * r).sum();
+        block.iter_mut().zip(left).for_each(|(x, l)| *x -= p * l);
     }
-    for i in first..=(k + 3).min(last) {
-        let p: f64 = (0..rows).map(|j| left[j] * h[(i, k + j)]).sum();
-        (0..rows).for_each(|j| h[(i, k + j)] -= p * right[j]);
+    let seen = first..=(k + 3).min(last);
+    let (one, others) = entries[k * n..(k + rows) * n].split_at_mut(n);
+    let (two, three) = others.split_at_mut(n);
+    let one = one[seen.clone()].iter_mut();
+    let pairs = one.zip(&mut two[seen.clone()]);
+    if three.is_empty() {
+        for (x, y) in pairs {
+            let p = left[0] * *x + left[1] * *y;
+            *x -= p;
+            *y -= p * right[1];
+        }
+    } else {
+        for ((x, y), z) in pairs.zip(&mut three[seen]) {
+            let p = left[0] * *x + left[1] * *y + left[2] * *z;
+            *x -= p;
+            *y -= p * right[1];
+            *z -= p * right[2];
+        }
     }
 }
 
@@ -235,11 +260,15 @@ mod tests {
 
     /// Every value found is an exact eigenvalue of a matrix that differs by rounding.
     fn check(a: &DMatrix<f64>) {
+        let mut found = Vec::new();
         let mut reduced = a.clone();
         reduce(&mut reduced);
-        judge(a, hessenberg_eigenvalues(reduced).unwrap());
-        let reflected = Hessenberg::new(a.clone()).unpack_h();
-        judge(a, hessenberg_eigenvalues(reflected).unwrap());
+        append_eigenvalues(&mut reduced, &mut found).unwrap();
+        judge(a, found);
+        // by reflections, another way
+        let mut found = Vec::new();
+        append_eigenvalues(&mut Hessenberg::new(a.clone()).unpack_h(), &mut found).unwrap();
+        judge(a, found);
     }
 
     fn judge(a: &DMatrix<f64>, found: Vec<Complex<f64>>) {

@@ -1,9 +1,9 @@
 //! Eigenvalues of balanced matrices and single eigenvectors.
 
 use super::complex;
-use super::francis::{append_eigenvalues, hessenberg_eigenvalues, reduce};
+use super::francis::{append_eigenvalues, reduce};
 use crate::error::{Error, Result};
-use nalgebra::{Complex, DMatrix, DVector, Hessenberg};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Scales rows and columns by powers of two until their norms agree (Parlett & Reinsch 1969): `D⁻¹ A D`.
 ///
@@ -60,8 +60,9 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
             "eigenvalues: a matrix entry is not finite".into(),
         ));
     }
-    hessenberg_eigenvalues(Hessenberg::new(balance(a)).unpack_h())
-        .ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))
+    let mut found = RepeatedEigenvalues::new(a.nrows());
+    let found = found.of(&mut a.clone()).map(<[_]>::to_vec);
+    found.ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))
 }
 
 /// Memory for the eigenvalues of matrices of one size, again and again: only the first time takes any from the system.

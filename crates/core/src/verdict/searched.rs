@@ -7,7 +7,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
     AssumedAtRest, FlutterSearch, OnsetSearch, divergence_speed, judged_speeds, static_part,
-    table_tested_from, trace_modes, unwanted_growth,
+    table_tested_from, trace_modes, unwanted_growth_below,
 };
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -30,13 +30,13 @@ impl Evidence {
             Ok(Reach::of(judged, &curves, structure.width_m))
         });
         let reach = evidence.noted("modes over wind speed", reach);
+        let growth = unwanted_growth_below(Some(&found), section, search, Some(tested));
+        evidence.growth = evidence.noted("scan for growth", growth);
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
             basis: ForceBasis::tested(tested, reach.unwrap_or_else(Reach::nowhere)),
         });
-        let growth = unwanted_growth(section, search, Some(tested));
-        evidence.growth = evidence.noted("scan for growth", growth);
         let divergence = divergence_speed(structure, at_rest);
         if let Some(speed_m_s) = evidence.noted("divergence", divergence) {
             let reading = DivergenceReading::at(forces, speed_m_s);
