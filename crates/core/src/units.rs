@@ -87,6 +87,15 @@ impl ReducedFrequency {
 }
 
 /// Reduced velocity `V* = V/(fB) = 2π/K`, dimensionless.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::units::{ReducedFrequency, ReducedVelocity};
+/// use std::f64::consts::TAU;
+///
+/// let k = ReducedFrequency::from(ReducedVelocity::new(5.0));
+/// assert!((k.full_width() - TAU / 5.0).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct ReducedVelocity(f64);

@@ -15,6 +15,13 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Lags `d_l > 0`, dimensionless. In files a list of numbers, or a list of such lists.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::Lags;
+///
+/// assert_eq!(Lags::Shared(vec![0.09, 0.6]).count(), 2);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a list of lags, or one list for each force")]
 pub enum Lags {

@@ -115,6 +115,20 @@ impl Solved {
 
 /// Smallest damping ratio of the modes at a wind speed (m/s), by all eigenvalues; one where nothing oscillates.
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{smallest_damping};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// assert!(smallest_damping(&section, 40.0)? > 0.0);
+/// assert!(smallest_damping(&section, 90.0)? < 0.0);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`CoupledSection::at`], and where the eigenvalues are not found.
 pub fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {

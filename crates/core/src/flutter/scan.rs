@@ -90,6 +90,21 @@ impl GrowthBand {
 /// between two speeds is a statement about every one between; what is sampled or large looks at every eigenvalue at speeds a
 /// twentieth apart or closer, and at peaks between them. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{growth_scan};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// assert!(growth_scan(&section, 0.0, 60.0, None)?.is_empty());
+/// let bands = growth_scan(&section, 0.0, 100.0, None)?;
+/// assert!(!bands[0].from_start && bands[0].to_m_s == 100.0);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for speeds that are no interval; [`Error::Numerical`] when eigenvalues cannot be computed.
 pub fn growth_scan(

@@ -31,6 +31,20 @@ pub struct UnwantedGrowth {
 /// Looks for growth below the onset of `section` that rests on no test: all of it at reduced frequencies outside
 /// `tested`. Growth that goes on into the tested range is a property of the deck (a bluff one may be unstable from the
 /// start) and is left to the search for the onset.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::flutter::{OnsetSearch, unwanted_growth};
+/// use aerodeck::section::SectionModel;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let growth = unwanted_growth(&section, &OnsetSearch::default(), None)?;
+/// assert!(growth.is_none() && growth.proved);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 pub fn unwanted_growth(
     section: &CoupledSection,
     search: &OnsetSearch,

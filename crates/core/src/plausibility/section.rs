@@ -33,6 +33,17 @@ const FASTEST_PLATE_M_S: f64 = 200.0;
 const FASTEST_FOOTBRIDGE_M_S: f64 = 350.0;
 
 /// What is odd about a section. One cause is said once: ratios are judged only where width and density are usual.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::plausibility::of_section;
+/// use aerodeck::section::SectionModel;
+///
+/// let section = SectionModel::iabse_1_1a();
+/// assert!(of_section(&section).is_empty());
+/// let in_millimetres = SectionModel { width_m: 1e3 * section.width_m, ..section };
+/// assert!(!of_section(&in_millimetres).is_empty());
+/// ```
 pub fn of_section(section: &SectionModel) -> Vec<Finding> {
     let (heave, twist) = (&section.vertical, &section.torsion);
     let sway = section.lateral.as_ref();

@@ -49,6 +49,16 @@ fn balance_in_place(m: &mut DMatrix<f64>) {
 /// Repeated poles of an uncoupled filter chain come out on a small ring around their true place
 /// (the chain is defective); structural modes are accurate to rounding.
 ///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::state_space::eigenvalues;
+/// use nalgebra::DMatrix;
+///
+/// let rotation = DMatrix::from_row_slice(2, 2, &[0.0, -3.0, 3.0, 0.0]);
+/// assert!(eigenvalues(&rotation)?.iter().all(|z| (z.norm() - 3.0).abs() < 1e-15));
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Numerical`] when an entry is not finite or the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {

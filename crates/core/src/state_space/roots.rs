@@ -97,6 +97,16 @@ pub fn boundary<E>(
 ///
 /// `at` gives the value at a number, `left_is_higher` compares two, `done` is asked before each step with the width of the
 /// interval and the two values.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::state_space::golden_section;
+///
+/// let parabola = |x: f64| Ok::<f64, aerodeck::Error>(-(x - 2.0) * (x - 2.0));
+/// let (interval, _) = golden_section(0.0..5.0, parabola, |a, b| a > b, |width, _, _| width < 1e-6)?;
+/// assert!((interval.0 - 2.0).abs() < 1e-6);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 pub fn golden_section<T, E>(
     bracket: Range<f64>,
     mut at: impl FnMut(f64) -> std::result::Result<T, E>,

@@ -7,6 +7,15 @@ use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
 /// The wind speed below which nothing critical may begin: the criterion of a code.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::verdict::{Evidence, RequiredSpeed, Verdict};
+///
+/// // nothing was looked at
+/// let required = Some(RequiredSpeed { speed_m_s: 60.0 });
+/// assert!(Verdict::of(&Evidence { required, ..Evidence::default() }).refuses());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RequiredSpeed {
     /// Wind speed, m/s.

@@ -6,6 +6,15 @@ use serde::{Deserialize, Serialize};
 
 /// Takenaka–Malmquist filters `Λ_l(p) = √(2p_l)/(p + p_l) Π_{j<l} (p − p_j)/(p + p_j)`; equal poles give the
 /// Laguerre filters.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::FilterBank;
+///
+/// assert_eq!(FilterBank::new(vec![0.4; 3])?.count(), 3);
+/// assert!(FilterBank::new(vec![0.4, -1.0]).is_err());
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct FilterBank {
