@@ -116,6 +116,21 @@ pub fn growth_scan(
     Scan::new("", section, tested).bands(from_m_s, to_m_s, false)
 }
 
+/// What is found for each of many speeds, on all cores where a section has so many `states` that it pays.
+fn shared<T: Sync, U: Send>(
+    of: &[T],
+    states: usize,
+    find: impl Fn(&T) -> Result<U> + Send + Sync,
+) -> Result<Vec<U>> {
+    #[cfg(feature = "parallel")]
+    if states > ALONE {
+        return of.par_iter().map(find).collect();
+    }
+    // a program with one thread has no choice
+    let _ = states;
+    of.iter().map(find).collect()
+}
+
 /// The fastest growing oscillations at one speed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ScanPoint {
@@ -262,11 +277,7 @@ impl<'a> Scan<'a> {
     }
 
     fn all_at(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
-        #[cfg(feature = "parallel")]
-        if self.section.states() > ALONE {
-            return speeds.par_iter().map(|v| self.at(*v)).collect();
-        }
-        speeds.iter().map(|v| self.at(*v)).collect()
+        shared(speeds, self.section.states(), |v| self.at(*v))
     }
 
     /// Points on both sides of all critical speeds and half way between them. Where no two eigenvalues have a positive real
@@ -304,11 +315,8 @@ impl<'a> Scan<'a> {
         };
         let around: Vec<&[ScanPoint]> = points.windows(3).filter(is_peak).collect();
         let highest = |three: &&[ScanPoint]| self.peak(three[0].speed, three[2].speed);
-        #[cfg(feature = "parallel")]
-        let peaks: Result<Vec<_>> = around.par_iter().map(highest).collect();
-        #[cfg(not(feature = "parallel"))]
-        let peaks: Result<Vec<_>> = around.iter().map(highest).collect();
-        points.extend(peaks?.into_iter().flatten());
+        let peaks = shared(&around, self.section.states(), highest)?;
+        points.extend(peaks.into_iter().flatten());
         points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok(())
     }

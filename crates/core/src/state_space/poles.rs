@@ -62,17 +62,15 @@ fn balance_in_place(m: &mut DMatrix<f64>) {
 /// # Errors
 /// [`Error::Numerical`] when an entry is not finite or the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
-    if a.is_empty() {
-        return Ok(Vec::new());
-    }
-    if !a.iter().all(|x| x.is_finite()) {
-        return Err(Error::Numerical(
-            "eigenvalues: a matrix entry is not finite".into(),
-        ));
-    }
     let mut found = RepeatedEigenvalues::new(a.nrows());
     let found = found.of(&mut a.clone()).map(<[_]>::to_vec);
-    found.ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))
+    found.ok_or_else(|| {
+        let why = match a.iter().all(|x| x.is_finite()) {
+            true => "the QR iteration did not converge",
+            false => "a matrix entry is not finite",
+        };
+        Error::Numerical(format!("eigenvalues: {why}"))
+    })
 }
 
 /// Memory for the eigenvalues of matrices of one size, again and again: only the first time takes any from the system.
