@@ -339,6 +339,7 @@ impl Stepper {
     ///
     /// # Errors
     /// [`Error::Input`] for inputs that are not finite.
+    #[inline]
     pub fn outputs(
         &mut self,
         state: &SectionState,
