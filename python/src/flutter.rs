@@ -15,7 +15,7 @@ use aerodeck::plausibility::{Finding, of_section};
 use aerodeck::section::SectionModel;
 use aerodeck::study::FlutterBlock;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
-use aerodeck::verdict::{Evidence, MovedOnset, RequiredSpeed, Verdict};
+use aerodeck::verdict::{Evidence, RequiredSpeed, Verdict};
 use pyo3::prelude::*;
 
 /// Reduced frequencies in which the flat plate is searched.
@@ -121,14 +121,8 @@ fn model_evidence(
     let at_rest = model.model.transfer(at_rest).map_err(raised)?;
     let mut evidence =
         Evidence::of_section("the model", &coupled, &at_rest, model.tested, search, found);
-    let effect = model
-        .report
-        .as_ref()
-        .and_then(|r| r.constraints.as_ref()?.onset.as_ref());
-    evidence.constraints = effect.map(|effect| MovedOnset {
-        without_m_s: effect.without_m_s,
-        with_m_s: effect.with_m_s,
-    });
+    let report = model.report.as_ref();
+    evidence.constraints = report.and_then(|r| r.constraints.as_ref()?.onset);
     Ok(evidence)
 }
 

@@ -9,13 +9,13 @@ use crate::flutter::{
     FlutterSearch, Instability, OnsetMethod, OnsetSearch, StableRange, find_onset, judged_speeds,
     table_tested_from,
 };
-use crate::identification::{FitReport, OnsetEffect};
+use crate::identification::FitReport;
 use crate::plausibility::of_section;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, MovedOnset, Reach,
+    MeanRotation, Reach,
 };
 
 /// Stages that draw and write, without which the answer is the same.
@@ -40,7 +40,7 @@ pub(crate) fn section_evidence(
     failed: &[StageFailure],
 ) -> Evidence {
     let name = own.model.map(|m| m.name.as_str());
-    let held = own.fit.and_then(|f| f.constraints.as_ref()?.onset.as_ref());
+    let held = own.fit.and_then(|f| f.constraints.as_ref()?.onset);
     let mut evidence = Evidence {
         required: study.flutter.required(),
         flutter: own
@@ -54,7 +54,7 @@ pub(crate) fn section_evidence(
             .find(|g| Some(g.model.as_str()) == name)
             .map(|g| g.growth.clone()),
         failures: failures(study, failed, name),
-        constraints: held.map(moved_onset),
+        constraints: held,
         test_speeds: own.uncertainty.and_then(one_test_speed),
         implausible: [deck.findings(), &study_findings(study)[..]].concat(),
         tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
@@ -190,14 +190,6 @@ fn failures(study: &Study, failed: &[StageFailure], own: Option<&str>) -> Vec<Fa
             bears_on_answer: bears(&f.stage),
         })
         .collect()
-}
-
-/// What constraints did to an onset.
-pub(super) fn moved_onset(effect: &OnsetEffect) -> MovedOnset {
-    MovedOnset {
-        without_m_s: effect.without_m_s,
-        with_m_s: effect.with_m_s,
-    }
 }
 
 /// 1 where the tests behind an interval are at one mean speed; else not known here.

@@ -4,11 +4,9 @@ use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
 use crate::aerodynamics::derivatives::TableHeader;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, StableRange, find_onset};
+use crate::flutter::{FlutterSearch, MovedOnset, StableRange, find_onset};
 use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
-use crate::identification::{
-    FitReport, Fitted, OnProgress, OnsetEffect, fit_discrete, fit_records, fit_table,
-};
+use crate::identification::{FitReport, Fitted, OnProgress, fit_discrete, fit_records, fit_table};
 use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
 use crate::uncertainty::{
     CoefficientUncertainty, FormEnsemble, ModelUncertainty, discrete_uncertainty,
@@ -54,7 +52,7 @@ pub fn train_one(
         // an account only: a search that fails without constraints is no reason to refuse the model with them
         let alone = onset(&constraints.unconstrained, report.tested_range);
         let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
-        constraints.onset = Some(OnsetEffect {
+        constraints.onset = Some(MovedOnset {
             without_m_s: alone.ok().as_ref().and_then(speed),
             with_m_s: speed(&search),
         });

@@ -30,6 +30,8 @@ pub const ARROWS: &[Row] = &[
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("bridge", &["aerodynamics+"]),
+    row("aeroelastic", &["aerodynamics+"]),
+    row("flutter", &["aeroelastic+", "bridge"]),
     row("plausibility", &["aerodynamics+", "bridge"]),
     row("files", &["aerodynamics+", "bridge", "plausibility"]),
     row(
@@ -56,14 +58,14 @@ pub const ARROWS: &[Row] = &[
             "wind_tunnel::Segment",
             // what a fit returns
             "trained_model::Model",
+            // what its account of constraints says of an onset, once the section is known
+            "flutter::MovedOnset",
         ],
     ),
     row(
         "comparison",
         &["signal", "identification+", "wind_tunnel+", "files"],
     ),
-    row("aeroelastic", &["aerodynamics+"]),
-    row("flutter", &["aeroelastic+", "bridge"]),
     row("response", &["aeroelastic+"]),
     row("buffeting", &["flutter+", "response+", "signal"]),
     row("live", &["flutter+", "trained_model+"]),

@@ -46,7 +46,7 @@ pub use determinant::{determinant_onset, impedance};
 pub use divergence::{AssumedAtRest, static_part};
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
-pub use judged::{FastMotion, StableRange, TestedFrom};
+pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
 pub use judged::{JudgedSpeeds, damps_fast_motion};
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};

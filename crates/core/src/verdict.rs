@@ -35,7 +35,7 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, MovedOnset, RequiredSpeed, UntestedPart,
+    MeanRotation, RequiredSpeed, UntestedPart,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;

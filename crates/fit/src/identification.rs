@@ -29,7 +29,7 @@ pub(crate) mod time;
 pub use discrete::DiscreteFit;
 pub use discrete::fit_discrete;
 pub use dissipative::{
-    ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
+    ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints,
 };
 pub use entry_report::{Coefficient, EntryReport};
 pub use fit::{FitOptions, fit};

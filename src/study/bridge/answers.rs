@@ -6,11 +6,10 @@ use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, UnwantedGrowth,
-    divergence_speed, find_onset, find_onset_of_modes, motion_at_onset, pk_onset,
+    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, MovedOnset, Onset, OnsetSearch,
+    UnwantedGrowth, divergence_speed, find_onset, find_onset_of_modes, motion_at_onset, pk_onset,
     static_deflection, static_part, trace_modes, unwanted_growth_below,
 };
-use crate::identification::OnsetEffect;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -74,7 +73,7 @@ pub struct BridgeFlutter {
     pub mean_rotation: Option<BridgeRotation>,
     /// What constraints on the fits of sections did to the onset; `None` where none hold one, or models were read from files.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub constraints: Option<OnsetEffect>,
+    pub constraints: Option<MovedOnset>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
 }

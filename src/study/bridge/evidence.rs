@@ -1,6 +1,5 @@
 //! What is known of a bridge, as evidence for its verdict.
 
-use super::super::evidence::moved_onset;
 use super::BridgeStudy;
 use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::aerodynamics::Transfer;
@@ -47,7 +46,7 @@ impl BridgeStudy {
             flutter,
             divergence,
             growth: results.growth.clone(),
-            constraints: results.constraints.as_ref().map(moved_onset),
+            constraints: results.constraints,
             failures: failed.iter().map(|f| failure(f)).collect(),
             mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
                 speed_m_s: mean.speed_m_s,

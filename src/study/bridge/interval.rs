@@ -3,8 +3,9 @@
 use super::BridgeStudy;
 use super::answers::coupled;
 use crate::error::{Error, Result};
-use crate::flutter::{BetweenSpeeds, FlutterSearch, NearbyOnset, Onset, OnsetInterval, find_onset};
-use crate::identification::OnsetEffect;
+use crate::flutter::{
+    BetweenSpeeds, FlutterSearch, MovedOnset, NearbyOnset, Onset, OnsetInterval, find_onset,
+};
 use crate::uncertainty::{CoefficientUncertainty, OnsetError};
 use std::sync::Arc;
 
@@ -59,7 +60,7 @@ impl BridgeStudy {
     ///
     /// # Errors
     /// As [`find_onset`].
-    pub(super) fn moved_onset(&self, with: &FlutterSearch) -> Result<Option<OnsetEffect>> {
+    pub(super) fn moved_onset(&self, with: &FlutterSearch) -> Result<Option<MovedOnset>> {
         if self.sections.iter().all(|s| s.unconstrained.is_none()) {
             return Ok(None);
         }
@@ -79,7 +80,7 @@ impl BridgeStudy {
                 .onset()
                 .map(|o| o.at.speed_m_s),
         };
-        Ok(Some(OnsetEffect {
+        Ok(Some(MovedOnset {
             without_m_s,
             with_m_s: onset.map(|o| o.at.speed_m_s),
         }))

@@ -15,6 +15,7 @@ use crate::identification::{Fitted, FrequencyFit, fit_table};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequencyRange;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 const FLAT_PLATE: &str = "flat plate";
 const JONES: &str = "flat plate (Jones)";
@@ -344,19 +345,9 @@ impl<'a> Setting<'a> {
     fn spectra(&self, speed: f64) -> Result<SpectrumCurve> {
         let at = self.required(speed)?;
         let problem = self.problem(&at)?;
-        let natural = self.structure.dofs_by_frequency();
-        let hertz = |dof: &Dof| {
-            let i = self
-                .structure
-                .dofs
-                .iter()
-                .position(|d| d == dof)
-                .unwrap_or(0);
-            let s = &self.structure;
-            (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt() / std::f64::consts::TAU
-        };
-        let ends = natural.first().zip(natural.last());
-        let (low, high) = ends.map_or((1.0, 1.0), |(a, b)| (hertz(a), hertz(b)));
+        let still_air_hz = || self.structure.still_air_rad_s().map(|w| w / TAU);
+        let low = still_air_hz().fold(f64::INFINITY, f64::min);
+        let high = still_air_hz().fold(0.0, f64::max);
         let (low, high) = (low * SPECTRUM_REACH.0, high * SPECTRUM_REACH.1);
         let last = (SPECTRUM_POINTS - 1) as f64;
         let frequency_hz: Vec<f64> = (0..SPECTRUM_POINTS)

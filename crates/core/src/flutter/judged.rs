@@ -29,6 +29,15 @@ pub struct StableRange {
     pub not_judged: Option<String>,
 }
 
+/// One onset by the data alone and by the fit as it is; `None` where there is none in the range searched.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MovedOnset {
+    /// By the data alone, m/s.
+    pub without_m_s: Option<f64>,
+    /// Under the constraints, m/s.
+    pub with_m_s: Option<f64>,
+}
+
 impl StableRange {
     /// Every speed from still air to this one, m/s.
     pub fn up_to(to_m_s: f64) -> Self {

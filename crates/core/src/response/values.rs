@@ -67,18 +67,13 @@ impl SectionState {
         }
     }
 
-    /// Replaces the numbers of [`SectionState::all`].
-    pub fn set_all(&mut self, numbers: &[f64]) {
-        let (values, gusts) = numbers.split_at(self.values.len());
-        self.values.copy_from_slice(values);
-        self.gusts.copy_from_slice(gusts);
-    }
-
     /// The same state with other numbers in [`SectionState::all`].
     #[must_use]
     pub fn with_all(&self, numbers: &[f64]) -> Self {
         let mut other = self.clone();
-        other.set_all(numbers);
+        let (values, gusts) = numbers.split_at(self.values.len());
+        other.values.copy_from_slice(values);
+        other.gusts.copy_from_slice(gusts);
         other
     }
 }

@@ -82,12 +82,6 @@ impl Structure {
         order
     }
 
-    /// Degrees of freedom from the lowest to the highest still-air frequency.
-    pub fn dofs_by_frequency(&self) -> Vec<Dof> {
-        let rows = self.rows_by_frequency();
-        rows.into_iter().map(|i| self.dofs[i]).collect()
-    }
-
     /// The same structure with only those of its degrees of freedom that are among `dofs`; the others are locked.
     #[must_use]
     pub fn only(&self, dofs: &[Dof]) -> Self {

@@ -1,7 +1,7 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
 use super::reach::Reach;
-use crate::flutter::{FlutterSearch, Onset, OnsetInterval, TestedFrom, UnwantedGrowth};
+use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, TestedFrom, UnwantedGrowth};
 use crate::plausibility::Finding;
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
@@ -210,15 +210,6 @@ pub struct Failure {
     pub reason: String,
     /// Whether the answer could be another without the failure.
     pub bears_on_answer: bool,
-}
-
-/// One onset by the data alone and by the fit as it is; `None` where there is none in the range searched.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MovedOnset {
-    /// By the data alone, m/s.
-    pub without_m_s: Option<f64>,
-    /// Under the constraints, m/s.
-    pub with_m_s: Option<f64>,
 }
 
 /// Rotation in the mean wind, and at the tests.

@@ -1,8 +1,9 @@
 //! The doubt about an onset that constraints of a fit have moved.
 
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{FlutterReading, MovedOnset};
+use super::evidence::FlutterReading;
 use super::words::speed;
+use crate::flutter::MovedOnset;
 
 /// What constraints may move an onset by before it is told, relative to the onset without them.
 const MOVES_AT_MOST: f64 = 0.01;

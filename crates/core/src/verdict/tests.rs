@@ -4,8 +4,8 @@ mod doubts;
 
 use super::*;
 use crate::flutter::{
-    BetweenSpeeds, CriticalPoint, ErrorParts, FastMotion, FlutterSearch, GrowthBand, Onset,
-    OnsetInterval, OnsetMethod, StableRange, TestedFrom, UnstableStart, UnwantedGrowth,
+    BetweenSpeeds, CriticalPoint, ErrorParts, FastMotion, FlutterSearch, GrowthBand, MovedOnset,
+    Onset, OnsetInterval, OnsetMethod, StableRange, TestedFrom, UnstableStart, UnwantedGrowth,
 };
 use crate::plausibility::Finding;
 use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};

@@ -39,7 +39,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use report::GrowthLimit;
 use stated::{Condition, Stated};
 
-pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, OnsetEffect};
+pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport};
 pub(crate) use tangent::{LinearEntry, Tangent};
 
 /// Violation, on the scale of the condition, at which a fit without constraints breaks it.

@@ -1,5 +1,6 @@
 //! What active constraints are called, what they cost and what they change.
 
+use crate::flutter::MovedOnset;
 use crate::identification::basis::Basis;
 use crate::identification::entry_report::EntryReport;
 use crate::section::Dof;
@@ -72,15 +73,6 @@ pub struct ConstraintCost {
     pub with: Option<f64>,
 }
 
-/// The onset of one section with and without constraints; `None` where there is none in the range searched.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OnsetEffect {
-    /// Of the fit that the data alone would give, m/s.
-    pub without_m_s: Option<f64>,
-    /// Of the fit as it is, m/s.
-    pub with_m_s: Option<f64>,
-}
-
 /// Account of the constraints that hold a fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConstraintReport {
@@ -92,7 +84,7 @@ pub struct ConstraintReport {
     pub costs: Vec<ConstraintCost>,
     /// What they do to the onset; filled in where the section is known.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub onset: Option<OnsetEffect>,
+    pub onset: Option<MovedOnset>,
     /// The model that the data alone would give.
     #[serde(skip)]
     pub unconstrained: Box<Model>,
@@ -182,18 +174,6 @@ impl ActiveConstraint {
             .map(|(v, d)| format!("{:.2} {}", v * largest.signum(), d.name()))
             .collect();
         format!("coupled ({})", parts.join(", "))
-    }
-}
-
-impl OnsetEffect {
-    /// How far the constraints move the onset, relative to the one without them; infinite where only one of the two fits has
-    /// an onset, zero where none has.
-    pub fn shift(&self) -> f64 {
-        match (self.without_m_s, self.with_m_s) {
-            (Some(without), Some(with)) => with / without - 1.0,
-            (None, None) => 0.0,
-            _ => f64::INFINITY,
-        }
     }
 }
 
