@@ -7,8 +7,9 @@ mod convert;
 pub(super) mod demo;
 pub(in crate::cli) mod files;
 mod flutter;
+mod page;
 mod show;
-mod summary;
+pub(in crate::cli) mod summary;
 
 pub(crate) use args::read;
 

@@ -6,17 +6,16 @@ pub(in crate::cli) mod folder;
 mod live;
 mod parts;
 mod variables;
-mod view;
-
-pub(crate) use bridge::{BridgeFacts, ModeFacts, SectionFacts};
 
 use super::answer::Answer;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
+use super::summary::{FitSummary, Summary};
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetMethod};
+use crate::identification::EntryReport;
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
@@ -24,7 +23,6 @@ use folder::{REPORT, SUMMARY, SummaryKind, digest, parsed};
 use parts::{card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
-use view::{EntryView, FitView, SummaryView};
 
 /// Write report.html, one self-contained page, from a folder of results of `study`, `demo` or `bridge flutter`
 ///
@@ -56,7 +54,7 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     if kind.bridge.is_some() {
         return bridge::page(folder, &text);
     }
-    let summary: SummaryView = parsed(&path, &text)?;
+    let summary: Summary = parsed(&path, &text)?;
     let staged = folder.join(&summary.study_file);
     let study_path = if staged.exists() {
         staged
@@ -88,7 +86,7 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     study_page(&page)
 }
 
-fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
+fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
     let verdict = &summary.verdict;
     let is_own =
         |o: &&Onset| o.at.model == summary.model && o.at.method == OnsetMethod::Eigenvalues;
@@ -118,7 +116,7 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
     }
 }
 
-fn asked(summary: &SummaryView, study: &Study) -> Vec<(String, String)> {
+fn asked(summary: &Summary, study: &Study) -> Vec<(String, String)> {
     let s = &study.section;
     let support =
         |inertia: String, frequency: Option<f64>, stiffness: Option<f64>, damping: f64| {
@@ -167,9 +165,10 @@ fn asked(summary: &SummaryView, study: &Study) -> Vec<(String, String)> {
     asked.into_iter().map(owned).collect()
 }
 
-fn fit(fit: &FitView) -> PageFit {
+fn fit(fit: &FitSummary) -> PageFit {
+    let report = &fit.report;
     let k = |k: crate::units::ReducedFrequency| format!("{:.3}", k.full_width());
-    let entry = |e: &EntryView| {
+    let entry = |e: &EntryReport| {
         let residual = e
             .relative_rms
             .map_or("–".to_owned(), |r| format!("{:.1} %", 100.0 * r));
@@ -180,15 +179,19 @@ fn fit(fit: &FitView) -> PageFit {
             poles.join(", "),
         )
     };
-    let held = fit.constraints.iter().flat_map(|c| &c.sentences);
+    let held = report.constraints.iter().flat_map(|c| &c.sentences);
     let held = held.map(|s| format!("constraint: {s}"));
     PageFit {
         model: fit.model.clone(),
-        method: fit.method.clone(),
-        tested: format!("{} to {}", k(fit.tested_range.min), k(fit.tested_range.max)),
-        condition: format!("{:.0}", fit.condition),
-        entries: fit.entries.iter().map(entry).collect(),
-        remarks: held.chain(fit.notes.iter().cloned()).collect(),
+        method: report.method.clone(),
+        tested: format!(
+            "{} to {}",
+            k(report.tested_range.min),
+            k(report.tested_range.max)
+        ),
+        condition: format!("{:.0}", report.condition),
+        entries: report.entries.iter().map(entry).collect(),
+        remarks: held.chain(report.notes.iter().cloned()).collect(),
     }
 }
 

@@ -8,11 +8,11 @@ use crate::study::{
     SteppedOnset, TrainedWithReport,
 };
 use crate::verdict::Verdict;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// What `summary.json` holds.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 pub(crate) struct Summary {
     /// Program and version.
     pub generator: String,
@@ -61,7 +61,7 @@ pub(crate) struct Summary {
 }
 
 /// A fit in short.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 pub(crate) struct FitSummary {
     /// Name of the model.
     pub model: String,

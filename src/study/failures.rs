@@ -1,10 +1,10 @@
 //! Stages that fail without taking the others with them.
 
 use crate::error::{Error, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A stage of a study that failed; what does not need it went on.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StageFailure {
     /// Which stage, in words.
     pub stage: String,

@@ -50,10 +50,11 @@ pub fn train_one(
     });
     if let Some(constraints) = &mut report.constraints {
         // an account only: a search that fails without constraints is no reason to refuse the model with them
-        let alone = onset(&constraints.unconstrained, report.tested_range);
+        let alone = constraints.unconstrained.as_ref();
+        let alone = alone.and_then(|model| onset(model, report.tested_range).ok());
         let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
         constraints.onset = Some(MovedOnset {
-            without_m_s: alone.ok().as_ref().and_then(speed),
+            without_m_s: alone.as_ref().and_then(speed),
             with_m_s: speed(&search),
         });
     }

@@ -13,7 +13,7 @@ use crate::flutter::{
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Results of all models of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -43,7 +43,7 @@ pub struct FlutterStudy {
 }
 
 /// Growth of one model where nothing was tested.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelGrowth {
     /// Force model.
     pub model: String,
@@ -53,7 +53,7 @@ pub struct ModelGrowth {
 }
 
 /// A search without an onset.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OnsetSummary {
     /// Force model.
     pub model: String,
@@ -68,7 +68,7 @@ pub struct OnsetSummary {
 }
 
 /// Divergence of one model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Divergence {
     /// Force model.
     pub model: String,
@@ -83,7 +83,7 @@ pub struct Divergence {
 }
 
 /// Difference of a model's onset from the deck's own.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
     /// Force model.
     pub model: String,

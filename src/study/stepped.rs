@@ -12,7 +12,7 @@ use crate::fmu::importer::{
 };
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -25,7 +25,7 @@ const MAX_ROUNDS: usize = 12;
 const LOWEST_PART: f64 = 0.15;
 
 /// Onset found by stepping.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SteppedOnset {
     /// The onset, found with the shorter communication step.
     pub onset: Onset,
@@ -34,7 +34,7 @@ pub struct SteppedOnset {
 }
 
 /// The search with one communication step.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SteppedRun {
     /// Communication step, s.
     pub communication_step_s: f64,

@@ -17,4 +17,5 @@ mod bridge;
 mod calculated_onset;
 mod description;
 mod importer;
+mod one_row;
 mod stepped_answers;

@@ -63,7 +63,7 @@ fn onsets_with_and_without_constraints_and_of_the_table() {
                 let held = fitted(&table, dofs, form, Constraints::Dissipative);
                 let took = start.elapsed().as_secs_f64() * 1e3;
                 let free = match &held.report.constraints {
-                    Some(c) => &*c.unconstrained,
+                    Some(c) => c.unconstrained.as_deref().unwrap(),
                     None => &held.model,
                 };
                 for named in &sections {

@@ -7,11 +7,13 @@
 
 mod access;
 mod bridge_built;
-mod bridge_derivatives;
 mod bridge_followed;
 mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
+mod calculated;
+mod coupled;
+mod coupled_derivatives;
 mod damping;
 pub(crate) mod derivatives;
 mod force_ahead;
@@ -23,7 +25,6 @@ mod layout;
 mod memory;
 mod saving;
 mod section;
-mod section_derivatives;
 mod section_places;
 mod section_trust;
 mod section_unit;

@@ -6,8 +6,11 @@
 
 mod bridge;
 mod bridge_states;
+mod computed;
+mod computed_rows;
 mod dependencies;
 mod dof_names;
+mod dual;
 mod force;
 mod listing;
 mod parameters;
@@ -18,11 +21,14 @@ mod tests;
 mod variable;
 
 pub use super::standard::{Causality, Initial, Variability};
+pub use computed::{ComputedNumber, Formula, Known, OnsetNumbers, Present};
+pub(crate) use computed_rows::LINEAR_ROTATION_RAD;
+pub use dual::Dual;
 pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use variable::{
-    Calculated, ForceOutput, GustDirection, InitialDependency, ModeOutput, Response, Role, Safety,
-    StartValue, StripParameter, Variable,
+    ForceOutput, GustDirection, InitialDependency, ModeOutput, Response, Role, StartValue,
+    StripParameter, Variable,
 };
 
 use super::bridge_options::BridgeOptions;
@@ -56,6 +62,7 @@ impl VariableTable {
             None => {
                 let mut variables = section::variables(model, gusts, bounds)?;
                 dependencies::fill(&mut variables, model, gusts);
+                computed_rows::fill_dependencies(&mut variables);
                 variables
             }
             Some(options) => force::variables(model, options, gusts)?,
@@ -73,6 +80,14 @@ impl VariableTable {
         turbulence: bool,
     ) -> Result<Self> {
         Self::checked(bridge::variables(model, options, turbulence)?)
+    }
+
+    /// The same table of a section or bridge with one more number, for units that run in this process.
+    #[must_use]
+    pub fn with_number(mut self, number: &'static ComputedNumber) -> Self {
+        self.variables.push(number.variable());
+        computed_rows::fill_dependencies(&mut self.variables);
+        self
     }
 
     fn checked(variables: Vec<Variable>) -> Result<Self> {

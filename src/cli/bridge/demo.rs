@@ -7,7 +7,8 @@ use super::super::stages;
 use super::account::card;
 use super::files::BRIDGE_FMU;
 use super::flutter::computed;
-use super::summary::{self, BridgeRun};
+use super::page;
+use super::summary::BridgeRun;
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
@@ -47,7 +48,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
         comparisons: Vec::new(),
         failed,
     };
-    let summary = summary::leave(&ran, &study, &results, &verdict, &mut out)?;
+    let summary = page::leave(&ran, &study, &results, &verdict, &mut out)?;
     let answer_json =
         serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
     let passed = ran.failed.is_empty();

@@ -10,7 +10,7 @@ use super::args::BridgeArgs;
 use super::files::{
     CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE, shown_modes,
 };
-use super::{account, summary};
+use super::{account, page, summary};
 use crate::error::Result;
 use crate::files::text::csv_cell;
 use crate::flutter::BridgeMotion;
@@ -84,7 +84,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     if is_of_a_study(&out.target(SUMMARY)) {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
-        summary::leave(&ran, &study, &results, &verdict, &mut out)?;
+        page::leave(&ran, &study, &results, &verdict, &mut out)?;
     }
     let json = serde_json::json!({
         "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": ran.failed

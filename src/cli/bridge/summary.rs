@@ -1,16 +1,14 @@
-//! `summary.json` of a bridge and the page that is made from it.
+//! `summary.json` of a bridge.
 
-use super::super::output::OutputDir;
-use super::super::report::folder::{REPORT, SUMMARY};
-use super::super::report::{self, BridgeFacts, ModeFacts, SectionFacts};
 use super::account::beside_the_onset;
-use crate::error::Result;
 use crate::flutter::Onset;
 use crate::plausibility::Finding;
 use crate::section::Dof;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
+use crate::units::ReducedFrequencyRange;
 use crate::verdict::Verdict;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// What was run.
 pub(super) struct BridgeRun {
@@ -25,31 +23,75 @@ pub(super) struct BridgeRun {
 }
 
 /// What `summary.json` holds.
-#[derive(Serialize)]
-pub(super) struct BridgeSummary<'a> {
-    #[serde(flatten)]
-    facts: BridgeFacts,
-    warnings: Vec<String>,
-    findings: &'a [Finding],
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct BridgeSummary {
+    /// Program and version.
+    pub(crate) generator: String,
+    /// Name of the bridge.
+    pub(crate) bridge: String,
+    /// Text of the bridge file.
+    pub(crate) bridge_file: String,
+    /// The command that made the results.
+    pub(crate) command: String,
+    /// What everything found amounts to.
+    pub(crate) verdict: Verdict,
+    /// What else was found, in words.
+    pub(crate) comparisons: Vec<String>,
+    /// Number of nodes of the girder.
+    pub(crate) nodes: usize,
+    /// Length of the girder, m.
+    pub(crate) length_m: f64,
+    /// Width to which reduced frequencies refer, m.
+    pub(crate) width_m: f64,
+    /// Where the forces of each section come from.
+    pub(crate) sections: Vec<SectionFacts>,
+    /// The modes without wind.
+    pub(crate) modes: Vec<ModeFacts>,
+    /// Files written.
+    pub(crate) files: Vec<PathBuf>,
+    /// What was assumed or looks wrong, in words.
+    pub(crate) warnings: Vec<String>,
+    /// What is odd about modes, sections and tables.
+    pub(crate) findings: Vec<Finding>,
     /// All onsets found, one entry per route.
-    onsets: Vec<&'a Onset>,
+    pub(crate) onsets: Vec<Onset>,
     /// The full answer.
-    flutter: &'a BridgeFlutter,
-    failed: &'a [String],
+    pub(crate) flutter: BridgeFlutter,
+    /// Parts that failed, in words.
+    pub(crate) failed: Vec<String>,
 }
 
-/// Leaves summary and page.
-pub(super) fn leave<'a>(
-    ran: &'a BridgeRun,
-    study: &'a BridgeStudy,
-    results: &'a BridgeFlutter,
-    verdict: &Verdict,
-    out: &mut OutputDir,
-) -> Result<BridgeSummary<'a>> {
-    out.stage(REPORT)?;
-    out.stage(SUMMARY)?;
-    let summary = BridgeSummary {
-        facts: BridgeFacts {
+/// Where the forces of a section come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SectionFacts {
+    pub(crate) name: String,
+    pub(crate) width_m: f64,
+    pub(crate) source: String,
+    pub(crate) licence: String,
+    /// Reduced frequencies of the tests.
+    pub(crate) tested_range: Option<ReducedFrequencyRange>,
+}
+
+/// A mode without wind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ModeFacts {
+    pub(crate) mode: usize,
+    pub(crate) frequency_hz: f64,
+    pub(crate) generalised_mass: f64,
+    pub(crate) damping_ratio: f64,
+    pub(crate) main_motion: String,
+}
+
+impl BridgeSummary {
+    /// Of results beside which these files are written.
+    pub(super) fn of(
+        ran: &BridgeRun,
+        study: &BridgeStudy,
+        results: &BridgeFlutter,
+        verdict: &Verdict,
+        files: Vec<PathBuf>,
+    ) -> Self {
+        Self {
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             bridge: study.file.name.clone(),
             bridge_file: ran.text.clone(),
@@ -61,18 +103,14 @@ pub(super) fn leave<'a>(
             width_m: study.by_model.width_m(),
             sections: sections(study),
             modes: modes(study),
-            files: out.targets(),
-        },
-        warnings: study.warnings(),
-        findings: &study.findings,
-        onsets: results.onsets().collect(),
-        flutter: results,
-        failed: &ran.failed,
-    };
-    out.write_json(SUMMARY, &summary)?;
-    let page = report::page(out.staging(), &out.target(""))?;
-    out.write(REPORT, page)?;
-    Ok(summary)
+            files,
+            warnings: study.warnings(),
+            findings: study.findings.clone(),
+            onsets: results.onsets().cloned().collect(),
+            flutter: results.clone(),
+            failed: ran.failed.clone(),
+        }
+    }
 }
 
 fn sections(study: &BridgeStudy) -> Vec<SectionFacts> {

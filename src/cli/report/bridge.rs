@@ -8,98 +8,20 @@ use crate::cli::bridge::files::{
     BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
     shown_modes,
 };
+use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
-use crate::flutter::{ModeShare, Onset};
+use crate::flutter::ModeShare;
 use crate::report::{PageCurve, PageFigure, PageSection, StudyPage, study_page};
 use crate::study::bridge::LeftOut;
-use crate::units::ReducedFrequencyRange;
-use crate::verdict::Verdict;
-use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Modes with less of the kinetic energy are not in the table of those that take part.
 const NAMED_SHARE: f64 = 1e-4;
 
-/// What `summary.json` says of a bridge beside its results.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct BridgeFacts {
-    /// Program and version.
-    pub(crate) generator: String,
-    /// Name of the bridge.
-    pub(crate) bridge: String,
-    /// Text of the bridge file.
-    pub(crate) bridge_file: String,
-    /// The command that made the results.
-    pub(crate) command: String,
-    /// What everything found amounts to.
-    pub(crate) verdict: Verdict,
-    /// What else was found, in words.
-    pub(crate) comparisons: Vec<String>,
-    /// Number of nodes of the girder.
-    pub(crate) nodes: usize,
-    /// Length of the girder, m.
-    pub(crate) length_m: f64,
-    /// Width to which reduced frequencies refer, m.
-    pub(crate) width_m: f64,
-    /// Where the forces of each section come from.
-    pub(crate) sections: Vec<SectionFacts>,
-    /// The modes without wind.
-    pub(crate) modes: Vec<ModeFacts>,
-    /// Files written.
-    pub(crate) files: Vec<PathBuf>,
-}
-
-/// Where the forces of a section come from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SectionFacts {
-    pub(crate) name: String,
-    pub(crate) width_m: f64,
-    pub(crate) source: String,
-    pub(crate) licence: String,
-    /// Reduced frequencies of the tests.
-    pub(crate) tested_range: Option<ReducedFrequencyRange>,
-}
-
-/// A mode without wind.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ModeFacts {
-    pub(crate) mode: usize,
-    pub(crate) frequency_hz: f64,
-    pub(crate) generalised_mass: f64,
-    pub(crate) damping_ratio: f64,
-    pub(crate) main_motion: String,
-}
-
-/// What is read of `summary.json`.
-#[derive(Deserialize)]
-struct BridgeView {
-    #[serde(flatten)]
-    facts: BridgeFacts,
-    onsets: Vec<Onset>,
-    flutter: FlutterView,
-}
-
-#[derive(Deserialize)]
-struct FlutterView {
-    answers: Vec<RouteView>,
-    left_out: Vec<LeftOut>,
-}
-
-#[derive(Deserialize)]
-struct RouteView {
-    motion: Option<MotionView>,
-}
-
-#[derive(Deserialize)]
-struct MotionView {
-    modes: Vec<ModeShare>,
-}
-
 /// The page of the results in `folder`, whose summary is `text`.
 pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
-    let view: BridgeView = parsed(&folder.join(SUMMARY), text)?;
-    let facts = &view.facts;
+    let facts: BridgeSummary = parsed(&folder.join(SUMMARY), text)?;
     let file = BridgeFile::from_toml(&facts.bridge_file, folder.to_path_buf())?;
     // what stands there from other runs is not of these results
     let read = |name: &str| {
@@ -110,11 +32,11 @@ pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
         own.then(|| std::fs::read(folder.join(name)).ok()).flatten()
     };
     let text_of = |name: &str| read(name).and_then(|bytes| String::from_utf8(bytes).ok());
-    let route = view.flutter.answers.last();
+    let route = facts.flutter.answers.last();
     let shares = route.and_then(|r| r.motion.as_ref());
     let shares = shares.map_or(&[][..], |m| &m.modes);
     // found in the order of the routes, the model last
-    let own = view.onsets.last();
+    let own = facts.onsets.last();
     let mut page = StudyPage {
         title: facts.bridge.clone(),
         subtitle: "Flutter of a whole bridge",
@@ -126,17 +48,17 @@ pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
         whose: "The verdict is about tables read between their points, where there are some and they reach the onset; the numbers of the card \
                 are those of the models of the sections, by the eigenvalues of all modes in the wind. The motion is that of the node that turns most."
             .to_owned(),
-        asked: asked(facts, &file),
-        onsets: view.onsets.iter().map(row).collect(),
+        asked: asked(&facts, &file),
+        onsets: facts.onsets.iter().map(row).collect(),
         comparisons: facts.comparisons.clone(),
         sections: vec![
             taking_part(shares),
-            fewer(&view.flutter.left_out, own.map(|o| o.at.speed_m_s)),
+            fewer(&facts.flutter.left_out, own.map(|o| o.at.speed_m_s)),
         ],
-        appendix: vec![data(facts), modes(facts)],
+        appendix: vec![data(&facts), modes(&facts)],
         figures: figures(&text_of, &facts.sections),
         command: facts.command.clone(),
-        licence: licences(facts),
+        licence: licences(&facts),
         onset: own.map(|o| o.at.speed_m_s),
         interval: own.and_then(|o| known(&o.interval)),
         text: facts.bridge_file.clone(),
@@ -192,7 +114,7 @@ fn chosen(curves: Vec<PageCurve>, shown: &[String]) -> Vec<PageCurve> {
     all
 }
 
-fn asked(facts: &BridgeFacts, file: &BridgeFile) -> Vec<(String, String)> {
+fn asked(facts: &BridgeSummary, file: &BridgeFile) -> Vec<(String, String)> {
     let damping = match &file.modes.damping_ratio {
         DampingRatios::Same(ratio) => {
             format!("damping ratio {} % each", round(100.0 * ratio))
@@ -237,7 +159,7 @@ fn asked(facts: &BridgeFacts, file: &BridgeFile) -> Vec<(String, String)> {
     rows.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
-fn licences(facts: &BridgeFacts) -> String {
+fn licences(facts: &BridgeSummary) -> String {
     let mut all: Vec<&str> = facts
         .sections
         .iter()
@@ -293,7 +215,7 @@ fn fewer(left_out: &[LeftOut], full: Option<f64>) -> PageSection {
     }
 }
 
-fn data(facts: &BridgeFacts) -> PageSection {
+fn data(facts: &BridgeSummary) -> PageSection {
     let row = |s: &SectionFacts| {
         let tested = s.tested_range.map_or("–".to_owned(), |r| {
             format!("{:.3} to {:.3}", r.min.full_width(), r.max.full_width())
@@ -320,7 +242,7 @@ fn data(facts: &BridgeFacts) -> PageSection {
     }
 }
 
-fn modes(facts: &BridgeFacts) -> PageSection {
+fn modes(facts: &BridgeSummary) -> PageSection {
     let row = |m: &ModeFacts| {
         vec![
             m.mode.to_string(),

@@ -18,7 +18,7 @@ use std::sync::Arc;
 const SHARES: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
 
 /// One route to the onset.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BridgeAnswer {
     /// The forces.
     pub forces: String,
@@ -51,7 +51,7 @@ pub struct TableDivergence {
 }
 
 /// Everything about the flutter of a bridge.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BridgeFlutter {
     /// By table (p-k) where there is one, then by model (eigenvalues).
     pub answers: Vec<BridgeAnswer>,

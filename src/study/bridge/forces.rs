@@ -297,7 +297,7 @@ fn by_table(
             .collect(),
         unconstrained: report
             .constraints
-            .map(|held| Arc::from(held.unconstrained as Box<dyn Transfer>)),
+            .and_then(|held| Some(Arc::from(held.unconstrained? as Box<dyn Transfer>))),
         uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
         degrees_of_freedom: None,
     };

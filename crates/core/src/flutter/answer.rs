@@ -4,7 +4,7 @@ use super::critical_point::CriticalPoint;
 use super::judged::{RangePassages, StableRange};
 use super::onset::Onset;
 use crate::units::ReducedFrequencyRange;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Speeds closer than this, relatively, are one finding by two ways.
 const SAME_SPEED: f64 = 1e-3;
@@ -27,7 +27,7 @@ const SAME_SPEED: f64 = 1e-3;
 /// }
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FlutterSearch {
     /// The section flutters from this speed on.
@@ -39,7 +39,7 @@ pub enum FlutterSearch {
 }
 
 /// Growth at the lowest speed at which a mode could be judged.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UnstableStart {
     /// The lowest speed that could be judged, at or below which the onset is, and the growing motion there.
     #[serde(flatten)]

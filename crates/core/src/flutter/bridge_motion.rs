@@ -32,7 +32,7 @@ pub struct ModeShare {
 }
 
 /// The motion of a node: displacement is the real part of the complex number times `e^{iωt}`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NodeMotion {
     /// Name of the node.
     pub node: String,
@@ -44,7 +44,7 @@ pub struct NodeMotion {
 }
 
 /// The motion at an onset.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BridgeMotion {
     /// Modes by falling share of the kinetic energy.
     pub modes: Vec<ModeShare>,

@@ -8,11 +8,11 @@ use crate::section::Structure;
 use crate::state_space::damping_ratio;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// One mode at one wind speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModePoint {
     /// Wind speed, m/s.
     pub speed_m_s: f64,
@@ -43,7 +43,7 @@ impl ModePoint {
 }
 
 /// A complex number as it is written to files.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Complex64 {
     /// Real part.
     pub re: f64,
@@ -58,7 +58,7 @@ impl From<Complex<f64>> for Complex64 {
 }
 
 /// A mode followed over all wind speeds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModeBranch {
     /// Degree of freedom the mode moves in still air.
     pub name: String,
@@ -67,7 +67,7 @@ pub struct ModeBranch {
 }
 
 /// All structural modes over wind speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FlutterCurves {
     /// Name of the force model.
     pub model: String,

@@ -6,7 +6,7 @@ use crate::section::Dof;
 use crate::state_space::ValueAt;
 use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
 use nalgebra::{DMatrix, SymmetricEigen};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Reduced frequencies above the tested range at which forces are asked whether they damp.
 const SAMPLES: usize = 120;
@@ -19,7 +19,7 @@ const GAIN: f64 = 1e-3;
 const NO_MASS: f64 = 1e-2;
 
 /// Speeds between which every mode was looked at and none grows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StableRange {
     /// Lowest speed at which all modes could be judged, m/s; 0 from still air.
     pub from_m_s: f64,
@@ -30,7 +30,7 @@ pub struct StableRange {
 }
 
 /// One onset by the data alone and by the fit as it is; `None` where there is none in the range searched.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MovedOnset {
     /// By the data alone, m/s.
     pub without_m_s: Option<f64>,

@@ -12,7 +12,7 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
@@ -34,7 +34,7 @@ const ALONE: usize = 40;
 const PEAK_STEPS: usize = 24;
 
 /// A band of wind speeds in which an oscillating eigenvalue has a positive real part.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GrowthBand {
     /// Lowest speed with growth, m/s.
     pub from_m_s: f64,

@@ -8,7 +8,7 @@ use super::search::{OnsetSearch, find_onset};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::units::ReducedFrequencyRange;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The scan goes this much beyond the onset, to see whether growth below goes on into the tested range.
 const BEYOND: f64 = 1.02;
@@ -16,7 +16,7 @@ const BEYOND: f64 = 1.02;
 const BELOW: f64 = 1e-6;
 
 /// What a scan from nearly still air to the onset found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UnwantedGrowth {
     /// The scan goes up to the onset, or to the highest speed where there is none, m/s.
     pub scanned_to_m_s: f64,

@@ -2,10 +2,10 @@
 
 use crate::section::Dof;
 use nalgebra::DMatrix;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Account of one transfer function.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EntryReport {
     /// Force (row of `G`).
     pub force: Dof,
@@ -30,7 +30,7 @@ pub struct EntryReport {
 }
 
 /// One coefficient.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
     /// Name as in the equations.
     pub name: String,

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Terms this many times larger than their sum say that the fit lives on differences of large numbers.
 pub(crate) const CANCELLATION_LIMIT: f64 = 30.0;
@@ -38,7 +38,7 @@ pub struct Fitted {
 }
 
 /// Account of one fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitReport {
     /// What was fitted, in words.
     pub method: String,
@@ -72,7 +72,7 @@ pub struct FitReport {
 }
 
 /// The constant part of one force.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StaticReport {
     /// Force.
     pub force: Dof,
@@ -86,7 +86,7 @@ pub struct StaticReport {
 
 /// Whether a record is at rest for longer than the filters remember (thesis, section 3.3): otherwise forces of a motion
 /// before the record enter the fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MemoryReport {
     /// Name of the record.
     pub record: String,
@@ -106,7 +106,7 @@ impl MemoryReport {
 }
 
 /// The search of one set of poles.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchReport {
     /// Transfer function (force, motion) it belongs to; `None` when the poles are shared by all.
     pub entry: Option<(Dof, Dof)>,
@@ -124,7 +124,7 @@ pub struct SearchReport {
 }
 
 /// One evaluated point.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchPoint {
     /// Free poles, dimensionless.
     pub poles: Vec<f64>,
@@ -133,7 +133,7 @@ pub struct SearchPoint {
 }
 
 /// Fit with fewer filters.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OrderReport {
     /// Number of filters `L`.
     pub filters: usize,
@@ -142,7 +142,7 @@ pub struct OrderReport {
 }
 
 /// Guideline (2.36) for the decay factor of the discrete model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AlphaGuideline {
     /// `α` in use.
     pub alpha: f64,

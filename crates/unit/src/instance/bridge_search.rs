@@ -7,7 +7,6 @@ use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, FoundOnset, OnsetSearch, divergence_speed, find_onset};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
-use crate::variables::Calculated;
 
 /// Speeds of the search for the onset; more than for a section would take seconds.
 const SPEEDS: usize = 60;
@@ -18,7 +17,7 @@ impl OnsetCard {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_of(built) {
             Ok(speed) => card.set_divergence(speed, limit),
-            Err(why) => card.unknown_part(Calculated::DivergenceSpeed, &why),
+            Err(why) => card.divergence_unknown(&why),
         }
         card
     }
@@ -35,7 +34,7 @@ impl OnsetCard {
         let k = ReducedFrequency::from_hertz(hertz, built.bridge.width_m(), speed);
         let inside = tested.is_some_and(|range| range.contains(k));
         card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
-        card.set_flag(Calculated::StableBelowOnset, true);
+        card.numbers.stable_below = true;
         card
     }
 
@@ -59,10 +58,10 @@ impl OnsetCard {
                 let inside = k.zip(tested).is_some_and(|(k, range)| range.contains(k));
                 searched = found.onset().and_then(|o| SearchedOnset::of(built, o));
                 card.take(found, limit);
-                card.set_flag(Calculated::OnsetInTestedRange, inside);
-                card.set_flag(Calculated::StableBelowOnset, stable);
+                card.numbers.in_tested_range = inside;
+                card.numbers.stable_below = stable;
             }
-            Err(why) => card.unknown_part(Calculated::OnsetSpeed, &why),
+            Err(why) => card.onset_unknown(&why),
         }
         (card, searched)
     }

@@ -5,43 +5,46 @@
 
 use super::bridge_built::Built;
 use super::bridge_followed::SearchedOnset;
-use super::bridge_places::BridgePlaces;
+use super::calculated::CalculatedNumbers;
+use super::coupled::{CoupledPlaces, CoupledUnit, blow_until_release};
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, check_finite, finite};
-use super::trust::{LINEAR_ROTATION_RAD, MonitoredUnit, beyond_linear};
+use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge_options::BridgeOptions;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::lifecycle::State;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
-use crate::response::{Inputs, Outputs, SectionState};
+use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::variables::{ModeOutput, Role};
+use crate::variables::{LINEAR_ROTATION_RAD, ModeOutput, OnsetNumbers, Role};
 use nalgebra::DMatrix;
 
 /// See the module.
 #[derive(Debug)]
 pub(super) struct BridgeUnit {
-    pub places: BridgePlaces,
+    places: CoupledPlaces,
+    /// Motions and modes: places, and what they stand for.
+    responses: Vec<(usize, Role)>,
     /// What follows from the parameters.
-    pub built: Built,
+    built: Built,
     /// Whether they have changed since.
     stale: bool,
-    pub tested: Option<ReducedFrequencyRange>,
+    tested: Option<ReducedFrequencyRange>,
     /// Displacements of the mass-normalised modes: vertical, lateral, rotation of each named node.
     shapes: DMatrix<f64>,
     /// Root of the generalised mass of each mode.
-    pub roots: Vec<f64>,
+    roots: Vec<f64>,
     release_pending: bool,
-    onset_current: bool,
+    calculated: CalculatedNumbers,
     /// From which the onset of other parameters is followed.
     searched: Option<SearchedOnset>,
     warned: bool,
-    pub inputs: Inputs,
+    inputs: Inputs,
     outputs: Outputs,
 }
 
@@ -58,7 +61,12 @@ impl BridgeUnit {
         let searched = start.and_then(|start| SearchedOnset::from(&built, start).ok());
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
         Ok(Self {
-            places: BridgePlaces::new(table, options)?,
+            places: CoupledPlaces::of_bridge(table, options)?,
+            responses: (0..)
+                .zip(table.variables())
+                .filter(|(_, v)| matches!(v.role, Role::NodeMotion(..) | Role::Mode(..)))
+                .map(|(place, v)| (place, v.role))
+                .collect(),
             shapes: built.bridge.shapes_at(&options.named),
             roots: masses.collect(),
             tested: options.tested_range,
@@ -66,30 +74,21 @@ impl BridgeUnit {
             built,
             stale: false,
             release_pending: true,
-            onset_current: false,
+            calculated: CalculatedNumbers::new(&resources.table),
             searched,
             warned: false,
             outputs: Outputs::default(),
         })
     }
 
-    /// Wind, and forces and gusts on the modes, at the time of the memory.
-    pub(super) fn load_inputs(&mut self, memory: &Memory) {
-        self.load_own_inputs(memory);
-        let factor = self.turbulence_factor(memory);
-        self.built
-            .add_turbulence(&mut self.inputs, memory.time, factor);
-    }
-
-    /// The same without the turbulence of the archive.
+    /// Loads wind, and forces and gusts on the modes, without the turbulence of the archive.
     fn load_own_inputs(&mut self, memory: &Memory) {
         let rates = &memory.input_rates;
-        self.inputs.wind_speed_m_s = memory.values[self.places.inputs[0]];
+        self.inputs.wind_speed_m_s = self.places.wind_speed(memory);
         self.inputs.wind_speed_rate_m_s2 = rates[0];
         self.inputs.force.fill(0.0);
         self.inputs.force_rate.fill(0.0);
-        let forces = &self.places.inputs[1..self.places.first_gust];
-        for (row, place) in forces.iter().enumerate() {
+        for (row, place) in self.places.forces().iter().enumerate() {
             let (force, rate) = (memory.values[*place], rates[row + 1]);
             if force == 0.0 && rate == 0.0 {
                 continue;
@@ -99,8 +98,8 @@ impl BridgeUnit {
                 self.inputs.force_rate[m] += phi * rate;
             }
         }
-        let gusts = &self.places.inputs[self.places.first_gust..];
-        let gusts = gusts.iter().map(|place| memory.values[*place]);
+        let gusts = self.places.gusts().iter();
+        let gusts = gusts.map(|place| memory.values[*place]);
         let gust_rates = rates[self.places.first_gust..].iter().copied();
         self.built.set_gusts(&mut self.inputs, gusts, gust_rates);
     }
@@ -110,22 +109,8 @@ impl BridgeUnit {
         place.map_or(0.0, |place| memory.values[place])
     }
 
-    /// State at release with the initial values in `values` and the gusts that are loaded, which have blown like that until then.
-    pub(super) fn release(&self, values: &[f64]) -> Result<SectionState> {
-        let initial = self.places.initial.iter().zip(&self.roots);
-        let displacement: Vec<f64> = initial.map(|(place, root)| values[*place] * root).collect();
-        let still = vec![0.0; displacement.len()];
-        let mut state = self.built.stepper.released(&displacement, &still)?;
-        let channels = &self.inputs.gust_m_s;
-        let lags = state.gusts.len() / channels.len().max(1);
-        for (lagging, gust) in state.gusts.chunks_mut(lags.max(1)).zip(channels) {
-            lagging.fill(*gust);
-        }
-        Ok(state)
-    }
-
     /// What a role stands for in the motion of the mass-normalised modes.
-    pub(super) fn pick(&self, modal: &Outputs, role: Role) -> f64 {
+    fn pick_modal(&self, modal: &Outputs, role: Role) -> f64 {
         match role {
             Role::NodeMotion(node, response, dof) => {
                 let row = self.shapes.row(3 * node + crate::bridge::motion_index(dof));
@@ -139,69 +124,79 @@ impl BridgeUnit {
         }
     }
 
-    /// The same with the states and their rates.
-    pub(super) fn pick_of(&self, instant: &SectionValues, role: Role) -> f64 {
-        match role {
-            Role::Filter(entry) => instant.of_state(entry),
-            Role::FilterRate(entry) => instant.of_rate(entry),
-            other => self.pick(&instant.outputs, other),
+    /// Displacement in a row of the shapes by mass-normalised coordinates.
+    pub(super) fn at_row(&self, row: usize, modes: &[f64]) -> f64 {
+        let shape = self.shapes.row(row);
+        shape.iter().zip(modes).map(|(phi, x)| phi * x).sum()
+    }
+
+    /// The row of the shapes that is the greatest rotation of a named node.
+    fn most_turned(&self, modes: &[f64]) -> usize {
+        let (mut most, mut greatest) = (2, 0.0);
+        for row in (2..self.shapes.nrows()).step_by(3) {
+            let turned = self.at_row(row, modes).abs();
+            if turned > greatest {
+                (most, greatest) = (row, turned);
+            }
         }
-    }
-
-    /// Outputs of the modes for a state, with the inputs that are loaded.
-    pub(super) fn modal(&mut self, state: &SectionState) -> Result<Outputs> {
-        let mut outputs = Outputs::default();
-        self.built
-            .stepper
-            .outputs(state, &self.inputs, &mut outputs)?;
-        Ok(outputs)
-    }
-
-    /// All that there is in a state, with the inputs that are loaded.
-    pub(super) fn instant(&mut self, state: &SectionState) -> Result<SectionValues> {
-        SectionValues::of(&mut self.built.stepper, state, &self.inputs)
-    }
-
-    fn write(&mut self, card: OnsetCard, memory: &mut Memory, notices: &mut Vec<String>) {
-        for (place, which) in &self.places.calculated {
-            memory.values[*place] = card.value(*which);
-        }
-        notices.extend(card.warnings);
-        self.onset_current = true;
-    }
-
-    /// `∂/∂V`, per m/s, in the state of `memory` with the inputs that are loaded.
-    pub(super) fn by_wind(&self, memory: &Memory) -> SectionValues {
-        SectionValues::by_speed(&self.built.stepper, &memory.system, &self.inputs)
+        most
     }
 }
 
-impl MonitoredUnit for BridgeUnit {
-    fn coupled(&self) -> Option<&CoupledSection> {
-        Some(self.built.stepper.section())
+impl CoupledUnit for BridgeUnit {
+    fn places(&self) -> &CoupledPlaces {
+        &self.places
+    }
+
+    fn onset(&self) -> OnsetNumbers {
+        self.calculated.onset()
+    }
+
+    fn parts(&mut self) -> (&mut Stepper, &mut Inputs) {
+        (&mut self.built.stepper, &mut self.inputs)
+    }
+
+    fn section(&self) -> &CoupledSection {
+        self.built.stepper.section()
+    }
+
+    fn load_inputs(&mut self, memory: &Memory) {
+        self.load_own_inputs(memory);
+        let factor = self.turbulence_factor(memory);
+        self.built
+            .add_turbulence(&mut self.inputs, memory.time, factor);
+    }
+
+    fn release(&self, values: &[f64]) -> Result<SectionState> {
+        let initial = self.places.initial.iter().zip(&self.roots);
+        let displacement: Vec<f64> = initial.map(|(place, root)| values[*place] * root).collect();
+        let still = vec![0.0; displacement.len()];
+        let mut state = self.built.stepper.released(&displacement, &still)?;
+        blow_until_release(&mut state, &self.inputs.gust_m_s);
+        Ok(state)
+    }
+
+    fn pick(&self, instant: &SectionValues, role: Role) -> f64 {
+        match role {
+            Role::Filter(entry) => instant.of_state(entry),
+            Role::FilterRate(entry) => instant.of_rate(entry),
+            other => self.pick_modal(&instant.outputs, other),
+        }
+    }
+
+    /// Of a named node.
+    fn turn(&self, state: &SectionState, outputs: &Outputs) -> f64 {
+        let row = self.most_turned(&state.values[..self.roots.len()]);
+        self.at_row(row, &outputs.displacement)
+    }
+
+    fn rotation(&self, memory: &Memory) -> f64 {
+        let modes = &memory.system.values[..self.roots.len()];
+        self.at_row(self.most_turned(modes), modes)
     }
 
     fn damping_at(&mut self, wind: f64) -> Result<f64> {
         self.built.damping_at(wind)
-    }
-
-    fn wind_speed(&self, memory: &Memory) -> f64 {
-        memory.values[self.places.inputs[0]]
-    }
-
-    fn onset_speed(&self, memory: &Memory) -> f64 {
-        memory.values[self.places.onset_speed]
-    }
-
-    /// Of a named node.
-    fn rotation(&self, memory: &Memory) -> f64 {
-        let modes = &memory.system.values[..self.roots.len()];
-        let rotation = |row: usize| -> f64 {
-            let shape = self.shapes.row(row);
-            shape.iter().zip(modes).map(|(phi, x)| phi * x).sum()
-        };
-        let rotations = (2..self.shapes.nrows()).step_by(3).map(rotation);
-        rotations.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
     }
 
     /// At the frequency of flutter: the modes of a bridge have too many of their own.
@@ -212,11 +207,34 @@ impl MonitoredUnit for BridgeUnit {
         notices: &mut Vec<String>,
     ) -> bool {
         self.calculate(resources, memory, notices);
-        let found = memory.values[self.places.onset_found] != 0.0;
-        let hertz = memory.values[self.places.onset_frequency];
-        let wind = self.wind_speed(memory);
-        let k = ReducedFrequency::from_hertz(hertz, self.built.bridge.width_m(), wind);
-        found && wind > 0.0 && self.tested.is_some_and(|r| r.contains(k))
+        let onset = self.calculated.onset();
+        let wind = self.places.wind_speed(memory);
+        let (hertz, width) = (onset.frequency_hz.value, self.built.bridge.width_m());
+        let k = ReducedFrequency::from_hertz(hertz, width, wind);
+        onset.found && wind > 0.0 && self.tested.is_some_and(|r| r.contains(k))
+    }
+
+    fn searched(&self, _: &Resources, memory: &Memory) -> OnsetNumbers {
+        let limit = self.places.limit(memory);
+        OnsetCard::of_bridge(&self.built, self.tested, limit)
+            .0
+            .numbers
+    }
+
+    fn with_parameters(
+        &mut self,
+        resources: &Resources,
+        other: &Memory,
+        result: &mut dyn FnMut(&mut Self) -> Result<Vec<f64>>,
+    ) -> Result<Vec<f64>> {
+        let Some(options) = &resources.bridge else {
+            return result(self);
+        };
+        let of_other = Built::new(resources, options, &other.values)?;
+        let present = std::mem::replace(&mut self.built, of_other);
+        let found = result(self);
+        self.built = present;
+        found
     }
 }
 
@@ -233,18 +251,17 @@ impl Unit for BridgeUnit {
         match source {
             Source::Section => {
                 self.stale = true;
-                self.onset_current = false;
+                self.calculated.forget();
                 self.release_pending = true;
             }
             Source::Release => self.release_pending = true,
-            Source::Limit => self.onset_current = false,
+            Source::Limit => self.calculated.forget(),
             _ => {}
         }
     }
 
     fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
-        let gusts = &self.places.inputs[self.places.first_gust..];
-        if memory.state == State::Initialization && gusts.contains(&place) {
+        if memory.state == State::Initialization && self.places.gusts().contains(&place) {
             self.release_pending = true;
         }
         false
@@ -255,16 +272,11 @@ impl Unit for BridgeUnit {
         self.release_pending = true;
     }
 
-    fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool) {
+    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool) {
         let same_bridge = same(Source::Section);
         self.stale |= !same_bridge;
-        self.onset_current &= same_bridge && same(Source::Limit);
-        if self.onset_current {
-            // numbers that were searched for stay
-            for (place, _) in &self.places.calculated {
-                new.values[*place] = old.values[*place];
-            }
-        }
+        self.calculated
+            .carry_over(new, same_bridge && same(Source::Limit));
         self.release_pending = true;
     }
 
@@ -285,10 +297,8 @@ impl Unit for BridgeUnit {
         Ok(self)
     }
 
-    fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
-        if !self.onset_current {
-            self.write(OnsetCard::unknown(why), memory, notices);
-        }
+    fn calculated(&mut self) -> Option<&mut CalculatedNumbers> {
+        Some(&mut self.calculated)
     }
 
     fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
@@ -329,17 +339,17 @@ impl Prepared for BridgeUnit {
         let (stepper, inputs) = (&mut self.built.stepper, &self.inputs);
         stepper.outputs(&memory.system, inputs, &mut self.outputs)?;
         check_finite(&self.outputs)?;
-        for (place, role) in &self.places.responses {
-            memory.values[*place] = self.pick(&self.outputs, *role);
+        for (place, role) in &self.responses {
+            memory.values[*place] = self.pick_modal(&self.outputs, *role);
         }
         Ok(())
     }
 
     fn calculate(&mut self, _: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
-        if self.onset_current {
+        if self.calculated.are_known() {
             return;
         }
-        let limit = memory.values[self.places.limit];
+        let limit = self.places.limit(memory);
         let known = self.searched.as_ref();
         let followed = known.and_then(|known| known.followed(&mut self.built, limit));
         let card = match followed {
@@ -350,16 +360,6 @@ impl Prepared for BridgeUnit {
                 card
             }
         };
-        self.write(card, memory, notices);
-    }
-
-    fn status(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        role: Role,
-        notices: &mut Vec<String>,
-    ) -> f64 {
-        self.present(resources, memory, role, notices)
+        self.calculated.enter(card, memory, notices);
     }
 }

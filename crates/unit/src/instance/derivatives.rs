@@ -49,7 +49,7 @@ impl Instance {
             .collect::<CallResult<Vec<_>>>()?;
         let (resources, memory) = (&self.resources, &mut self.memory);
         let unit = self.unit.prepared(resources, memory)?;
-        let found = unit.output_rates(memory, &outputs)?;
+        let found = unit.output_rates(resources, memory, &outputs, &mut self.notices)?;
         rates.copy_from_slice(&found);
         Ok(())
     }
@@ -80,7 +80,8 @@ impl Instance {
         let unit = self.unit.prepared(resources, memory)?;
         let mut sums = vec![0.0; unknowns.len()];
         for (known, seed) in knowns.into_iter().zip(seeds) {
-            let column = unit.derivatives(resources, memory, known, &unknowns)?;
+            let column =
+                unit.derivatives(resources, memory, known, &unknowns, &mut self.notices)?;
             for (sum, derivative) in sums.iter_mut().zip(column) {
                 *sum += seed * derivative;
             }

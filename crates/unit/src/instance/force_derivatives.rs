@@ -14,7 +14,13 @@ use crate::variables::Role;
 const RELATIVE_STEP: f64 = 1e-5;
 
 impl Differentiable for ForceUnit {
-    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
+    fn output_rates(
+        &mut self,
+        _: &Resources,
+        memory: &mut Memory,
+        outputs: &[Role],
+        _: &mut Vec<String>,
+    ) -> CallResult<Vec<f64>> {
         self.ahead(memory, self.renewed(memory))?;
         let rate = |role: &Role| self.entry(memory, &self.work.forces, *role).rate;
         Ok(outputs.iter().map(rate).collect())
@@ -26,6 +32,7 @@ impl Differentiable for ForceUnit {
         memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
+        _: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
         let role = resources.table.variables()[known].role;
         let (index, state) = (self.input_at[known], self.entry_of(role));

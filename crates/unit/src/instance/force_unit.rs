@@ -6,7 +6,7 @@
 
 use super::layout::{Source, place};
 use super::memory::Memory;
-use super::trust::{LINEAR_ROTATION_RAD, beyond_linear};
+use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
 use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
@@ -18,7 +18,7 @@ use crate::response::{
     ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow, StripGusts,
     wind_at_rest,
 };
-use crate::variables::{ForceOutput, Role, SectionParameter, VariableTable};
+use crate::variables::{ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, VariableTable};
 
 /// How a number of the motion has been set since the last step.
 pub(super) const NOT_SET: f64 = 0.0;
@@ -276,7 +276,7 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn replace(&mut self, _: &mut Memory, _: &Memory, _: &dyn Fn(Source) -> bool) {
+    fn replace(&mut self, _: &mut Memory, _: &dyn Fn(Source) -> bool) {
         self.settle_pending = true;
     }
 

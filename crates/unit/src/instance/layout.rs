@@ -4,7 +4,7 @@ use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::lifecycle::{StateSet, gettable_in, settable_in};
 use crate::response::wind_at_rest;
-use crate::variables::{Calculated, Role, StartValue, Variable, VariableTable};
+use crate::variables::{Causality, Role, StartValue, Variable, VariableTable};
 
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,8 +69,10 @@ impl Source {
             }
             Role::Filter(_) => Self::State,
             Role::FilterRate(_) => Self::Rate,
-            Role::Calculated(_) => Self::Calculated,
-            Role::Status(_) => Self::Status,
+            Role::Computed(number) => match number.causality {
+                Causality::Output => Self::Status,
+                _ => Self::Calculated,
+            },
         }
     }
 }
@@ -163,16 +165,6 @@ pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
     table
         .find(role)
         .ok_or_else(|| Error::Numerical(format!("variable table: nothing stands for {role:?}")))
-}
-
-/// Places of what is calculated from the parameters.
-pub(super) fn calculated(table: &VariableTable) -> Vec<(usize, Calculated)> {
-    let each = table.variables().iter().enumerate();
-    each.filter_map(|(place, v)| match v.role {
-        Role::Calculated(which) => Some((place, which)),
-        _ => None,
-    })
-    .collect()
 }
 
 impl VariablePlaces {

@@ -72,7 +72,7 @@ impl Instance {
             Source::Section => section,
             _ => limit,
         };
-        self.unit.replace(&mut memory, old, &same);
+        self.unit.replace(&mut memory, &same);
         self.memory = memory;
         self.outputs_current = false;
     }

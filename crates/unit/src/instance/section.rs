@@ -10,7 +10,7 @@ use crate::flutter::{
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
-use crate::variables::{Calculated, Role, SectionParameter, VariableTable};
+use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
 
 /// The section of the model with the parameters in `values` (one number per variable of `table`).
 ///
@@ -157,8 +157,7 @@ fn check_searchable(section: &CoupledSection) -> Result<()> {
 /// Onset and divergence of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OnsetCard {
-    /// The calculated parameters in their order; truth values are 0 and 1.
-    values: [f64; Calculated::COUNT],
+    pub numbers: OnsetNumbers,
     /// What a reader must know before using the numbers.
     pub warnings: Vec<String>,
 }
@@ -176,7 +175,7 @@ impl OnsetCard {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_of(model, section) {
             Ok(speed) => card.set_divergence(speed, limit),
-            Err(why) => card.unknown_part(Calculated::DivergenceSpeed, &why),
+            Err(why) => card.divergence_unknown(&why),
         }
         if let Some(onset) = plain {
             let width = section.structure().width_m;
@@ -186,16 +185,16 @@ impl OnsetCard {
                 onset.speed_m_s,
             ));
             card.set_onset(onset.speed_m_s, onset.frequency_hz, velocity, true);
-            card.set(Calculated::StableBelowOnset, 1.0);
+            card.numbers.stable_below = true;
             return card;
         }
         match onset_of(model, section, limit) {
             Ok(found) => card.take(found, limit),
-            Err(why) => card.unknown_part(Calculated::OnsetSpeed, &why),
+            Err(why) => card.onset_unknown(&why),
         }
         // what cannot be judged is not called stable
-        let stable = growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
-        card.set_flag(Calculated::StableBelowOnset, stable);
+        card.numbers.stable_below =
+            growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
         card
     }
 
@@ -203,19 +202,18 @@ impl OnsetCard {
     pub(super) fn unknown(why: &Error) -> Self {
         let why = format!("flutter onset and divergence are not known for these parameters: {why}");
         Self {
-            values: [0.0; Calculated::COUNT],
+            numbers: OnsetNumbers::default(),
             warnings: vec![why],
         }
     }
 
     pub(super) fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
-        let mut card = Self {
-            values: [0.0; Calculated::COUNT],
-            warnings,
+        let numbers = OnsetNumbers {
+            speed_m_s: limit.into(),
+            divergence_m_s: limit.into(),
+            ..OnsetNumbers::default()
         };
-        card.set(Calculated::OnsetSpeed, limit);
-        card.set(Calculated::DivergenceSpeed, limit);
-        card
+        Self { numbers, warnings }
     }
 
     /// Enters the answer of a search up to `limit` m/s. Growth from the lowest speed on is an onset at that speed or lower; what
@@ -240,7 +238,7 @@ impl OnsetCard {
             FlutterSearch::StableUpTo(range) => {
                 let judged = range.from_m_s <= range.to_m_s;
                 let to = if judged { range.to_m_s.min(limit) } else { 0.0 };
-                self.set(Calculated::OnsetSpeed, to);
+                self.numbers.speed_m_s = to.into();
                 if to < limit {
                     self.warnings.push(format!(
                         "the onset is not known beyond {to} m/s: {}",
@@ -261,43 +259,39 @@ impl OnsetCard {
         velocity: ReducedVelocity,
         tested: bool,
     ) {
-        self.set(Calculated::OnsetSpeed, speed);
-        self.set(Calculated::OnsetFrequency, frequency);
-        self.set(Calculated::OnsetReducedVelocity, velocity.v_star());
-        self.set(Calculated::OnsetFound, 1.0);
-        self.set_flag(Calculated::OnsetInTestedRange, tested);
+        self.numbers = OnsetNumbers {
+            speed_m_s: speed.into(),
+            frequency_hz: frequency.into(),
+            reduced_velocity: velocity.v_star().into(),
+            found: true,
+            in_tested_range: tested,
+            ..self.numbers
+        };
     }
 
     /// Enters a speed of divergence below the limit.
     pub(super) fn set_divergence(&mut self, speed: Option<f64>, limit: f64) {
         if let Some(speed) = speed.filter(|v| *v <= limit) {
-            self.set(Calculated::DivergenceSpeed, speed);
-            self.set(Calculated::DivergenceFound, 1.0);
+            self.numbers.divergence_m_s = speed.into();
+            self.numbers.divergence_found = true;
         }
     }
 
-    /// A speed that could not be searched for is zero.
-    pub(super) fn unknown_part(&mut self, speed: Calculated, why: &Error) {
-        self.set(speed, 0.0);
-        let what = match speed {
-            Calculated::DivergenceSpeed => "divergence",
-            _ => "flutter onset",
-        };
+    /// An onset that could not be searched for is zero.
+    pub(super) fn onset_unknown(&mut self, why: &Error) {
+        self.numbers.speed_m_s = 0.0.into();
+        self.say_unknown("flutter onset", why);
+    }
+
+    /// So is divergence.
+    pub(super) fn divergence_unknown(&mut self, why: &Error) {
+        self.numbers.divergence_m_s = 0.0.into();
+        self.say_unknown("divergence", why);
+    }
+
+    fn say_unknown(&mut self, what: &str, why: &Error) {
         let warning = format!("{what} is not known for these parameters: {why}");
         self.warnings.push(warning);
-    }
-
-    pub(super) fn set_flag(&mut self, which: Calculated, holds: bool) {
-        self.set(which, f64::from(u8::from(holds)));
-    }
-
-    fn set(&mut self, which: Calculated, value: f64) {
-        self.values[which as usize] = value;
-    }
-
-    /// One of its numbers.
-    pub(super) fn value(&self, which: Calculated) -> f64 {
-        self.values[which as usize]
     }
 }
 

@@ -1,22 +1,25 @@
 //! The coupled section: a structure in self-excited wind forces. Onset and divergence are searched for when first asked
 //! for after a change of parameters.
 
+use super::calculated::CalculatedNumbers;
+use super::coupled::{CoupledPlaces, CoupledUnit, blow_until_release};
 use super::damping::PresentDamping;
 use super::layout::Source;
-use super::memory::Memory;
+use super::memory::{Memory, starts};
 use super::section::{self, OnsetCard};
-use super::section_places::SectionPlaces;
-use super::sensitivity::{check_finite, finite};
-use super::trust::{MonitoredUnit, TrustWarnings, tested_winds};
+use super::section_places::{ResponsePlaces, response_places};
+use super::sensitivity::{SectionValues, check_finite, finite};
+use super::trust::{TrustWarnings, tested_winds};
 use super::unit::{Differentiable, Prepared, Unit};
-use crate::aerodynamics::{GustForce, Realizable, Realization};
-use crate::error::{Error, Result};
+use crate::aerodynamics::{Realizable, Realization};
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::lifecycle::State;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, RepeatableStep, SectionState, Stepper};
-use crate::variables::Role;
+use crate::variables::{OnsetNumbers, Role};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.
@@ -36,26 +39,26 @@ enum LoadedInputs {
 /// See the module.
 #[derive(Debug)]
 pub(super) struct SectionUnit {
-    pub places: SectionPlaces,
-    inputs_at: Vec<usize>,
+    places: CoupledPlaces,
+    responses: ResponsePlaces,
     aerodynamics: Realization,
-    /// Numbers of the state of the gusts.
-    lags: usize,
-    /// Stepper of the current parameters; `None` after they have changed.
-    pub stepper: Option<Stepper>,
+    /// Of the current parameters.
+    stepper: Stepper,
+    /// Whether they have changed since.
+    stale: bool,
     /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
     pub tested_winds: Option<[f64; 2]>,
     /// With that stepper.
-    pub damping: PresentDamping,
+    damping: PresentDamping,
     /// While initialising: the state has to be made anew from the values at release.
     release_pending: bool,
-    onset_current: bool,
+    calculated: CalculatedNumbers,
     /// Whether growth below the onset has been looked for with the current parameters.
     growth_known: bool,
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
     pub warned: TrustWarnings,
-    pub inputs: Inputs,
+    inputs: Inputs,
     loaded: LoadedInputs,
     outputs: Outputs,
 }
@@ -64,53 +67,34 @@ impl SectionUnit {
     /// The section of a trained model.
     ///
     /// # Errors
-    /// [`crate::Error::Input`] for a model without a realisation.
+    /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub(super) fn new(resources: &Resources) -> Result<Self> {
-        let places = SectionPlaces::new(&resources.table)?;
-        let forces = places.force.iter().chain(&places.gusts).copied();
-        let inputs = std::iter::once(places.wind_speed).chain(forces);
+        let responses = response_places(&resources.table)?;
+        let places = CoupledPlaces::of_section(&resources.table, &responses)?;
+        let gusts = places.gusts().len();
+        let aerodynamics = resources.model.model.realize();
+        let stepper = stepper(resources, &aerodynamics, &starts(&resources.table))?;
         Ok(Self {
-            inputs_at: inputs.collect(),
-            lags: resources.gusts.as_ref().map_or(0, GustForce::states),
             inputs: Inputs {
-                gust_m_s: vec![0.0; places.gusts.len()],
-                gust_rate_m_s2: vec![0.0; places.gusts.len()],
-                ..Inputs::steady(0.0, places.force.len())
+                gust_m_s: vec![0.0; gusts],
+                gust_rate_m_s2: vec![0.0; gusts],
+                ..Inputs::steady(0.0, responses.len())
             },
             places,
-            aerodynamics: resources.model.model.realize(),
-            stepper: None,
-            tested_winds: None,
+            responses,
+            aerodynamics,
+            tested_winds: tested_winds(&stepper, resources),
+            stepper,
+            stale: false,
             damping: PresentDamping::default(),
             release_pending: true,
-            onset_current: false,
+            calculated: CalculatedNumbers::new(&resources.table),
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
             warned: TrustWarnings::default(),
             loaded: LoadedInputs::Stale,
             outputs: Outputs::default(),
         })
-    }
-
-    pub(super) fn new_stepper(&self, resources: &Resources, values: &[f64]) -> Result<Stepper> {
-        let Resources { model, table, .. } = resources;
-        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        Ok(Stepper::in_gusts(section, resources.gusts.as_ref()))
-    }
-
-    /// State at release with the initial values in `values`.
-    pub(super) fn release(&self, stepper: &Stepper, values: &[f64]) -> Result<SectionState> {
-        let pick = |places: &[usize]| places.iter().map(|i| values[*i]).collect::<Vec<_>>();
-        let mut state = stepper.released(
-            &pick(&self.places.initial_displacement),
-            &pick(&self.places.initial_rate),
-        )?;
-        // gusts have blown as they do now until the release
-        let each = state.gusts.len() / 2;
-        for (lagging, place) in state.gusts.chunks_mut(each.max(1)).zip(&self.places.gusts) {
-            lagging.fill(values[*place]);
-        }
-        Ok(state)
     }
 
     /// The inputs of the memory of this unit, which are loaded once until one is set.
@@ -124,33 +108,16 @@ impl SectionUnit {
         }
     }
 
-    /// The inputs of any memory.
-    pub(super) fn load_inputs(&mut self, memory: &Memory) {
-        self.loaded = LoadedInputs::Stale;
-        let (values, rates) = (&memory.values, &memory.input_rates);
-        self.inputs.wind_speed_m_s = values[self.places.wind_speed];
-        self.inputs.wind_speed_rate_m_s2 = rates[0];
-        for (i, place) in self.places.force.iter().enumerate() {
-            self.inputs.force[i] = values[*place];
-            self.inputs.force_rate[i] = rates[i + 1];
-        }
-        let behind = 1 + self.places.force.len();
-        for (i, place) in self.places.gusts.iter().enumerate() {
-            self.inputs.gust_m_s[i] = values[*place];
-            self.inputs.gust_rate_m_s2[i] = rates[behind + i];
-        }
-    }
-
     /// Growth below the onset for the parameters in `values`.
     fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
         let Resources { model, table, .. } = resources;
-        let speed_max_m_s = values[self.places.search_limit];
+        let limit = values[self.places.limit];
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        let (forces, limit) = (&self.aerodynamics, speed_max_m_s);
+        let forces = &self.aerodynamics;
         if let Some(speed) = section::plainly_stable_to(model, table, forces, values, limit) {
             return Ok(UnwantedGrowth::none_up_to(speed));
         }
-        section::growth_of(model, &section, speed_max_m_s)
+        section::growth_of(model, &section, limit)
     }
 
     #[cold]
@@ -175,7 +142,7 @@ impl SectionUnit {
 
     pub(super) fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
         let Resources { model, table, .. } = resources;
-        let limit = values[self.places.search_limit];
+        let limit = values[self.places.limit];
         match section::coupled_section(model, table, &self.aerodynamics, values) {
             Ok(section) => {
                 let plain = section::plain_onset(model, table, &self.aerodynamics, values, limit);
@@ -184,25 +151,17 @@ impl SectionUnit {
             Err(why) => OnsetCard::unknown(&why),
         }
     }
-
-    fn write(&mut self, card: OnsetCard, memory: &mut Memory, notices: &mut Vec<String>) {
-        for (place, which) in &self.places.calculated {
-            memory.values[*place] = card.value(*which);
-        }
-        notices.extend(card.warnings);
-        self.onset_current = true;
-    }
 }
 
 impl Unit for SectionUnit {
     fn inputs(&self) -> &[usize] {
-        &self.inputs_at
+        &self.places.inputs
     }
 
     fn at_rest(&self) -> SectionState {
         SectionState {
-            values: vec![0.0; 2 * self.places.force.len() + self.aerodynamics.states()],
-            gusts: vec![0.0; self.lags],
+            values: vec![0.0; self.stepper.section().states()],
+            gusts: vec![0.0; self.stepper.gust_states()],
             ..SectionState::default()
         }
     }
@@ -211,15 +170,15 @@ impl Unit for SectionUnit {
         match source {
             Source::Input => self.loaded = LoadedInputs::Stale,
             Source::Section => {
-                self.stepper = None;
+                self.stale = true;
                 self.loaded = LoadedInputs::Stale;
-                self.onset_current = false;
+                self.calculated.forget();
                 self.growth_known = false;
                 self.release_pending = true;
             }
             Source::Release => self.release_pending = true,
             Source::Limit => {
-                self.onset_current = false;
+                self.calculated.forget();
                 self.growth_known = false;
             }
             _ => {}
@@ -227,7 +186,7 @@ impl Unit for SectionUnit {
     }
 
     fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
-        if memory.state == State::Initialization && self.places.gusts.contains(&place) {
+        if memory.state == State::Initialization && self.places.gusts().contains(&place) {
             self.release_pending = true;
         }
         false
@@ -242,20 +201,12 @@ impl Unit for SectionUnit {
         self.loaded = LoadedInputs::Stale;
     }
 
-    fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool) {
+    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool) {
         self.loaded = LoadedInputs::Stale;
         let same_section = same(Source::Section);
-        if !same_section {
-            self.stepper = None;
-        }
+        self.stale |= !same_section;
         let same_limit = same(Source::Limit);
-        self.onset_current &= same_section && same_limit;
-        self.growth_known &= same_section && same_limit;
-        if self.onset_current {
-            for (place, _) in &self.places.calculated {
-                new.values[*place] = old.values[*place];
-            }
-        }
+        self.calculated.carry_over(new, same_section && same_limit);
         self.release_pending = true;
     }
 
@@ -264,25 +215,22 @@ impl Unit for SectionUnit {
         resources: &Resources,
         memory: &mut Memory,
     ) -> Result<&mut dyn Differentiable> {
-        if self.stepper.is_none() {
-            let stepper = self.new_stepper(resources, &memory.values)?;
-            self.tested_winds = tested_winds(&stepper, resources);
-            self.stepper = Some(stepper);
+        if self.stale {
+            self.stepper = stepper(resources, &self.aerodynamics, &memory.values)?;
+            self.stale = false;
+            self.tested_winds = tested_winds(&self.stepper, resources);
             self.damping = PresentDamping::default();
         }
         if self.release_pending && memory.state == State::Initialization {
-            if let Some(stepper) = &self.stepper {
-                memory.system = self.release(stepper, &memory.values)?;
-            }
+            self.load_inputs(memory);
+            memory.system = self.release(&memory.values)?;
             self.release_pending = false;
         }
         Ok(self)
     }
 
-    fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
-        if !self.onset_current {
-            self.write(OnsetCard::unknown(why), memory, notices);
-        }
+    fn calculated(&mut self) -> Option<&mut CalculatedNumbers> {
+        Some(&mut self.calculated)
     }
 
     /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
@@ -296,12 +244,11 @@ impl Unit for SectionUnit {
     }
 
     fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        let (LoadedInputs::Repeatable(last), Some(stepper)) = (&self.loaded, &mut self.stepper)
-        else {
+        let LoadedInputs::Repeatable(last) = &self.loaded else {
             return None;
         };
-        let taken =
-            last.step_s == step && stepper.repeat(&mut memory.system, &self.inputs, last.columns);
+        let (stepper, system) = (&mut self.stepper, &mut memory.system);
+        let taken = last.step_s == step && stepper.repeat(system, &self.inputs, last.columns);
         taken.then(|| self.rotation_news(memory))
     }
 
@@ -313,32 +260,28 @@ impl Unit for SectionUnit {
 impl Prepared for SectionUnit {
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_own_inputs(memory);
-        if let Some(stepper) = &mut self.stepper {
-            stepper.advance(&mut memory.system, &self.inputs, step)?;
-            if !matches!(self.loaded, LoadedInputs::Stale) {
-                let repeatable = stepper.repeatable(&memory.system, &self.inputs, step);
-                self.loaded = repeatable.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
-            }
+        let stepper = &mut self.stepper;
+        stepper.advance(&mut memory.system, &self.inputs, step)?;
+        if !matches!(self.loaded, LoadedInputs::Stale) {
+            let repeatable = stepper.repeatable(&memory.system, &self.inputs, step);
+            self.loaded = repeatable.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
         }
         Ok(false)
     }
 
     fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
         self.load_inputs(memory);
-        let Some(stepper) = &mut self.stepper else {
-            return Ok(());
-        };
+        let stepper = &mut self.stepper;
         stepper.write_derivative(&memory.system, &self.inputs, rates)?;
         finite(rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
         self.load_own_inputs(memory);
-        if let Some(stepper) = &mut self.stepper {
-            stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
-        }
+        let (stepper, inputs) = (&mut self.stepper, &self.inputs);
+        stepper.outputs(&memory.system, inputs, &mut self.outputs)?;
         check_finite(&self.outputs)?;
-        for (i, places) in self.places.responses.iter().enumerate() {
+        for (i, places) in self.responses.iter().enumerate() {
             for (place, list) in places.iter().zip(self.outputs.lists()) {
                 memory.values[*place] = list[i];
             }
@@ -348,20 +291,95 @@ impl Prepared for SectionUnit {
 
     /// Onset and divergence. A search that fails is no reason to end a run.
     fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
-        if self.onset_current {
+        if self.calculated.are_known() {
             return;
         }
         let card = self.onset_card(resources, &memory.values);
-        self.write(card, memory, notices);
+        self.calculated.enter(card, memory, notices);
+    }
+}
+
+impl CoupledUnit for SectionUnit {
+    fn places(&self) -> &CoupledPlaces {
+        &self.places
     }
 
-    fn status(
+    fn onset(&self) -> OnsetNumbers {
+        self.calculated.onset()
+    }
+
+    fn parts(&mut self) -> (&mut Stepper, &mut Inputs) {
+        (&mut self.stepper, &mut self.inputs)
+    }
+
+    fn section(&self) -> &CoupledSection {
+        self.stepper.section()
+    }
+
+    fn load_inputs(&mut self, memory: &Memory) {
+        self.loaded = LoadedInputs::Stale;
+        let (inputs, rates) = (&mut self.inputs, &memory.input_rates);
+        inputs.wind_speed_m_s = self.places.wind_speed(memory);
+        inputs.wind_speed_rate_m_s2 = rates[0];
+        for (i, place) in self.places.forces().iter().enumerate() {
+            inputs.force[i] = memory.values[*place];
+            inputs.force_rate[i] = rates[i + 1];
+        }
+        let of_gusts = &rates[self.places.first_gust..];
+        for (i, place) in self.places.gusts().iter().enumerate() {
+            inputs.gust_m_s[i] = memory.values[*place];
+            inputs.gust_rate_m_s2[i] = of_gusts[i];
+        }
+    }
+
+    fn release(&self, values: &[f64]) -> Result<SectionState> {
+        let initial: Vec<f64> = self.places.initial.iter().map(|i| values[*i]).collect();
+        let (displacements, rates) = initial.split_at(self.responses.len());
+        let mut state = self.stepper.released(displacements, rates)?;
+        blow_until_release(&mut state, &self.inputs.gust_m_s);
+        Ok(state)
+    }
+
+    fn pick(&self, instant: &SectionValues, role: Role) -> f64 {
+        instant.pick(role)
+    }
+
+    fn turn(&self, _: &SectionState, outputs: &Outputs) -> f64 {
+        outputs.displacement.last().copied().unwrap_or(0.0)
+    }
+
+    fn rotation(&self, memory: &Memory) -> f64 {
+        memory.system.values[self.responses.len() - 1]
+    }
+
+    fn damping_at(&mut self, wind: f64) -> Result<f64> {
+        self.damping.at(&mut self.stepper, wind)
+    }
+
+    fn wind_is_tested(&mut self, _: &Resources, memory: &mut Memory, _: &mut Vec<String>) -> bool {
+        self.in_tested_winds(memory)
+    }
+
+    fn searched(&self, resources: &Resources, memory: &Memory) -> OnsetNumbers {
+        self.onset_card(resources, &memory.values).numbers
+    }
+
+    fn with_parameters(
         &mut self,
         resources: &Resources,
-        memory: &mut Memory,
-        role: Role,
-        notices: &mut Vec<String>,
-    ) -> f64 {
-        self.present(resources, memory, role, notices)
+        other: &Memory,
+        result: &mut dyn FnMut(&mut Self) -> Result<Vec<f64>>,
+    ) -> Result<Vec<f64>> {
+        let of_other = stepper(resources, &self.aerodynamics, &other.values)?;
+        let present = std::mem::replace(&mut self.stepper, of_other);
+        let found = result(self);
+        self.stepper = present;
+        found
     }
+}
+
+/// With the parameters in `values`.
+fn stepper(resources: &Resources, forces: &Realization, values: &[f64]) -> Result<Stepper> {
+    let section = section::coupled_section(&resources.model, &resources.table, forces, values)?;
+    Ok(Stepper::in_gusts(section, resources.gusts.as_ref()))
 }

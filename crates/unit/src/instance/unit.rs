@@ -1,12 +1,13 @@
 //! What an exported unit simulates, behind its variables and its life cycle.
 
+use super::calculated::CalculatedNumbers;
 use super::layout::Source;
 use super::memory::Memory;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::SectionState;
-use crate::variables::{Role, VariableTable};
+use crate::variables::{ComputedNumber, Role, VariableTable};
 use std::fmt::Debug;
 
 /// The system behind an instance. Everything that changes in time stands in the [`Memory`]; a unit holds what follows
@@ -48,8 +49,8 @@ pub(super) trait Unit: Debug + Send {
     /// The initialisation begins.
     fn begin_initialization(&mut self) {}
 
-    /// Another memory takes the place of `old`: whatever both share stays computed.
-    fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool);
+    /// Another memory takes the place of the old one: whatever both share stays computed.
+    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool);
 
     /// What follows from the parameters and, while initialising, the state, made anew where they have changed: the only way
     /// to anything that is computed from them.
@@ -62,8 +63,9 @@ pub(super) trait Unit: Debug + Send {
         memory: &mut Memory,
     ) -> Result<&mut dyn Differentiable>;
 
-    /// Writes into the memory that what is calculated cannot be, because the parameters give nothing that can be simulated.
-    fn cannot_calculate(&mut self, _memory: &mut Memory, _why: &Error, _notices: &mut Vec<String>) {
+    /// What is calculated from the parameters, of a unit that has such numbers.
+    fn calculated(&mut self) -> Option<&mut CalculatedNumbers> {
+        None
     }
 
     /// Says what a user must know of the parameters and of the present state, each thing once.
@@ -121,26 +123,21 @@ pub(super) trait Prepared: Unit {
         _notices: &mut Vec<String>,
     ) {
     }
-
-    /// What is known of the present moment; a number that cannot be found is zero, with a notice.
-    fn status(
-        &mut self,
-        _resources: &Resources,
-        _memory: &mut Memory,
-        _role: Role,
-        _notices: &mut Vec<String>,
-    ) -> f64 {
-        0.0
-    }
 }
 
-/// What is known of how a unit changes, in time and with its inputs, states and parameters.
+/// What is known of the present, and of how a unit changes, in time and with its inputs, states and parameters.
 pub(super) trait Differentiable: Prepared {
     /// First time derivatives of these outputs, per second.
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>>;
+    fn output_rates(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        outputs: &[Role],
+        notices: &mut Vec<String>,
+    ) -> CallResult<Vec<f64>>;
 
     /// Derivatives of these unknowns with respect to the value at `known`.
     ///
@@ -152,5 +149,17 @@ pub(super) trait Differentiable: Prepared {
         memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
+        notices: &mut Vec<String>,
     ) -> CallResult<Vec<f64>>;
+
+    /// One number of the present moment; what cannot be found is zero, with a notice.
+    fn present(
+        &mut self,
+        _resources: &Resources,
+        _memory: &mut Memory,
+        _number: &ComputedNumber,
+        _notices: &mut Vec<String>,
+    ) -> f64 {
+        0.0
+    }
 }

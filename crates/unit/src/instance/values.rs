@@ -3,9 +3,11 @@
 use super::Instance;
 use super::layout::{DataType, Source};
 use super::memory::Memory;
+use super::section::OnsetCard;
 use super::sensitivity::overgrown;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
+use crate::variables::Role;
 
 impl Instance {
     /// Values of real variables.
@@ -80,9 +82,11 @@ impl Instance {
                 self.outputs_current = true;
             }
             Source::Status => {
-                let role = resources.table.variables()[place].role;
+                let Role::Computed(number) = resources.table.variables()[place].role else {
+                    return Ok(0.0);
+                };
                 let unit = self.unit.prepared(resources, memory)?;
-                return Ok(unit.status(resources, memory, role, &mut self.notices));
+                return Ok(unit.present(resources, memory, number, &mut self.notices));
             }
             Source::State => {
                 self.unit.prepared(resources, memory)?;
@@ -92,7 +96,12 @@ impl Instance {
             Source::Rate => return self.rate_at(place),
             Source::Calculated => match self.unit.prepared(resources, memory) {
                 Ok(unit) => unit.calculate(resources, memory, &mut self.notices),
-                Err(why) => self.unit.cannot_calculate(memory, &why, &mut self.notices),
+                Err(why) => {
+                    let calculated = self.unit.calculated();
+                    if let Some(numbers) = calculated.filter(|numbers| !numbers.are_known()) {
+                        numbers.enter(OnsetCard::unknown(&why), memory, &mut self.notices);
+                    }
+                }
             },
             _ => {}
         }

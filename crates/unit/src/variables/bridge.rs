@@ -1,13 +1,13 @@
 //! The variables of a whole bridge, in the order of the table.
 
+use super::computed_rows::{OF_THE_PRESENT, SEARCHED};
 use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
-    air_density, calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit,
-    status, wind_speed,
+    air_density, capitalized, gust_inputs, onset_bounds, search_limit, wind_speed,
 };
-use super::{ModeOutput, ModeParameter, Response, Role, Safety, SectionParameter, Variable};
-use super::{bridge_states, dependencies};
+use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, Variable};
+use super::{bridge_states, computed_rows, dependencies};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::section::Dof;
@@ -34,14 +34,15 @@ pub(super) fn variables(
     table.extend(parameters(options, turbulence));
     table.push(search_limit(model));
     table.extend((0..options.modes.len()).map(|m| initial(options, m)));
-    table.extend(calculated_parameters());
+    table.extend(SEARCHED.iter().map(ComputedNumber::variable));
     let filters = stepper.section().aerodynamics().states();
     table.extend(constants(model, filters)?);
     let interval = options.onset_interval.into_iter();
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
-    table.extend(status());
+    table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
     fill_dependencies(&mut table);
     bridge_states::add(&mut table, options, &stepper)?;
+    computed_rows::fill_dependencies(&mut table);
     Ok(table)
 }
 
@@ -193,38 +194,26 @@ fn fill_dependencies(table: &mut [Variable]) {
             .collect()
     };
     let inputs = places(&|r| matches!(r, Role::WindSpeed | Role::NodeForce(..) | Role::Gust(..)));
-    let wind = places(&|r| r == Role::WindSpeed);
     let release = places(&|r| matches!(r, Role::InitialMode(_)));
-    let structure = |r| {
-        let density = Role::Section(SectionParameter::AirDensity);
-        matches!(r, Role::ModeParameter(..)) || r == density
-    };
-    let searched = places(&|r| structure(r) || r == Role::OnsetSearchLimit);
     let all = places(&|r| {
-        structure(r)
-            || matches!(
-                r,
-                Role::WindSpeed
-                    | Role::NodeForce(..)
-                    | Role::Gust(..)
-                    | Role::InitialMode(_)
-                    | Role::TurbulenceFactor
-            )
+        matches!(
+            r,
+            Role::Section(_)
+                | Role::ModeParameter(..)
+                | Role::WindSpeed
+                | Role::NodeForce(..)
+                | Role::Gust(..)
+                | Role::InitialMode(_)
+                | Role::TurbulenceFactor
+        )
     });
-    let with_wind = [wind.clone(), searched.clone()].concat();
     let dependent = |on: &[usize]| dependencies::dependent(on.iter().copied());
     for variable in table.iter_mut() {
         (variable.direct_inputs, variable.initial_dependencies) = match variable.role {
             Role::NodeMotion(_, Response::Acceleration, _) | Role::Mode(_, ModeOutput::Force) => {
                 (inputs.clone(), dependent(&all))
             }
-            Role::NodeMotion(..)
-            | Role::Mode(..)
-            | Role::Status(Safety::AmplitudeInLinearRange) => (Vec::new(), dependent(&release)),
-            Role::Calculated(_) | Role::Status(Safety::FlutterSpeed) => {
-                (Vec::new(), dependent(&searched))
-            }
-            Role::Status(_) => (wind.clone(), dependent(&with_wind)),
+            Role::NodeMotion(..) | Role::Mode(..) => (Vec::new(), dependent(&release)),
             _ => continue,
         };
     }

@@ -4,7 +4,7 @@
 use super::dependencies::dependent;
 use super::real::{INNER, real};
 use super::section::{filter, gust_filter};
-use super::{InitialDependency, ModeOutput, Response, Role, Safety, Variable};
+use super::{InitialDependency, ModeOutput, Response, Role, Variable};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::bridge_options::BridgeOptions;
 use crate::error::{Error, Result};
@@ -111,8 +111,7 @@ impl States {
         match output {
             Role::Mode(m, ModeOutput::Coordinate) => vec![self.state(m)],
             Role::Mode(m, ModeOutput::Rate) => vec![self.rate(m)],
-            Role::NodeMotion(_, Response::Displacement, _)
-            | Role::Status(Safety::AmplitudeInLinearRange) => self.coordinates(),
+            Role::NodeMotion(_, Response::Displacement, _) => self.coordinates(),
             Role::NodeMotion(_, Response::Rate, _) => self.rates(),
             Role::NodeMotion(..) | Role::Mode(..) => self.all(),
             _ => Vec::new(),

@@ -1,6 +1,6 @@
 //! What depends on what: the structure of outputs while stepping, and of all unknowns while initialising.
 
-use super::{Causality, InitialDependency, Response, Role, Safety, SectionParameter, Variable};
+use super::{Causality, InitialDependency, Response, Role, SectionParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -71,28 +71,7 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
                 direct_inputs(known, response, dof, coupling),
                 initial_knowns(known, response, dof, coupling),
             ),
-            Role::Calculated(_) => (Vec::new(), parameters(known)),
-            Role::Status(status) => {
-                let of_wind = match status {
-                    Safety::FlutterMargin | Safety::DampingNow | Safety::WindInTestedRange => true,
-                    Safety::AmplitudeInLinearRange | Safety::FlutterSpeed => false,
-                };
-                let wind = places(known, |role| role == Role::WindSpeed && of_wind);
-                let by_wind = dependent(wind.iter().copied());
-                let stated = parameters(known).into_iter();
-                let release = dependent(places(known, |role| {
-                    role == Role::InitialDisplacement(Dof::Torsion)
-                }));
-                let initial = match status {
-                    Safety::AmplitudeInLinearRange => release,
-                    Safety::FlutterMargin
-                    | Safety::DampingNow
-                    | Safety::WindInTestedRange
-                    | Safety::FlutterSpeed => stated.chain(by_wind).collect(),
-                };
-                (wind, initial)
-            }
-            stated!() | of_other_units!() => continue,
+            stated!() | of_other_units!() | Role::Computed(_) => continue,
         };
         direct.extend(states_behind(known, variable.role, filters));
         direct.sort_unstable();
@@ -130,15 +109,6 @@ impl UnknownSources {
 /// filters.
 fn states_behind(known: &UnknownSources, of: Role, filters: usize) -> impl Iterator<Item = usize> {
     let depends = move |on: Role| match of {
-        Role::Status(status) => match status {
-            Safety::AmplitudeInLinearRange => {
-                on == Role::Response(Response::Displacement, Dof::Torsion)
-            }
-            Safety::FlutterMargin
-            | Safety::DampingNow
-            | Safety::WindInTestedRange
-            | Safety::FlutterSpeed => false,
-        },
         Role::Response(response, _) => match response {
             Response::Acceleration | Response::SelfExcitedForce => true,
             Response::Displacement | Response::Rate => on == of,
@@ -148,7 +118,7 @@ fn states_behind(known: &UnknownSources, of: Role, filters: usize) -> impl Itera
             on => i < filters && !matches!(on, Role::Response(Response::Rate, _)),
         },
         Role::Filter(_) => on == of,
-        Role::Calculated(_) | stated!() | of_other_units!() => false,
+        Role::Computed(_) | stated!() | of_other_units!() => false,
     };
     let states = known.states.iter();
     states
@@ -221,8 +191,7 @@ fn direct_inputs(
         | Role::Response(..)
         | Role::Filter(_)
         | Role::FilterRate(_)
-        | Role::Calculated(_)
-        | Role::Status(_)
+        | Role::Computed(_)
         | of_other_units!() => false,
     };
     places(known, acts)
@@ -264,19 +233,11 @@ fn initial_knowns(
         | Role::Response(..)
         | Role::Filter(_)
         | Role::FilterRate(_)
-        | Role::Calculated(_)
-        | Role::Status(_)
+        | Role::Computed(_)
         | of_other_units!() => false,
     };
     let inputs = direct_inputs(known, response, dof, coupling);
     dependent(inputs.into_iter().chain(places(known, acts)))
-}
-
-/// Everything that onset and divergence depend on.
-fn parameters(known: &UnknownSources) -> Vec<InitialDependency> {
-    dependent(places(known, |role| {
-        matches!(role, Role::Section(_) | Role::OnsetSearchLimit)
-    }))
 }
 
 pub(super) fn dependent(places: impl IntoIterator<Item = usize>) -> Vec<InitialDependency> {

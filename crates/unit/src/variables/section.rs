@@ -1,13 +1,14 @@
 //! The variables of the coupled section, in the order of the table.
 
+use super::computed_rows::{OF_THE_PRESENT, SEARCHED};
 use super::dof_names::{DofNames, motion, names_of};
 use super::parameters::SectionParameter;
 use super::real::{
-    CALCULATED, DISCRETE, FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
-    force_scale, nominal, real,
+    FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale, nominal,
+    real,
 };
 use super::variable::find;
-use super::{Calculated, GustDirection, Initial, Response, Role, Safety, StartValue, Variable};
+use super::{ComputedNumber, GustDirection, Initial, Response, Role, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::onset_bounds::OnsetBounds;
@@ -41,10 +42,10 @@ pub(super) fn variables(
     );
     table.extend(dofs.iter().flat_map(|&dof| initial_values(dof, model)));
     table.push(search_limit(model));
-    table.extend(calculated_parameters());
+    table.extend(SEARCHED.iter().map(ComputedNumber::variable));
     table.extend(constants(model, model.model.realize().states())?);
     table.extend(bounds.into_iter().flat_map(|b| onset_bounds(b, "section")));
-    table.extend(status());
+    table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
     if let Realization::Continuous(c) = model.model.realize() {
         let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
         table.extend((0..filters).flat_map(|i| filter(i, &format!("filter[{}]", i + 1))));
@@ -289,101 +290,6 @@ pub(super) fn search_limit(model: &TrainedModel) -> Variable {
         .start(model.experiment.onset_search_limit_m_s)
         .quantity("Velocity", SPEED)
         .min(SMALLEST)
-}
-
-pub(super) fn calculated_parameters() -> Vec<Variable> {
-    use Calculated as C;
-    let parameter = |name, what, text: &str| real(name, Role::Calculated(what), CALCULATED, text);
-    let flag = |name, what, text: &str| Variable {
-        value: StartValue::Boolean(None),
-        ..parameter(name, what, text)
-    };
-    vec![
-        parameter(
-            "onset_speed",
-            C::OnsetSpeed,
-            "Wind speed of flutter onset for the current parameters; onset_search_limit when none was found, zero when it cannot be computed",
-        )
-        .quantity("Velocity", SPEED),
-        parameter(
-            "onset_frequency",
-            C::OnsetFrequency,
-            "Frequency at flutter onset; zero when none is known",
-        )
-        .quantity("Frequency", Some(&si::HERTZ))
-        .shown(),
-        parameter(
-            "onset_reduced_velocity",
-            C::OnsetReducedVelocity,
-            "Reduced velocity V/(f*B) at flutter onset; zero when none is known",
-        )
-        .quantity("ReducedVelocity", None),
-        parameter(
-            "divergence_speed",
-            C::DivergenceSpeed,
-            "Wind speed of static divergence for the current parameters; onset_search_limit when none was found, zero when it cannot be computed",
-        )
-        .quantity("Velocity", SPEED),
-        flag(
-            "onset_found",
-            C::OnsetFound,
-            "Whether a flutter onset was found up to onset_search_limit",
-        ),
-        flag(
-            "onset_in_tested_range",
-            C::OnsetInTestedRange,
-            "Whether the reduced frequency at onset lies in the tested range of the model",
-        ),
-        flag(
-            "divergence_found",
-            C::DivergenceFound,
-            "Whether divergence was found up to onset_search_limit",
-        ),
-        flag(
-            "stable_below_onset",
-            C::StableBelowOnset,
-            "Whether nothing grows below onset_speed: false where the model feeds energy into motions outside the tested range, or where that is not known",
-        ),
-    ]
-}
-
-/// What can be read while running in any importer, also in those that take outputs only.
-pub(super) fn status() -> Vec<Variable> {
-    let output = |name, what, text: &str| real(name, Role::Status(what), OUTPUT, text);
-    let flag = |name, what, text: &str| Variable {
-        value: StartValue::Boolean(None),
-        ..real(name, Role::Status(what), DISCRETE, text)
-    };
-    vec![
-        output(
-            "flutter_margin",
-            Safety::FlutterMargin,
-            "onset_speed less wind_speed",
-        )
-        .quantity("Velocity", SPEED),
-        output(
-            "damping_now",
-            Safety::DampingNow,
-            "Smallest damping ratio of the modes at the present wind speed; negative when one grows",
-        )
-        .quantity("DampingRatio", None),
-        flag(
-            "wind_in_tested_range",
-            Safety::WindInTestedRange,
-            "Whether every motion, at its frequency in still air, lies in the tested range at the present wind speed",
-        ),
-        flag(
-            "amplitude_in_linear_range",
-            Safety::AmplitudeInLinearRange,
-            "Whether the rotation is at most 10 degrees, where linear forces end",
-        ),
-        output(
-            "flutter_speed",
-            Safety::FlutterSpeed,
-            "onset_speed once more, for tools that take outputs only",
-        )
-        .quantity("Velocity", SPEED),
-    ]
 }
 
 pub(super) fn capitalized(text: &str) -> String {

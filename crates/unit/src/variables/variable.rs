@@ -1,5 +1,6 @@
 //! One variable of the table: what it stands for, its type, its limits and what it depends on.
 
+use super::computed::ComputedNumber;
 use super::parameters::{ModeParameter, SectionParameter};
 use crate::section::Dof;
 use crate::si::SiUnit;
@@ -56,47 +57,6 @@ impl Response {
     ];
 }
 
-/// What is computed from the parameters alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Calculated {
-    /// Wind speed of flutter onset.
-    OnsetSpeed,
-    /// Frequency there.
-    OnsetFrequency,
-    /// `V* = V/(fB)` there.
-    OnsetReducedVelocity,
-    /// Wind speed of static divergence.
-    DivergenceSpeed,
-    /// Whether an onset was found below the search limit.
-    OnsetFound,
-    /// Whether its reduced frequency lies in the tested range.
-    OnsetInTestedRange,
-    /// Whether divergence was found below the search limit.
-    DivergenceFound,
-    /// Whether nothing grows below the onset at reduced frequencies that were not tested.
-    StableBelowOnset,
-}
-
-impl Calculated {
-    /// How many there are.
-    pub const COUNT: usize = Self::StableBelowOnset as usize + 1;
-}
-
-/// What is known of the present moment: how far from flutter, and whether the answer can be trusted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Safety {
-    /// Onset speed less the wind speed.
-    FlutterMargin,
-    /// Smallest damping ratio of the modes at the wind speed.
-    DampingNow,
-    /// Whether every motion, at its frequency in still air, lies in the tested range at the wind speed.
-    WindInTestedRange,
-    /// Whether the rotation is one of linear theory.
-    AmplitudeInLinearRange,
-    /// Onset speed, for tools that take outputs only.
-    FlutterSpeed,
-}
-
 /// The quantity behind a variable: what getters and setters dispatch on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
@@ -116,10 +76,8 @@ pub enum Role {
     InitialRate(Dof),
     /// Upper end of the search for onset and divergence.
     OnsetSearchLimit,
-    /// Computed from the parameters.
-    Calculated(Calculated),
     /// Computed from parameters, wind and state.
-    Status(Safety),
+    Computed(&'static ComputedNumber),
     /// A state that is no motion, counted from zero: filters of the aerodynamic model, then gusts behind the lags of their
     /// admittance.
     Filter(usize),

@@ -6,13 +6,13 @@ use crate::identification::entry_report::EntryReport;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use nalgebra::{Complex, DMatrix};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Share of the square of a mode shape that makes it the motion of one degree of freedom.
 const ONE_MOTION: f64 = 0.95;
 
 /// What a constraint holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ConstraintKind {
     /// `−vᵀ Im G(K)/K v ≥ 0`, or no more than the growth with which the tests end, at one `K` above the tested range.
@@ -30,7 +30,7 @@ pub enum ConstraintKind {
 }
 
 /// A constraint that holds a fit back.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ActiveConstraint {
     /// What it holds.
     pub kind: ConstraintKind,
@@ -61,7 +61,7 @@ pub(crate) struct GrowthLimit {
 }
 
 /// What constraints cost one transfer function.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ConstraintCost {
     /// Force (row of `G`).
     pub force: Dof,
@@ -74,7 +74,7 @@ pub struct ConstraintCost {
 }
 
 /// Account of the constraints that hold a fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ConstraintReport {
     /// The constraints, one by one.
     pub active: Vec<ActiveConstraint>,
@@ -87,7 +87,7 @@ pub struct ConstraintReport {
     pub onset: Option<MovedOnset>,
     /// The model that the data alone would give.
     #[serde(skip)]
-    pub unconstrained: Box<Model>,
+    pub unconstrained: Option<Box<Model>>,
 }
 
 impl ConstraintKind {
@@ -202,7 +202,7 @@ impl ConstraintReport {
             active,
             costs: alone.iter().zip(with).map(cost).collect(),
             onset: None,
-            unconstrained: Box::new(unconstrained),
+            unconstrained: Some(Box::new(unconstrained)),
         }
     }
 

@@ -8,7 +8,6 @@ use crate::instance::memory::starts;
 use crate::instance::section::OnsetCard;
 use crate::onset_start::OnsetStart;
 use crate::resources::Resources;
-use crate::variables::Calculated;
 
 const LIMIT: f64 = 100.0;
 
@@ -42,11 +41,11 @@ fn what_is_followed_is_what_a_search_finds() {
         let mut now = built(&resources, changed);
         let found = known.followed(&mut now, LIMIT).unwrap();
         let (card, _) = searched(&now);
-        for (found, which) in [
-            (found.speed_m_s, Calculated::OnsetSpeed),
-            (found.frequency_hz, Calculated::OnsetFrequency),
+        let numbers = card.numbers;
+        for (found, expected) in [
+            (found.speed_m_s, numbers.speed_m_s.value),
+            (found.frequency_hz, numbers.frequency_hz.value),
         ] {
-            let expected = card.value(which);
             assert!(
                 (found / expected - 1.0).abs() < 1e-8,
                 "{changed:?}: {found}, {expected}"
@@ -61,14 +60,14 @@ fn what_cannot_be_trusted_is_not_followed() {
     let resources = resources(Kind::Bridge);
     let mut default = built(&resources, &[]);
     let (card, known) = searched(&default);
-    let onset = card.value(Calculated::OnsetSpeed);
+    let onset = card.numbers.speed_m_s.value;
     assert!(known.followed(&mut default, 0.99 * onset).is_none());
     let mut far = built(&resources, &[("air_density", 1.7)]);
     assert!(known.followed(&mut far, LIMIT).is_none());
     // a search that had seen three times the damping below the onset
     let start = OnsetStart::at(
         onset,
-        card.value(Calculated::OnsetFrequency),
+        card.numbers.frequency_hz.value,
         default.stepper.section(),
     );
     let mut start = start.unwrap();
@@ -93,10 +92,10 @@ fn a_start_in_the_archive_gives_the_same_onset() {
     let plain = resources(Kind::Bridge);
     let default = built(&plain, &[]);
     let (card, _) = searched(&default);
-    let onset = card.value(Calculated::OnsetSpeed);
+    let onset = card.numbers.speed_m_s.value;
     let mut given = resources(Kind::Bridge);
     // a little off: the unit settles by itself
-    let hertz = card.value(Calculated::OnsetFrequency);
+    let hertz = card.numbers.frequency_hz.value;
     let start = OnsetStart::at(onset, hertz, default.stepper.section()).unwrap();
     given.bridge.as_mut().unwrap().onset = Some(start);
     let mut unit = Instance::new(given).unwrap();

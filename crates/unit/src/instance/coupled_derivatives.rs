@@ -1,0 +1,126 @@
+//! Derivatives of sections and bridges. Outputs and rates of the state are linear in state, forces and gusts, `y = C(V) z + D w`,
+//! `ż = A(V) z + E w`, so their derivatives are what one of each does; those with respect to the wind speed are closed too. Only
+//! parameters are differenced.
+
+use super::coupled::{CoupledUnit, PresentSlopes};
+use super::layout::Source;
+use super::memory::Memory;
+use super::sensitivity::{SectionValues, add, central_difference, check_finite, parameter_step};
+use super::unit::Differentiable;
+use crate::error::Result;
+use crate::lifecycle::State;
+use crate::refusal::CallResult;
+use crate::resources::Resources;
+use crate::variables::{ComputedNumber, Role};
+
+impl<T: CoupledUnit> Differentiable for T {
+    /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
+    fn output_rates(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        outputs: &[Role],
+        notices: &mut Vec<String>,
+    ) -> CallResult<Vec<f64>> {
+        self.load_inputs(memory);
+        let (stepper, inputs) = self.parts();
+        let velocity = stepper.state_derivative(&memory.system, inputs)?;
+        let velocity = memory.system.with_all(&velocity);
+        let by_wind = SectionValues::by_speed(stepper, &memory.system, inputs);
+        let wind_rate = inputs.wind_speed_rate_m_s2;
+        std::mem::swap(&mut inputs.force, &mut inputs.force_rate);
+        std::mem::swap(&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
+        let mut rates = SectionValues::default();
+        stepper.outputs(&velocity, inputs, &mut rates.outputs)?;
+        add(&mut rates.outputs, &by_wind.outputs, wind_rate);
+        check_finite(&rates.outputs)?;
+        let by = PresentSlopes {
+            wind: wind_rate,
+            rotation: self.turn(&memory.system, &rates.outputs),
+            ..PresentSlopes::default()
+        };
+        let rate = |role: &Role| match role {
+            Role::Computed(number) => Ok(self.slope(resources, memory, number, by, notices)?),
+            response => Ok(self.pick(&rates, *response)),
+        };
+        outputs.iter().map(rate).collect()
+    }
+
+    fn derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+        notices: &mut Vec<String>,
+    ) -> CallResult<Vec<f64>> {
+        let role = resources.table.variables()[known].role;
+        let instant = match (Source::of(role), role) {
+            (Source::Section, _) => {
+                let step = parameter_step(memory.values[known]);
+                return central_difference(resources, memory, known, step, |other| {
+                    let mut found = |unit: &mut T| unit.unknowns(resources, other, unknowns);
+                    Ok(self.with_parameters(resources, other, &mut found)?)
+                });
+            }
+            (Source::Limit, _) => None,
+            (_, Role::WindSpeed) => {
+                self.load_inputs(memory);
+                let (stepper, inputs) = self.parts();
+                Some(SectionValues::by_speed(stepper, &memory.system, inputs))
+            }
+            _ => Some(by_unit(self, memory, known)?),
+        };
+        let by = PresentSlopes {
+            wind: f64::from(u8::from(role == Role::WindSpeed)),
+            rotation: instant
+                .as_ref()
+                .map_or(0.0, |i| self.turn(&memory.system, &i.outputs)),
+            limit: f64::from(u8::from(instant.is_none())),
+        };
+        let derivative = |unknown: &Role| match unknown {
+            Role::Computed(number) => self.slope(resources, memory, number, by, notices),
+            other => Ok(instant.as_ref().map_or(0.0, |i| self.pick(i, *other))),
+        };
+        Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
+    }
+
+    fn present(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        number: &ComputedNumber,
+        notices: &mut Vec<String>,
+    ) -> f64 {
+        number
+            .of(&self.read(resources, memory, number, notices))
+            .value
+    }
+}
+
+/// What a force, a gust, a state or a number at release of one does.
+fn by_unit(unit: &mut impl CoupledUnit, memory: &Memory, known: usize) -> Result<SectionValues> {
+    let mut of_one = memory.clone();
+    let places = unit.places();
+    for place in places.inputs[1..].iter().chain(&places.initial) {
+        of_one.values[*place] = f64::from(u8::from(*place == known));
+    }
+    if let Some(place) = places.turbulence_factor {
+        of_one.values[place] = 0.0;
+    }
+    let entry = places.state_entry[known];
+    of_one.input_rates.fill(0.0);
+    unit.load_inputs(&of_one);
+    // while initialising the state follows from what is stated, and lags stand where the gusts are
+    let mut state = if memory.state == State::Initialization {
+        unit.release(&of_one.values)?
+    } else {
+        memory
+            .system
+            .with_all(&vec![0.0; memory.system.all().len()])
+    };
+    if let Some(entry) = entry {
+        state.set_number(entry, 1.0);
+    }
+    unit.instant(&state)
+}

@@ -1,0 +1,157 @@
+//! An output is added by one row: its value, its derivatives, what it depends on and its place in the description follow from it.
+
+use crate::bridges::{TWO, langenuen};
+use crate::models;
+use aerodeck::fmu::description::model_description;
+use aerodeck::fmu::instance::Instance;
+use aerodeck::fmu::package::Label;
+use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::variables::{Causality, ComputedNumber, Formula, Known, Listing};
+use aerodeck::study::bridge::BridgeExportOptions;
+
+/// Reads all that has a derivative.
+static ROW: ComputedNumber = ComputedNumber::new(
+    "of_all",
+    "Made up for a test",
+    Causality::Output,
+    &[Known::Onset, Known::Wind, Known::Damping, Known::Rotation],
+    Formula::Real(|p| {
+        p.wind_m_s / p.onset.speed_m_s + p.damping_ratio * p.wind_m_s - p.rotation_rad
+    }),
+);
+
+fn section(kind: &str) -> Resources {
+    let json = std::fs::read(models::model_file(kind)).unwrap();
+    Resources::from_bytes(&json, OptionFiles::default()).unwrap()
+}
+
+fn bridge() -> Resources {
+    let study = langenuen("LN21-5200", TWO);
+    let export = study.export(&BridgeExportOptions::default()).unwrap();
+    let (model, bridge) = (export.model.to_json(), export.bridge.to_json());
+    Resources::of_bridge(model.unwrap().as_bytes(), bridge.unwrap().as_bytes(), None).unwrap()
+}
+
+fn with_row(mut resources: Resources) -> Resources {
+    resources.table = resources.table.with_number(&ROW);
+    resources
+}
+
+/// In initialisation mode, where every known may be set.
+struct Unit(Instance);
+
+impl Unit {
+    fn new(resources: Resources) -> Self {
+        let mut instance = Instance::new(resources).unwrap();
+        instance.set_up_experiment(0.0, None).unwrap();
+        instance.enter_initialization();
+        Self(instance)
+    }
+
+    fn place(&self, name: &str) -> u32 {
+        self.0.table().find_name(name).unwrap() as u32
+    }
+
+    fn get(&mut self, name: &str) -> f64 {
+        let mut value = [f64::NAN];
+        let place = self.place(name);
+        self.0.reals(&[place], &mut value).unwrap();
+        value[0]
+    }
+
+    fn set(&mut self, name: &str, value: f64) {
+        let place = self.place(name);
+        self.0.set_reals(&[place], &[value]).unwrap();
+    }
+
+    fn slope(&mut self, known: &str) -> f64 {
+        let mut slope = [f64::NAN];
+        let (unknown, known) = (self.place("of_all"), self.place(known));
+        self.0
+            .directional_derivative(&[unknown], &[known], &[1.0], &mut slope)
+            .unwrap();
+        slope[0]
+    }
+
+    fn difference(&mut self, known: &str, step: f64) -> f64 {
+        let value = self.get(known);
+        let mut at = |moved: f64| {
+            self.set(known, moved);
+            self.get("of_all")
+        };
+        let rise = at(value + step) - at(value - step);
+        self.set(known, value);
+        rise / (2.0 * step)
+    }
+}
+
+fn check(resources: Resources, initial: &str, rotations: &[&str]) {
+    let resources = with_row(resources);
+    let of_row = resources.table.variables().last().unwrap().clone();
+    let names = |places: &[usize]| -> Vec<String> {
+        let all = resources.table.variables();
+        places.iter().map(|p| all[*p].name.clone()).collect()
+    };
+    let direct = names(&of_row.direct_inputs);
+    let places: Vec<usize> = of_row.initial_dependencies.iter().map(|d| d.on).collect();
+    let knowns = names(&places);
+    assert!(direct.contains(&"wind_speed".to_owned()), "{direct:?}");
+    for known in ["wind_speed", "air_density", "onset_search_limit", initial] {
+        assert!(knowns.contains(&known.to_owned()), "{known}: {knowns:?}");
+    }
+    let description = model_description(&resources, Listing::All, &Label::default()).unwrap();
+    assert!(description.contains("name=\"of_all\""));
+    let reference = resources.table.variables().len();
+    let listed = description
+        .matches(&format!("<Unknown index=\"{reference}\""))
+        .count();
+    assert_eq!(
+        listed, 2,
+        "as an output and as an unknown of the initialisation"
+    );
+
+    let mut unit = Unit::new(resources);
+    unit.set("wind_speed", 7.0);
+    unit.set(initial, 0.02);
+    let turned = rotations.iter().map(|name| unit.get(name));
+    let turned = turned.fold(0.0_f64, |a, b| if b.abs() > a.abs() { b } else { a });
+    assert!(turned.abs() > 1e-6);
+    let expected = 7.0 / unit.get("onset_speed") + unit.get("damping_now") * 7.0 - turned;
+    let found = unit.get("of_all");
+    assert!(
+        (found - expected).abs() <= 1e-12 * expected.abs(),
+        "{found}, {expected}"
+    );
+    for (known, step) in [("wind_speed", 1e-3), (initial, 1e-3), ("air_density", 1e-3)] {
+        let (slope, difference) = (unit.slope(known), unit.difference(known, step));
+        // what differences of damping ratios and of onsets leave
+        assert!(
+            (slope - difference).abs() <= 1e-5 * difference.abs(),
+            "{known}: {slope}, {difference}"
+        );
+    }
+}
+
+#[test]
+fn an_output_of_a_section_is_one_row() {
+    for kind in models::KINDS {
+        check(section(kind), "initial_rotation", &["rotation"]);
+    }
+}
+
+#[test]
+fn an_output_of_a_bridge_is_one_row() {
+    let resources = bridge();
+    let names = resources.table.variables().iter().map(|v| v.name.clone());
+    let rotations: Vec<String> = names
+        .filter(|n| n.starts_with("node[") && n.ends_with("].rotation"))
+        .collect();
+    let rotations: Vec<&str> = rotations.iter().map(String::as_str).collect();
+    let initial = resources.table.variables().iter();
+    let mut initial = initial
+        .map(|v| v.name.clone())
+        .filter(|n| n.ends_with(".initial_coordinate"));
+    // a mode that turns the girder
+    let last = initial.next_back().unwrap();
+    check(bridge(), &last, &rotations);
+}
