@@ -90,7 +90,7 @@ pub fn flutter(
         let range = ReducedFrequencyRange::between(k(PLATE_K.0), k(PLATE_K.1));
         let plate = FlatPlate::default();
         let found = py.detach(|| exact(range).find("flat plate", section, &plate, method));
-        found.map(exactly).map(|found| {
+        found.map(FlutterSearch::of_exact_forces).map(|found| {
             let evidence = Evidence::of_exact("the flat plate", &structure, &plate, found.clone());
             (found, evidence)
         })
@@ -124,16 +124,6 @@ fn model_evidence(
     let report = model.report.as_ref();
     evidence.constraints = report.and_then(|r| r.constraints.as_ref()?.onset);
     Ok(evidence)
-}
-
-/// The answer of forces that hold at every reduced frequency.
-fn exactly(mut found: FlutterSearch) -> FlutterSearch {
-    if let FlutterSearch::Onset(onset) = &mut found {
-        onset.in_tested_range = None;
-        let reason = "the forces are exact".to_owned();
-        onset.interval = OnsetInterval::None { reason };
-    }
-    found
 }
 
 /// Forces without a realisation.

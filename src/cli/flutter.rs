@@ -8,11 +8,12 @@ use super::{account, evidence, headline, routes, stages};
 use crate::error::Result;
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, OwnModel, RouteTable, StageFailure, Study, attempt,
-    route_table, section_evidence, state_route_intervals,
+    route_table, saved_moved_onset, section_evidence, state_route_intervals,
 };
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Frequencies, damping and flutter onset of the trained models of a study (see `train`)
 ///
@@ -38,7 +39,9 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let known = stages::read_uncertainties(&models, &directory)?;
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
-    let verdict = verdict(&study, &deck, &results, &models, &known, &failed)?;
+    let verdict = verdict(
+        &study, &deck, &results, &models, &known, &directory, &failed,
+    )?;
     if args.all {
         let stage = progress.stage("onset by every route");
         let mut table = route_table(&study, &deck, &models)?;
@@ -74,13 +77,14 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
         .with_outcome_of(&verdict))
 }
 
-/// What the saved models of a study amount to; how they were fitted is not known any more.
+/// What the models saved in a folder of results amount to.
 fn verdict(
     study: &Study,
     deck: &Deck,
     results: &FlutterStudy,
     models: &[TrainedModel],
     known: &[KnownUncertainty],
+    folder: &Path,
     failed: &[StageFailure],
 ) -> Result<Verdict> {
     let name = &study.exported()?.name;
@@ -88,7 +92,7 @@ fn verdict(
     let own = OwnModel {
         model: place.map(|i| &models[i]),
         uncertainty: place.and_then(|i| known.get(i)),
-        fit: None,
+        moved: place.map_or(Ok(None), |i| saved_moved_onset(&models[i], folder))?,
     };
     let failed = [failed, &results.failed].concat();
     Ok(Verdict::of(&section_evidence(

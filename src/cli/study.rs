@@ -204,7 +204,7 @@ impl StudyStages<'_> {
         let own = OwnModel {
             model: own.map(|t| &t.model),
             uncertainty: own.map(|t| &t.uncertainty),
-            fit: own.map(|t| &t.report),
+            moved: own.and_then(|t| t.report.constraints.as_ref()?.onset),
         };
         let (study, deck) = (&self.study, &self.deck);
         Verdict::of(&section_evidence(study, deck, results, &own, &self.failed))

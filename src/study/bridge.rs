@@ -8,6 +8,7 @@ mod forces;
 mod interval;
 mod scaled_forces;
 mod scatter;
+mod untested;
 
 pub use answers::{
     BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
@@ -200,10 +201,7 @@ impl BridgeStudy {
         if groups.is_empty() {
             return Ok(None);
         }
-        let b = &self.by_model;
-        let (nodes, modes) = (b.nodes.clone(), b.modes.clone());
-        let bridge = Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)?;
-        Ok(Some(bridge))
+        self.with_groups(groups).map(Some)
     }
 
     /// Similarities of vertical and torsional modes.

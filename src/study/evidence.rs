@@ -6,11 +6,11 @@ use crate::aerodynamics::Transfer;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, Instability, OnsetMethod, OnsetSearch, StableRange, find_onset, judged_speeds,
-    table_tested_from,
+    FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, StableRange, find_onset,
+    judged_speeds, table_tested_from,
 };
-use crate::identification::FitReport;
 use crate::plausibility::of_section;
+use crate::section::SectionModel;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
@@ -27,8 +27,8 @@ pub(crate) struct OwnModel<'a> {
     pub model: Option<&'a TrainedModel>,
     /// How far the data leave it open.
     pub uncertainty: Option<&'a KnownUncertainty>,
-    /// How it was fitted, where that was just done.
-    pub fit: Option<&'a FitReport>,
+    /// What constraints of its fit did to the onset.
+    pub moved: Option<MovedOnset>,
 }
 
 /// Everything that the stages of a study have found on the section in the forces of its own model.
@@ -40,7 +40,6 @@ pub(crate) fn section_evidence(
     failed: &[StageFailure],
 ) -> Evidence {
     let name = own.model.map(|m| m.name.as_str());
-    let held = own.fit.and_then(|f| f.constraints.as_ref()?.onset);
     let mut evidence = Evidence {
         required: study.flutter.required(),
         flutter: own
@@ -54,7 +53,7 @@ pub(crate) fn section_evidence(
             .find(|g| Some(g.model.as_str()) == name)
             .map(|g| g.growth.clone()),
         failures: failures(study, failed, name),
-        constraints: held,
+        constraints: own.moved,
         test_speeds: own.uncertainty.and_then(one_test_speed),
         implausible: [deck.findings(), &study_findings(study)[..]].concat(),
         tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
@@ -87,19 +86,21 @@ pub(crate) fn section_evidence(
 }
 
 /// What a saved model answers for its own section by itself: the onset with its interval, divergence, growth, and what is odd about
-/// the section. How it was fitted, and the table it was fitted to, are not known any more.
+/// the section; `moved` is what constraints of its fit did to the onset. The table it was fitted to is not known any more.
 ///
 /// # Errors
 /// [`Error::Input`] for a section that is wrong.
-pub(crate) fn model_evidence(model: &TrainedModel, known: &KnownUncertainty) -> Result<Evidence> {
-    let structure = model.section.structure()?;
-    let section = CoupledSection::with_model(&structure, &model.model)?;
-    let search = OnsetSearch {
-        speed_max_m_s: model.experiment.onset_search_limit_m_s,
-        ..OnsetSearch::default()
-    };
+pub(crate) fn model_evidence(
+    model: &TrainedModel,
+    section: &SectionModel,
+    search: &OnsetSearch,
+    known: &KnownUncertainty,
+    moved: Option<MovedOnset>,
+) -> Result<Evidence> {
+    let structure = section.structure()?;
+    let coupled = CoupledSection::with_model(&structure, &model.model)?;
     let tested = model.tested_range;
-    let mut found = find_onset(&model.name, &section, &search, Some(tested))?;
+    let mut found = find_onset(&model.name, &coupled, search, Some(tested))?;
     if let FlutterSearch::Onset(onset) = &mut found {
         onset.interval = interval_of(&structure, model, known, onset);
         let warnings = known.iter().filter_map(|k| k.warning());
@@ -109,14 +110,15 @@ pub(crate) fn model_evidence(model: &TrainedModel, known: &KnownUncertainty) -> 
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;
     Ok(Evidence {
+        constraints: moved,
         test_speeds: one_test_speed(known),
-        implausible: of_section(&model.section),
+        implausible: of_section(section),
         ..Evidence::of_section(
             &forces(&model.name, ""),
-            &section,
+            &coupled,
             &at_rest,
             tested,
-            &search,
+            search,
             found,
         )
     })

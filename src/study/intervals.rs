@@ -2,7 +2,8 @@
 
 use super::{FlutterStudy, RouteTable, Study, slug};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetMethod};
+use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetMethod};
+use crate::identification::FitReport;
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
@@ -28,7 +29,30 @@ pub(crate) fn saved_uncertainty(model: &TrainedModel, folder: &Path) -> Result<K
     Ok(Ok(Box::new(known)))
 }
 
+/// What constraints of the fit did to the onset, as training left it in a folder of results; `None` where it left nothing.
+pub(crate) fn saved_moved_onset(model: &TrainedModel, folder: &Path) -> Result<Option<MovedOnset>> {
+    let path = folder
+        .join(FITS)
+        .join(format!("{}.json", slug(&model.name)));
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+    let report: FitReport = serde_json::from_str(&text)
+        .map_err(|e| Error::json("the account of a fit", &e).in_file(&path))?;
+    Ok(report.constraints.and_then(|held| held.onset))
+}
+
 /// The same for the file of a model: beside it, or beside the folder it is in.
+pub(crate) fn moved_onset_beside(file: &Path, model: &TrainedModel) -> Result<Option<MovedOnset>> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    match saved_moved_onset(model, folder)? {
+        None => saved_moved_onset(model, &folder.join("..")),
+        known => Ok(known),
+    }
+}
+
+/// The uncertainty for the file of a model: beside it, or beside the folder it is in.
 pub(crate) fn uncertainty_beside(file: &Path, model: &TrainedModel) -> Result<KnownUncertainty> {
     let folder = file.parent().unwrap_or(Path::new(""));
     match saved_uncertainty(model, folder)? {

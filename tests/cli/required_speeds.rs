@@ -61,12 +61,58 @@ fn a_girder_that_is_hardly_tested_is_not_met() {
     let text = untested["text"].as_str().unwrap();
     assert!(
         text.starts_with("The forces of section rest (")
-            && text.ends_with(
-                "are those of Jones's rational functions of the flat plate, which no test of this deck confirms"
-            ),
+            && text.contains(
+                "are those of Jones's rational functions of the flat plate, which no test of this deck confirms; the onset by the \
+                 models is at "
+            )
+            && text.contains(", with the forces of section girder there at "),
         "{text}"
     );
     assert_eq!(untested["severity"], "severe");
+}
+
+/// Nodes that no section takes have no forces, and that is said.
+#[test]
+fn nodes_in_no_section_are_doubted() {
+    let (code, verdict) = verdict_after(|text| {
+        text.replace("name = \"girder\"", "name = \"girder\"\nto = \"1151\"")
+            .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
+    });
+    assert_eq!((code, state(&verdict)), (Some(3), "cannot_be_judged"));
+    let text = doubt(&verdict, "untested").unwrap()["text"].clone();
+    let text = text.as_str().unwrap();
+    assert!(
+        text.contains("which no section takes (") && text.contains("are none"),
+        "{text}"
+    );
+}
+
+/// Four per cent at mid-span, the same at the ends: what counts is what they do to the onset.
+#[test]
+fn a_few_untested_nodes_count_by_what_they_do_to_the_onset() {
+    let section = |name: &str, ends: [u32; 2], forces: &str| {
+        let [from, to] = ends;
+        format!(
+            "[[section]]\nname = \"{name}\"\nfrom = \"{from}\"\nto = \"{to}\"\nwidth_m = 31.0\nderivatives = \"{forces}\"\n\
+             motions = [\"vertical\", \"torsion\"]\n\n"
+        )
+    };
+    let severity = |[from, to]: [u32; 2]| {
+        let (_, verdict) = verdict_after(|text| {
+            let (start, end) = (text.find("[[section]]"), text.find("[flutter]"));
+            let (before, after) = (&text[..start.unwrap()], &text[end.unwrap() + 9..]);
+            let deck = "LN21-5200";
+            let mut sections =
+                section("rest", [from, to], "flat plate") + &section("east", [to + 5, 1311], deck);
+            if from > 1001 {
+                sections += &section("west", [1001, from - 5], deck);
+            }
+            format!("{before}{sections}[flutter]\nrequired_speed_m_s = 77.0{after}")
+        });
+        doubt(&verdict, "untested").unwrap()["severity"].clone()
+    };
+    assert_eq!(severity([1151, 1156]), "severe");
+    assert_eq!(severity([1001, 1016]), "minor");
 }
 
 /// Static coefficients beside derivatives: where heave alone gallops by them, that governs.

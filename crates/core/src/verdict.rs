@@ -26,6 +26,7 @@ mod outcome;
 mod reach;
 mod searched;
 mod sentences;
+mod untested;
 mod words;
 
 #[cfg(test)]
@@ -35,10 +36,11 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, RequiredSpeed, UntestedPart,
+    MeanRotation, RequiredSpeed,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;
+pub use untested::{UntestedPart, UntestedParts};
 
 use judgement::Judgement;
 use sentences::{explanation, headline};

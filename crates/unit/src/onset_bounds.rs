@@ -18,12 +18,18 @@ pub struct OnsetBounds {
 }
 
 impl OnsetBounds {
-    /// Those of an interval that is a statement of probability; `None` for any other.
+    /// Those of an interval that is a statement of probability, also of one that leaves nearly everything open; `None` for any other.
     pub fn of(interval: &OnsetInterval) -> Option<Self> {
         match *interval {
             OnsetInterval::Known {
                 low_m_s, high_m_s, ..
-            } => Some(Self { low_m_s, high_m_s }),
+            }
+            | OnsetInterval::Undetermined {
+                low_m_s, high_m_s, ..
+            } => Some(Self {
+                low_m_s: low_m_s.max(0.0),
+                high_m_s,
+            }),
             _ => None,
         }
     }
@@ -42,12 +48,12 @@ impl OnsetBounds {
     /// Whether the ends are an interval of speeds.
     pub(super) fn check(&self) -> Result<()> {
         let Self { low_m_s, high_m_s } = self;
-        if *low_m_s > 0.0 && low_m_s <= high_m_s && high_m_s.is_finite() {
+        if *low_m_s >= 0.0 && low_m_s <= high_m_s && high_m_s.is_finite() {
             return Ok(());
         }
         Err(Error::input(
             "low_m_s, high_m_s",
-            "0 < low_m_s <= high_m_s",
+            "0 <= low_m_s <= high_m_s",
             format!("{low_m_s}, {high_m_s}"),
         ))
     }
@@ -63,13 +69,7 @@ mod tests {
             OnsetBounds::from_json(&format!("{{\"low_m_s\": {low}, \"high_m_s\": {high}}}"))
         };
         assert_eq!(read("36.5", "37").unwrap().high_m_s, 37.0);
-        for (low, high) in [
-            ("38", "37"),
-            ("0", "37"),
-            ("-1", "37"),
-            ("1", "1e999"),
-            ("\"a\"", "1"),
-        ] {
+        for (low, high) in [("38", "37"), ("-1", "37"), ("1", "1e999"), ("\"a\"", "1")] {
             assert!(read(low, high).is_err(), "{low}, {high}");
         }
     }

@@ -10,6 +10,7 @@ use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::files::coefficients::gust_force;
+use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{
@@ -18,7 +19,7 @@ use crate::fmu::package::{
 };
 use crate::fmu::variables::Listing;
 use crate::study::bridge::BridgeExportOptions;
-use crate::study::{model_evidence, uncertainty_beside};
+use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -249,7 +250,13 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let (default_name, evidence) = match args.kind {
         ExportKind::Section => {
             let known = uncertainty_beside(&args.model, &model)?;
-            (stages::FMU_FILE, Some(model_evidence(&model, &known)?))
+            let moved = moved_onset_beside(&args.model, &model)?;
+            let search = OnsetSearch {
+                speed_max_m_s: model.experiment.onset_search_limit_m_s,
+                ..OnsetSearch::default()
+            };
+            let evidence = model_evidence(&model, &model.section, &search, &known, moved)?;
+            (stages::FMU_FILE, Some(evidence))
         }
         ExportKind::Force => ("deck_force.fmu", None),
     };

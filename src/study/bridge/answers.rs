@@ -11,6 +11,7 @@ use crate::flutter::{
     static_deflection, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::verdict::UntestedParts;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -74,6 +75,9 @@ pub struct BridgeFlutter {
     /// What constraints on the fits of sections did to the onset; `None` where none hold one, or models were read from files.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constraints: Option<MovedOnset>,
+    /// Parts that no test stands behind, where there are some beside others that were tested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub untested: Option<UntestedParts>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
 }
@@ -143,6 +147,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         failed.push(format!("constraints: {e}"));
         None
     });
+    let untested = study.untested(&by_model.search).unwrap_or_else(|e| {
+        failed.push(format!("parts without a test: {e}"));
+        None
+    });
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
@@ -184,6 +192,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         growth,
         mean_rotation,
         constraints,
+        untested,
         failed,
     })
 }

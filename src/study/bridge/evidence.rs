@@ -8,7 +8,7 @@ use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, Reach, RequiredSpeed, UntestedPart, Verdict,
+    MeanRotation, Reach, RequiredSpeed, Verdict,
 };
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ impl BridgeStudy {
                 .iter()
                 .filter_map(|s| s.rotation_amplitude_deg)
                 .reduce(f64::min),
-            untested: self.untested(),
+            untested: results.untested.clone(),
             galloping: results.galloping_m_s.map(|speed_m_s| GallopingReading {
                 forces: "static coefficients".to_owned(),
                 speed_m_s,
@@ -77,29 +77,6 @@ impl BridgeStudy {
     pub fn verdict(&self) -> Result<Verdict> {
         let results = bridge_flutter(self)?;
         Ok(Verdict::of(&self.evidence(&results, &results.failed)))
-    }
-
-    /// Sections without a test, where others have one.
-    fn untested(&self) -> Vec<UntestedPart> {
-        if self.tested_range().is_none() {
-            // the whole answer is
-            return Vec::new();
-        }
-        let forces = self.by_model.forces();
-        let shares = forces.shares();
-        let blocks = self.file.sections.iter().zip(&self.sections);
-        blocks
-            .filter(|(_, section)| section.tested.is_none())
-            .map(|(block, section)| UntestedPart {
-                section: block.name.clone(),
-                forces: section.method.clone(),
-                share: shares
-                    .iter()
-                    .filter(|(group, _)| group.name == block.name)
-                    .map(|(_, share)| share)
-                    .sum(),
-            })
-            .collect()
     }
 
     /// The speeds at which every mode is among the tests of every section.

@@ -1,5 +1,7 @@
 //! Buffeting of a wind file: RMS over wind speed, spectra, both domains side by side.
 
+mod verdict;
+
 use super::{QUASI_STEADY, WindStudy};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;

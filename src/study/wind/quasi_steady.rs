@@ -68,7 +68,7 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
         .collect::<Result<_>>()?;
     let onset = quasi_steady_onset(&name, &structure, &theory, &range.search())?;
     Ok(QuasiSteadyStudy {
-        verdict: Verdict::of(&evidence(study, Some(&onset))),
+        verdict: Verdict::of(&evidence(study, &onset)),
         coefficients: table.name().to_owned(),
         dofs: structure.dofs.clone(),
         curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,
@@ -80,40 +80,19 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
     })
 }
 
-impl WindStudy {
-    /// What a wind file can say of its required speed: by quasi-steady theory, where it has static coefficients.
-    ///
-    /// # Errors
-    /// As [`quasi_steady_study`].
-    pub(crate) fn verdict(&self) -> Result<Verdict> {
-        if self.coefficients.is_none() {
-            return Ok(Verdict::of(&evidence(self, None)));
-        }
-        let structure = self.section()?.structure()?;
-        let theory = self.quasi_steady()?;
-        let name = format!("quasi-steady, {}", theory.coefficients().name());
-        let search = self.speed_range()?.search();
-        let onset = quasi_steady_onset(&name, &structure, &theory, &search)?;
-        Ok(Verdict::of(&evidence(self, Some(&onset))))
-    }
-}
-
 /// What quasi-steady theory says of a section, as evidence: no test of it stands behind.
-fn evidence(study: &WindStudy, onset: Option<&QuasiSteadyOnset>) -> Evidence {
+pub(super) fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Evidence {
     let forces = "quasi-steady theory";
     let mut evidence = Evidence {
         required: study.speeds.required(),
+        flutter: vec![FlutterReading {
+            forces: forces.to_owned(),
+            search: onset.search.clone(),
+            basis: ForceBasis::Stated,
+        }],
         implausible: study.findings(),
         ..Evidence::default()
     };
-    let Some(onset) = onset else {
-        return evidence;
-    };
-    evidence.flutter.push(FlutterReading {
-        forces: forces.to_owned(),
-        search: onset.search.clone(),
-        basis: ForceBasis::Stated,
-    });
     match onset.equilibrium_end {
         Some(EquilibriumEnd::Divergence(last)) => {
             let at = DivergenceReading::at(forces, Some(last.speed_m_s));

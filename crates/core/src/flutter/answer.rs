@@ -2,7 +2,7 @@
 
 use super::critical_point::CriticalPoint;
 use super::judged::{RangePassages, StableRange};
-use super::onset::Onset;
+use super::onset::{Onset, OnsetInterval};
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +59,18 @@ pub struct UnstableStart {
 }
 
 impl FlutterSearch {
+    /// The answer of forces that hold at every reduced frequency: no test and no scatter bears on it.
+    #[must_use]
+    pub fn of_exact_forces(mut self) -> Self {
+        if let Self::Onset(onset) = &mut self {
+            onset.in_tested_range = None;
+            onset.interval = OnsetInterval::None {
+                reason: "the forces are exact".to_owned(),
+            };
+        }
+        self
+    }
+
     /// The onset, if it was found; `None` also where the section grows from the lowest speed on.
     pub fn onset(&self) -> Option<&Onset> {
         match self {

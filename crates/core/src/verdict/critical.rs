@@ -149,7 +149,10 @@ fn flutter(readings: &[FlutterReading]) -> Vec<CriticalSpeed> {
 
 /// Whether two readings of the same data differ by more than their intervals, or one finds what the other excludes.
 pub(super) fn contradict(a: &FlutterReading, b: &FlutterReading) -> bool {
+    let begins_below = |r: &FlutterReading| matches!(r.search, FlutterSearch::UnstableAtOrBelow(_));
     match (a.best_m_s(), b.best_m_s()) {
+        // neither knows where it begins
+        (Some(_), Some(_)) if begins_below(a) && begins_below(b) => false,
         (Some(x), Some(y)) => {
             let ends = |r: &FlutterReading, v: f64| r.range_m_s().unwrap_or((v, v));
             let ((a_low, a_high), (b_low, b_high)) = (ends(a, x), ends(b, y));

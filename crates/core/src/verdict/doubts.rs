@@ -3,7 +3,7 @@
 use super::below::not_judged_below;
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Evidence, FlutterReading, ForceBasis, UntestedPart};
+use super::evidence::{Evidence, FlutterReading, ForceBasis};
 use super::moved::constraints;
 use super::words::{found, k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
@@ -12,10 +12,6 @@ use crate::plausibility;
 /// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: codes ask for tests
 /// at 0 and ±3°, and beyond half of that step those of the next angle would be nearer.
 const ROTATION_DEG: (f64, f64) = (1.0, 1.5);
-
-/// Share of a bridge in the wind from which on forces without a test bear on its onset: less changes an onset by less than the
-/// interval of one that is well tested.
-const UNTESTED_SHARE: f64 = 0.05;
 
 /// All of them, the gravest first.
 pub(super) fn all(evidence: &Evidence, critical: &Critical) -> Vec<Doubt> {
@@ -85,7 +81,8 @@ impl Weighed<'_> {
                     .settled_by("measured derivatives of this deck"),
             );
         }
-        all.extend(self.evidence.untested.iter().map(untested));
+        let untested = self.evidence.untested.as_ref();
+        all.extend(untested.map(|parts| parts.doubt(first, |v| self.clears(v))));
         let warnings = match &first.search {
             FlutterSearch::Onset(onset) => &onset.warnings[..],
             FlutterSearch::UnstableAtOrBelow(start) => &start.warnings[..],
@@ -321,22 +318,6 @@ impl Weighed<'_> {
 
 fn remark(text: &str) -> Doubt {
     Doubt::new(Severity::Minor, DoubtKind::Remark, text)
-}
-
-fn untested(part: &UntestedPart) -> Doubt {
-    let severity = match part.share < UNTESTED_SHARE {
-        true => Severity::Minor,
-        false => Severity::Severe,
-    };
-    let text = format!(
-        "The forces of section {} ({:.0} % of what the wind does to the modes) are those of {}, which no test of this deck \
-         confirms",
-        part.section,
-        100.0 * part.share,
-        part.forces
-    );
-    Doubt::new(severity, DoubtKind::Untested, text)
-        .settled_by(format!("measured derivatives of section {}", part.section))
 }
 
 fn contradiction(first: &FlutterReading, second: &FlutterReading) -> Doubt {

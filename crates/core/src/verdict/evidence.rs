@@ -1,6 +1,7 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
 use super::reach::Reach;
+use super::untested::UntestedParts;
 use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, TestedFrom, UnwantedGrowth};
 use crate::plausibility::Finding;
 use crate::units::ReducedFrequencyRange;
@@ -40,7 +41,7 @@ pub struct Evidence {
     /// What constraints on the fit did to the onset.
     pub constraints: Option<MovedOnset>,
     /// Parts of the structure whose forces rest on no test, beside others that were tested.
-    pub untested: Vec<UntestedPart>,
+    pub untested: Option<UntestedParts>,
     /// Number of mean wind speeds of the tests; `None` where it is not known or there are no tests.
     pub test_speeds: Option<usize>,
     /// Input that does not look right.
@@ -106,12 +107,15 @@ impl FlutterReading {
         self.onset()?.interval.ends()
     }
 
-    /// Everything that the interval leaves open, m/s, also where that is too much for a result.
+    /// What the interval leaves open, m/s, also where that is too much for a result: then no more than half or twice the onset, as an
+    /// interval that holds everything would excuse everything.
     pub(super) fn range_m_s(&self) -> Option<(f64, f64)> {
-        match self.onset()?.interval {
+        let onset = self.onset()?;
+        let best = onset.at.speed_m_s;
+        match onset.interval {
             OnsetInterval::Undetermined {
                 low_m_s, high_m_s, ..
-            } => Some((low_m_s, high_m_s)),
+            } => Some((low_m_s.max(0.5 * best), high_m_s.min(2.0 * best))),
             ref other => other.ends(),
         }
     }
@@ -188,17 +192,6 @@ pub struct GallopingReading {
     pub forces: String,
     /// Onset, m/s.
     pub speed_m_s: f64,
-}
-
-/// A part of a structure whose forces no test confirms.
-#[derive(Debug, Clone, PartialEq)]
-pub struct UntestedPart {
-    /// Name of the section.
-    pub section: String,
-    /// What its forces are made from, in words.
-    pub forces: String,
-    /// Its part of what the wind does to all modes, 0 to 1.
-    pub share: f64,
 }
 
 /// A stage that failed.

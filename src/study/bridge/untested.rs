@@ -1,0 +1,115 @@
+//! Parts of a bridge that no test stands behind, and what its onset is with other forces there.
+
+use super::BridgeStudy;
+use super::answers::coupled;
+use crate::bridge::{Bridge, StripGroup};
+use crate::error::Result;
+use crate::flutter::{FlutterSearch, find_onset};
+use crate::verdict::{UntestedPart, UntestedParts};
+
+/// Name of the strips at nodes that no section takes.
+const IN_NO_SECTION: &str = "nodes in no section";
+
+impl BridgeStudy {
+    /// See the module; `None` where every part was tested, or none: then the whole answer is in doubt.
+    ///
+    /// # Errors
+    /// As [`find_onset`].
+    pub(super) fn untested(&self, found: &FlutterSearch) -> Result<Option<UntestedParts>> {
+        let is_tested = |group: usize| self.sections[self.section_of_group[group]].tested.is_some();
+        let bridge = &self.by_model;
+        let forces = bridge.forces();
+        let shares = forces.shares();
+        let groups = (0..bridge.groups.len()).filter(|g| is_tested(*g));
+        let Some(main) = groups.max_by(|a, b| shares[*a].1.total_cmp(&shares[*b].1)) else {
+            return Ok(None);
+        };
+        let main = &bridge.groups[main];
+        let all = bridge.groups.iter().enumerate();
+        let mut as_tested: Vec<StripGroup> = all
+            .clone()
+            .map(|(i, group)| match is_tested(i) {
+                true => group.clone(),
+                false => StripGroup {
+                    forces: main.forces.clone(),
+                    ..group.clone()
+                },
+            })
+            .collect();
+        as_tested.extend(self.in_no_section(main));
+        let as_tested = self.with_groups(as_tested)?;
+        let parts = self.parts(&as_tested);
+        if parts.is_empty() {
+            return Ok(None);
+        }
+        let tested = all.filter(|(i, _)| is_tested(*i)).map(|(_, g)| g.clone());
+        let in_still_air = self.with_groups(tested.collect())?;
+        let onset_m_s = |bridge: &Bridge| -> Result<Option<f64>> {
+            let section = coupled(bridge)?;
+            let found = find_onset("model", &section, &self.search(), self.tested_range())?;
+            Ok(found.critical_speed_m_s())
+        };
+        Ok(Some(UntestedParts {
+            parts,
+            as_it_is_m_s: found.critical_speed_m_s(),
+            tested: main.name.clone(),
+            as_tested_m_s: onset_m_s(&as_tested)?,
+            in_still_air_m_s: onset_m_s(&in_still_air)?,
+        }))
+    }
+
+    /// The nodes that no section takes, as strips like those of `main` in the mean of their winds.
+    fn in_no_section(&self, main: &StripGroup) -> Option<StripGroup> {
+        let bridge = &self.by_model;
+        let taken: Vec<usize> = bridge.groups.iter().flat_map(|g| g.nodes.clone()).collect();
+        let bare = |n: &usize| !taken.contains(n) && bridge.nodes[*n].length_m > 0.0;
+        let nodes: Vec<usize> = (0..bridge.nodes.len()).filter(bare).collect();
+        let factors = nodes
+            .iter()
+            .map(|n| self.file.wind.factor(bridge.nodes[*n].along_m));
+        let wind_factor = factors.sum::<f64>() / nodes.len() as f64;
+        (!nodes.is_empty()).then(|| StripGroup {
+            name: IN_NO_SECTION.to_owned(),
+            wind_factor,
+            nodes,
+            ..main.clone()
+        })
+    }
+
+    /// What was not tested, with its share of a bridge that has forces everywhere.
+    fn parts(&self, bridge: &Bridge) -> Vec<UntestedPart> {
+        let forces = bridge.forces();
+        let shares = forces.shares();
+        let share = |name: &str| {
+            let own = shares.iter().filter(|(group, _)| group.name == name);
+            own.map(|(_, share)| share).sum()
+        };
+        let blocks = self.file.sections.iter().zip(&self.sections);
+        let untested = blocks.filter(|(_, section)| section.tested.is_none());
+        let mut parts: Vec<UntestedPart> = untested
+            .map(|(block, section)| UntestedPart {
+                part: format!("section {}", block.name),
+                forces: format!("those of {}", section.method),
+                share: share(&block.name),
+            })
+            .collect();
+        let bare = bridge.groups.iter().find(|g| g.name == IN_NO_SECTION);
+        parts.extend(bare.map(|group| {
+            let names = group.nodes.iter().map(|n| bridge.nodes[*n].name.as_str());
+            let names: Vec<&str> = names.collect();
+            UntestedPart {
+                part: format!("the nodes {}, which no section takes", names.join(", ")),
+                forces: "none".to_owned(),
+                share: share(IN_NO_SECTION),
+            }
+        }));
+        parts
+    }
+
+    /// The bridge by its models with other strips.
+    pub(super) fn with_groups(&self, groups: Vec<StripGroup>) -> Result<Bridge> {
+        let b = &self.by_model;
+        let (nodes, modes) = (b.nodes.clone(), b.modes.clone());
+        Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)
+    }
+}

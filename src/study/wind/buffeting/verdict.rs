@@ -1,0 +1,53 @@
+//! What the self-excited forces of a wind file say of its required speed.
+
+use super::super::quasi_steady::evidence;
+use super::{Setting, WindStudy};
+use crate::aerodynamics::Transfer;
+use crate::error::Result;
+use crate::flutter::{OnsetSearch, pk_onset, quasi_steady_onset};
+use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
+use crate::verdict::{Evidence, Verdict};
+
+impl WindStudy {
+    /// What the self-excited forces of a wind file can say of its required speed.
+    ///
+    /// # Errors
+    /// As `buffeting_study`.
+    pub(crate) fn verdict(&self) -> Result<Verdict> {
+        let setting = Setting::new(self)?;
+        let search = self.speed_range()?.search();
+        let evidence = match (&setting.fixed, &setting.theory) {
+            (Some(fixed), _) => setting.evidence(fixed.as_ref(), &search)?,
+            (None, Some(theory)) => {
+                let name = format!("quasi-steady, {}", theory.coefficients().name());
+                let onset = quasi_steady_onset(&name, &setting.structure, theory, &search)?;
+                evidence(self, &onset)
+            }
+            (None, None) => Evidence::default(),
+        };
+        Ok(Verdict::of(&Evidence {
+            required: self.speeds.required(),
+            implausible: self.findings(),
+            ..evidence
+        }))
+    }
+}
+
+impl Setting<'_> {
+    /// What forces that do not change with the wind speed answer.
+    fn evidence(&self, fixed: &dyn Transfer, search: &OnsetSearch) -> Result<Evidence> {
+        let (study, structure) = (self.study, &self.structure);
+        if let Some(model) = study.trained_model()? {
+            let file = study.directory.join(&study.aerodynamics);
+            let known = uncertainty_beside(&file, &model)?;
+            let moved = moved_onset_beside(&file, &model)?;
+            return model_evidence(&model, &study.section()?, search, &known, moved);
+        }
+        let name = study.aerodynamics.as_str();
+        let found = pk_onset(name, structure, fixed, search, self.tested)?;
+        Ok(match self.tested {
+            Some(range) => Evidence::of_table(name, structure, fixed, range, found),
+            None => Evidence::of_exact(name, structure, fixed, found.of_exact_forces()),
+        })
+    }
+}
