@@ -26,7 +26,7 @@ use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
-use crate::plausibility::{Finding, of_bridge, of_coefficients, sentences};
+use crate::plausibility::{Finding, of_bridge, of_coefficients, of_modes_left_out, sentences};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
@@ -107,6 +107,7 @@ impl BridgeStudy {
         let has_table = sections.iter().any(|s| s.table.is_some());
         let by_model = bridge(false)?;
         findings.extend(of_bridge(&by_model));
+        findings.extend(of_modes_left_out(&by_model, &modes.left_out));
         for block in &file.sections {
             let place = format!("section {}: static.", block.name);
             let statics = block.statics.iter();

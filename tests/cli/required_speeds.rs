@@ -71,6 +71,19 @@ fn a_girder_that_is_hardly_tested_is_not_met() {
     assert_eq!(untested["severity"], "severe");
 }
 
+/// Without its torsional modes a bridge has no flutter, and meets nothing by that.
+#[test]
+fn a_bridge_without_its_torsional_modes_is_not_met() {
+    let (code, verdict) = verdict_after(|text| {
+        text.replace("[2, 3, 5, 12, 14, 16, 17, 23]", "[2, 3, 5, 12, 14, 16]")
+            .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
+    });
+    assert_eq!((code, state(&verdict)), (Some(3), "cannot_be_judged"));
+    let text = doubt(&verdict, "implausible_input").unwrap()["text"].clone();
+    let text = text.as_str().unwrap();
+    assert!(text.contains("torsional"), "{text}");
+}
+
 /// Nodes that no section takes have no forces, and that is said.
 #[test]
 fn nodes_in_no_section_are_doubted() {

@@ -44,8 +44,8 @@ pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> 
         "mass kg",
         "ζ %"
     );
-    for (i, m) in bridge.modes.iter().enumerate() {
-        let motion = Dof::THREE[bridge.main_motion(i)].name();
+    for m in &bridge.modes {
+        let motion = Dof::THREE[bridge.main_motion(m)].name();
         let _ = writeln!(
             text,
             "{:>5} {:>10.4} {:>14.6e} {:>8.3}  {motion}",

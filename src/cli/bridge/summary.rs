@@ -127,13 +127,13 @@ fn sections(study: &BridgeStudy) -> Vec<SectionFacts> {
 
 fn modes(study: &BridgeStudy) -> Vec<ModeFacts> {
     let bridge = &study.by_model;
-    let all = bridge.modes.iter().enumerate();
-    all.map(|(i, m)| ModeFacts {
+    let all = bridge.modes.iter();
+    all.map(|m| ModeFacts {
         mode: m.number,
         frequency_hz: m.frequency_hz,
         generalised_mass: m.generalised_mass,
         damping_ratio: m.damping_ratio,
-        main_motion: Dof::THREE[bridge.main_motion(i)].name().to_owned(),
+        main_motion: Dof::THREE[bridge.main_motion(m)].name().to_owned(),
     })
     .collect()
 }

@@ -1,6 +1,6 @@
 //! How alike two mode shapes are: what decides whether two modes may be treated as one section.
 
-use super::Bridge;
+use super::{Bridge, BridgeMode};
 use serde::Serialize;
 
 /// Similarity of a vertical and a torsional mode.
@@ -18,9 +18,8 @@ pub struct Similarity {
 ///
 /// A mode counts as what carries the largest part of its sum of squares, rotations times half the width.
 pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
-    let kinds: Vec<usize> = (0..bridge.modes.len())
-        .map(|m| bridge.main_motion(m))
-        .collect();
+    let kinds = bridge.modes.iter().map(|m| bridge.main_motion(m));
+    let kinds: Vec<usize> = kinds.collect();
     let mut all = Vec::new();
     for (y, _) in kinds.iter().enumerate().filter(|(_, k)| **k == 0) {
         for (theta, _) in kinds.iter().enumerate().filter(|(_, k)| **k == 2) {
@@ -46,10 +45,10 @@ pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
 impl Bridge {
     /// The motion that carries the largest part of a mode's sum of squares: 0 vertical, 1 lateral, 2 rotation, which
     /// counts with half the width.
-    pub fn main_motion(&self, mode: usize) -> usize {
+    pub fn main_motion(&self, mode: &BridgeMode) -> usize {
         let scale = [1.0, 1.0, 0.5 * self.width_m()];
         let part = |i: usize| -> f64 {
-            let nodes = self.nodes.iter().zip(&self.modes[mode].shape);
+            let nodes = self.nodes.iter().zip(&mode.shape);
             nodes
                 .map(|(node, s)| node.length_m * (scale[i] * s[i]).powi(2))
                 .sum()

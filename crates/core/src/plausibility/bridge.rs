@@ -89,6 +89,39 @@ pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
     found
 }
 
+/// Modes of the file without which the answer may be that of another bridge: the lowest that bends the girder, and the lowest that
+/// twists it.
+pub fn of_modes_left_out(bridge: &Bridge, left_out: &[BridgeMode]) -> Vec<Finding> {
+    let lowest = |modes: &[BridgeMode], motion: usize| {
+        let own = modes.iter().filter(|m| bridge.main_motion(m) == motion);
+        let lowest = own.min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        lowest.map(|m| (m.number, m.frequency_hz))
+    };
+    let missing = |(motion, name): (usize, &str)| {
+        let (number, hertz) = lowest(left_out, motion)?;
+        let taken = lowest(&bridge.modes, motion);
+        let text = match taken {
+            Some((_, taken_hertz)) if taken_hertz <= hertz => return None,
+            Some((taken, taken_hertz)) => format!(
+                "the lowest {name} mode of the file, {number} ({hertz:.4} Hz), is left out, the lowest that is taken is {taken} \
+                 ({taken_hertz:.4} Hz)"
+            ),
+            None => format!(
+                "none of the modes that are taken is {name}; of the file {number} ({hertz:.4} Hz) is the lowest"
+            ),
+        };
+        let kind = FindingKind::Contradiction;
+        Some(
+            Finding::doubt(kind, "modes.select", text)
+                .otherwise("flutter couples a vertical and a torsional mode".to_owned()),
+        )
+    };
+    [(0, "vertical"), (2, "torsional")]
+        .into_iter()
+        .filter_map(missing)
+        .collect()
+}
+
 fn place(mode: &BridgeMode) -> String {
     format!("mode {}", mode.number)
 }
@@ -166,7 +199,9 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
         });
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let Some((mass, vertical)) = least(0).filter(|(_, i)| bridge.main_motion(*i) == 0) else {
+    let Some((mass, vertical)) =
+        least(0).filter(|(_, i)| bridge.main_motion(&bridge.modes[*i]) == 0)
+    else {
         return Vec::new();
     };
     let width = bridge.width_m();
@@ -184,7 +219,9 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
         );
         return vec![Finding::doubt(FindingKind::Unit, key, text).otherwise(otherwise)];
     }
-    let Some((inertia, torsional)) = least(2).filter(|(_, i)| bridge.main_motion(*i) == 2) else {
+    let Some((inertia, torsional)) =
+        least(2).filter(|(_, i)| bridge.main_motion(&bridge.modes[*i]) == 2)
+    else {
         return Vec::new();
     };
     let ratio = (inertia / mass).sqrt() / width;
@@ -203,7 +240,7 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
 
 /// The least product of frequency and half wave of the modes that move mainly up and down.
 fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
-    let vertical = (0..bridge.modes.len()).filter(|m| bridge.main_motion(*m) == 0);
+    let vertical = (0..bridge.modes.len()).filter(|m| bridge.main_motion(&bridge.modes[*m]) == 0);
     let speeds = vertical.map(|i| {
         let mode = &bridge.modes[i];
         (mode.frequency_hz * length_m / half_waves(mode) as f64, mode)

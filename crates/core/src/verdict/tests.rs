@@ -260,6 +260,24 @@ fn model_and_table_that_contradict_each_other_are_said() {
             .iter()
             .any(|d| matches!(d.kind, DoubtKind::Contradiction { .. }))
     );
+    // what an undetermined onset leaves open excuses no growth in the tests
+    let mut open = found("the models", 84.1, 0.0);
+    if let FlutterSearch::Onset(onset) = &mut open.search {
+        onset.interval = OnsetInterval::Undetermined {
+            low_m_s: -2.9,
+            high_m_s: 149.0,
+            standard_error_m_s: 19.4,
+            degrees_of_freedom: 3.0,
+            parts: ErrorParts::default(),
+            reason: "scatter".to_owned(),
+        };
+    }
+    let verdict = Verdict::of(&of(15.0, vec![open, unstable("the tables", 7.8)]));
+    let said = verdict.explanation;
+    assert!(said.contains("unstable at and below 7.80 m/s"), "{said}");
+    // neither of two that grow from the lowest speed on knows where it begins
+    let both = of(50.0, vec![unstable("a", 84.9), unstable("b", 86.1)]);
+    assert!(!Verdict::of(&both).headline.contains("CONTRADICTED"));
     // one finds what the other excludes
     let missed = Verdict::of(&of(
         50.0,

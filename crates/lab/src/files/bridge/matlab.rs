@@ -86,6 +86,7 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
         reversed: false,
         source: "MATLAB wn and phi".to_owned(),
         nodes: nodes.collect(),
+        left_out: Vec::new(),
         modes: all,
         offsets_m: Vec::new(),
     })

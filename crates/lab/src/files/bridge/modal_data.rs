@@ -37,6 +37,8 @@ pub struct BridgeModes {
     pub offsets_m: Vec<[f64; 2]>,
     /// Modes; the damping ratio is zero where the file does not state it.
     pub modes: Vec<BridgeMode>,
+    /// Modes of the file that are not among those selected.
+    pub left_out: Vec<BridgeMode>,
     /// Whether the files have the nodes in the opposite order: places along the girder count along up × downwind.
     pub reversed: bool,
 }
@@ -77,6 +79,7 @@ impl ModalData {
         });
         Ok(BridgeModes {
             source,
+            left_out: Vec::new(),
             modes: modes.collect(),
             nodes,
             offsets_m,
@@ -120,6 +123,7 @@ impl BridgeModes {
             ..m.clone()
         });
         Self {
+            left_out: Vec::new(),
             source: self.source.clone(),
             nodes: nodes.collect(),
             offsets_m: kept

@@ -80,6 +80,7 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     Ok(BridgeModes {
         reversed: false,
         source: header.text("source"),
+        left_out: Vec::new(),
         modes: modes.collect::<Result<_>>()?,
         nodes,
         offsets_m,

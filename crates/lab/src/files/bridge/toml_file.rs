@@ -115,14 +115,17 @@ impl DampingRatios {
 }
 
 /// Keeps the modes of these numbers alone.
-fn keep(numbers: &[usize], modes: &mut Vec<BridgeMode>) -> Result<()> {
+fn keep(numbers: &[usize], all: &mut BridgeModes) -> Result<()> {
+    let modes = &mut all.modes;
     let known = |n: &&usize| modes.iter().any(|m| m.number == **n);
     if let Some(unknown) = numbers.iter().find(|n| !known(n)) {
         let all: Vec<String> = modes.iter().map(|m| m.number.to_string()).collect();
         let expected = format!("modes among {}", all.join(", "));
         return Err(Error::input("modes.select", expected, unknown.to_string()));
     }
-    modes.retain(|m| numbers.contains(&m.number));
+    let selected = |m: &mut BridgeMode| numbers.contains(&m.number);
+    let kept = modes.extract_if(.., selected).collect();
+    all.left_out = std::mem::replace(modes, kept);
     Ok(())
 }
 
@@ -329,7 +332,7 @@ impl BridgeFile {
         };
         block.damping_ratio.apply(&mut modes.modes)?;
         if let Some(select) = &block.select {
-            keep(select, &mut modes.modes)?;
+            keep(select, &mut modes)?;
         }
         Ok(modes)
     }
