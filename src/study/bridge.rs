@@ -20,7 +20,7 @@ pub(crate) use forces::block_table;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;
-use super::speeds::reaching;
+use super::speeds::{SEARCHED_AT_LEAST, reaching};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
@@ -137,7 +137,7 @@ impl BridgeStudy {
                 self.file.flutter.speed_max_m_s,
                 self.file.flutter.required_speed_m_s,
             ),
-            speeds: self.file.flutter.speeds,
+            speeds: self.file.flutter.speeds.max(SEARCHED_AT_LEAST),
         }
     }
 

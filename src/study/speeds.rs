@@ -25,6 +25,9 @@ const LOWEST_PART: f64 = 1.0 / 12.0;
 /// A section without springs has no frequency to go by, m/s.
 const WITHOUT_SPRINGS_M_S: f64 = 60.0;
 
+/// Wind speeds of a search at least: with fewer, growth that ends again between two is missed.
+pub(super) const SEARCHED_AT_LEAST: usize = 50;
+
 /// Wind speeds of curves and search as a file states them; what is left out follows from the section.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -120,11 +123,11 @@ impl FlutterBlock {
 }
 
 impl SpeedRange {
-    /// The same as a search range.
+    /// The same as a search range, in which crossings are seen whatever is drawn.
     pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
             speed_max_m_s: self.speed_max_m_s,
-            speeds: self.speeds,
+            speeds: self.speeds.max(SEARCHED_AT_LEAST),
         }
     }
 
