@@ -5,6 +5,7 @@
 //! search. Everything else is searched for.
 
 use super::bridge_built::Built;
+use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{CriticalPoint, FoundOnset, NearbyOnset, Onset, OnsetMethod};
@@ -13,6 +14,8 @@ use crate::units::ReducedFrequency;
 
 /// Change of a parameter, as a part of it, beyond which an onset is searched for.
 const NEAR: f64 = 0.3;
+/// Bridges on the way to one whose motion cannot be followed at once.
+const STEPS: usize = 5;
 /// Part of the damping that has to be left.
 const LEFT: f64 = 0.5;
 /// Speed below the onset, as a part of it, at which nothing may grow: far more than the onset is uncertain by, far less than
@@ -60,7 +63,8 @@ impl SearchedOnset {
         if now.len() != self.parameters.len() || !now.iter().zip(&self.parameters).all(near) {
             return None;
         }
-        let next = self.motion.follow(built.stepper.section())?;
+        let at_once = self.motion.follow(built.stepper.section());
+        let next = at_once.or_else(|| self.in_steps(&built.bridge, &now))?;
         let found = next.found();
         let within = found.speed_m_s > 0.0 && found.speed_m_s <= limit;
         if !within || !next.resembles(&self.motion) {
@@ -74,6 +78,25 @@ impl SearchedOnset {
             && COMPARED_AT.iter().zip(&self.damping_below).all(&mut left)
             && damping(JUST_BELOW).is_some_and(|d| d > 0.0);
         stable.then_some(found)
+    }
+
+    /// The motion followed through bridges between that of the search and the one with the parameters `now`.
+    fn in_steps(&self, bridge: &Bridge, now: &[f64]) -> Option<NearbyOnset> {
+        let mut between = bridge.clone();
+        let mut motion = self.motion.clone();
+        for step in 1..=STEPS {
+            let part = step as f64 / STEPS as f64;
+            let mut values = self.parameters.iter().zip(now);
+            between.air_density_kg_m3 = values.next().map(|(a, b)| a + part * (b - a))?;
+            for mode in &mut between.modes {
+                let mut next = || values.next().map(|(a, b)| a + part * (b - a));
+                (mode.frequency_hz, mode.damping_ratio) = (next()?, next()?);
+            }
+            let forces = between.forces().realize().ok()?;
+            let section = CoupledSection::new(between.structure(), forces).ok()?;
+            motion = motion.follow(&section)?;
+        }
+        Some(motion)
     }
 }
 
