@@ -2,6 +2,9 @@
 
 #[path = "../common/command.rs"]
 mod command;
+#[allow(dead_code)] // each room needs a part of it
+#[path = "../common/matrix.rs"]
+mod matrix;
 #[path = "../common/three_dof.rs"]
 mod three_dof;
 

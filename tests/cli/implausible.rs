@@ -70,7 +70,7 @@ fn a_damping_in_per_cent_reaches_the_page_of_a_section() {
     cannot_be_judged(
         &wrong,
         "20",
-        "section.vertical.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.03; in per cent it would be 0.003",
+        "section.vertical.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.02; in per cent it would be 0.003",
     );
 }
 

@@ -11,8 +11,9 @@ const AIR: Limits = Limits {
     usual: (0.7, 1.6),
     meant: &[("g/m³", 1e-3), ("kg/l", 1e3)],
 };
-/// Ratio to critical damping of a structure without devices. Less is on the safe side, zero an idealisation.
-const DAMPING: (f64, f64) = (5e-4, 0.03);
+/// Ratio to critical damping: bridges and rigs have 0.001 to 0.01, with dampers up to 0.02. Less is on the safe side, zero an
+/// idealisation.
+const DAMPING: (f64, f64) = (5e-4, 0.02);
 /// From here on it is no ratio of a structure.
 const MOST_DAMPING: f64 = 0.1;
 /// Decks narrower than this are models, m …

@@ -80,7 +80,7 @@ fn other_units_are_recognised_by_key() {
     );
     assert_eq!(
         doubt(|s| s.vertical.damping_ratio = 0.3),
-        "section.vertical.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.03; in per cent it would be \
+        "section.vertical.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.02; in per cent it would be \
          0.003"
     );
     assert_eq!(
@@ -160,7 +160,7 @@ fn rare_values_are_notes() {
             0.05,
             "as a logarithmic decrement it would be a ratio of 0.007958",
         ),
-        (1e-4, "usually 0.0005 to 0.03"),
+        (1e-4, "usually 0.0005 to 0.02"),
     ] {
         let found = found(box_girder(), |s| s.torsion.damping_ratio = damping);
         assert_eq!(found.len(), 1);
