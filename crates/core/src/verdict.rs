@@ -36,11 +36,10 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, RequiredSpeed,
+    MeanRotation, RequiredSpeed, UntestedPart, UntestedParts,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;
-pub use untested::{UntestedPart, UntestedParts};
 
 use judgement::Judgement;
 use sentences::{explanation, headline};

@@ -5,6 +5,7 @@ use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Evidence, FlutterReading, ForceBasis};
 use super::moved::constraints;
+use super::untested::untested;
 use super::words::{found, k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
@@ -81,8 +82,8 @@ impl Weighed<'_> {
                     .settled_by("measured derivatives of this deck"),
             );
         }
-        let untested = self.evidence.untested.as_ref();
-        all.extend(untested.map(|parts| parts.doubt(first, |v| self.clears(v))));
+        let parts = self.evidence.untested.as_ref();
+        all.extend(parts.map(|parts| untested(parts, first, |v| self.clears(v))));
         let warnings = match &first.search {
             FlutterSearch::Onset(onset) => &onset.warnings[..],
             FlutterSearch::UnstableAtOrBelow(start) => &start.warnings[..],

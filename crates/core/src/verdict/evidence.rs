@@ -1,7 +1,6 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
 use super::reach::Reach;
-use super::untested::UntestedParts;
 use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, TestedFrom, UnwantedGrowth};
 use crate::plausibility::Finding;
 use crate::units::ReducedFrequencyRange;
@@ -192,6 +191,32 @@ pub struct GallopingReading {
     pub forces: String,
     /// Onset, m/s.
     pub speed_m_s: f64,
+}
+
+/// A part of the girder that was not tested.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UntestedPart {
+    /// Which, in words.
+    pub part: String,
+    /// What its forces are made from, in words.
+    pub forces: String,
+    /// Its part of what the wind does to all modes, 0 to 1.
+    pub share: f64,
+}
+
+/// All of them, and what the onset by the models is with other forces there; `None` where there is none in the range searched.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UntestedParts {
+    /// The parts.
+    pub parts: Vec<UntestedPart>,
+    /// With the forces as they are, m/s.
+    pub as_it_is_m_s: Option<f64>,
+    /// The tested section with the largest share.
+    pub tested: String,
+    /// With its forces on these parts as well, m/s.
+    pub as_tested_m_s: Option<f64>,
+    /// With no forces on them, m/s.
+    pub in_still_air_m_s: Option<f64>,
 }
 
 /// A stage that failed.
