@@ -4,6 +4,7 @@ mod after_changes;
 #[allow(unsafe_code)]
 mod allocations;
 mod damping;
+mod differences;
 mod followed;
 mod unknown;
 
