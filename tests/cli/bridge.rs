@@ -2,7 +2,7 @@
 
 use crate::bridges::{TWO, langenuen_text};
 use crate::browser;
-use crate::command::{flowing, listing, refused, succeeds};
+use crate::command::{aerodeck, flowing, listing, refused, succeeds};
 use crate::report::fmu_page;
 use serde_json::Value;
 use std::fs;
@@ -52,6 +52,32 @@ fn flutter_prints_its_card_and_writes_its_figures() {
     let animation = fs::read_to_string(folder.path().join("flutter_animation.csv")).unwrap();
     // 24 phases of 63 nodes and the heading
     assert_eq!(animation.lines().count(), 24 * 63 + 1);
+}
+
+/// In winds so different that no reduced frequency was tested in all of them nothing is met, by tables or by a model.
+#[test]
+fn winds_without_a_common_tested_frequency_cannot_be_judged() {
+    let folder = folder();
+    let path = folder.path().join("bridge.toml");
+    let text = fs::read_to_string(&path)
+        .unwrap()
+        .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 20.0");
+    for lowest in ["0.0", "0.05"] {
+        let points = format!(
+            "{{ along_m = -617.5, factor = {lowest} }}, {{ along_m = 617.5, factor = 1.0 }}"
+        );
+        let profile = format!("{text}\n[wind]\nprofile = [{points}]\n");
+        fs::write(&path, profile).unwrap();
+        let (code, text, _) = aerodeck(folder.path(), &["bridge", "flutter", "bridge.toml"]);
+        let text = flowing(&text);
+        assert_eq!(code, 3, "{text}");
+        for part in [
+            "CANNOT BE JUDGED",
+            "expected a reduced frequency at which all forces were tested, found none",
+        ] {
+            assert!(text.contains(part), "{part} is not in {text}");
+        }
+    }
 }
 
 /// The page says the answer first and loads nothing; written again from the folder it is the same.

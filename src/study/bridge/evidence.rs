@@ -81,6 +81,7 @@ impl BridgeStudy {
 
     /// The speeds at which every mode is among the tests of every section.
     fn reach(&self, results: &BridgeFlutter, tested: ReducedFrequencyRange) -> Result<Reach> {
+        let tested = tested.not_empty()?;
         let section = coupled(&self.by_model)?;
         let mut judged = judged_speeds(&section, &self.search(), Some(tested))?;
         if let Some(from) = &mut judged.tested_from {

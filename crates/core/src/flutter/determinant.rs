@@ -81,7 +81,10 @@ pub fn determinant_onset(
     range: ReducedFrequencyRange,
     speed_max_m_s: f64,
 ) -> Result<FlutterSearch> {
-    let k_min = positive("range of reduced frequencies", range.min.full_width())?;
+    let k_min = positive(
+        "range of reduced frequencies",
+        range.not_empty()?.min.full_width(),
+    )?;
     let k_max = positive("range of reduced frequencies", range.max.full_width())?;
     let problem = StructureInWind { structure, model };
     let at = |i: usize| {

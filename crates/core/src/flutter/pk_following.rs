@@ -129,7 +129,7 @@ impl StructureInWind<'_> {
     fn entries(&self, speeds: &[f64]) -> Result<Vec<StartingMode>> {
         let still = self.still_air();
         let mut entries = match self.model.known_range() {
-            Some(range) => self.entries_into(range, &still)?,
+            Some(range) => self.entries_into(range.not_empty()?, &still)?,
             None => {
                 let slowest = still.all.iter().map(|m| m.lambda.im / TAU);
                 let slowest = slowest.fold(f64::INFINITY, f64::min);

@@ -1,6 +1,7 @@
 //! The reduced frequencies in which something was tested, and the gaps between them.
 
 use super::ReducedFrequency;
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
 /// Neighbouring tested `K` further apart than this ratio leave a gap. Smooth forces read across a gap of this ratio about
@@ -136,6 +137,20 @@ impl ReducedFrequencyRange {
         }
     }
 
+    /// Itself, unless it holds no `K`, as the intersection of tests that have none in common.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the ends of those tests.
+    pub fn not_empty(self) -> Result<Self> {
+        if self.min <= self.max {
+            return Ok(self);
+        }
+        let (low, high) = (self.min.full_width(), self.max.full_width());
+        let found = format!("none: some were tested from K {low:.4} on, others up to K {high:.4}");
+        let expected = "a reduced frequency at which all forces were tested";
+        Err(Error::input("tests", expected, found))
+    }
+
     /// Whether `k` was tested: it lies inside, ends included, and tests are near enough.
     pub fn contains(&self, k: ReducedFrequency) -> bool {
         self.spans(k) && self.gap_at(k).is_none()
@@ -255,7 +270,7 @@ impl From<Gaps> for Vec<ReducedFrequencyGap> {
 impl TryFrom<Vec<ReducedFrequencyGap>> for Gaps {
     type Error = String;
 
-    fn try_from(gaps: Vec<ReducedFrequencyGap>) -> Result<Self, String> {
+    fn try_from(gaps: Vec<ReducedFrequencyGap>) -> std::result::Result<Self, String> {
         for gap in &gaps {
             let (from, to) = (gap.from.full_width(), gap.to.full_width());
             if !(from > 0.0 && from < to && to.is_finite()) {
@@ -319,6 +334,8 @@ mod tests {
         let common = all.intersection(other);
         assert_eq!((common.min, common.max), (k(0.06), k(1.4)));
         assert!(!common.contains(k(0.11)) && !common.contains(k(1.2)) && common.contains(k(0.4)));
+        let apart = band.intersection(ReducedFrequencyRange::between(k(0.9), k(2.0)));
+        assert!(common.not_empty().is_ok() && apart.not_empty().is_err());
         let twice = common.scaled(2.0);
         assert!(!twice.contains(k(0.22)) && twice.contains(k(0.8)));
     }
