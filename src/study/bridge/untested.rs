@@ -16,33 +16,32 @@ impl BridgeStudy {
     /// # Errors
     /// As [`find_onset`].
     pub(super) fn untested(&self, found: &FlutterSearch) -> Result<Option<UntestedParts>> {
-        let is_tested = |group: usize| self.sections[self.section_of_group[group]].tested.is_some();
+        let blocks = || self.file.sections.iter().zip(&self.sections);
+        let is_tested = |group: &StripGroup| {
+            let own = blocks().find(|(block, _)| block.name == group.name);
+            own.is_some_and(|(_, section)| section.tested.is_some())
+        };
         let bridge = &self.by_model;
         let forces = bridge.forces();
-        let shares = forces.shares();
-        let groups = (0..bridge.groups.len()).filter(|g| is_tested(*g));
-        let Some(main) = groups.max_by(|a, b| shares[*a].1.total_cmp(&shares[*b].1)) else {
+        let tested = forces.shares().into_iter().filter(|(g, _)| is_tested(g));
+        let Some((main, _)) = tested.max_by(|a, b| a.1.total_cmp(&b.1)) else {
             return Ok(None);
         };
-        let main = &bridge.groups[main];
-        let all = bridge.groups.iter().enumerate();
-        let mut as_tested: Vec<StripGroup> = all
-            .clone()
-            .map(|(i, group)| match is_tested(i) {
-                true => group.clone(),
-                false => StripGroup {
-                    forces: main.forces.clone(),
-                    ..group.clone()
-                },
-            })
-            .collect();
+        let with_main = |group: &StripGroup| match is_tested(group) {
+            true => group.clone(),
+            false => StripGroup {
+                forces: main.forces.clone(),
+                ..group.clone()
+            },
+        };
+        let mut as_tested: Vec<StripGroup> = bridge.groups.iter().map(with_main).collect();
         as_tested.extend(self.in_no_section(main));
         let as_tested = self.with_groups(as_tested)?;
         let parts = self.parts(&as_tested);
         if parts.is_empty() {
             return Ok(None);
         }
-        let tested = all.filter(|(i, _)| is_tested(*i)).map(|(_, g)| g.clone());
+        let tested = bridge.groups.iter().filter(|g| is_tested(g)).cloned();
         let in_still_air = self.with_groups(tested.collect())?;
         let onset_m_s = |bridge: &Bridge| -> Result<Option<f64>> {
             let section = coupled(bridge)?;
