@@ -22,7 +22,7 @@ pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 use super::KnownUncertainty;
 use super::speeds::{SEARCHED_AT_LEAST, reaching};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
+use crate::bridge::{Bridge, BridgeMode, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
@@ -57,6 +57,8 @@ pub struct BridgeStudy {
     pub sections: Vec<SectionForceModels>,
     /// Section of each group.
     section_of_group: Vec<usize>,
+    /// Modes of the file that are not taken.
+    left_out: Vec<BridgeMode>,
     /// What a reader should know: simplifications, what was assumed.
     pub notes: Vec<String>,
     /// What is odd about modes, sections and tables.
@@ -119,6 +121,7 @@ impl BridgeStudy {
             by_model,
             by_table: has_table.then(|| bridge(true)).transpose()?,
             section_of_group: parts.iter().map(|p| p.section).collect(),
+            left_out: modes.left_out,
             sections,
             notes,
             findings,

@@ -18,8 +18,9 @@ const SELBERG: f64 = 3.72;
 const LEAST_REDUCED_VELOCITY: f64 = 10.0;
 /// The search reaches this much beyond the flat plate.
 const BEYOND_THE_PLATE: f64 = 1.75;
-/// The search reaches this much beyond the speed that is required, so that what begins just above it is seen as well.
-const BEYOND_THE_REQUIRED: f64 = 1.1;
+/// The search reaches this much beyond the speed that is required: an onset above it may have an interval that reaches below, up to
+/// half of itself where it counts as determined.
+const BEYOND_THE_REQUIRED: f64 = 2.0;
 /// Lowest wind speed of the curves as a part of the highest.
 const LOWEST_PART: f64 = 1.0 / 12.0;
 /// A section without springs has no frequency to go by, m/s.

@@ -32,7 +32,7 @@ fn divergence_of_a_bridge_without_flutter_is_not_met() {
     let headline = verdict["headline"].as_str().unwrap();
     let (start, end) = (
         "✗ NOT MET, required 200 m/s: static divergence at",
-        "no flutter up to 2",
+        "no flutter up to 400",
     );
     assert!(
         headline.starts_with(start) && headline.contains(end),
@@ -82,6 +82,23 @@ fn a_bridge_without_its_torsional_modes_is_not_met() {
     let text = doubt(&verdict, "implausible_input").unwrap()["text"].clone();
     let text = text.as_str().unwrap();
     assert!(text.contains("torsional"), "{text}");
+}
+
+/// The search goes on beyond what is required, and a mode that is left out counts by what it does to the onset.
+#[test]
+fn a_bridge_without_one_of_its_modes_is_judged_with_all() {
+    let (code, verdict) = verdict_after(|text| {
+        text.replace("[2, 3, 5, 12, 14, 16, 17, 23]", "[1, 2, 3, 23]")
+            .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 100.0")
+    });
+    assert_eq!((code, state(&verdict)), (Some(3), "cannot_be_judged"));
+    let left_out = doubt(&verdict, "modes_left_out").unwrap();
+    let text = left_out["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("35 modes of the file are left out;"),
+        "{text}"
+    );
+    assert_eq!(left_out["severity"], "severe");
 }
 
 /// Nodes that no section takes have no forces, and that is said.

@@ -36,7 +36,7 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, RequiredSpeed, UntestedPart, UntestedParts,
+    MeanRotation, ModesLeftOut, RequiredSpeed, UntestedPart, UntestedParts,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;

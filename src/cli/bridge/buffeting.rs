@@ -1,6 +1,7 @@
 //! `aerodeck bridge buffeting`: RMS and peak factors at named nodes.
 
 use super::super::answer::Answer;
+use super::super::headline;
 use super::super::progress::Progress;
 use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
@@ -54,9 +55,23 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             field_csv(&study.first_field(&block, args.speed)?),
         )?;
     }
-    let head = format!("{} at {} m/s\n", study.file.name, args.speed);
-    let json = serde_json::json!({ "buffeting": results, "notes": study.warnings(), "findings": study.findings });
-    out.answer(head + &forces(&results) + "\n" + &table(&results), json)
+    // a requirement is judged where it is stated, also beside a response to turbulence
+    let required = study.file.flutter.required_speed_m_s;
+    let verdict = required.map(|_| study.verdict()).transpose()?;
+    let mut text: String = verdict
+        .iter()
+        .map(|v| headline::account(&study.file.name, v, &[]))
+        .collect();
+    let _ = writeln!(text, "{} at {} m/s", study.file.name, args.speed);
+    text = text + &forces(&results) + "\n" + &table(&results);
+    let json = serde_json::json!({
+        "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
+    });
+    let answer = out.answer(text, json)?;
+    Ok(match &verdict {
+        Some(verdict) => answer.with_outcome_of(verdict),
+        None => answer,
+    })
 }
 
 /// The response to the turbulence of a file.

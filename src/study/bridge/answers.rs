@@ -11,7 +11,7 @@ use crate::flutter::{
     static_deflection, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::verdict::UntestedParts;
+use crate::verdict::{ModesLeftOut, UntestedParts};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -78,6 +78,9 @@ pub struct BridgeFlutter {
     /// Parts that no test stands behind, where there are some beside others that were tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub untested: Option<UntestedParts>,
+    /// What modes of the file that are left out do to the onset.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub modes_left_out: Option<ModesLeftOut>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
 }
@@ -151,6 +154,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         failed.push(format!("parts without a test: {e}"));
         None
     });
+    let modes_left_out = study.with_all_modes(&by_model.search).unwrap_or_else(|e| {
+        failed.push(format!("modes left out: {e}"));
+        None
+    });
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
@@ -193,6 +200,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         mean_rotation,
         constraints,
         untested,
+        modes_left_out,
         failed,
     })
 }

@@ -60,6 +60,7 @@ impl BridgeStudy {
                 .filter_map(|s| s.rotation_amplitude_deg)
                 .reduce(f64::min),
             untested: results.untested.clone(),
+            modes_left_out: results.modes_left_out.clone(),
             galloping: results.galloping_m_s.map(|speed_m_s| GallopingReading {
                 forces: "static coefficients".to_owned(),
                 speed_m_s,

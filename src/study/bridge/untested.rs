@@ -1,11 +1,12 @@
-//! Parts of a bridge that no test stands behind, and what its onset is with other forces there.
+//! Parts of a bridge that no test stands behind, modes that are left out, and what its onset is with other forces and with all modes.
 
 use super::BridgeStudy;
 use super::answers::coupled;
-use crate::bridge::{Bridge, StripGroup};
+use crate::bridge::{Bridge, BridgeMode, StripGroup};
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, find_onset};
-use crate::verdict::{UntestedPart, UntestedParts};
+use crate::plausibility::is_same_mode;
+use crate::verdict::{ModesLeftOut, UntestedPart, UntestedParts};
 
 /// Name of the strips at nodes that no section takes.
 const IN_NO_SECTION: &str = "nodes in no section";
@@ -43,18 +44,42 @@ impl BridgeStudy {
         }
         let tested = bridge.groups.iter().filter(|g| is_tested(g)).cloned();
         let in_still_air = self.with_groups(tested.collect())?;
-        let onset_m_s = |bridge: &Bridge| -> Result<Option<f64>> {
-            let section = coupled(bridge)?;
-            let found = find_onset("model", &section, &self.search(), self.tested_range())?;
-            Ok(found.critical_speed_m_s())
-        };
         Ok(Some(UntestedParts {
             parts,
             as_it_is_m_s: found.critical_speed_m_s(),
             tested: main.name.clone(),
-            as_tested_m_s: onset_m_s(&as_tested)?,
-            in_still_air_m_s: onset_m_s(&in_still_air)?,
+            as_tested_m_s: self.onset_m_s(&as_tested)?,
+            in_still_air_m_s: self.onset_m_s(&in_still_air)?,
         }))
+    }
+
+    /// The onset with the modes of the file that are left out, but for those that would be counted twice; `None` where none are.
+    ///
+    /// # Errors
+    /// As [`find_onset`].
+    pub(super) fn with_all_modes(&self, found: &FlutterSearch) -> Result<Option<ModesLeftOut>> {
+        let b = &self.by_model;
+        let other = |m: &&BridgeMode| !b.modes.iter().any(|own| is_same_mode(&b.nodes, own, m));
+        let left_out: Vec<&BridgeMode> = self.left_out.iter().filter(other).collect();
+        if left_out.is_empty() {
+            return Ok(None);
+        }
+        let mut modes = b.modes.clone();
+        modes.extend(left_out.iter().map(|m| (*m).clone()));
+        modes.sort_by_key(|m| m.number);
+        let (nodes, groups) = (b.nodes.clone(), b.groups.clone());
+        let whole = Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)?;
+        Ok(Some(ModesLeftOut {
+            modes: left_out.iter().map(|m| m.number).collect(),
+            as_it_is_m_s: found.critical_speed_m_s(),
+            with_all_m_s: self.onset_m_s(&whole)?,
+        }))
+    }
+
+    fn onset_m_s(&self, bridge: &Bridge) -> Result<Option<f64>> {
+        let section = coupled(bridge)?;
+        let found = find_onset("model", &section, &self.search(), self.tested_range())?;
+        Ok(found.critical_speed_m_s())
     }
 
     /// The nodes that no section takes, as strips like those of `main` in the mean of their winds.

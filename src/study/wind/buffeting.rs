@@ -14,6 +14,7 @@ use crate::buffeting::{
 use crate::error::{Error, Result};
 use crate::files::derivatives::{TableWords, embedded, is_table_file};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
+use crate::plausibility::{Finding, of_table};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequencyRange;
 use serde::Serialize;
@@ -89,6 +90,8 @@ struct Setting<'a> {
     /// The model fitted to a table, which alone can be stepped, and how.
     fitted: Option<(Box<dyn Transfer>, String)>,
     tested: Option<ReducedFrequencyRange>,
+    /// What is odd about a table.
+    findings: Vec<Finding>,
 }
 
 /// Everything about one wind speed.
@@ -150,6 +153,7 @@ impl<'a> Setting<'a> {
             fixed: None,
             fitted: None,
             tested: None,
+            findings: Vec::new(),
         };
         setting.take(study.aerodynamics.as_str())?;
         Ok(setting)
@@ -190,6 +194,7 @@ impl<'a> Setting<'a> {
             convention: study.convention,
         };
         let table = words.read("convention")?;
+        self.findings = of_table(&table, &study.convention.or_usual());
         let dofs = &self.structure.dofs;
         let by = study.interpolation;
         let between = InterpolatedTable::by(by, &table, dofs, Extrapolation::Hold)?;

@@ -113,7 +113,8 @@ impl Solved {
     }
 }
 
-/// Smallest damping ratio of the modes at a wind speed (m/s), by all eigenvalues; one where nothing oscillates.
+/// Smallest damping ratio of the modes at a wind speed (m/s), by all eigenvalues; one where nothing oscillates, minus one
+/// where something diverges.
 ///
 /// ```
 /// # extern crate aerodeck_core as aerodeck;
@@ -136,8 +137,12 @@ pub fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
 }
 
 fn least(eigenvalues: &[Complex<f64>]) -> f64 {
-    let oscillating = eigenvalues.iter().filter(|z| z.im > 0.0);
-    let damping = oscillating.map(|z| damping_ratio(*z));
+    // what grows without oscillating has a ratio of minus one
+    let counted = |z: &&Complex<f64>| z.im > 0.0 || (z.im == 0.0 && z.re > 0.0);
+    let damping = eigenvalues
+        .iter()
+        .filter(counted)
+        .map(|z| damping_ratio(*z));
     damping.reduce(f64::min).unwrap_or(1.0)
 }
 

@@ -155,24 +155,24 @@ fn product(nodes: &[Node], a: &BridgeMode, b: &BridgeMode, motion: usize) -> f64
         .sum()
 }
 
+/// Whether two modes are one: see [`of_modes`].
+pub fn is_same_mode(nodes: &[Node], a: &BridgeMode, b: &BridgeMode) -> bool {
+    let all =
+        |a: &BridgeMode, b: &BridgeMode| -> f64 { (0..3).map(|i| product(nodes, a, b, i)).sum() };
+    let near = |a: f64, b: f64, part: f64| (a / b - 1.0).abs() < part;
+    let (aa, bb, ab) = (all(a, a), all(b, b), all(a, b));
+    near(a.frequency_hz, b.frequency_hz, SAME_FREQUENCY)
+        && ab * ab / (aa * bb) > SAME_SHAPE
+        && near(a.generalised_mass / aa, b.generalised_mass / bb, SAME_MASS)
+}
+
 /// Modes that are one mode: the same shape with the same mass at the same frequency. Modes of cables may share a frequency or the
 /// shape of the girder, never both and the mass.
 fn twice(girder: &Girder<'_>) -> Vec<Finding> {
-    let all = |a: &BridgeMode, b: &BridgeMode| -> f64 {
-        (0..3).map(|i| product(girder.nodes, a, b, i)).sum()
-    };
-    let near = |a: f64, b: f64, part: f64| (a / b - 1.0).abs() < part;
     let mut found = Vec::new();
     for (i, a) in girder.modes.iter().enumerate() {
         for b in &girder.modes[..i] {
-            if !near(a.frequency_hz, b.frequency_hz, SAME_FREQUENCY) {
-                continue;
-            }
-            let (aa, bb, ab) = (all(a, a), all(b, b), all(a, b));
-            let alike = ab * ab / (aa * bb);
-            if alike > SAME_SHAPE
-                && near(a.generalised_mass / aa, b.generalised_mass / bb, SAME_MASS)
-            {
+            if is_same_mode(girder.nodes, a, b) {
                 let text = format!(
                     "it has the shape and the mass of mode {} ({:.4} and {:.4} Hz), and a mode that is counted twice is twice as \
                      easily moved",

@@ -119,6 +119,8 @@ pub enum DoubtKind {
     },
     /// The forces are those of a theory that was not tested.
     Untested,
+    /// Modes of a bridge are left out that may bear on the onset.
+    ModesLeftOut,
     /// The structure turns in the mean wind beyond what was tested.
     MeanRotation {
         /// At the critical speed, deg.

@@ -5,7 +5,7 @@ use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Evidence, FlutterReading, ForceBasis};
 use super::moved::constraints;
-use super::untested::untested;
+use super::untested::{left_out, untested};
 use super::words::{found, k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
@@ -84,6 +84,8 @@ impl Weighed<'_> {
         }
         let parts = self.evidence.untested.as_ref();
         all.extend(parts.map(|parts| untested(parts, first, |v| self.clears(v))));
+        let modes = self.evidence.modes_left_out.as_ref();
+        all.extend(modes.map(|modes| left_out(modes, first, |v| self.clears(v))));
         let warnings = match &first.search {
             FlutterSearch::Onset(onset) => &onset.warnings[..],
             FlutterSearch::UnstableAtOrBelow(start) => &start.warnings[..],

@@ -41,6 +41,8 @@ pub struct Evidence {
     pub constraints: Option<MovedOnset>,
     /// Parts of the structure whose forces rest on no test, beside others that were tested.
     pub untested: Option<UntestedParts>,
+    /// Modes of a bridge that are left out.
+    pub modes_left_out: Option<ModesLeftOut>,
     /// Number of mean wind speeds of the tests; `None` where it is not known or there are no tests.
     pub test_speeds: Option<usize>,
     /// Input that does not look right.
@@ -217,6 +219,17 @@ pub struct UntestedParts {
     pub as_tested_m_s: Option<f64>,
     /// With no forces on them, m/s.
     pub in_still_air_m_s: Option<f64>,
+}
+
+/// Modes of the file that are left out, and what the onset by the models is with and without; `None` where there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModesLeftOut {
+    /// Their numbers.
+    pub modes: Vec<usize>,
+    /// Without them, m/s.
+    pub as_it_is_m_s: Option<f64>,
+    /// With them, m/s.
+    pub with_all_m_s: Option<f64>,
 }
 
 /// A stage that failed.

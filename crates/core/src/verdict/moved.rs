@@ -34,7 +34,13 @@ pub(super) fn constraints(
                 "Constraints removed the onset: by the data alone {}",
                 speed(without)
             );
-            return settled(Severity::Severe, gone);
+            // where the search ends stands for an onset that lies above
+            let (_, searched_to) = first.judged_m_s();
+            let severity = match without >= BELIEVABLE * searched_to {
+                true => Severity::Severe,
+                false => Severity::Minor,
+            };
+            return settled(severity, gone);
         }
     };
     let (low, high) = first.ends_m_s().unwrap_or((with, with));

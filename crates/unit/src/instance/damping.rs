@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::flutter::{LeastDamping, smallest_damping};
 use crate::response::{Inputs, Stepper};
 use crate::state_space::{RepeatedEigenvalues, damping_ratio};
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 /// What is known of it; made anew, as [`Default`] is, where the system is.
 #[derive(Debug, Default)]
@@ -80,7 +80,8 @@ impl Sampled {
         let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;
         let found = self.eigenvalues.of(&mut self.matrix);
         Ok(step.zip(found).map(|(step, all)| {
-            let alive = all.iter().filter(|z| z.im > 0.0 && z.norm() > 0.0);
+            let diverges = |z: &Complex<f64>| z.im == 0.0 && z.norm() > 1.0;
+            let alive = all.iter().filter(|z| z.im > 0.0 || diverges(z));
             let ratios = alive.map(|z| damping_ratio(z.ln() / step));
             ratios.reduce(f64::min).unwrap_or(1.0)
         }))

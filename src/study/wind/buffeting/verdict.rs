@@ -6,7 +6,7 @@ use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::flutter::{OnsetSearch, pk_onset, quasi_steady_onset};
 use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
-use crate::verdict::{Evidence, Verdict};
+use crate::verdict::{Evidence, ForceBasis, Verdict};
 
 impl WindStudy {
     /// What the self-excited forces of a wind file can say of its required speed.
@@ -27,7 +27,7 @@ impl WindStudy {
         };
         Ok(Verdict::of(&Evidence {
             required: self.speeds.required(),
-            implausible: self.findings(),
+            implausible: [self.findings(), setting.findings.clone()].concat(),
             ..evidence
         }))
     }
@@ -45,9 +45,14 @@ impl Setting<'_> {
         }
         let name = study.aerodynamics.as_str();
         let found = pk_onset(name, structure, fixed, search, self.tested)?;
-        Ok(match self.tested {
-            Some(range) => Evidence::of_table(name, structure, fixed, range, found),
-            None => Evidence::of_exact(name, structure, fixed, found.of_exact_forces()),
-        })
+        let Some(range) = self.tested else {
+            // a theory, exact as it may be, is no test of this deck
+            let mut evidence = Evidence::of_exact(name, structure, fixed, found.of_exact_forces());
+            for reading in &mut evidence.flutter {
+                reading.basis = ForceBasis::Stated;
+            }
+            return Ok(evidence);
+        };
+        Ok(Evidence::of_table(name, structure, fixed, range, found))
     }
 }

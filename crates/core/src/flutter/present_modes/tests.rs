@@ -50,6 +50,19 @@ fn by_all_eigenvalues(section: &CoupledSection, wind: f64) -> f64 {
     oscillating.map(damping_ratio).fold(1.0, f64::min)
 }
 
+/// What grows without oscillating has no frequency, and is not damped.
+#[test]
+fn a_section_that_diverges_is_not_damped() {
+    let mut section = crate::section::SectionModel::iabse_1_1a();
+    section.vertical.frequency_hz = Some(0.5);
+    section.torsion.frequency_hz = Some(0.1);
+    let structure = section.structure().unwrap();
+    let plate = RationalModel::jones_flat_plate();
+    let coupled = CoupledSection::with_model(&structure, &plate).unwrap();
+    assert!(smallest_damping(&coupled, 5.0).unwrap() > 0.0);
+    assert_eq!(smallest_damping(&coupled, 60.0).unwrap(), -1.0);
+}
+
 /// Up, down, far at once, through the onset and back: by two ways.
 #[test]
 fn the_least_damping_is_that_of_all_eigenvalues() {

@@ -165,6 +165,10 @@ fn constraints_that_moved_the_onset_are_weighed() {
         with_m_s: None,
     });
     assert_eq!(Verdict::of(&evidence).doubts[0].severity, Severity::Severe);
+    // nothing was found up to 70 m/s, and the data alone grow from nearly no wind: that is no onset
+    let mut none = of(60.0, vec![stable("the model", 70.0)]);
+    assert_eq!(weight(&mut none, Some(1.7), None), Some(Severity::Minor));
+    assert_eq!(weight(&mut none, Some(50.0), None), Some(Severity::Severe));
     evidence.required = None;
     assert_eq!(
         weight(&mut evidence, Some(33.0), Some(36.9)),
