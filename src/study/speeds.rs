@@ -225,9 +225,9 @@ mod tests {
             };
             block.range(&section).speed_max_m_s
         };
-        assert_eq!(highest(Some(54.0), 62.0), 69.0);
+        assert_eq!(highest(Some(54.0), 62.0), 124.0);
         assert_eq!(highest(None, 30.0), 74.0);
-        assert_eq!(highest(None, 200.0), 220.0);
+        assert_eq!(highest(None, 200.0), 400.0);
     }
 
     #[test]
