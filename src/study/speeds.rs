@@ -225,7 +225,7 @@ mod tests {
             };
             block.range(&section).speed_max_m_s
         };
-        assert_eq!(highest(Some(54.0), 62.0), 124.0);
+        assert_eq!(highest(Some(54.0), 62.0), 130.0);
         assert_eq!(highest(None, 30.0), 74.0);
         assert_eq!(highest(None, 200.0), 400.0);
     }
