@@ -52,8 +52,8 @@ impl Answer {
 
     /// The same answer to a question that states a required speed, if it does.
     #[must_use]
-    pub(crate) fn with_outcome_of(mut self, verdict: &Verdict) -> Self {
-        self.refused = verdict.refuses();
+    pub(crate) fn with_outcome_of<'a>(mut self, verdict: impl Into<Option<&'a Verdict>>) -> Self {
+        self.refused = verdict.into().is_some_and(Verdict::refuses);
         self
     }
 

@@ -42,21 +42,12 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
         })?;
     }
     // a requirement is judged where it is stated, also beside a response to turbulence
-    let verdict = study
-        .speeds
-        .required()
-        .map(|_| study.verdict())
-        .transpose()?;
-    let headline = verdict
-        .iter()
-        .map(|v| headline::account(&study.name, v, &[]));
-    let text = headline.collect::<String>() + &account(&study, &results);
+    let required = study.speeds.required();
+    let verdict = required.map(|_| study.verdict()).transpose()?;
+    let text = headline::stated(&study.name, verdict.as_ref()) + &account(&study, &results);
     let value = serde_json::json!({ "verdict": verdict, "buffeting": results, "findings": study.findings() });
     let answer = out.answer(text, value)?;
-    Ok(match &verdict {
-        Some(verdict) => answer.with_outcome_of(verdict),
-        None => answer,
-    })
+    Ok(answer.with_outcome_of(verdict.as_ref()))
 }
 
 fn account(study: &WindStudy, results: &BuffetingStudy) -> String {

@@ -11,6 +11,11 @@ pub(super) fn own_onset<'a>(results: &'a FlutterStudy, name: &str) -> Option<&'a
     results.onsets.iter().find(own)
 }
 
+/// [`account`] of a verdict where there is one.
+pub(super) fn stated(name: &str, verdict: Option<&Verdict>) -> String {
+    verdict.map_or(String::new(), |v| account(name, v, &[]))
+}
+
 /// The verdict in words: the first line, why, and every doubt that is not said elsewhere.
 pub(super) fn account(name: &str, verdict: &Verdict, elsewhere: &[String]) -> String {
     let mut text = format!("{name}: {}\n\n", verdict.headline);

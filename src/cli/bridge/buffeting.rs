@@ -9,6 +9,7 @@ use crate::error::{Result, counted};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
+use crate::verdict::Verdict;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -55,23 +56,28 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             field_csv(&study.first_field(&block, args.speed)?),
         )?;
     }
-    // a requirement is judged where it is stated, also beside a response to turbulence
-    let required = study.file.flutter.required_speed_m_s;
-    let verdict = required.map(|_| study.verdict()).transpose()?;
-    let mut text: String = verdict
-        .iter()
-        .map(|v| headline::account(&study.file.name, v, &[]))
-        .collect();
-    let _ = writeln!(text, "{} at {} m/s", study.file.name, args.speed);
-    text = text + &forces(&results) + "\n" + &table(&results);
+    let text = format!(
+        "{} at {} m/s\n{}\n{}",
+        study.file.name,
+        args.speed,
+        forces(&results),
+        table(&results)
+    );
+    let verdict = required(&study)?;
     let json = serde_json::json!({
         "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
     });
-    let answer = out.answer(text, json)?;
-    Ok(match &verdict {
-        Some(verdict) => answer.with_outcome_of(verdict),
-        None => answer,
-    })
+    let answer = out.answer(
+        headline::stated(&study.file.name, verdict.as_ref()) + &text,
+        json,
+    )?;
+    Ok(answer.with_outcome_of(verdict.as_ref()))
+}
+
+/// The verdict on what the file requires: judged where it is stated, also beside a response to turbulence.
+fn required(study: &BridgeStudy) -> Result<Option<Verdict>> {
+    let required = study.file.flutter.required_speed_m_s;
+    required.map(|_| study.verdict()).transpose()
 }
 
 /// The response to the turbulence of a file.
@@ -100,10 +106,15 @@ fn by_file(
             let _ = writeln!(text, "{name:<8} {motion:<14} {rms:>12.5e} {peak:>8.3}");
         }
     }
-    Answer::new(
-        text,
-        &serde_json::json!({ "buffeting": found, "notes": study.warnings(), "findings": study.findings }),
-    )
+    let verdict = required(study)?;
+    let json = serde_json::json!({
+        "verdict": verdict, "buffeting": found, "notes": study.warnings(), "findings": study.findings
+    });
+    let answer = Answer::new(
+        headline::stated(&study.file.name, verdict.as_ref()) + &text,
+        &json,
+    )?;
+    Ok(answer.with_outcome_of(verdict.as_ref()))
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];

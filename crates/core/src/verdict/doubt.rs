@@ -12,6 +12,13 @@ pub enum Severity {
     Severe,
 }
 
+impl Severity {
+    /// Severe, or to be known.
+    pub(super) fn severe_if(grave: bool) -> Self {
+        if grave { Self::Severe } else { Self::Minor }
+    }
+}
+
 /// One reason to doubt.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {

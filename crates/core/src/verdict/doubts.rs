@@ -53,10 +53,7 @@ impl Weighed<'_> {
 
     /// As far as every mode was tested nothing grows: that may be all that is asked for.
     fn unless_cleared(&self) -> Severity {
-        match self.clears(self.critical.judged_to_m_s) {
-            false => Severity::Severe,
-            true => Severity::Minor,
-        }
+        Severity::severe_if(!self.clears(self.critical.judged_to_m_s))
     }
 
     fn of_answer(&self, first: &FlutterReading, all: &mut Vec<Doubt>) {
@@ -274,10 +271,7 @@ impl Weighed<'_> {
     fn of_input(&self, all: &mut Vec<Doubt>) {
         let evidence = self.evidence;
         all.extend(evidence.failures.iter().map(|f| {
-            let severity = match f.bears_on_answer {
-                true => Severity::Severe,
-                false => Severity::Minor,
-            };
+            let severity = Severity::severe_if(f.bears_on_answer);
             let kind = DoubtKind::StageFailed {
                 stage: f.stage.clone(),
                 reason: f.reason.clone(),
@@ -361,10 +355,7 @@ fn rotation(evidence: &Evidence) -> Option<Doubt> {
     if away < known {
         return None;
     }
-    let severity = match away > others {
-        true => Severity::Severe,
-        false => Severity::Minor,
-    };
+    let severity = Severity::severe_if(away > others);
     let kind = DoubtKind::MeanRotation {
         at_onset_deg: mean.at_onset_deg,
         tested_deg,

@@ -36,10 +36,7 @@ pub(super) fn constraints(
             );
             // where the search ends stands for an onset that lies above
             let (_, searched_to) = first.judged_m_s();
-            let severity = match without >= BELIEVABLE * searched_to {
-                true => Severity::Severe,
-                false => Severity::Minor,
-            };
+            let severity = Severity::severe_if(without >= BELIEVABLE * searched_to);
             return settled(severity, gone);
         }
     };
@@ -54,10 +51,7 @@ pub(super) fn constraints(
             }
             let inside = low <= without && without <= high;
             // the data alone, with the same interval, may clear what is required as well
-            match inside || clears(without - (with - low)) {
-                true => Severity::Minor,
-                false => Severity::Severe,
-            }
+            Severity::severe_if(!(inside || clears(without - (with - low))))
         }
         _ => Severity::Minor,
     };

@@ -21,10 +21,7 @@ pub(super) fn untested(
     let bears = |other: Option<f64>| bears(own, other, first, &clears);
     let share: f64 = parts.parts.iter().map(|p| p.share).sum();
     let grave = share >= BEARS || bears(parts.as_tested_m_s) || bears(parts.in_still_air_m_s);
-    let severity = match grave {
-        true => Severity::Severe,
-        false => Severity::Minor,
-    };
+    let severity = Severity::severe_if(grave);
     let part = |p: &UntestedPart| {
         format!(
             "{} ({:.0} % of what the wind does to the modes) are {}",
@@ -54,10 +51,12 @@ pub(super) fn left_out(
     first: &FlutterReading,
     clears: impl Fn(f64) -> bool,
 ) -> Doubt {
-    let severity = match bears(modes.as_it_is_m_s, modes.with_all_m_s, first, &clears) {
-        true => Severity::Severe,
-        false => Severity::Minor,
-    };
+    let severity = Severity::severe_if(bears(
+        modes.as_it_is_m_s,
+        modes.with_all_m_s,
+        first,
+        &clears,
+    ));
     let text = format!(
         "{} of the file are left out; the onset by the models is {}, with all of them {}",
         counted(modes.modes.len(), "mode"),

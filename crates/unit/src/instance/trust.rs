@@ -1,4 +1,4 @@
-//! Whether the wind and the rotation of a section are those that were tested.
+//! The winds in which a section was tested, and what has been said of it.
 
 use crate::resources::Resources;
 use crate::response::Stepper;
