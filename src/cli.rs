@@ -15,6 +15,7 @@ mod evidence;
 mod figures;
 mod flutter;
 mod fmu;
+mod groups;
 mod headline;
 mod interrupt;
 mod laboratory;
@@ -46,7 +47,7 @@ mod wrapping;
 pub use answer::Answer;
 
 use crate::error::{Error, Result};
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -57,6 +58,20 @@ const WRONG_INPUT: u8 = 2;
 const FAILED: u8 = 1;
 /// Exit code when a speed is required and it is not known to be met.
 const NOT_MET: u8 = 3;
+
+/// What each exit code means.
+const EXIT_CODES: [(u8, &str); 4] = [
+    (0, "done; where a wind speed is required, it is met"),
+    (
+        FAILED,
+        "a computation failed or a check did not pass; what was finished is written",
+    ),
+    (WRONG_INPUT, "wrong input: arguments, a file, a number"),
+    (
+        NOT_MET,
+        "a wind speed is required, and it is not known to be met: see [the verdict](verdict.md)",
+    ),
+];
 
 /// Bridge aeroelasticity from wind-tunnel data to an FMI 2.0 co-simulation FMU.
 #[derive(Parser)]
@@ -123,6 +138,11 @@ struct Shells {
     shell: Shell,
 }
 
+/// Every command with what it does, the options of all and the exit codes, in Markdown: `docs/commands.md`.
+pub fn commands_page() -> String {
+    groups::page(&Cli::command(), &EXIT_CODES)
+}
+
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
     apology::install();
@@ -132,7 +152,8 @@ pub fn main() -> ExitCode {
         if let Err(error) = readable_arguments() {
             return report(&error, std::env::args_os().any(|a| a == "--json"));
         }
-        let cli = match Cli::try_parse() {
+        let matches = groups::in_groups(Cli::command()).try_get_matches();
+        let cli = match matches.and_then(|m| Cli::from_arg_matches(&m)) {
             Ok(cli) => cli,
             Err(error) => return usage(&error),
         };
@@ -273,4 +294,24 @@ fn no_room(kind: ErrorKind) -> bool {
         kind,
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::WriteZero
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cli, groups};
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn every_command_stands_in_one_group() {
+        let mut grouped: Vec<&str> = groups::GROUPS
+            .iter()
+            .flat_map(|(_, names)| *names)
+            .copied()
+            .collect();
+        let cli = Cli::command();
+        let mut all: Vec<&str> = cli.get_subcommands().map(clap::Command::get_name).collect();
+        grouped.sort_unstable();
+        all.sort_unstable();
+        assert_eq!(grouped, all);
+    }
 }

@@ -155,3 +155,20 @@ fn ctrl_c_leaves_nothing_half_written() {
         "the program was too fast to be interrupted"
     );
 }
+
+/// `AERODECK_UPDATE=1 cargo test --test cli manual` writes the page.
+#[test]
+fn the_manual_lists_every_command() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/commands.md");
+    let page = std::fs::read_to_string(&path).unwrap();
+    let (head, listed) = page.split_once("\n## ").unwrap();
+    let made = aerodeck::cli::commands_page();
+    if std::env::var_os("AERODECK_UPDATE").is_some() {
+        return std::fs::write(&path, format!("{head}\n{made}")).unwrap();
+    }
+    assert_eq!(
+        format!("## {listed}"),
+        made,
+        "AERODECK_UPDATE=1 cargo test --test cli manual"
+    );
+}

@@ -17,5 +17,6 @@ mod bridge;
 mod calculated_onset;
 mod description;
 mod importer;
+mod manual;
 mod one_row;
 mod stepped_answers;

@@ -1,0 +1,99 @@
+//! The page of the manual that lists every variable is made from the tables of variables.
+
+use crate::bridges::{TWO, langenuen};
+use crate::three_dof;
+use aerodeck::fmu::force_options::ForceOptions;
+use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::variables::{Variable, VariableTable};
+use aerodeck::identification::Form;
+use aerodeck::study::bridge::BridgeExportOptions;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const UPDATE: &str = "AERODECK_UPDATE";
+
+/// `strip[3].heave` as `strip[i].heave`: all strips, nodes, modes and filters have the same variables.
+fn numbered(name: &str) -> String {
+    let mut parts = name.split('[');
+    let mut all = parts.next().unwrap().to_owned();
+    for part in parts {
+        let (number, rest) = part.split_once(']').unwrap();
+        let is_number = number.bytes().all(|b| b.is_ascii_digit());
+        let inside = if is_number { "i" } else { number };
+        write!(all, "[{inside}]{rest}").unwrap();
+    }
+    all
+}
+
+fn table(title: &str, note: &str, variables: &[Variable]) -> String {
+    let mut text = format!("## {title}\n\n{note}\n\n");
+    text.push_str("| name | causality | variability | unit | what |\n|---|---|---|---|---|\n");
+    let mut seen = BTreeSet::new();
+    for v in variables {
+        let name = numbered(&v.name);
+        if !seen.insert(name.clone()) {
+            continue;
+        }
+        let word = |value: serde_json::Value| value.as_str().unwrap().to_owned();
+        let causality = word(serde_json::to_value(v.causality).unwrap());
+        let variability = word(serde_json::to_value(v.variability).unwrap());
+        let unit = match v.value.type_name() {
+            "Real" => v.unit.map_or("–", |u| u.name),
+            other => other,
+        };
+        // of the first of many nodes
+        let description = v.description.split(", at node ").next().unwrap();
+        let row = format!("| `{name}` | {causality} | {variability} | {unit} | {description} |");
+        writeln!(text, "{row}").unwrap();
+    }
+    text
+}
+
+fn tables() -> String {
+    let model = three_dof::trained(Form::default(), 1.4);
+    let section = VariableTable::new(&model, None, None, None).unwrap();
+    let mut options = ForceOptions::single(model.section.width_m);
+    options.named_strips = true;
+    let force = VariableTable::new(&model, Some(&options), None, None).unwrap();
+    let study = langenuen("LN21-5200", TWO);
+    let export = study.export(&BridgeExportOptions::default()).unwrap();
+    let (model, bridge) = (export.model.to_json(), export.bridge.to_json());
+    let bridge = Resources::of_bridge(model.unwrap().as_bytes(), bridge.unwrap().as_bytes(), None);
+    [
+        table(
+            "A coupled section",
+            "Of three degrees of freedom and a continuous model; one of two has nothing of the sway.",
+            section.variables(),
+        ),
+        table(
+            "Forces alone",
+            "Of strips that have names; a single strip may go without (`heave`).",
+            force.variables(),
+        ),
+        table(
+            "A whole bridge",
+            "The suspension bridge of the demo, with its nodes named by their numbers.",
+            bridge.unwrap().table.variables(),
+        ),
+    ]
+    .join("\n")
+}
+
+/// `AERODECK_UPDATE=1 cargo test --test fmu manual` writes the page.
+#[test]
+fn the_manual_lists_every_variable() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/variables.md");
+    let page = std::fs::read_to_string(&path).unwrap();
+    let (head, listed) = page.split_once("\n## ").unwrap();
+    let tables = tables();
+    if std::env::var_os(UPDATE).is_some() {
+        std::fs::write(&path, format!("{head}\n{tables}")).unwrap();
+        return;
+    }
+    assert_eq!(
+        format!("## {listed}"),
+        tables,
+        "{UPDATE}=1 cargo test --test fmu manual"
+    );
+}
