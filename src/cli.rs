@@ -32,6 +32,7 @@ mod report;
 mod routes;
 mod select;
 mod simulate;
+mod ssp;
 mod stages;
 mod study;
 mod study_run;
@@ -117,6 +118,8 @@ enum Command {
     Bridge(bridge::BridgeCommand),
     #[command(subcommand)]
     Fmu(fmu::FmuCommand),
+    #[command(subcommand)]
+    Ssp(ssp::SspCommand),
     #[command(subcommand)]
     Derivatives(derivatives::Derivatives),
     Validate(validate::ValidateArgs),
@@ -252,6 +255,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Buffeting(args) => buffeting::run(args, progress),
         Command::Bridge(command) => bridge::run(command, progress),
         Command::Fmu(command) => fmu::run(command, progress),
+        Command::Ssp(command) => ssp::run(command, progress),
         Command::Derivatives(command) => derivatives::run(command),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),

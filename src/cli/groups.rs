@@ -24,7 +24,7 @@ pub(super) const GROUPS: [(&str, &[&str]); 5] = [
         &["new", "derivatives", "campaign", "process", "tunnel"],
     ),
     ("Models", &["train", "select", "coverage", "compare"]),
-    ("FMUs", &["fmu"]),
+    ("FMUs", &["fmu", "ssp"]),
     (
         "Reports and checks",
         &["report", "plot", "validate", "thesis", "completions"],

@@ -65,7 +65,9 @@ pub(super) fn described(
         guid,
         ..
     } = resources;
+    let alone = bridge.as_ref().is_some_and(|b| b.structure_alone);
     let what = match (bridge, force) {
+        (Some(_), _) if alone => "Structure of a bridge without its wind forces",
         (Some(_), _) => "Whole bridge under self-excited wind forces",
         (None, None) => "Bridge deck section under self-excited wind forces",
         (None, Some(_)) => "Self-excited wind forces on a bridge deck, for a structure outside",
@@ -75,6 +77,7 @@ pub(super) fn described(
         None => "forces per unit length",
     };
     let (name, kind) = (&model.name, model.model.kind());
+    let kind = if alone { "modes" } else { kind };
     let source = &model.provenance.source;
     Element::new("fmiModelDescription")
         .with("fmiVersion", version)

@@ -265,7 +265,7 @@ fn assembled(
             ));
         }
     }
-    archive(&files).map_err(|e| Error::Numerical(format!("packing the FMU: {e}")))
+    archive(&files)
 }
 
 /// Packs the model and writes the archive: first beside its place, then moved there, so that no half a file is ever
@@ -365,7 +365,11 @@ fn readable_by_all(_: &std::fs::File) -> std::io::Result<()> {
 }
 
 /// Entries in alphabetical order without dates, owners or other traces of the machine.
-fn archive(files: &BTreeMap<String, Vec<u8>>) -> zip::result::ZipResult<Vec<u8>> {
+pub(super) fn archive(files: &BTreeMap<String, Vec<u8>>) -> Result<Vec<u8>> {
+    zipped(files).map_err(|e| Error::Numerical(format!("packing: {e}")))
+}
+
+fn zipped(files: &BTreeMap<String, Vec<u8>>) -> zip::result::ZipResult<Vec<u8>> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .compression_level(Some(9))

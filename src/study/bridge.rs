@@ -6,8 +6,10 @@ mod evidence;
 mod export;
 mod forces;
 mod interval;
+mod parts;
 mod scaled_forces;
 mod scatter;
+mod system;
 mod untested;
 
 pub use answers::{
@@ -17,6 +19,7 @@ pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideT
 pub use export::BridgeExportOptions;
 pub use forces::SectionForceModels;
 pub(crate) use forces::block_table;
+pub use parts::SectionForcePart;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;

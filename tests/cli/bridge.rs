@@ -240,7 +240,7 @@ fn an_exported_bridge_passes_the_check() {
     assert!(page.contains("Static divergence at"), "{page}");
     let text = succeeds(folder.path(), &["fmu", "check", "bridge.fmu"]);
     assert!(text.ends_with("passed\n"), "{text}");
-    // real variables alone; the forces alone are those of strips of a section
+    // real variables alone
     let reals = [&export[..], &["--reals-only", "--out", "reals.fmu"]].concat();
     succeeds(folder.path(), &reals);
     let text = succeeds(folder.path(), &["fmu", "check", "reals.fmu"]);
@@ -253,13 +253,6 @@ fn an_exported_bridge_passes_the_check() {
     for kind in ["<Boolean", "<Integer", "<String", "<Enumeration"] {
         assert!(!description.contains(kind), "{kind}");
     }
-    refused(
-        folder.path(),
-        &[&export[..], &["--kind", "force", "--out", "force.fmu"]].concat(),
-        &[
-            "--kind force: expected no --bridge with it: the forces of a bridge alone are those of strips",
-        ],
-    );
     refused(folder.path(), &export, &["expected no file there yet"]);
     refused(
         folder.path(),
@@ -288,5 +281,62 @@ fn what_is_missing_is_named() {
         folder.path(),
         &["bridge", "flutter", "nothing.toml"],
         &["nothing.toml"],
+    );
+}
+
+/// The parts of a bridge, and what they do not have.
+#[test]
+fn a_bridge_is_exported_in_parts() {
+    let folder = folder();
+    let at = folder.path();
+    let part =
+        |more: &[&'static str]| [&["fmu", "export", "bridge.toml", "--bridge"][..], more].concat();
+    for kind in ["structure", "force"] {
+        let text = succeeds(at, &part(&["--kind", kind]));
+        assert!(text.contains("flutter onset 7"), "{text}");
+        let file = format!("bridge_{kind}.fmu");
+        let text = succeeds(at, &["fmu", "check", &file]);
+        assert!(text.ends_with("passed\n"), "{text}");
+    }
+    let text = flowing(&succeeds(at, &["ssp", "export", "bridge.toml"]));
+    let wrote = "wrote bridge.ssp: 2 units (structure, force), 378 connections, 27 parameters";
+    assert!(text.contains(wrote), "{text}");
+    refused(
+        at,
+        &["ssp", "export", "bridge.toml"],
+        &["expected no file there yet"],
+    );
+    for (more, message) in [
+        (
+            &["--kind", "force", "--strips", "3"][..],
+            "--strips: expected none: the strips of a bridge",
+        ),
+        (
+            &["--kind", "force", "--nodes", "1156"],
+            "--nodes: expected none: forces act on all nodes",
+        ),
+        (
+            &["--kind", "structure", "--prediction", "1"],
+            "--prediction: expected --kind force with it",
+        ),
+        (
+            &["--kind", "structure", "--gust-strips", "3"],
+            "--gust-strips: expected --kind section",
+        ),
+        (
+            &["--kind", "force", "--gusts", "deck.csv"],
+            "--gusts: expected `static`, the coefficients",
+        ),
+        (
+            &["--kind", "force", "--section", "tower"],
+            "--section: expected one of the sections girder, found `tower`",
+        ),
+    ] {
+        refused(at, &part(more), &[message]);
+    }
+    refused(
+        at,
+        &["fmu", "export", "model.json", "--kind", "structure"],
+        &["--kind structure: expected --bridge with it"],
     );
 }

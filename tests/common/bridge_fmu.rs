@@ -1,4 +1,4 @@
-//! The FMUs of the Langenuen bridge: the whole of it, and its forces alone.
+//! The FMUs of the Langenuen bridge: the whole of it, its forces alone, and a system of its parts.
 
 use crate::bridges::{TWO, langenuen, lively};
 use aerodeck::aeroelastic::CoupledSection;
@@ -32,6 +32,17 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
     }
     gusts(folder, runtimes);
+    let verdict = study.verdict().unwrap();
+    let all = BridgeExportOptions::default();
+    let system = study
+        .system(&all, &verdict, runtimes, &Label::default())
+        .unwrap();
+    write_archive(
+        &folder.join("bridge.ssp"),
+        &system.package().unwrap(),
+        Overwrite::Refuse,
+    )
+    .unwrap();
     let bridge = &study.by_model;
     let strip = |node: &aerodeck::bridge::Node| StripOptions {
         width_m: bridge.width_m(),

@@ -19,4 +19,5 @@ mod description;
 mod importer;
 mod manual;
 mod one_row;
+mod parts;
 mod stepped_answers;

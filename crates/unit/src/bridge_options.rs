@@ -47,6 +47,9 @@ pub struct BridgeOptions {
     pub nodes: Vec<Node>,
     /// Modes.
     pub modes: Vec<BridgeMode>,
+    /// Whether it is the structure alone, whose forces come from outside: nothing of wind is listed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub structure_alone: bool,
     /// Groups of nodes.
     pub groups: Vec<GroupOptions>,
     /// Force models of the groups.
@@ -66,6 +69,12 @@ pub struct BridgeOptions {
     /// The onset of the bridge as it is exported, from which a unit goes on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub onset: Option<OnsetStart>,
+}
+
+/// Number of a node in the names of variables: its own name where that is a number, else its place from 1 on.
+pub fn node_number(nodes: &[Node], place: usize) -> u32 {
+    let number = nodes[place].name.parse().ok();
+    number.unwrap_or_else(|| u32::try_from(place + 1).unwrap_or(u32::MAX))
 }
 
 impl BridgeOptions {
@@ -112,15 +121,9 @@ impl BridgeOptions {
         Ok((stepper, Some(channels)))
     }
 
-    /// Name of a node in the names of variables: its own where that is a number, else its place from 1 on.
+    /// Name of a node in the names of variables, see [`node_number`].
     pub fn node_name(&self, named: usize) -> String {
-        let place = self.named[named];
-        let name = &self.nodes[place].name;
-        if name.parse::<u32>().is_ok() {
-            name.clone()
-        } else {
-            (place + 1).to_string()
-        }
+        node_number(&self.nodes, self.named[named]).to_string()
     }
 
     /// Checks what does not need the matrices.

@@ -1,6 +1,6 @@
 //! What makes an exported unit one of forces alone: its strips, and where their forces act.
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, counted, non_negative, positive};
 use serde::{Deserialize, Serialize};
 
 /// The file of the options in `resources/`; an archive without it holds a coupled section.
@@ -33,6 +33,10 @@ pub struct ForceOptions {
     pub strips: Vec<StripOptions>,
     /// Whether variables are named by strip (`strip[1].heave`); a single strip may go without (`heave`).
     pub named_strips: bool,
+    /// Numbers of the nodes of a bridge in whose places the strips are: their variables are named by them
+    /// (`node[1076].heave`). None where strips are counted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub nodes: Vec<u32>,
     /// Start value of `prediction`, communication steps.
     pub prediction_steps: f64,
 }
@@ -47,6 +51,7 @@ impl ForceOptions {
                 wind_factor: 1.0,
             }],
             named_strips: false,
+            nodes: Vec::new(),
             prediction_steps: EXPLICIT_PREDICTION,
         }
     }
@@ -65,6 +70,17 @@ impl ForceOptions {
         if count > 1 && !self.named_strips {
             let found = format!("{count} without");
             return Err(Error::input("strips", "names for more than one", found));
+        }
+        let mut nodes = self.nodes.clone();
+        nodes.sort_unstable();
+        nodes.dedup();
+        if !self.nodes.is_empty() && (nodes.len() != count || !self.named_strips) {
+            let found = format!("{} of {}", nodes.len(), counted(count, "strip"));
+            return Err(Error::input(
+                "nodes",
+                "a node of its own for each strip",
+                found,
+            ));
         }
         for (i, strip) in self.strips.iter().enumerate() {
             let place = |key: &str| format!("strip {}: {key}", i + 1);

@@ -10,9 +10,10 @@ use std::collections::HashMap;
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Groups {
     groups: Vec<Vec<u32>>,
-    /// Value reference of each place in the table.
-    references: Vec<usize>,
-    arrays: bool,
+    /// Value reference of each place in the table; none of those that are not listed.
+    references: Vec<Option<usize>>,
+    /// Whether references are other numbers than places.
+    are_other: bool,
 }
 
 impl Groups {
@@ -20,7 +21,8 @@ impl Groups {
     pub fn new(table: &VariableTable) -> Self {
         let mut groups: Vec<Vec<u32>> = Vec::new();
         let mut arrays: HashMap<Cow<'_, str>, usize> = HashMap::new();
-        for (place, variable) in table.variables().iter().enumerate() {
+        let listed = table.variables().iter().enumerate();
+        for (place, variable) in listed.filter(|(_, v)| v.is_listed) {
             let place = u32::try_from(place).unwrap_or(u32::MAX);
             match array_of(variable.role, &variable.name) {
                 Some(name) => match arrays.get(&name) {
@@ -33,14 +35,14 @@ impl Groups {
                 None => groups.push(vec![place]),
             }
         }
-        let mut references = vec![0; table.variables().len()];
+        let mut references = vec![None; table.variables().len()];
         for (reference, places) in groups.iter().enumerate() {
             for place in places {
-                references[*place as usize] = reference;
+                references[*place as usize] = Some(reference);
             }
         }
         Self {
-            arrays: !arrays.is_empty(),
+            are_other: groups.len() < references.len(),
             references,
             groups,
         }
@@ -56,9 +58,9 @@ impl Groups {
         u32::try_from(self.groups.len()).unwrap_or(u32::MAX)
     }
 
-    /// Value reference of the variable to which a place in the table belongs.
+    /// Value reference of the variable to which a place in the table belongs, if it is listed.
     pub fn reference_of(&self, place: usize) -> Option<usize> {
-        self.references.get(place).copied()
+        self.references.get(place).copied().flatten()
     }
 
     /// The places of these references, one number each.
@@ -72,7 +74,7 @@ impl Groups {
                 self.time().saturating_sub(1)
             )));
         }
-        if !self.arrays {
+        if !self.are_other {
             return Ok(Cow::Borrowed(references));
         }
         let places = references.iter().flat_map(|r| &self.groups[*r as usize]);
@@ -84,7 +86,7 @@ impl Groups {
 pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
     if let Some(state) = name
         .strip_prefix("der(")
-        .filter(|n| n.starts_with("strip["))
+        .filter(|n| n.starts_with("strip[") || n.starts_with("node["))
     {
         let (_, rest) = state.split_once("].")?;
         return Some(format!("der({rest}").into());
@@ -96,7 +98,7 @@ pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
             Some(format!("{kind}.{rest}").into())
         }
         Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) | Role::Filter(_) => {
-            (kind == "strip").then_some(rest.into())
+            matches!(kind, "strip" | "node").then_some(rest.into())
         }
         Role::Mode(..)
         | Role::InitialMode(_)

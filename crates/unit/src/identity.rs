@@ -95,6 +95,7 @@ mod tests {
             name: "a".into(),
             description: String::new(),
             role: Role::WindSpeed,
+            is_listed: true,
             causality: Causality::Input,
             variability: Variability::Continuous,
             initial: None,

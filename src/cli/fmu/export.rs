@@ -1,24 +1,20 @@
-//! `aerodeck fmu export`: a trained model as an FMU.
+//! `aerodeck fmu export`: a trained model as an FMU, a bridge, or a part of one.
+
+mod bridge;
 
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::account;
 use crate::cli::answer::Answer;
-use crate::cli::bridge::{self, files::BRIDGE_FMU};
 use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
 use crate::cli::{headline, stages};
-use crate::error::{Error, Result, counted};
-use crate::files::bridge::read_field;
+use crate::error::{Error, Result};
 use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{
-    Export, FmiVersion, Label, Overwrite, Runtime, growth_of, package_bridge, write_archive,
-    write_fmu,
-};
+use crate::fmu::package::{Export, FmiVersion, Label, Overwrite, Runtime, growth_of, write_fmu};
 use crate::fmu::variables::Listing;
-use crate::study::bridge::BridgeExportOptions;
 use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -30,6 +26,7 @@ use std::path::PathBuf;
 ///
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
 /// Example: aerodeck fmu export bridge.toml --bridge --nodes 1001,1156
+/// Example: aerodeck fmu export bridge.toml --bridge --kind force --out bridge_force.fmu
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -42,9 +39,13 @@ pub(crate) struct FmuExportArgs {
     /// Nodes of a bridge with inputs and outputs; left out, mid-span and both quarter points.
     #[arg(long, value_delimiter = ',', requires = "bridge")]
     nodes: Vec<String>,
-    /// What is packed: the section of the model with its forces, or its forces alone.
+    /// What is packed: the section of the model (with --bridge the whole bridge) with its forces, or its forces alone, or with
+    /// --bridge the structure alone.
     #[arg(long, value_enum, default_value_t = ExportKind::Section)]
     kind: ExportKind,
+    /// The section of a bridge whose forces are packed; may be left out where there is one.
+    #[arg(long, requires = "bridge")]
+    section: Option<String>,
     /// Number of strips of a force FMU, with variables named strip[1].heave …; by default one strip with plain names.
     #[arg(long)]
     strips: Option<usize>,
@@ -63,7 +64,7 @@ pub(crate) struct FmuExportArgs {
     #[arg(long, value_delimiter = ',', value_name = "PLATFORM")]
     platforms: Vec<String>,
     /// Take gusts as inputs, whose forces follow from these static coefficients: a table (CSV), an embedded one, or
-    /// `flat plate`.
+    /// `flat plate`; for the forces on a bridge `static`, those of the bridge file.
     #[arg(long, value_name = "TABLE")]
     gusts: Option<String>,
     /// Add gust inputs for this many strips of a bridge, each a group of neighbouring nodes; their forces follow from the
@@ -104,6 +105,7 @@ pub(crate) struct FmuExportArgs {
 enum ExportKind {
     Section,
     Force,
+    Structure,
 }
 
 fn version(number: String) -> FmiVersion {
@@ -169,82 +171,34 @@ impl FmuExportArgs {
 }
 
 impl FmuExportArgs {
+    fn overwrite(&self) -> Overwrite {
+        match self.force {
+            true => Overwrite::Replace,
+            false => Overwrite::Refuse,
+        }
+    }
+
     fn listing(&self) -> Listing {
         match self.reals_only {
             true => Listing::Reals,
             false => Listing::All,
         }
     }
-
-    /// Refuses what a whole bridge does not have.
-    fn check_bridge(&self) -> Result<()> {
-        let alone = "no --bridge with it: the forces of a bridge alone are those of strips of its girder, which `fmu export \
-                     model.json --kind force --strips N` packs";
-        let strips = "--gust-strips and the `static` coefficients of the bridge file";
-        let given = [
-            ("--kind force", self.kind == ExportKind::Force, alone),
-            ("--strips", self.strips.is_some(), alone),
-            ("--strip-length", self.strip_length.is_some(), alone),
-            ("--prediction", self.prediction.is_some(), alone),
-            ("--gusts", self.gusts.is_some(), strips),
-        ];
-        match given.into_iter().find(|(_, given, _)| *given) {
-            None => Ok(()),
-            Some((flag, _, expected)) => Err(Error::input(flag, expected, "--bridge")),
-        }
-    }
-
-    /// Packs a whole bridge.
-    fn whole_bridge(&self, progress: &Progress) -> Result<Answer> {
-        self.check_bridge()?;
-        let study = bridge::read(&self.model, progress)?;
-        let path = self
-            .out
-            .clone()
-            .unwrap_or_else(|| self.model.with_file_name(BRIDGE_FMU));
-        let stage = progress.stage("packing the FMU");
-        let turbulence = self.turbulence.as_deref().map(read_field).transpose()?;
-        let export = study.export(&BridgeExportOptions {
-            nodes: self.nodes.clone(),
-            allow_unstable: self.allow_unstable,
-            gust_strips: self.gust_strips,
-            admittance: self.admittance.unwrap_or_default(),
-            turbulence,
-        });
-        let mut export = export.map_err(stages::or_allow_unstable)?;
-        export.listing = self.listing();
-        let verdict = study.verdict()?;
-        export.verdict = Some(verdict.clone());
-        let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
-        let overwrite = if self.force {
-            Overwrite::Replace
-        } else {
-            Overwrite::Refuse
-        };
-        write_archive(&path, &bytes, overwrite)?;
-        drop(stage);
-        let named: Vec<String> = (0..export.bridge.named.len())
-            .map(|n| export.bridge.node_name(n))
-            .collect();
-        let text = format!(
-            "{}: {}\nwrote {}: {} with {}; inputs and outputs at the {} {}\n",
-            export.bridge.name,
-            verdict.headline,
-            path.display(),
-            export.bridge.name,
-            counted(export.bridge.modes.len(), "mode"),
-            if named.len() == 1 { "node" } else { "nodes" },
-            named.join(", ")
-        );
-        let json = serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len(), "verdict": verdict });
-        Ok(Answer::new(text, &json)?.with_outcome_of(&verdict))
-    }
 }
 
 /// Runs the command.
 pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     if args.bridge {
-        return args.whole_bridge(progress);
+        return args.of_bridge(progress);
+    }
+    if args.kind == ExportKind::Structure {
+        let expected =
+            "--bridge with it: the structure of a section is its mass, spring and damper";
+        return Err(Error::input(
+            "--kind structure",
+            expected,
+            "a trained model",
+        ));
     }
     let model = stages::read_model(&args.model)?;
     let (default_name, evidence) = match args.kind {
@@ -258,7 +212,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
             let evidence = model_evidence(&model, &model.section, &search, &known, moved)?;
             (stages::FMU_FILE, Some(evidence))
         }
-        ExportKind::Force => ("deck_force.fmu", None),
+        ExportKind::Force | ExportKind::Structure => ("deck_force.fmu", None),
     };
     let verdict = evidence.as_ref().map(Verdict::of);
     let beside_the_model = || args.model.with_file_name(default_name);
@@ -278,13 +232,8 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
     let runtimes = args.runtimes()?;
-    let overwrite = if args.force {
-        Overwrite::Replace
-    } else {
-        Overwrite::Refuse
-    };
     let stage = progress.stage("packing the FMU");
-    write_fmu(&path, &model, &runtimes, overwrite, export).map_err(|e| match e {
+    write_fmu(&path, &model, &runtimes, args.overwrite(), export).map_err(|e| match e {
         Error::Input(mut input) if !args.force && path.exists() => {
             input.expected.push_str(" (or --force)");
             Error::Input(input)

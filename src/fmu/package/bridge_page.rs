@@ -14,6 +14,9 @@ pub(super) fn documentation(
     verdict: Option<&Verdict>,
 ) -> String {
     let model = &resources.model;
+    if bridge.structure_alone {
+        return structure(resources, bridge);
+    }
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head><body>\n\
          <h1>{name}</h1>\n<p>A whole bridge under self-excited wind forces: {modes} modes, {nodes} nodes, {groups} groups of \
@@ -33,8 +36,35 @@ pub(super) fn documentation(
         licence = escaped(&model.provenance.licence),
         stability = stability(verdict),
     );
+    page.push_str(&rows(resources));
+    page.push_str("</table>\n</body></html>\n");
+    page
+}
+
+/// The page of a structure alone.
+fn structure(resources: &Resources, bridge: &BridgeOptions) -> String {
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}: structure</title></head><body>\n\
+         <h1>{name}: structure</h1>\n<p>The structure of a bridge without its wind forces: {modes} modes, {nodes} nodes. Vertical \
+         displacement and force are positive up, lateral positive downwind, rotation and moment positive nose-up (windward \
+         edge up). Forces at nodes go in, the motion of the nodes comes out.</p>\n\
+         <p>A communication step of any size is exact for forces that are held or run on straight lines. The mode coordinates are \
+         those of the shapes as they were given.</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>meaning</th></tr>\n\
+         {rows}</table>\n</body></html>\n",
+        name = escaped(&bridge.name),
+        modes = bridge.modes.len(),
+        nodes = bridge.nodes.len(),
+        rows = rows(resources),
+    )
+}
+
+/// A row of the table for each variable.
+fn rows(resources: &Resources) -> String {
+    let mut page = String::new();
     // those of further modes differ by their number
-    let first = |v: &&Variable| !matches!(v.role, Role::Mode(1.., _) | Role::InitialMode(1..));
+    let first = |v: &&Variable| {
+        v.is_listed && !matches!(v.role, Role::Mode(1.., _) | Role::InitialMode(1..))
+    };
     for v in resources.table.variables().iter().filter(first) {
         let unit = v.unit.map_or("", |u| u.name);
         let _ = writeln!(
@@ -44,7 +74,6 @@ pub(super) fn documentation(
             escaped(&v.description)
         );
     }
-    page.push_str("</table>\n</body></html>\n");
     page
 }
 

@@ -131,6 +131,7 @@ impl BridgeStudy {
             air_density_kg_m3: bridge.air_density_kg_m3,
             nodes: bridge.nodes.clone(),
             modes: bridge.modes.clone(),
+            structure_alone: false,
             groups: groups.collect(),
             forces: forces
                 .ok_or_else(|| Error::Numerical("FMU: a section has no force model".into()))?,

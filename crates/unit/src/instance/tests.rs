@@ -54,6 +54,7 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         air_density_kg_m3: bridge.air_density_kg_m3,
         nodes: bridge.nodes,
         modes: bridge.modes,
+        structure_alone: false,
         groups: vec![GroupOptions {
             name: "girder".into(),
             width_m: model.section.width_m,

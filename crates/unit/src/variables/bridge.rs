@@ -6,7 +6,7 @@ use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
     air_density, capitalized, gust_inputs, onset_bounds, search_limit, wind_speed,
 };
-use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, Variable};
+use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, StartValue, Variable};
 use super::{bridge_states, computed_rows, dependencies};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
@@ -43,7 +43,29 @@ pub(super) fn variables(
     fill_dependencies(&mut table);
     bridge_states::add(&mut table, options, &stepper)?;
     computed_rows::fill_dependencies(&mut table);
+    if options.structure_alone {
+        for variable in &mut table {
+            variable.is_listed = is_of_structure(variable.role);
+            if variable.role == Role::WindSpeed {
+                variable.value = StartValue::Real(Some(0.0));
+            }
+        }
+    }
     Ok(table)
+}
+
+/// Whether a variable says something of a bridge without wind.
+fn is_of_structure(role: Role) -> bool {
+    matches!(
+        role,
+        Role::NodeForce(..)
+            | Role::NodeMotion(..)
+            | Role::Mode(_, ModeOutput::Coordinate | ModeOutput::Rate)
+            | Role::ModeParameter(..)
+            | Role::InitialMode(_)
+            | Role::Filter(_)
+            | Role::FilterRate(_)
+    )
 }
 
 /// The gusts of every strip.

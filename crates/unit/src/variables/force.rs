@@ -64,10 +64,10 @@ fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, filters: usize,
 
 /// Name of a variable of a strip.
 fn name(options: &ForceOptions, s: usize, of: &str) -> String {
-    if options.named_strips {
-        format!("strip[{}].{of}", s + 1)
-    } else {
-        of.to_owned()
+    match options.nodes.get(s) {
+        Some(node) => format!("node[{node}].{of}"),
+        None if options.named_strips => format!("strip[{}].{of}", s + 1),
+        None => of.to_owned(),
     }
 }
 

@@ -26,6 +26,7 @@ impl VariableTable {
     pub fn listed(&self, listing: Listing) -> ListedVariables {
         let real = |v: &Variable| matches!(v.value, StartValue::Real(_));
         let references: Vec<usize> = (0..self.variables.len())
+            .filter(|&i| self.variables[i].is_listed)
             .filter(|&i| listing == Listing::All || real(&self.variables[i]))
             .collect();
         // ascending, since the references are

@@ -48,6 +48,7 @@ pub(super) fn real(
         name: name.into(),
         description: description.into(),
         role,
+        is_listed: true,
         causality,
         variability,
         initial,

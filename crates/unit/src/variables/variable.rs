@@ -172,6 +172,8 @@ pub struct Variable {
     pub description: String,
     /// What it stands for.
     pub role: Role,
+    /// Whether descriptions list it; the others stay in the runtime, unnamed.
+    pub is_listed: bool,
     /// What it is to the importer.
     pub causality: Causality,
     /// When it changes.

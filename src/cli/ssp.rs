@@ -1,0 +1,80 @@
+//! `aerodeck ssp`: a bridge as a system of FMUs.
+
+use super::answer::Answer;
+use super::bridge;
+use super::progress::Progress;
+use super::stages;
+use crate::error::{Result, counted};
+use crate::fmu::package::{Label, Overwrite, Runtime, write_archive};
+use crate::study::bridge::BridgeExportOptions;
+use std::path::PathBuf;
+
+/// Systems of FMUs (SSP 1.0)
+#[derive(clap::Subcommand)]
+pub(super) enum SspCommand {
+    Export(SspExportArgs),
+}
+
+/// Pack a bridge as a system: its structure and its wind forces as FMUs of their own, connected, with their parameters
+///
+/// Example: aerodeck ssp export bridge.toml --out bridge.ssp
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(super) struct SspExportArgs {
+    /// The bridge file (see docs/bridge.md).
+    bridge: PathBuf,
+    /// The system; by default `bridge.ssp` beside the bridge file.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Replace a file that is there.
+    #[arg(long)]
+    force: bool,
+    /// Export a bridge that grows below its onset, at reduced frequencies that were not tested.
+    #[arg(long)]
+    allow_unstable: bool,
+}
+
+/// Runs the command.
+pub(super) fn run(command: &SspCommand, progress: &Progress) -> Result<Answer> {
+    let SspCommand::Export(args) = command;
+    let study = bridge::read(&args.bridge, progress)?;
+    let stage = progress.stage("packing the system");
+    let wanted = BridgeExportOptions {
+        allow_unstable: args.allow_unstable,
+        ..BridgeExportOptions::default()
+    };
+    let verdict = study.verdict()?;
+    let label = Label::default().dated()?;
+    let system = study.system(&wanted, &verdict, &Runtime::available()?, &label);
+    let system = system.map_err(stages::or_allow_unstable)?;
+    let path = args
+        .out
+        .clone()
+        .unwrap_or_else(|| args.bridge.with_file_name("bridge.ssp"));
+    let overwrite = match args.force {
+        true => Overwrite::Replace,
+        false => Overwrite::Refuse,
+    };
+    write_archive(&path, &system.package()?, overwrite)?;
+    drop(stage);
+    let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
+    let parameters: usize = system.components.iter().map(|c| c.values.len()).sum();
+    let text = format!(
+        "{}: {}\nwrote {}: {} ({}), {}, {}\n",
+        study.file.name,
+        verdict.headline,
+        path.display(),
+        counted(names.len(), "unit"),
+        names.join(", "),
+        counted(system.connections.len(), "connection"),
+        counted(parameters, "parameter"),
+    );
+    let json = serde_json::json!({
+        "ssp": path,
+        "components": names,
+        "connections": system.connections.len(),
+        "parameters": parameters,
+        "verdict": verdict,
+    });
+    Ok(Answer::new(text, &json)?.with_outcome_of(&verdict))
+}

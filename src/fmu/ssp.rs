@@ -1,0 +1,165 @@
+//! Systems of FMUs: System Structure and Parameterization 1.0, an archive with the units, who is connected to whom, and their
+//! parameters.
+
+use super::description::number;
+use super::package::archive;
+use super::xml::Element;
+use crate::error::{Error, Result};
+use crate::trained_model::Experiment;
+use std::collections::BTreeMap;
+
+const STRUCTURE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
+const COMMON: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";
+const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
+const VERSION: &str = "1.0";
+
+/// A unit of a system.
+#[derive(Debug, Clone)]
+pub struct SystemComponent {
+    /// Name in the system.
+    pub name: String,
+    /// Its FMU.
+    pub fmu: Vec<u8>,
+    /// Inputs that are connected.
+    pub inputs: Vec<String>,
+    /// Outputs that are connected.
+    pub outputs: Vec<String>,
+    /// Start values of parameters and of inputs that are not connected.
+    pub values: Vec<(String, f64)>,
+}
+
+/// An output of one component that is an input of another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Connection {
+    /// SystemComponent and its output.
+    pub from: [String; 2],
+    /// SystemComponent and its input.
+    pub to: [String; 2],
+}
+
+/// Units and how they are connected.
+#[derive(Debug, Clone)]
+pub struct System {
+    /// Name.
+    pub name: String,
+    /// The units.
+    pub components: Vec<SystemComponent>,
+    /// Who is connected to whom.
+    pub connections: Vec<Connection>,
+    /// What an importer runs that is not told otherwise.
+    pub experiment: Experiment,
+}
+
+impl System {
+    /// Its archive: the description, and units and parameter sets in `resources/`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a number that is not finite, and for a connection between what is not there.
+    pub fn package(&self) -> Result<Vec<u8>> {
+        self.check()?;
+        let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
+        files.insert(
+            "SystemStructure.ssd".into(),
+            self.description()?.into_bytes(),
+        );
+        for component in &self.components {
+            let values = parameter_set(component)?.into_bytes();
+            files.insert(resource(&component.name, "ssv"), values);
+            files.insert(resource(&component.name, "fmu"), component.fmu.clone());
+        }
+        archive(&files)
+    }
+
+    /// Both ends of a connection are there.
+    fn check(&self) -> Result<()> {
+        let has = |[name, connector]: &[String; 2], of: &dyn Fn(&SystemComponent) -> &[String]| {
+            let component = self.components.iter().find(|c| c.name == *name);
+            component.is_some_and(|c| of(c).contains(connector))
+        };
+        for Connection { from, to } in &self.connections {
+            for (end, is_there) in [
+                (from, has(from, &|c| &c.outputs)),
+                (to, has(to, &|c| &c.inputs)),
+            ] {
+                if !is_there {
+                    let expected = "an output and an input of the components";
+                    return Err(Error::input("connection", expected, end.join(".")));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn description(&self) -> Result<String> {
+        let connection = |c: &Connection| {
+            Element::new("ssd:Connection")
+                .with("startElement", &c.from[0])
+                .with("startConnector", &c.from[1])
+                .with("endElement", &c.to[0])
+                .with("endConnector", &c.to[1])
+        };
+        let system = Element::new("ssd:System")
+            .with("name", &self.name)
+            .containing([
+                Element::new("ssd:Elements").containing(self.components.iter().map(component)),
+                Element::new("ssd:Connections").containing(self.connections.iter().map(connection)),
+            ]);
+        let experiment = Element::new("ssd:DefaultExperiment")
+            .with("startTime", number(0.0)?)
+            .with("stopTime", number(self.experiment.stop_time_s)?);
+        let root = Element::new("ssd:SystemStructureDescription")
+            .with("xmlns:ssd", STRUCTURE)
+            .with("xmlns:ssc", COMMON)
+            .with("version", VERSION)
+            .with("name", &self.name)
+            .with(
+                "generationTool",
+                concat!("aerodeck ", env!("CARGO_PKG_VERSION")),
+            );
+        Ok(root.containing([system, experiment]).document())
+    }
+}
+
+fn resource(name: &str, ending: &str) -> String {
+    format!("resources/{name}.{ending}")
+}
+
+fn component(of: &SystemComponent) -> Element {
+    let connector = |kind: &'static str| {
+        move |name: &String| {
+            Element::new("ssd:Connector")
+                .with("name", name)
+                .with("kind", kind)
+                .containing([Element::new("ssc:Real")])
+        }
+    };
+    let connectors = of.inputs.iter().map(connector("input"));
+    let connectors = connectors.chain(of.outputs.iter().map(connector("output")));
+    let binding = Element::new("ssd:ParameterBinding").with("source", resource(&of.name, "ssv"));
+    Element::new("ssd:Component")
+        .with("name", &of.name)
+        .with("type", "application/x-fmu-sharedlibrary")
+        .with("source", resource(&of.name, "fmu"))
+        .containing([
+            Element::new("ssd:Connectors").containing(connectors),
+            Element::new("ssd:ParameterBindings").containing([binding]),
+        ])
+}
+
+fn parameter_set(of: &SystemComponent) -> Result<String> {
+    let mut all = Vec::new();
+    for (name, value) in &of.values {
+        let value = Element::new("ssv:Real").with("value", number(*value)?);
+        all.push(
+            Element::new("ssv:Parameter")
+                .with("name", name)
+                .containing([value]),
+        );
+    }
+    let root = Element::new("ssv:ParameterSet")
+        .with("xmlns:ssv", VALUES)
+        .with("version", VERSION)
+        .with("name", &of.name)
+        .containing([Element::new("ssv:Parameters").containing(all)]);
+    Ok(root.document())
+}

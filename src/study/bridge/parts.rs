@@ -1,0 +1,182 @@
+//! A bridge in parts: its structure as one unit, the wind forces on the strips of each section as another.
+
+use super::{BridgeExportOptions, BridgeStudy};
+use crate::aerodynamics::{GustForce, Lags, RationalAdmittance, RationalModel, Transfer};
+use crate::bridge::{StripGroup, motion_index};
+use crate::error::{Error, Result};
+use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
+use crate::fmu::force_options::{ForceOptions, StripOptions};
+use crate::fmu::package::BridgeExport;
+use crate::section::Dof;
+use crate::trained_model::{Model, Provenance, TrainedModel};
+use nalgebra::DMatrix;
+
+/// The wind forces on one section of a bridge, as strips with the numbers of their nodes.
+#[derive(Debug, Clone)]
+pub struct SectionForcePart {
+    /// Name of the section.
+    pub section: String,
+    /// Its force model.
+    pub model: TrainedModel,
+    /// A strip for each of its nodes.
+    pub options: ForceOptions,
+    /// Forces of gusts, where they are wanted.
+    pub gusts: Option<GustForce>,
+}
+
+/// No forces of heave and rotation, whatever moves.
+fn no_forces() -> Model {
+    let zero = || DMatrix::zeros(2, 2);
+    Model::Rational(RationalModel {
+        dofs: Dof::TWO.to_vec(),
+        a1: zero(),
+        a2: zero(),
+        a3: zero(),
+        lags: Lags::Shared(Vec::new()),
+        lag_terms: Vec::new(),
+    })
+}
+
+impl BridgeStudy {
+    /// The structure alone, with inputs and outputs at the nodes that are wanted, all where none are named; its release is that of
+    /// the whole bridge.
+    ///
+    /// # Errors
+    /// As [`Self::export`]; [`Error::Input`] for gusts and turbulence, which blow on no structure alone.
+    pub fn structure(&self, wanted: &BridgeExportOptions) -> Result<BridgeExport> {
+        if wanted.gust_strips.is_some() || wanted.turbulence.is_some() {
+            let expected = "none: gusts belong to the forces, not to the structure";
+            return Err(Error::input("gusts", expected, "some"));
+        }
+        let mut whole = self.export(wanted)?;
+        let nodes = self.by_model.nodes.len();
+        let every_node = whole.bridge.nodes.iter().map(|n| n.name.clone());
+        let every_node: Vec<String> = every_node.collect();
+        if wanted.nodes.is_empty() {
+            whole.bridge.named = self.named(&every_node)?;
+        }
+        let width_m = self.by_model.width_m();
+        whole.bridge = BridgeOptions {
+            structure_alone: true,
+            groups: vec![GroupOptions {
+                name: "no wind".to_owned(),
+                width_m,
+                wind_factor: 1.0,
+                nodes: (0..nodes).collect(),
+                forces: 0,
+            }],
+            forces: vec![no_forces()],
+            tested_range: None,
+            onset_interval: None,
+            onset: None,
+            ..whole.bridge
+        };
+        let model = whole.model;
+        whole.model = TrainedModel {
+            name: format!("{}, structure", model.name),
+            model: no_forces(),
+            section: self.by_model.equivalent_section(&Dof::TWO)?,
+            provenance: Provenance {
+                source: "the modes of the bridge file".to_owned(),
+                licence: "as of the modes".to_owned(),
+                method: "no wind forces: those come from outside".to_owned(),
+                notes: Vec::new(),
+                ..model.provenance
+            },
+            ..model
+        };
+        Ok(whole)
+    }
+
+    /// The wind forces of every section, each on strips at its nodes; with gusts as inputs where `gusts` states their admittance.
+    ///
+    /// # Errors
+    /// As [`Self::export`]; [`Error::Input`] for gusts on sections without static coefficients.
+    pub fn section_forces(
+        &self,
+        wanted: &BridgeExportOptions,
+        gusts: Option<RationalAdmittance>,
+    ) -> Result<Vec<SectionForcePart>> {
+        let whole = self.export(wanted)?;
+        let matrices = gusts.map(|_| self.gust_matrices()).transpose()?;
+        let mut all = Vec::new();
+        for (s, (block, forces)) in self.file.sections.iter().zip(&self.sections).enumerate() {
+            let groups = self.by_model.groups.iter().zip(&self.section_of_group);
+            let own = groups
+                .enumerate()
+                .filter(|(_, (_, section))| **section == s);
+            let own: Vec<usize> = own.map(|(g, _)| g).collect();
+            let Some(&first) = own.first() else {
+                continue;
+            };
+            let model = forces.saved.clone().ok_or_else(|| {
+                Error::Numerical(format!("FMU: section {} has no force model", block.name))
+            })?;
+            let dofs = model.dofs().to_vec();
+            let gusts = matrices
+                .as_ref()
+                .zip(gusts)
+                .map(|(of_group, admittance)| GustForce {
+                    coefficients: dofs
+                        .iter()
+                        .map(|d| of_group[first][motion_index(*d)])
+                        .collect(),
+                    dofs: dofs.clone(),
+                    admittance,
+                    source: format!(
+                        "quasi-steady theory with the static coefficients of {}",
+                        block.name
+                    ),
+                });
+            let mut section = self.by_model.equivalent_section(&dofs)?;
+            section.width_m = block.width_m;
+            all.push(SectionForcePart {
+                section: block.name.clone(),
+                options: self.strips(&own)?,
+                gusts,
+                model: TrainedModel {
+                    name: format!("{}, {}", self.file.name, block.name),
+                    section,
+                    tested_range: forces.tested.unwrap_or(whole.model.tested_range),
+                    provenance: Provenance {
+                        source: forces.source.clone(),
+                        licence: forces.licence.clone(),
+                        method: forces.method.clone(),
+                        ..whole.model.provenance.clone()
+                    },
+                    experiment: whole.model.experiment.clone(),
+                    schema_version: model.schema_version(),
+                    model,
+                },
+            });
+        }
+        Ok(all)
+    }
+
+    /// A strip at each node of these groups, in the order of the nodes.
+    fn strips(&self, groups: &[usize]) -> Result<ForceOptions> {
+        let bridge = &self.by_model;
+        let of_group = |g: &usize| {
+            let group = &bridge.groups[*g];
+            group.nodes.iter().map(move |n| (*n, group))
+        };
+        let mut own: Vec<_> = groups.iter().flat_map(of_group).collect();
+        own.sort_by_key(|(node, _)| *node);
+        let strip = |(node, group): &(usize, &StripGroup)| StripOptions {
+            width_m: group.width_m,
+            length_m: bridge.nodes[*node].length_m,
+            wind_factor: group.wind_factor,
+        };
+        let options = ForceOptions {
+            strips: own.iter().map(strip).collect(),
+            named_strips: true,
+            nodes: own
+                .iter()
+                .map(|(n, _)| node_number(&bridge.nodes, *n))
+                .collect(),
+            ..ForceOptions::single(bridge.width_m())
+        };
+        options.validate()?;
+        Ok(options)
+    }
+}
