@@ -237,10 +237,9 @@ fn assembled(
         FmiVersion::Three => "terminalsAndIcons/icon.png",
     };
     files.insert(icon.into(), ICON.to_vec());
-    if version == FmiVersion::Three {
-        let text = terminals::document(&resources.table);
-        files.insert(terminals::FILE.into(), text.into_bytes());
-    }
+    let listed = resources.table.listed(listing).table;
+    let text = terminals::document(&listed, version);
+    files.insert(terminals::FILE.into(), text.into_bytes());
     for (name, text) in options {
         files.insert(format!("resources/{name}"), text.into_bytes());
     }

@@ -59,10 +59,16 @@ def test_cvode_moves_as_the_steps_do(kind):
         ("fmi3_section_rational", {"wind", "vertical", "torsion"}),
         ("fmi3_force_rational", {"wind", "vertical", "torsion"}),
         ("bridge_fmi3", {"wind", "vertical", "lateral", "torsion"}),
+        # of FMI 2.0, which has no arrays
+        ("rational", {"wind", "vertical", "torsion"}),
+        (
+            "bridge",
+            {"wind"} | {f"node[{n}].{d}" for n in (1081, 1156) for d in ("vertical", "lateral", "torsion")},
+        ),
     ],
 )
 def test_terminals_name_variables(unit, terminals):
-    """The file is as the schema of the standard has it, and its members are variables of the unit."""
+    """The file is as the schema of FMI 3.0 has it, of which FMI 2.0.4 makes use, and its members are variables of the unit."""
     fmu = FOLDER / f"{unit}.fmu"
     with zipfile.ZipFile(fmu) as archive:
         text = archive.read("terminalsAndIcons/terminalsAndIcons.xml")

@@ -1,11 +1,12 @@
-//! `terminalsAndIcons.xml` of FMI 3.0 (2.0 knows none): which variables belong to one connection. A degree of freedom is one, with
+//! `terminalsAndIcons.xml`: which variables belong to one connection. A degree of freedom is one, with
 //! its motion and the force on it, and so is the wind.
 
-use crate::fmu::groups::{Groups, array_of};
-use crate::fmu::standard::Causality;
+use crate::fmu::groups::array_of;
+use crate::fmu::standard::{Causality, FmiVersion};
 use crate::fmu::variables::{ForceOutput, GustDirection, Response, Role, VariableTable};
 use crate::fmu::xml::Element;
 use crate::section::Dof;
+use std::collections::BTreeSet;
 
 /// The file in the archive.
 pub(super) const FILE: &str = "terminalsAndIcons/terminalsAndIcons.xml";
@@ -42,39 +43,55 @@ impl Terminal {
     }
 }
 
-/// The file of a table of variables.
-pub(super) fn document(table: &VariableTable) -> String {
-    let groups = Groups::new(table);
-    let members = |terminal: Terminal| -> Vec<Element> {
-        let of_group = |places: &Vec<u32>| {
-            let variable = &table.variables()[*places.first()? as usize];
-            let connected = matches!(variable.causality, Causality::Input | Causality::Output);
-            let (own, member) = member(variable.role).filter(|_| connected)?;
-            let name = array_of(variable.role, &variable.name);
-            let name = name.unwrap_or_else(|| variable.name.as_str().into());
-            (own == terminal).then(|| {
-                Element::new("TerminalMemberVariable")
-                    .with("variableName", name)
-                    .with("memberName", member)
-                    .with("variableKind", "signal")
-            })
+/// The file of the listed variables of a table. FMI 3.0 has one connection for all strips or nodes, whose members are arrays; 2.0, which
+/// may have the file since 2.0.4, one for each.
+pub(super) fn document(table: &VariableTable, version: FmiVersion) -> String {
+    // in the order of the table
+    let mut terminals: Vec<(String, Terminal, Vec<Element>)> = Vec::new();
+    let mut arrays = BTreeSet::new();
+    for variable in table.variables() {
+        let connected = matches!(variable.causality, Causality::Input | Causality::Output);
+        let Some((terminal, member)) = member(variable.role).filter(|_| connected) else {
+            continue;
         };
-        groups.all().iter().filter_map(of_group).collect()
-    };
-    let terminals = Terminal::ALL.into_iter().filter_map(|terminal| {
-        let members = members(terminal);
-        (!members.is_empty()).then(|| {
-            Element::new("Terminal")
-                .with("name", terminal.name())
-                .with("matchingRule", "bus")
-                .with("description", terminal.description())
-                .containing(members)
-        })
+        let array = array_of(variable.role, &variable.name);
+        let (of, name) = match (version, array) {
+            (FmiVersion::Three, Some(array)) => ("", array.into_owned()),
+            (_, array) => (
+                array.map_or("", |_| strip_of(&variable.name)),
+                variable.name.clone(),
+            ),
+        };
+        if !arrays.insert(name.clone()) {
+            continue;
+        }
+        let element = Element::new("TerminalMemberVariable")
+            .with("variableName", name)
+            .with("memberName", member)
+            .with("variableKind", "signal");
+        let name = [of, terminal.name()].concat();
+        match terminals.iter_mut().find(|(n, ..)| *n == name) {
+            Some((.., members)) => members.push(element),
+            None => terminals.push((name, terminal, vec![element])),
+        }
+    }
+    terminals.sort_by_key(|(_, terminal, _)| Terminal::ALL.iter().position(|t| t == terminal));
+    let terminals = terminals.into_iter().map(|(name, terminal, members)| {
+        Element::new("Terminal")
+            .with("name", name)
+            .with("matchingRule", "bus")
+            .with("description", terminal.description())
+            .containing(members)
     });
     Element::new("fmiTerminalsAndIcons")
         .with("fmiVersion", "3.0")
         .containing([Element::new("Terminals").containing(terminals)])
         .document()
+}
+
+/// `node[1076].` of `node[1076].heave`.
+fn strip_of(name: &str) -> &str {
+    name.find("].").map_or("", |end| &name[..end + 2])
 }
 
 /// The connection of a variable, and what it is there.
