@@ -1,10 +1,15 @@
 """Force FMU and structure as a system of FMUs (SSP 1.0), run by FMPy's own master: nothing of ours in between."""
 
 import json
+import os
+import subprocess
+import sys
 import zipfile
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from exported import FOLDER
 from fmpy.ssp.simulation import simulate_ssp
 from foreign_structure import ONSET, PERIOD, growth
@@ -116,3 +121,35 @@ def test_a_bridge_in_parts_finds_its_onset():
     found = speeds[0] - low * (speeds[1] - speeds[0]) / (high - low)
     print(f"SSP of a bridge, T/100: {100 * (found / onset - 1):+.3f} %")
     assert abs(found / onset - 1) < 5e-4
+
+
+def example(name, *arguments, folder):
+    script = Path(__file__).parents[2] / "examples" / name
+    done = subprocess.run(
+        [sys.executable, script, FOLDER / "bridge.ssp", *arguments],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, "TMPDIR": str(folder)},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_a_controller_beside_the_bridge_holds_it(tmp_path):
+    """Above the onset the bridge grows without it, and not with it."""
+    printed = example("bridge_with_controller.py", "--wind", "90", "--steps", "3000", folder=tmp_path)
+    without, beside = (float(line.split()[-2]) for line in printed.splitlines())
+    assert without > 0.01 and beside < -0.005, printed
+
+
+def test_libcosim_reads_the_system(tmp_path):
+    """Another master, which passes values on before the first step as well: the same motion up to what that step changes."""
+    pytest.importorskip("libcosimpy", reason="libcosimpy has no wheel for this platform")
+    name = "node[1156].rotation"
+    printed = example("bridge_in_libcosim.py", name, folder=tmp_path)
+    # its own log stands between
+    largest = [float(line) for line in printed.splitlines() if not line.startswith("[")]
+    found = simulate_ssp(str(FOLDER / "bridge.ssp"), stop_time=3000 * 0.03, step_size=0.03)
+    expected = [part.max() for part in np.array_split(np.abs(found[f"structure.{name}"]), 6)]
+    assert largest == pytest.approx(expected, rel=0.05), expected
