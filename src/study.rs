@@ -106,7 +106,7 @@ pub struct Study {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeckSource {
-    /// Name of an embedded deck, `flat plate`, or the path of a derivative table (`.csv`, `.xlsx`).
+    /// Name of an embedded deck, `flat plate`, or the path of a derivative table (`.csv`, `.xlsx`, `.xls`, `.ods`; `table.xlsx#SHEET`).
     pub source: String,
     /// Notation, argument and axes of the table; a CSV file states them itself and must not be contradicted.
     #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]

@@ -11,8 +11,8 @@ use crate::aerodynamics::derivatives::notation::{
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
 use crate::error::{Error, Result};
 use crate::files::derivatives::{
-    ReadOptions, TableInConvention, embedded, is_table_file, read_table_with, workbook_bytes_in,
-    write_csv_in,
+    ReadOptions, TableInConvention, embedded, is_table_file, named_sheet, read_table_with,
+    template_bytes, workbook_bytes_in, write_csv_in,
 };
 use crate::plausibility::{of_table, sentences};
 use crate::report::axes_sketch;
@@ -27,6 +27,7 @@ pub(crate) enum Derivatives {
     Convert(ConvertArgs),
     Show(ShowArgs),
     Notations(NotationsArgs),
+    Template(TemplateArgs),
 }
 
 /// Runs the command.
@@ -35,14 +36,18 @@ pub(crate) fn run(command: &Derivatives) -> Result<Answer> {
         Derivatives::Convert(args) => convert(args),
         Derivatives::Show(args) => show(args),
         Derivatives::Notations(args) => notations(args),
+        Derivatives::Template(args) => template(args),
     }
 }
 
 /// A table and its conventions.
 #[derive(clap::Args)]
 struct TableArgs {
-    /// Table of derivatives (.csv, .xlsx), or the name of an embedded deck.
+    /// Table of derivatives (.csv, .xlsx, .xls, .ods), or the name of an embedded deck.
     table: String,
+    /// The sheet of a workbook that is meant, where several hold derivatives.
+    #[arg(long)]
+    sheet: Option<String>,
     /// Notation of the file: scanlan, classical, polimi, starossek. A CSV file states it itself; what is stated here must
     /// not contradict it.
     #[arg(long, value_name = "NOTATION")]
@@ -100,7 +105,7 @@ impl TableArgs {
                 frequencies_hz: (!self.frequencies_hz.is_empty())
                     .then(|| self.frequencies_hz.clone()),
             };
-            return read_table_with(&self.table, &options);
+            return read_table_with(named_sheet(&self.table, self.sheet.as_deref()), &options);
         }
         let table = embedded::deck(&self.table)?;
         let convention = stated.with_file(Convention::default().into())?;
@@ -291,4 +296,50 @@ fn notations(args: &NotationsArgs) -> Result<Answer> {
     let mut out = OutputDir::new(folder)?;
     figures::write("axes", &mut out, || Ok(axes_sketch()))?;
     out.answer(text, value)
+}
+
+/// Write an empty workbook to be filled with a table of derivatives, with instructions
+///
+/// Example: aerodeck derivatives template table.xlsx --notation polimi
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct TemplateArgs {
+    /// The workbook (.xlsx).
+    out: PathBuf,
+    /// Notation of the columns.
+    #[arg(long, default_value = "scanlan")]
+    notation: Notation,
+    /// Replace a file that is there.
+    #[arg(long)]
+    force: bool,
+}
+
+fn template(args: &TemplateArgs) -> Result<Answer> {
+    let is_workbook = args
+        .out
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
+    let name = args
+        .out
+        .file_name()
+        .filter(|_| is_workbook)
+        .ok_or_else(|| {
+            let found = args.out.display().to_string();
+            Error::input("out", "a file name that ends in .xlsx", found)
+        })?;
+    if args.out.exists() && !args.force {
+        let expected = "no file there yet (or --force)";
+        return Err(
+            Error::input("out", expected, "one, which was left as it is").in_file(&args.out),
+        );
+    }
+    let convention = StatedConvention {
+        notation: Some(args.notation),
+        ..StatedConvention::default()
+    };
+    let convention = convention.or_usual();
+    let mut out = OutputDir::new(folder_of(&args.out))?;
+    out.write(name, template_bytes(&convention)?)?;
+    let text = format!("a table to be filled in: {convention}\n");
+    out.answer(text, serde_json::json!({ "convention": convention }))
 }

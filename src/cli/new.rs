@@ -2,7 +2,9 @@
 
 use super::answer::Answer;
 use super::output::{OutputDir, list};
+use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
 use crate::error::{Error, Result};
+use crate::files::derivatives::named_sheet;
 use crate::study::{Deck, Study, new_study_text};
 use std::path::{Path, PathBuf};
 
@@ -15,9 +17,21 @@ pub(crate) struct NewArgs {
     /// An embedded deck (see `aerodeck derivatives show --help`) or `flat plate`.
     #[arg(long, default_value = "LN21-5200")]
     deck: String,
-    /// A table of derivatives of your own (.xlsx, .csv).
+    /// A table of derivatives of your own (.xlsx, .xls, .ods, .csv).
     #[arg(long, conflicts_with = "deck")]
     workbook: Option<PathBuf>,
+    /// The sheet of the workbook that is meant, where several hold derivatives.
+    #[arg(long, requires = "workbook")]
+    sheet: Option<String>,
+    /// Notation of the table, where it does not state it: scanlan, classical, polimi, starossek.
+    #[arg(long, value_name = "NOTATION", requires = "workbook")]
+    from: Option<Notation>,
+    /// What the table is tabulated over: v_hat = V/(omega B), v_star = V/(f B), k_full = omega B/V, k_semi = omega b/V.
+    #[arg(long, value_name = "ARGUMENT", requires = "workbook")]
+    from_argument: Option<Argument>,
+    /// Direction of heave and lift in the table: heave_up, heave_down.
+    #[arg(long, value_name = "AXES", requires = "workbook")]
+    from_axes: Option<Axes>,
     /// The study file.
     #[arg(long, default_value = "study.toml")]
     out: PathBuf,
@@ -35,10 +49,15 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
         Error::input("--out", "the name of a file", found)
     })?;
     let source = match &args.workbook {
-        Some(table) => beside(table, folder)?,
+        Some(table) => named_sheet(&beside(table, folder)?, args.sheet.as_deref()),
         None => args.deck.clone(),
     };
-    let text = new_study_text(&source);
+    let convention = StatedConvention {
+        notation: args.from,
+        argument: args.from_argument,
+        axes: args.from_axes,
+    };
+    let text = new_study_text(&source, &convention);
     let study = Study::from_toml(&text, folder.to_path_buf())?;
     let deck = Deck::load(&study)?;
     let mut out = OutputDir::new(folder)?;

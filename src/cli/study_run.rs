@@ -2,7 +2,7 @@
 
 use super::output::OutputDir;
 use crate::error::{Error, Result};
-use crate::files::derivatives::is_table_file;
+use crate::files::derivatives::{file_and_sheet, is_table_file, named_sheet};
 use crate::study::Study;
 use std::path::{Path, PathBuf};
 
@@ -59,7 +59,9 @@ fn self_contained(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
     };
     let portable = |path: PathBuf| path.to_string_lossy().replace('\\', "/");
     if is_table_file(&study.deck.source) {
-        study.deck.source = portable(copy(Path::new(study.deck.source.trim()))?);
+        let (file, sheet) = file_and_sheet(study.deck.source.trim());
+        let copied = portable(copy(Path::new(file))?);
+        study.deck.source = named_sheet(&copied, sheet);
     }
     for record in &mut study.deck.records {
         *record = copy(record)?;

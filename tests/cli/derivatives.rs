@@ -248,3 +248,44 @@ fn a_stated_width_is_no_assumption() {
         assert!(!text.contains(assumed), "{text}");
     }
 }
+
+/// A table of another program with its sheet and convention goes into a study, and the study runs it from a copy.
+#[test]
+fn a_sheet_of_a_workbook_goes_into_a_study() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let from = format!("{}/tests/data/wide_table.ods", env!("CARGO_MANIFEST_DIR"));
+    std::fs::copy(from, at.join("table.ods")).unwrap();
+    let new = [
+        "new",
+        "--workbook",
+        "table.ods",
+        "--sheet",
+        "Derivatives",
+        "--from",
+        "scanlan",
+    ];
+    succeeds(at, &new);
+    let study = std::fs::read_to_string(at.join("study.toml")).unwrap();
+    let lines = "source = \"table.ods#Derivatives\"\nconvention = { notation = \"scanlan\" }\n";
+    assert!(study.contains(lines), "{study}");
+    let shown = [
+        "derivatives",
+        "show",
+        "table.ods#Derivatives",
+        "--from",
+        "scanlan",
+    ];
+    assert!(succeeds(at, &shown).contains("H1*      4 points"));
+    refused(
+        at,
+        &["derivatives", "show", "table.ods", "--sheet", "Angle"],
+        &["expected a sheet `Angle`, found `Derivatives`"],
+    );
+    succeeds(at, &["derivatives", "template", "empty.xlsx"]);
+    refused(
+        at,
+        &["derivatives", "template", "empty.xlsx"],
+        &["expected no file there yet (or --force)"],
+    );
+}

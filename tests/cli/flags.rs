@@ -7,7 +7,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 /// Commands that write nothing, or to standard output, or to a place that is an argument of its own.
-const WITHOUT_OUT: [&str; 11] = [
+const WITHOUT_OUT: [&str; 12] = [
     "bridge convert",
     "campaign check",
     "compare signals",
@@ -16,20 +16,23 @@ const WITHOUT_OUT: [&str; 11] = [
     "derivatives convert",
     "derivatives notations",
     "derivatives show",
+    "derivatives template",
     "fmu check",
     "report",
     "validate",
 ];
 /// Commands that write files which users edit or hand on. What can be computed again is replaced without being asked.
-const WITH_FORCE: [&str; 9] = [
+const WITH_FORCE: [&str; 11] = [
     "buffeting",
     "campaign virtual",
     "demo",
+    "derivatives template",
     "fmu export",
     "new",
     "process",
     "quasi-steady",
     "select",
+    "ssp export",
     "study",
 ];
 

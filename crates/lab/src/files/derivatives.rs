@@ -1,9 +1,10 @@
-//! Tables of derivatives: header-CSV, wide CSV, NTNU workbooks, and the measured decks that come with the program.
+//! Tables of derivatives: header-CSV, wide CSV, workbooks, and the measured decks that come with the program.
 
 mod csv_file;
 mod csv_header;
 mod csv_wide;
 pub mod embedded;
+mod wide_sheet;
 mod workbook;
 mod workbook_writer;
 mod xlsx_cells;
@@ -11,23 +12,44 @@ mod xlsx_cells;
 pub use csv_file::write_points;
 pub(crate) use csv_file::{parse_csv, read_csv_with};
 pub use csv_file::{parse_csv_in, read_csv, write_csv, write_csv_in};
-pub use csv_header::{ReadOptions, TableInConvention};
+pub use csv_header::{ReadOptions, TableInConvention, WIDTH_ASSUMED};
 pub use workbook::TABLE_3_2_FREQUENCIES_HZ;
-pub use workbook::WIDTH_ASSUMED;
-pub(crate) use workbook::read_workbook_in;
-pub use workbook::{WorkbookOptions, read_workbook};
+pub use workbook::WorkbookOptions;
 pub use workbook_writer::workbook_bytes;
-pub use workbook_writer::workbook_bytes_in;
+pub use workbook_writer::{template_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result};
 use std::path::Path;
+use xlsx_cells::CheckedWorkbook;
 
-/// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
+/// Endings of workbooks.
+const WORKBOOKS: [&str; 3] = [".xlsx", ".xls", ".ods"];
+
+/// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv`, `.xlsx`, `.xls` or `.ods`, or names a sheet
+/// behind a workbook (`table.xlsx#SHEET`).
 pub fn is_table_file(name: &str) -> bool {
-    let name = name.to_lowercase();
-    name.ends_with(".csv") || name.ends_with(".xlsx")
+    let file = file_and_sheet(name).0.to_lowercase();
+    file.ends_with(".csv") || is_workbook(&file)
+}
+
+fn is_workbook(file: &str) -> bool {
+    let file = file.to_lowercase();
+    WORKBOOKS.iter().any(|ending| file.ends_with(ending))
+}
+
+/// The file and the sheet of a name such as `table.xlsx#SHEET`.
+pub fn file_and_sheet(name: &str) -> (&str, Option<&str>) {
+    match name.rsplit_once('#') {
+        Some((file, sheet)) if is_workbook(file) && !sheet.is_empty() => (file, Some(sheet)),
+        _ => (name, None),
+    }
+}
+
+/// A workbook with the sheet that is meant, as [`file_and_sheet`] takes them apart.
+pub fn named_sheet(file: &str, sheet: Option<&str>) -> String {
+    sheet.map_or_else(|| file.to_owned(), |sheet| format!("{file}#{sheet}"))
 }
 
 /// The table of that name: an embedded deck, or a file whose path is read against `directory`.
@@ -77,7 +99,7 @@ impl TableWords<'_> {
         if !self.convention.is_empty() {
             return Err(Error::input(
                 place,
-                "a table in a file (.csv, .xlsx)",
+                "a table in a file (.csv, .xlsx, .xls, .ods)",
                 format!("`{}`, whose convention is known", self.name),
             ));
         }
@@ -85,7 +107,7 @@ impl TableWords<'_> {
     }
 }
 
-/// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.
+/// Reads a table from `path`: a workbook when the name ends so (`table.xlsx#SHEET` names a sheet of it), else a CSV.
 ///
 /// ```
 /// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
@@ -110,10 +132,12 @@ pub fn read_table(path: impl AsRef<Path>) -> Result<DerivativeTable> {
 /// [`Error::Io`]; [`Error::Input`] with file and place, also where the caller contradicts the file.
 pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TableInConvention> {
     let path = path.as_ref();
-    let is_workbook = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
-    if !is_workbook {
+    let name = path.to_string_lossy();
+    let (file, sheet) = match path.exists() {
+        true => (&*name, None),
+        false => file_and_sheet(&name),
+    };
+    if !is_workbook(file) {
         return read_csv_with(path, options);
     }
     let options = WorkbookOptions {
@@ -123,5 +147,33 @@ pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<
         missing: options.missing,
         ..WorkbookOptions::default()
     };
-    read_workbook_in(path, &options)
+    read_workbook_in(file, sheet, &options)
+}
+
+/// Reads a workbook of derivatives in the layout of NTNU, or with one row per reduced velocity.
+///
+/// # Errors
+/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
+/// of a number, sheets of unequal length, no common width, points out of order or twice.
+pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
+    read_workbook_in(path, None, options).map(|read| read.table)
+}
+
+/// The same, with the convention that the workbook is in; by one sheet with one row per reduced velocity where a sheet is named, or
+/// where the three sheets of NTNU's layout are not there.
+pub(crate) fn read_workbook_in(
+    path: impl AsRef<Path>,
+    sheet: Option<&str>,
+    options: &WorkbookOptions,
+) -> Result<TableInConvention> {
+    let path = path.as_ref();
+    let read = || {
+        let mut book = CheckedWorkbook::open(path)?;
+        if sheet.is_none() && workbook::has_three_sheets(&book) {
+            return workbook::read_three_sheets(&mut book, path, options);
+        }
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        wide_sheet::read(&mut book, sheet, &stem, options)
+    };
+    read().map_err(|e: Error| e.in_file(path))
 }

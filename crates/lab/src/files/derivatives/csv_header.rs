@@ -32,6 +32,10 @@ pub struct ReadOptions {
     pub missing: Option<Missing>,
 }
 
+/// What is said when nothing gives the width.
+pub const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is assumed, which affects only the \
+     frequencies of virtual records (`width_m` states it)";
+
 /// First line of the file: the one that is written, and that of files whose convention could only be the crate's own.
 const FORMATS: [&str; 2] = ["aerodeck derivative table 2", "aerodeck derivative table 1"];
 

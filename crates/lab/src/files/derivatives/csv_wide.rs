@@ -13,12 +13,11 @@
 //! what states the convention.
 
 use crate::aerodynamics::derivatives::missing::fill_in;
-use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
+use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint, Notation};
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use crate::error::{Error, Place, Result, counted, positive};
-use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention};
-use crate::files::derivatives::workbook::WIDTH_ASSUMED;
+use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, WIDTH_ASSUMED};
 use crate::files::header_csv::number;
 use std::collections::BTreeMap;
 
@@ -76,17 +75,7 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
         .next()
         .ok_or_else(|| Error::input("", "a row of column names", "an empty file"))?;
     let between = separator(row);
-    // `H1 [-]` is the derivative with its unit
-    let bare = |name: &&'_ str| -> usize {
-        ["[-]", "(-)", "[1]"]
-            .iter()
-            .find_map(|unit| name.strip_suffix(unit))
-            .map_or(name.len(), |rest| rest.trim_end().len())
-    };
-    let names: Vec<&str> = cells(row, between)
-        .into_iter()
-        .map(|name| &name[..bare(&name)])
-        .collect();
+    let names: Vec<&str> = cells(row, between).into_iter().map(without_unit).collect();
     let mut stated = head.stated()?;
     let known = Argument::ALL
         .into_iter()
@@ -200,8 +189,44 @@ fn finished(
     DerivativeTable::new(name, stated.unwrap_or(1.0), header, points)
 }
 
+/// `H1` of `H1 [-]`.
+fn without_unit(name: &str) -> &str {
+    let units = ["[-]", "(-)", "[1]", "[–]", "(–)", "[ - ]"];
+    let bare = units.iter().find_map(|unit| name.strip_suffix(unit));
+    bare.unwrap_or(name).trim()
+}
+
+/// A name as it is written in cells, as the notation writes it: `H₁*`, `H_1*`, `H 1*` and `H1* [-]` are `H1`.
+pub(super) fn plain_name(name: &str, notation: Notation) -> String {
+    let name = without_unit(name.trim());
+    if notation == Notation::Starossek {
+        return name.to_owned();
+    }
+    let plain = |c: char| match c {
+        '₀'..='₉' => char::from_u32(c as u32 - '₀' as u32 + '0' as u32),
+        '*' | '∗' | '_' | '^' | ' ' | '\u{a0}' => None,
+        other => Some(other),
+    };
+    name.chars().filter_map(plain).collect()
+}
+
+/// Whether a column of this name holds the argument. `Vred` and the like do not say which they are.
 fn is_argument(name: &str, argument: Argument) -> bool {
-    name.eq_ignore_ascii_case(argument.name()) || name == argument.definition()
+    let said: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+    let said = said
+        .replace('U', "V")
+        .replace('ω', "w")
+        .replace("omega", "w")
+        .replace('·', "");
+    let words: &[&str] = match argument {
+        Argument::VHat => &["V\u{302}", "V̂", "Vhat", "V/(wB)", "V/wB", "V/(Bw)"],
+        Argument::VStar => &["V*", "Vstar", "V/(fB)", "V/fB", "V/(nB)", "V/nB", "V/(Bf)"],
+        Argument::KFull => &["K", "wB/V", "Bw/V"],
+        Argument::KSemi => &["k", "wb/V", "bw/V"],
+    };
+    name.eq_ignore_ascii_case(argument.name())
+        || name == argument.definition()
+        || words.contains(&said.as_str())
 }
 
 fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<WideColumns> {
@@ -213,7 +238,8 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
     };
     let mut unnamed = Vec::new();
     for (i, name) in names.iter().enumerate() {
-        if let Ok(derivative) = convention.notation.derivative(name) {
+        let plain = plain_name(name, convention.notation);
+        if let Ok(derivative) = convention.notation.derivative(&plain) {
             if columns.derivatives.iter().any(|(_, d)| *d == derivative) {
                 let place = Place::line(line);
                 return Err(Error::input(place, format!("`{name}` once"), "it twice"));

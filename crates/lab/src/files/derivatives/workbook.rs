@@ -18,7 +18,7 @@ use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader,
 };
 use crate::error::{Error, Result, positive};
-use crate::files::derivatives::csv_header::TableInConvention;
+use crate::files::derivatives::csv_header::{TableInConvention, WIDTH_ASSUMED};
 use crate::files::derivatives::xlsx_cells::{CellContent, CheckedWorkbook, Sheet};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -32,10 +32,6 @@ pub(super) const NOTES: &str = "Notes";
 
 /// Name of the sheet of dimensions that the laboratory's own package writes.
 const DIMENSIONS: &str = "Dim section model";
-
-/// What is said when nothing gives the width.
-pub const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is assumed, which affects only the \
-     frequencies of virtual records (`width_m` states it)";
 
 /// The same width must follow from every point to within this fraction.
 const WIDTH_TOLERANCE: f64 = 0.01;
@@ -62,48 +58,67 @@ pub struct WorkbookOptions {
     pub header: TableHeader,
 }
 
-/// Reads an NTNU workbook of derivatives.
-///
-/// # Errors
-/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
-/// of a number, sheets of unequal length, no common width, points out of order or twice.
-pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
-    read_workbook_in(path, options).map(|read| read.table)
+/// Whether the workbook is to be read by the three sheets of NTNU's.
+pub(super) fn has_three_sheets(book: &CheckedWorkbook) -> bool {
+    let kinds = [SPEEDS, REDUCED_VELOCITIES, DERIVATIVES];
+    let names = book.names();
+    let named = |kind: &str| names.iter().any(|n| n.trim().eq_ignore_ascii_case(kind));
+    kinds.iter().any(|(kind, _)| named(kind))
 }
 
-/// The same; the second value is the convention that the workbook is in.
-pub(crate) fn read_workbook_in(
-    path: impl AsRef<Path>,
+/// Reads the three sheets of an opened workbook.
+pub(super) fn read_three_sheets(
+    book: &mut CheckedWorkbook,
+    path: &Path,
     options: &WorkbookOptions,
 ) -> Result<TableInConvention> {
-    let path = path.as_ref();
-    let read = || {
-        let mut book = CheckedWorkbook::open(path)?;
-        let notes = pairs(&book.sheet(NOTES)?.unwrap_or_default());
-        let convention = convention_of(options.convention, &notes)?;
-        let mut points = read_sheets(&mut book, &convention)?;
-        let mut header = options.header.clone();
-        header.notes.extend(fill_in(&mut points, options.missing));
-        let stated = width_in_book(&mut book, &notes)?;
-        let table = table_from(path, options, header, points, stated)?;
-        Ok(TableInConvention { table, convention })
-    };
-    read().map_err(|e: Error| e.in_file(path))
+    let notes = notes_of(book)?;
+    let convention = convention_of(options.convention, &notes)?;
+    let mut points = read_sheets(book, &convention)?;
+    let mut header = options.header.clone();
+    header.notes.extend(fill_in(&mut points, options.missing));
+    let stated = width_in_book(book, &notes)?;
+    let table = table_from(path, options, header, points, stated)?;
+    Ok(TableInConvention { table, convention })
 }
 
 /// Keys and values of the sheet `Notes`, the first two columns.
-fn pairs(sheet: &Sheet) -> BTreeMap<String, String> {
+pub(super) struct Notes(BTreeMap<String, String>);
+
+/// The sheet `Notes`; nothing where there is none.
+pub(super) fn notes_of(book: &mut CheckedWorkbook) -> Result<Notes> {
+    let sheet = book.sheet(NOTES)?.unwrap_or_default();
     let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(CellContent::text);
     let rows = sheet.cells.keys().filter(|(_, column)| *column == 0);
-    rows.filter_map(|(row, _)| Some((cell(*row, 0)?, cell(*row, 1)?)))
-        .collect()
+    let pairs = rows.filter_map(|(row, _)| Some((cell(*row, 0)?, cell(*row, 1)?)));
+    Ok(Notes(pairs.collect()))
+}
+
+impl Notes {
+    /// What they say of the convention.
+    pub(super) fn convention(&self) -> Result<StatedConvention> {
+        Ok(StatedConvention {
+            notation: parse_note(&self.0, "notation")?,
+            argument: parse_note(&self.0, "argument")?,
+            axes: parse_note(&self.0, "axes")?,
+        })
+    }
+
+    /// A number.
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>> {
+        let Some(text) = self.0.get(key) else {
+            return Ok(None);
+        };
+        let place = format!("sheet {NOTES}, {key}");
+        let number = text.parse();
+        number
+            .map(Some)
+            .map_err(|_| Error::input(place, "a number", format!("`{text}`")))
+    }
 }
 
 /// The width that the workbook states, m, and where.
-fn width_in_book(
-    book: &mut CheckedWorkbook,
-    notes: &BTreeMap<String, String>,
-) -> Result<Option<(f64, String)>> {
+fn width_in_book(book: &mut CheckedWorkbook, notes: &Notes) -> Result<Option<(f64, String)>> {
     if let Some(sheet) = book.sheet(DIMENSIONS)? {
         let place = || format!("sheet {DIMENSIONS}, B");
         let column = sheet.titles().into_iter().find(|t| t.1.trim() == "B");
@@ -112,23 +127,14 @@ fn width_in_book(
             return Ok(Some((positive(place(), width)?, place())));
         }
     }
-    let Some(text) = notes.get("width_m") else {
-        return Ok(None);
-    };
     let place = format!("sheet {NOTES}, width_m");
-    let width = text
-        .parse()
-        .map_err(|_| Error::input(&place, "a number", format!("`{text}`")))?;
-    Ok(Some((positive(&place, width)?, place)))
+    let width = notes.number("width_m")?.map(|w| positive(&place, w));
+    Ok(width.transpose()?.map(|w| (w, place)))
 }
 
 /// What the notes and the caller say of the convention; when neither says anything, it is NTNU's, this project's own.
-fn convention_of(stated: StatedConvention, notes: &BTreeMap<String, String>) -> Result<Convention> {
-    let mut file = StatedConvention {
-        notation: parse_note(notes, "notation")?,
-        argument: parse_note(notes, "argument")?,
-        axes: parse_note(notes, "axes")?,
-    };
+fn convention_of(stated: StatedConvention, notes: &Notes) -> Result<Convention> {
+    let mut file = notes.convention()?;
     if file.is_empty() && stated.notation.is_none() {
         // without a notation the workbook is NTNU's in all that is not stated otherwise
         let own = Convention::default();

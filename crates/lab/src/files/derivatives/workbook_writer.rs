@@ -92,6 +92,54 @@ fn write_notes(
     Ok(())
 }
 
+/// What stands in the sheet of instructions of an empty workbook.
+const INSTRUCTIONS: [&str; 6] = [
+    "Fill in the sheet Derivatives: one row for each reduced velocity, one column for each derivative.",
+    "A cell may be empty where a derivative was not measured; columns may be left out (H4*, A4*, those of sway).",
+    "The first column is the argument that its name says. Rows may stand in any number of mean speeds: add a column mean_speed_m_s.",
+    "The sheet Notes states notation, argument and axes; change it where your table is in others (aerodeck derivatives notations).",
+    "width_m in Notes is the full width B of the section model, m.",
+    "Then: aerodeck derivatives show THIS.xlsx, aerodeck new --workbook THIS.xlsx, aerodeck study study.toml",
+];
+
+/// An empty workbook in a convention: a row of names, notes that state the convention, instructions.
+///
+/// # Errors
+/// [`Error::Numerical`] when the workbook cannot be made.
+pub fn template_bytes(convention: &Convention) -> Result<Vec<u8>> {
+    template(convention).map_err(|e| Error::Numerical(format!("workbook: {e}")))
+}
+
+fn template(convention: &Convention) -> std::result::Result<Vec<u8>, XlsxError> {
+    let mut book = Workbook::new();
+    let sheet = book.add_worksheet();
+    sheet.set_name("Derivatives")?;
+    sheet.write_string(0, 0, convention.argument.name())?;
+    for (column, derivative) in (1_u16..).zip(Derivative::ALL) {
+        let name = convention.notation.name_of(derivative);
+        sheet.write_string(0, column, format!("{name}*"))?;
+    }
+    sheet.set_freeze_panes(1, 1)?;
+    let notes = book.add_worksheet();
+    notes.set_name(NOTES)?;
+    let lines = [
+        ("notation", convention.notation.name()),
+        ("argument", convention.argument.definition()),
+        ("axes", convention.axes.words()),
+    ];
+    for (row, (key, value)) in (0_u32..).zip(lines) {
+        notes.write_string(row, 0, key)?;
+        notes.write_string(row, 1, value)?;
+    }
+    notes.write_string(3, 0, "width_m")?;
+    let text = book.add_worksheet();
+    text.set_name("Instructions")?;
+    for (row, line) in (0_u32..).zip(INSTRUCTIONS) {
+        text.write_string(row, 0, line)?;
+    }
+    book.save_to_buffer()
+}
+
 #[cfg(test)]
 mod tests {
     use crate::files::derivatives::WorkbookOptions;
@@ -170,7 +218,7 @@ mod tests {
             let TableInConvention {
                 table: again,
                 convention: said,
-            } = read_workbook_in(&path, &WorkbookOptions::default()).unwrap();
+            } = read_workbook_in(&path, None, &WorkbookOptions::default()).unwrap();
             assert_eq!(said, convention);
             same(&table, &again);
         }

@@ -2,7 +2,7 @@
 //! a cell whose dense range fills the memory.
 
 use crate::error::{Error, Result};
-use calamine::{DataRef, Reader, Xlsx, open_workbook};
+use calamine::{Data, DataRef, Reader, Sheets, XlsxError, open_workbook_auto};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -12,6 +12,8 @@ use std::path::Path;
 const PARTS_AT_MOST: usize = 1000;
 const PART_BYTES_AT_MOST: u64 = 64 << 20;
 const BYTES_AT_MOST: u64 = 256 << 20;
+/// Bytes of a workbook in the old format, which is not packed.
+const OLD_BYTES_AT_MOST: u64 = 64 << 20;
 /// Cells with a content in one sheet: 18 derivatives at more than ten thousand points.
 const CELLS_AT_MOST: usize = 200_000;
 
@@ -59,6 +61,37 @@ impl Sheet {
         format!("`{}`", titles.join("`, `"))
     }
 
+    /// Adds a cell, unless it is empty.
+    fn insert(
+        &mut self,
+        place: &dyn Fn() -> String,
+        row: u32,
+        column: u32,
+        value: &DataRef<'_>,
+    ) -> Result<()> {
+        let content = match value {
+            DataRef::Empty => return Ok(()),
+            DataRef::Float(x) => CellContent::Number(*x),
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "no measured figure has 16 digits before the point"
+            )]
+            DataRef::Int(x) => CellContent::Number(*x as f64),
+            DataRef::String(text) => CellContent::Text(text.clone()),
+            DataRef::SharedString(text) => CellContent::Text((*text).to_owned()),
+            other => CellContent::Text(Data::from(other.clone()).to_string()),
+        };
+        if matches!(&content, CellContent::Text(text) if text.trim().is_empty()) {
+            return Ok(());
+        }
+        self.cells.insert((row, column), content);
+        if self.cells.len() > CELLS_AT_MOST {
+            let expected = format!("at most {CELLS_AT_MOST} cells with a content");
+            return Err(Error::input(place(), expected, "more"));
+        }
+        Ok(())
+    }
+
     /// The last row in which one of `columns` holds something.
     pub(crate) fn last_row(&self, columns: &[u32]) -> u32 {
         let rows = self.cells.keys().filter(|(_, c)| columns.contains(c));
@@ -68,7 +101,7 @@ impl Sheet {
 
 /// A workbook that has been checked to fit into memory.
 pub(super) struct CheckedWorkbook {
-    book: Xlsx<BufReader<File>>,
+    book: Sheets<BufReader<File>>,
 }
 
 impl CheckedWorkbook {
@@ -79,8 +112,19 @@ impl CheckedWorkbook {
     /// table of derivatives needs.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let file = File::open(path).map_err(|e| Error::io(path, e))?;
-        check_size(file)?;
-        let book = open_workbook(path).map_err(|e: calamine::XlsxError| no_workbook(&e))?;
+        let is_old = path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("xls"));
+        if is_old {
+            let size = file.metadata().map_err(|e| Error::io(path, e))?.len();
+            if size > OLD_BYTES_AT_MOST {
+                let expected = format!("a workbook of at most {} MiB", OLD_BYTES_AT_MOST >> 20);
+                return Err(Error::input("", expected, format!("{} MiB", size >> 20)));
+            }
+        } else {
+            check_size(file)?;
+        }
+        let book = open_workbook_auto(path).map_err(|e| no_workbook(&e))?;
         Ok(Self { book })
     }
 
@@ -96,37 +140,47 @@ impl CheckedWorkbook {
         let Some(name) = found else { return Ok(None) };
         let place = || format!("sheet {wanted}");
         let unreadable =
-            |e: calamine::XlsxError| Error::input(place(), "readable cells", e.to_string());
-        let mut reader = self.book.worksheet_cells_reader(name).map_err(unreadable)?;
+            |e: &dyn std::fmt::Display| Error::input(place(), "readable cells", e.to_string());
         let mut sheet = Sheet::default();
-        while let Some(cell) = reader.next_cell().map_err(unreadable)? {
-            let content = match cell.get_value() {
-                DataRef::Empty => continue,
-                DataRef::Float(x) => CellContent::Number(*x),
-                #[expect(
-                    clippy::cast_precision_loss,
-                    reason = "no measured figure has 16 digits before the point"
-                )]
-                DataRef::Int(x) => CellContent::Number(*x as f64),
-                DataRef::String(text) => CellContent::Text(text.clone()),
-                DataRef::SharedString(text) => CellContent::Text((*text).to_owned()),
-                other => CellContent::Text(calamine::Data::from(other.clone()).to_string()),
-            };
-            if matches!(&content, CellContent::Text(text) if text.trim().is_empty()) {
-                continue;
+        match &mut self.book {
+            Sheets::Xlsx(book) => {
+                let opened = book.worksheet_cells_reader(name);
+                let mut reader = opened.map_err(|e| unreadable(&e))?;
+                let next = |e: XlsxError| unreadable(&e);
+                while let Some(cell) = reader.next_cell().map_err(next)? {
+                    let (row, column) = cell.get_position();
+                    sheet.insert(&place, row, column, cell.get_value())?;
+                }
             }
-            sheet.cells.insert(cell.get_position(), content);
-            if sheet.cells.len() > CELLS_AT_MOST {
-                let expected = format!("at most {CELLS_AT_MOST} cells with a content");
-                return Err(Error::input(place(), expected, "more"));
+            other => {
+                let range = other.worksheet_range(name).map_err(|e| unreadable(&e))?;
+                let (row, column) = range.start().unwrap_or_default();
+                for (r, c, value) in range.used_cells() {
+                    let (row, column) = (row + index(r), column + index(c));
+                    sheet.insert(&place, row, column, &as_reference(value))?;
+                }
             }
         }
         Ok(Some(sheet))
     }
 }
 
+/// Rows and columns of a sheet are numbered in 32 bits.
+fn index(i: usize) -> u32 {
+    u32::try_from(i).unwrap_or(u32::MAX)
+}
+
+fn as_reference(value: &Data) -> DataRef<'_> {
+    match value {
+        Data::Empty => DataRef::Empty,
+        Data::Float(x) => DataRef::Float(*x),
+        Data::Int(x) => DataRef::Int(*x),
+        other => DataRef::String(other.to_string()),
+    }
+}
+
 fn no_workbook(error: &dyn std::fmt::Display) -> Error {
-    Error::input("", "an .xlsx workbook", error.to_string())
+    Error::input("", "a workbook (.xlsx, .xls, .ods)", error.to_string())
 }
 
 /// Unpacks every part into nothing, up to the bounds: what the directory of the file says about sizes may be wrong.

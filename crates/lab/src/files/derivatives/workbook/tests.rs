@@ -1,6 +1,7 @@
 //! Tests on the workbooks of `tests/data/make_workbook.py`.
 
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation};
+use crate::files::derivatives::read_workbook;
 use crate::files::derivatives::workbook::*;
 use crate::files::derivatives::{parse_csv, write_csv};
 use std::path::PathBuf;
@@ -234,7 +235,7 @@ fn workbooks_that_would_fill_the_memory_are_bounded() {
 fn files_that_are_no_workbooks_are_refused() {
     let message = refused("make_workbook.py", &three_frequencies());
     assert!(
-        message.starts_with("expected an .xlsx workbook, found"),
+        message.starts_with("expected a workbook (.xlsx, .xls, .ods), found"),
         "{message}"
     );
     let missing = read_workbook("no/such.xlsx", &three_frequencies());

@@ -1,0 +1,164 @@
+//! Sheets with one row per reduced velocity and one column per derivative, as most workbooks of laboratories and papers have them: read
+//! as the same table in text ([`super::csv_wide`]), each row on the line that it has in the sheet.
+//!
+//! Titles, units and merged cells may stand above the row of names, which is the first with two derivatives in it; a row without numbers
+//! under it (units) is passed over. Which sheet is meant needs to be said only where several hold such a row.
+
+use super::csv_header::{ReadOptions, TableInConvention};
+use super::csv_wide::{self, plain_name};
+use super::workbook::{WorkbookOptions, notes_of};
+use super::xlsx_cells::{CellContent, CheckedWorkbook, Sheet};
+use crate::aerodynamics::derivatives::notation::Notation;
+use crate::error::{Error, Result, positive};
+
+/// The row of names as it may stand in a sheet.
+const EXAMPLE: &str = "a row of names such as `V*`, `H1*`, `H2*`, …, `A4*` above the numbers";
+
+/// The table of the sheet that is named, or of the only one that holds derivatives.
+///
+/// # Errors
+/// [`Error::Input`] with sheet and row.
+pub(super) fn read(
+    book: &mut CheckedWorkbook,
+    sheet: Option<&str>,
+    stem: &str,
+    options: &WorkbookOptions,
+) -> Result<TableInConvention> {
+    let stated = options.convention.notation;
+    let (name, cells, names) = chosen(book, sheet, stated)?;
+    let notes = notes_of(book)?;
+    let mut convention = options.convention;
+    let own = notes.convention()?;
+    convention.notation = convention.notation.or(own.notation);
+    convention.argument = convention.argument.or(own.argument);
+    convention.axes = convention.axes.or(own.axes);
+    let width = notes.number("width_m")?;
+    let width_m = options.width_m.or(width).map(|w| positive("width_m", w));
+    let options = ReadOptions {
+        convention,
+        width_m: width_m.transpose()?,
+        frequencies_hz: None,
+        missing: options.missing,
+    };
+    let stem = match book.names().len() {
+        1 => stem.to_owned(),
+        _ => format!("{stem}, {name}"),
+    };
+    let text = text_of(&cells, names);
+    csv_wide::parse(&text, &stem, &options).map_err(|e| e.within(format!("sheet {name}")))
+}
+
+/// Name, cells and row of names of the sheet that is meant.
+fn chosen(
+    book: &mut CheckedWorkbook,
+    wanted: Option<&str>,
+    notation: Option<Notation>,
+) -> Result<(String, Sheet, u32)> {
+    let names = book.names();
+    let mut found = Vec::new();
+    for name in &names {
+        if wanted.is_some_and(|w| !name.trim().eq_ignore_ascii_case(w.trim())) {
+            continue;
+        }
+        let cells = book.sheet(name.trim())?.unwrap_or_default();
+        let row = row_of_names(&cells, notation);
+        match row {
+            Some(row) => found.push((name.clone(), cells, row)),
+            None if wanted.is_some() => {
+                let words = cells.title_words();
+                return Err(Error::input(
+                    format!("sheet {name}"),
+                    EXAMPLE,
+                    format!("{words} in its first row"),
+                ));
+            }
+            None => {}
+        }
+    }
+    let listed = |names: &[&str]| format!("`{}`", names.join("`, `"));
+    let all: Vec<&str> = names.iter().map(String::as_str).collect();
+    if found.len() > 1 {
+        let several: Vec<&str> = found.iter().map(|(name, ..)| name.as_str()).collect();
+        let expected = "the sheet that is meant, as `--sheet` or behind the name of the file (`table.xlsx#SHEET`)";
+        return Err(Error::input(
+            "workbook",
+            expected,
+            format!("derivatives in {}", listed(&several)),
+        ));
+    }
+    found.pop().ok_or_else(|| match wanted {
+        Some(sheet) => Error::input("workbook", format!("a sheet `{sheet}`"), listed(&all)),
+        None => {
+            let expected =
+                format!("a sheet with {EXAMPLE} (or the three sheets of NTNU's workbooks)");
+            Error::input(
+                "workbook",
+                expected,
+                format!("the sheets {} without", listed(&all)),
+            )
+        }
+    })
+}
+
+/// The first row with two derivatives in it, of the notation that is stated or of any.
+fn row_of_names(sheet: &Sheet, notation: Option<Notation>) -> Option<u32> {
+    let notations: Vec<Notation> = notation.map_or_else(|| Notation::ALL.to_vec(), |n| vec![n]);
+    let is_named = |text: &str| {
+        notations
+            .iter()
+            .any(|n| n.derivative(&plain_name(text, *n)).is_ok())
+    };
+    let mut row_and_count = (0, 0);
+    for ((row, _), cell) in &sheet.cells {
+        if *row != row_and_count.0 {
+            row_and_count = (*row, 0);
+        }
+        if matches!(cell, CellContent::Text(text) if is_named(text)) {
+            row_and_count.1 += 1;
+        }
+        if row_and_count.1 == 2 {
+            return Some(*row);
+        }
+    }
+    None
+}
+
+/// The row of names and those below it as text, with a tab between cells; what stands above is left empty.
+fn text_of(sheet: &Sheet, names: u32) -> String {
+    let named = sheet.cells.range((names, 0)..=(names, u32::MAX));
+    let columns: Vec<u32> = named.map(|((_, column), _)| *column).collect();
+    let last = sheet.last_row(&columns);
+    let mut text = "\n".repeat(names as usize);
+    for row in names..=last {
+        let cells: Vec<String> = columns
+            .iter()
+            .map(|c| {
+                sheet
+                    .cells
+                    .get(&(row, *c))
+                    .map(cell_text)
+                    .unwrap_or_default()
+            })
+            .collect();
+        let numbers = cells.iter().any(|c| c.parse::<f64>().is_ok());
+        if row == names || row > names + 1 || numbers {
+            text.push_str(&cells.join("\t"));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A cell in a row of text: a number that was typed with a comma is one.
+fn cell_text(cell: &CellContent) -> String {
+    let text = cell.text().replace(['\t', '\n', '\r', ';'], " ");
+    let number = text.trim().replace(',', ".");
+    if number.parse::<f64>().is_ok() {
+        number
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests;
