@@ -1,9 +1,11 @@
 //! Steps of the discrete Laguerre model: the dimensionless force is sampled and held every `Δt = Δs B/V`. The dynamic
 //! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
+use super::matrix_polynomial::{MatrixPolynomial, terms_of_exponential};
 use super::packed::{apply, settled};
 use super::sampling::{Sampling, wind_after};
 use super::series::{Drive, Moving};
+use super::step_cache::{active_columns, load};
 use super::values::{Inputs, SectionState};
 use super::{PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, check_substeps, overgrown};
 use crate::error::{Error, Result};
@@ -49,14 +51,20 @@ impl Stepper {
         let of_sample = if stays { SAMPLE_BY_MATRIX } else { 1.0 };
         check_substeps(of_sample * samples + parts, step)?;
         next.last_wind_m_s = Some(inputs.wind_speed_m_s);
+        let columns = active_columns(inputs, next.values.len());
         let (mut time, mut remaining) = (0.0, step);
         while remaining > 0.0 {
             let (wind, rate) = (wind_after(inputs, time), inputs.wind_speed_rate_m_s2);
             let wait = time_to_cover((1.0 - next.phase) * way, wind, rate);
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
-            let again = stays && sampled && next.phase == 0.0;
-            self.move_structure(next, inputs, time, piece, again)?;
+            if stays && sampled && next.phase == 0.0 && !gusts {
+                self.take_sample(next, inputs, time, piece, columns)?;
+                time += piece;
+                remaining = (remaining - piece).max(0.0);
+                continue;
+            }
+            self.move_structure(next, inputs, time, piece)?;
             if sampled {
                 self.sampling()?.sample(&mut next.values);
                 next.phase = 0.0;
@@ -71,6 +79,33 @@ impl Stepper {
         if !settled(&mut next.values) {
             return Err(overgrown());
         }
+        Ok(())
+    }
+
+    /// From one sample to the next, `time` after the start of the step, by so many columns of `[z, w, ẇ]`.
+    fn take_sample(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        time: f64,
+        piece: f64,
+        columns: usize,
+    ) -> Result<()> {
+        let (states, n) = (state.values.len(), inputs.force.len());
+        let sampling = self.sampling.as_mut().ok_or_else(not_sampled)?;
+        let (section, wind) = (&self.section, inputs.wind_speed_m_s);
+        let step = self.cache.sample(section, sampling, wind, piece)?;
+        if columns == states {
+            apply(step, &state.values, &mut self.next);
+            std::mem::swap(&mut state.values, &mut self.next);
+            return Ok(());
+        }
+        load(&mut self.operand, &state.values, inputs);
+        let force = self.operand[states..].iter_mut().take(n);
+        for (w, rate) in force.zip(&inputs.force_rate) {
+            *w += rate * time;
+        }
+        apply(step, &self.operand[..columns], &mut state.values);
         Ok(())
     }
 
@@ -96,7 +131,7 @@ impl Stepper {
             state.values.resize(column.len(), 0.0);
             state.values[j] = 1.0;
             state.gusts.clear();
-            written = self.move_structure(&mut state, steady, 0.0, step, false);
+            written = self.move_structure(&mut state, steady, 0.0, step);
             if written.is_err() {
                 break;
             }
@@ -108,19 +143,16 @@ impl Stepper {
     }
 
     fn sampling(&mut self) -> Result<&mut Sampling> {
-        let none = || Error::Numerical("step: the model is not sampled".into());
-        self.sampling.as_mut().ok_or_else(none)
+        self.sampling.as_mut().ok_or_else(not_sampled)
     }
 
-    /// Structure alone under the force of the filters and the external one, from `time` on; `again` where pieces of this
-    /// length will follow.
+    /// Structure alone under the force of the filters and the external one, from `time` on.
     fn move_structure(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
         time: f64,
         piece: f64,
-        again: bool,
     ) -> Result<()> {
         if piece <= 0.0 {
             return Ok(());
@@ -136,13 +168,20 @@ impl Stepper {
         let fastest = drive.wind.max(wind_after(inputs, time + piece));
         let parts = self.series.parts(fastest, piece, gusts);
         let motion = &mut state.values[..2 * inputs.force.len()];
-        if drive.wind_rate == 0.0 && (again || parts > PARTS_OF_A_MATRIX) && !gusts {
+        let long = parts > PARTS_OF_A_MATRIX;
+        if drive.wind_rate == 0.0 && !gusts && (long || parts == 1.0) {
             let n = inputs.force.len();
             let operand = &mut self.operand[..4 * n];
             operand[..2 * n].copy_from_slice(motion);
             operand[2 * n..3 * n].copy_from_slice(&drive.force[0][..n]);
             operand[3 * n..].copy_from_slice(&drive.force[1][..n]);
-            let step = self.cache.structure(&self.section, piece)?;
+            let step = if long {
+                self.cache.structure(&self.section, piece)?
+            } else {
+                let alone = || MatrixPolynomial::exponential(&self.section.structure_alone());
+                let steps = self.structure.get_or_insert_with(alone);
+                steps.at(piece, terms_of_exponential(self.series.norm(0.0, piece)))
+            };
             apply(step, operand, motion);
             return Ok(());
         }
@@ -155,6 +194,10 @@ impl Stepper {
         }
         Ok(())
     }
+}
+
+fn not_sampled() -> Error {
+    Error::Numerical("step: the model is not sampled".into())
 }
 
 /// Time in which the wind covers `distance`, starting at `speed` with the acceleration `rate`; infinite if never.
