@@ -303,7 +303,7 @@ impl CoupledSection {
         let motion = motion.map(|(dof, x)| x * dof.motion_scale(s.width_m));
         let drives = state[2 * n..].iter().copied().chain(motion);
         let columns = c.a.column_iter().chain(c.b.column_iter());
-        for (column, drive) in columns.zip(drives) {
+        for (column, drive) in columns.zip(drives).filter(|(_, drive)| *drive != 0.0) {
             for (rate, a) in rates.iter_mut().zip(&column) {
                 *rate += a * drive;
             }

@@ -5,7 +5,7 @@
 
 use super::linked::Sparse;
 use super::packed::largest_of;
-use super::values::{Inputs, SectionState};
+use super::values::{GustCourse, Inputs, SectionState, stated};
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -56,21 +56,6 @@ pub(super) struct SeriesPart {
     pub wind: f64,
     /// How much that changes over it, m/s.
     pub change: f64,
-}
-
-/// Gusts over a piece of time, in each channel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct GustCourse<'a> {
-    pub gust: &'a [f64],
-    pub rate: &'a [f64],
-    /// Time of the piece after that of `gust`, s.
-    pub after: f64,
-}
-
-impl GustCourse<'_> {
-    fn at(&self, channel: usize, time: f64) -> f64 {
-        stated(self.gust, channel) + (self.after + time) * stated(self.rate, channel)
-    }
 }
 
 impl Gusts {
@@ -258,9 +243,4 @@ impl Gusts {
     pub(super) fn settled(&self, part: f64) -> bool {
         self.series.last <= part * self.series.largest
     }
-}
-
-/// Gust of a channel.
-fn stated(gusts: &[f64], channel: usize) -> f64 {
-    gusts.get(channel).copied().unwrap_or(0.0)
 }

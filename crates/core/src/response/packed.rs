@@ -59,11 +59,24 @@ impl Packed {
     /// Becomes `Σ Wₖ xᵏ`, all of one shape.
     #[inline(never)]
     pub(super) fn set_polynomial(&mut self, powers: &[Self], x: f64) {
-        with_vectors(Horner {
-            sum: self,
-            powers,
-            x,
-        });
+        with_vectors(|| self.horner(powers, x));
+    }
+
+    #[inline(always)]
+    fn horner(&mut self, powers: &[Self], x: f64) {
+        let (blocks, rest) = (&mut self.blocks, &mut self.rest);
+        let lists = [
+            blocks.as_flattened_mut().as_flattened_mut(),
+            rest.as_flattened_mut(),
+        ];
+        for (list, sums) in lists.into_iter().enumerate() {
+            sums.fill(0.0);
+            for power in powers.iter().rev() {
+                for (sum, w) in sums.iter_mut().zip(power.numbers()[list]) {
+                    *sum = w + x * *sum;
+                }
+            }
+        }
     }
 
     fn numbers(&self) -> [&[f64]; 2] {
@@ -113,33 +126,6 @@ pub(super) fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
 #[inline(never)]
 fn with_baseline<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
     product.call()
-}
-
-struct Horner<'a> {
-    sum: &'a mut Packed,
-    powers: &'a [Packed],
-    x: f64,
-}
-
-impl pulp::NullaryFnOnce for Horner<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Packed { blocks, rest, .. } = self.sum;
-        let lists = [
-            blocks.as_flattened_mut().as_flattened_mut(),
-            rest.as_flattened_mut(),
-        ];
-        for (list, sums) in lists.into_iter().enumerate() {
-            sums.fill(0.0);
-            for power in self.powers.iter().rev() {
-                for (sum, w) in sums.iter_mut().zip(power.numbers()[list]) {
-                    *sum = w + self.x * *sum;
-                }
-            }
-        }
-    }
 }
 
 /// A product that is compiled for each set of vectors a processor may have.

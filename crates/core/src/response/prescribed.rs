@@ -20,7 +20,7 @@ use crate::section::Dof;
 use course::{COEFFICIENTS, MotionCubic, NUMBERS, POINTS};
 pub use flow::{Airflow, StripFlow};
 
-use filters::{FilterSeries, FilterStep, StripGroup};
+use filters::{FilterAdvance, FilterSeries, StripLanes};
 use nalgebra::DMatrix;
 
 /// Numbers of the state that all strips share: points known, wind at the newest, times of the points.
@@ -62,7 +62,7 @@ pub struct PrescribedForces {
     dofs: Vec<Dof>,
     series: FilterSeries,
     /// Strips at hand.
-    group: StripGroup,
+    group: StripLanes,
     /// State at the point of time that is being taken.
     next: Vec<f64>,
 }
@@ -72,7 +72,7 @@ impl PrescribedForces {
     pub fn new(realization: Realization, dofs: Vec<Dof>) -> Self {
         Self {
             series: FilterSeries::of(&realization, dofs.len()),
-            group: StripGroup::default(),
+            group: StripLanes::default(),
             next: Vec::new(),
             realization,
             dofs,
@@ -166,7 +166,7 @@ impl PrescribedForces {
             return self.settle(new, strips);
         }
         let (now, before) = (new[2], new[3]);
-        let step = FilterStep {
+        let step = FilterAdvance {
             flows: strips,
             // to second order in the change of the wind over the step
             wind_m_s: 0.5 * (wind_before_m_s + given.wind_speed_m_s),
@@ -186,7 +186,7 @@ impl PrescribedForces {
     }
 
     /// The filters of the strips at hand go on.
-    fn advance(&mut self, step: &FilterStep, flows: &[StripFlow]) -> Result<()> {
+    fn advance(&mut self, step: &FilterAdvance, flows: &[StripFlow]) -> Result<()> {
         let (series, group) = (&mut self.series, &mut self.group);
         match &self.realization {
             Realization::Continuous(_) => series.advance(step, flows, group),
@@ -213,7 +213,7 @@ impl PrescribedForces {
             return Ok(());
         }
         let (n, states) = (self.dofs.len(), self.realization.states());
-        let step = FilterStep {
+        let step = FilterAdvance {
             flows: strips,
             wind_m_s: state[1],
             duration_s: ahead_s,

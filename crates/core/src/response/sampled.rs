@@ -13,6 +13,8 @@ use nalgebra::DMatrix;
 
 /// A sample closer to the end of the step than this part of `Δs` is taken: the phase is known to rounding only.
 const SAMPLE_TOLERANCE: f64 = 1e-10;
+/// Samples at most that one product takes.
+const MOST_SAMPLES: f64 = 16.0;
 /// A phase ends before the sample that rounding would make it reach.
 const LAST_PHASE: f64 = 1.0 - f64::EPSILON;
 
@@ -51,7 +53,6 @@ impl Stepper {
         let of_sample = if stays { SAMPLE_BY_MATRIX } else { 1.0 };
         check_substeps(of_sample * samples + parts, step)?;
         next.last_wind_m_s = Some(inputs.wind_speed_m_s);
-        let columns = active_columns(inputs, next.values.len());
         let (mut time, mut remaining) = (0.0, step);
         while remaining > 0.0 {
             let (wind, rate) = (wind_after(inputs, time), inputs.wind_speed_rate_m_s2);
@@ -59,9 +60,12 @@ impl Stepper {
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
             if stays && sampled && next.phase == 0.0 && !gusts {
-                self.take_sample(next, inputs, time, piece, columns)?;
-                time += piece;
-                remaining = (remaining - piece).max(0.0);
+                let count = (remaining / piece + SAMPLE_TOLERANCE).floor();
+                let samples = [piece, count.clamp(1.0, MOST_SAMPLES)];
+                self.take_samples(next, inputs, time, samples)?;
+                let passed = piece * samples[1];
+                time += passed;
+                remaining = (remaining - passed).max(0.0);
                 continue;
             }
             self.move_structure(next, inputs, time, piece)?;
@@ -82,29 +86,24 @@ impl Stepper {
         Ok(())
     }
 
-    /// From one sample to the next, `time` after the start of the step, by so many columns of `[z, w, ẇ]`.
-    fn take_sample(
+    /// From one sample on, `time` after the start of the step: time between samples, and how many are taken.
+    fn take_samples(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
         time: f64,
-        piece: f64,
-        columns: usize,
+        samples: [f64; 2],
     ) -> Result<()> {
         let (states, n) = (state.values.len(), inputs.force.len());
         let sampling = self.sampling.as_mut().ok_or_else(not_sampled)?;
         let (section, wind) = (&self.section, inputs.wind_speed_m_s);
-        let step = self.cache.sample(section, sampling, wind, piece)?;
-        if columns == states {
-            apply(step, &state.values, &mut self.next);
-            std::mem::swap(&mut state.values, &mut self.next);
-            return Ok(());
-        }
+        let step = self.cache.samples(section, sampling, wind, samples)?;
         load(&mut self.operand, &state.values, inputs);
         let force = self.operand[states..].iter_mut().take(n);
         for (w, rate) in force.zip(&inputs.force_rate) {
             *w += rate * time;
         }
+        let columns = active_columns(inputs, states);
         apply(step, &self.operand[..columns], &mut state.values);
         Ok(())
     }

@@ -13,9 +13,10 @@
 //! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy. Gusts add their lags
 //! to the system and their force to `w`.
 
-use super::gusts::{GustCourse, Gusts, SeriesPart};
+use super::gusts::{Gusts, SeriesPart};
 use super::linked::Linked;
 use super::packed::{Packed, largest_of, with_vectors};
+use super::values::GustCourse;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use nalgebra::DMatrix;
@@ -191,13 +192,7 @@ impl PowerSeries {
         let tau = step / parts;
         for i in 0..parts as usize {
             let start = i as f64 * tau;
-            with_vectors(Part {
-                series: self,
-                drive,
-                start,
-                tau,
-                gusts: acting,
-            });
+            with_vectors(SeriesTerms(self, drive, [start, tau], acting));
         }
         let sum = &self.work.sum;
         if !sum.iter().chain(&self.work.gusts).all(|x| x.is_finite()) {
@@ -283,22 +278,16 @@ impl PowerSeries {
     }
 }
 
-/// One part of a step, compiled for each set of vectors a processor may have.
-struct Part<'a, 'b> {
-    series: &'a mut PowerSeries,
-    drive: &'a Drive<'b>,
-    start: f64,
-    tau: f64,
-    gusts: bool,
-}
+/// A part, compiled for each set of vectors a processor may have: a closure would not always be.
+struct SeriesTerms<'a, 'b>(&'a mut PowerSeries, &'a Drive<'b>, [f64; 2], bool);
 
-impl pulp::NullaryFnOnce for Part<'_, '_> {
+impl pulp::NullaryFnOnce for SeriesTerms<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        self.series
-            .part(self.drive, self.start, self.tau, self.gusts);
+        let Self(series, drive, [start, tau], gusts) = self;
+        series.part(drive, start, tau, gusts);
     }
 }
 

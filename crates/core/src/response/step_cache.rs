@@ -46,6 +46,7 @@ impl<K> Default for Recent<K> {
 pub(super) struct StepCache {
     steps: Recent<(u64, u64)>,
     in_gusts: Recent<(u64, u64)>,
+    samples: Recent<[u64; 3]>,
 }
 
 impl StepCache {
@@ -97,31 +98,40 @@ impl StepCache {
         })
     }
 
-    /// A sample of a sampled model in a steady wind, from the one before: what unit numbers of `[z, w, ẇ]` become.
-    pub(super) fn sample(
+    /// So many samples of a sampled model in a steady wind, from one on: what unit numbers of `[z, w, ẇ]` become.
+    pub(super) fn samples(
         &mut self,
         section: &CoupledSection,
         sampling: &mut Sampling,
         wind: f64,
-        step: f64,
+        [step, count]: [f64; 2],
     ) -> Result<&Packed> {
-        self.steps.get((wind.to_bits(), step.to_bits()), || {
+        let key = [wind, step, count].map(f64::to_bits);
+        self.samples.get(key, || {
             let alone = section.structure_alone();
             let structure = pack(&c2d(&alone.a, &alone.b, step)?);
             let (states, n) = (section.states(), alone.b.ncols());
             let mut matrix = DMatrix::zeros(states, states + 2 * n);
             for (j, mut column) in matrix.column_iter_mut().enumerate() {
-                let mut unit = vec![0.0; states + 2 * n];
-                unit[j] = 1.0;
-                let force = sampling.force(&unit[..states], wind);
-                let external = unit.split_off(states);
-                let mut driven = [&unit[..2 * n], &external].concat();
-                for (w, held) in driven[2 * n..3 * n].iter_mut().zip(force) {
-                    *w += held;
+                let mut z = vec![0.0; states + 2 * n];
+                z[j] = 1.0;
+                let mut external = z.split_off(states);
+                for _ in 0..count as usize {
+                    let mut operand = [&z[..2 * n], &external].concat();
+                    for (w, held) in operand[2 * n..3 * n]
+                        .iter_mut()
+                        .zip(sampling.force(&z, wind))
+                    {
+                        *w += held;
+                    }
+                    apply(&structure, &operand, &mut z[..2 * n]);
+                    sampling.sample(&mut z);
+                    let (w, rates) = external.split_at_mut(n);
+                    w.iter_mut()
+                        .zip(rates)
+                        .for_each(|(w, rate)| *w += *rate * step);
                 }
-                apply(&structure, &driven, &mut unit[..2 * n]);
-                sampling.sample(&mut unit);
-                column.copy_from_slice(&unit);
+                column.copy_from_slice(&z);
             }
             Ok(Packed::of(&matrix))
         })

@@ -26,14 +26,14 @@ const STRIPS_OF_A_MATRIX: usize = 2;
 type Lanes = [f64; LANES];
 
 /// How far the filters of all strips go.
-pub(super) struct FilterStep<'a> {
+pub(super) struct FilterAdvance<'a> {
     pub flows: &'a [StripFlow],
     /// Mean wind speed, m/s.
     pub wind_m_s: f64,
     pub duration_s: f64,
 }
 
-impl FilterStep<'_> {
+impl FilterAdvance<'_> {
     /// `V/B` of a strip, 1/s.
     fn rate(&self, flow: &StripFlow) -> f64 {
         self.wind_m_s * flow.wind_factor / flow.width_m
@@ -43,7 +43,7 @@ impl FilterStep<'_> {
 /// Filters of up to four strips, and the motion of each that begins where they are now: along `courses` (one per degree of
 /// freedom, dimensionless).
 #[derive(Debug, Clone, Default)]
-pub(super) struct StripGroup {
+pub(super) struct StripLanes {
     /// Strip by strip.
     pub filters: Vec<f64>,
     pub courses: Vec<MotionCubic>,
@@ -97,7 +97,7 @@ impl FilterSeries {
     }
 
     /// Makes ready for a step of a continuous model: looks whether it is short enough, and makes its matrix where that is worth it.
-    pub(super) fn prepare(&mut self, step: &FilterStep) -> Result<()> {
+    pub(super) fn prepare(&mut self, step: &FilterAdvance) -> Result<()> {
         for flow in step.flows {
             parts(step, self.way(step, flow))?;
         }
@@ -124,27 +124,23 @@ impl FilterSeries {
     }
 
     /// Product of time and size of the filter matrix, as a number of parts.
-    fn way(&self, step: &FilterStep, flow: &StripFlow) -> f64 {
+    fn way(&self, step: &FilterAdvance, flow: &StripFlow) -> f64 {
         step.duration_s * step.rate(flow) * self.size / REACH
     }
 
     /// The filters of a group in these flows go to the end of the step that was made ready.
     pub(super) fn advance(
         &mut self,
-        step: &FilterStep,
+        step: &FilterAdvance,
         flows: &[StripFlow],
-        group: &mut StripGroup,
+        group: &mut StripLanes,
     ) -> Result<()> {
         self.load(flows.len(), group);
         if self.matrix.is_empty() {
             self.series(step, flows);
         } else {
             let (operand, matrix, sums) = (&self.operand, &self.matrix, &mut self.next);
-            with_vectors(Product {
-                matrix,
-                operand,
-                sums,
-            });
+            with_vectors(|| product(matrix, operand, sums));
             self.operand[..self.filters].copy_from_slice(sums);
         }
         for (lane, filters) in group.filters.chunks_mut(self.filters.max(1)).enumerate() {
@@ -155,7 +151,7 @@ impl FilterSeries {
         grown(&group.filters)
     }
 
-    fn load(&mut self, strips: usize, group: &StripGroup) {
+    fn load(&mut self, strips: usize, group: &StripLanes) {
         self.operand.clear();
         let numbers = self.filters + self.drive.len();
         self.operand.resize(numbers, [0.0; LANES]);
@@ -176,7 +172,7 @@ impl FilterSeries {
     }
 
     /// The filters of the operand go by series, each strip in parts of its own.
-    fn series(&mut self, step: &FilterStep, flows: &[StripFlow]) {
+    fn series(&mut self, step: &FilterAdvance, flows: &[StripFlow]) {
         let mut of_lane = [1.0; LANES];
         let mut rates = [0.0; LANES];
         for ((parts, rate), flow) in of_lane.iter_mut().zip(&mut rates).zip(flows) {
@@ -196,19 +192,42 @@ impl FilterSeries {
                     0.0
                 }
             });
-            let (filters, courses) = self.operand.split_at_mut(self.filters);
-            with_vectors(Part {
-                a: &self.a,
-                b: &self.b,
-                dofs: self.dofs,
-                courses,
-                from: [start, part_s],
-                x,
-                filters,
-                drive: &mut self.drive,
-                term: &mut self.term,
-                next: &mut self.next,
-            });
+            let from = [start, part_s];
+            with_vectors(FilterTerms(self, from, x));
+        }
+    }
+
+    /// One Taylor series of four strips: where it begins and how long it is, s, and how many widths the wind passes.
+    #[inline(always)]
+    fn part(&mut self, from: [Lanes; 2], mut x: Lanes) {
+        let (filters, courses) = self.operand.split_at_mut(self.filters);
+        let (term, next) = (&mut self.term, &mut self.next);
+        shift(courses, self.dofs, from, &mut self.drive);
+        term.copy_from_slice(filters);
+        for k in 0..TERMS {
+            self.a.set_lanes(term, next);
+            // the coefficient of a course that drives this term
+            if let Some(drive) = self.drive.chunks(self.dofs).nth(k) {
+                self.b.add_lanes(drive, next);
+            }
+            let mut change = [0.0; LANES];
+            for (z, (term, sum)) in filters.iter_mut().zip(term.iter_mut().zip(&*next)) {
+                for lane in 0..LANES {
+                    term[lane] = x[lane] / (k as f64 + 1.0) * sum[lane];
+                    let before = z[lane];
+                    z[lane] += term[lane];
+                    change[lane] += (z[lane] - before).abs();
+                }
+            }
+            // all of the course has acted, and what follows is smaller
+            if k + 1 >= COEFFICIENTS {
+                for lane in 0..LANES {
+                    x[lane] = if change[lane] == 0.0 { 0.0 } else { x[lane] };
+                }
+                if x == [0.0; LANES] {
+                    break;
+                }
+            }
         }
     }
 
@@ -216,9 +235,9 @@ impl FilterSeries {
     pub(super) fn advance_sampled(
         &mut self,
         d: &DiscreteRealization,
-        step: &FilterStep,
+        step: &FilterAdvance,
         flows: &[StripFlow],
-        group: &mut StripGroup,
+        group: &mut StripLanes,
     ) -> Result<()> {
         let states = group.filters.chunks_mut(d.a.nrows().max(1));
         let strips = states.zip(group.courses.chunks(self.dofs)).zip(flows);
@@ -247,7 +266,7 @@ impl FilterSeries {
 }
 
 /// Refuses a strip that would need so many parts or samples.
-fn parts(step: &FilterStep, count: f64) -> Result<()> {
+fn parts(step: &FilterAdvance, count: f64) -> Result<()> {
     let at_most = (MAX_PARTS / step.flows.len().max(1) as f64).max(PARTS_OF_A_STRIP);
     if count <= at_most {
         return Ok(());
@@ -267,62 +286,15 @@ fn grown(state: &[f64]) -> Result<()> {
     }
 }
 
-/// One Taylor series of four strips.
-struct Part<'a> {
-    a: &'a Sparse,
-    b: &'a Sparse,
-    dofs: usize,
-    courses: &'a [Lanes],
-    /// Where it begins, and how long it is, s.
-    from: [Lanes; 2],
-    /// Widths that the wind passes.
-    x: Lanes,
-    filters: &'a mut [Lanes],
-    drive: &'a mut [Lanes],
-    term: &'a mut Vec<Lanes>,
-    next: &'a mut Vec<Lanes>,
-}
+/// A part, compiled for each set of vectors a processor may have: a closure would not always be.
+struct FilterTerms<'a>(&'a mut FilterSeries, [Lanes; 2], Lanes);
 
-impl pulp::NullaryFnOnce for Part<'_> {
+impl pulp::NullaryFnOnce for FilterTerms<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self {
-            dofs,
-            filters,
-            next,
-            ..
-        } = self;
-        let (term, drive) = (self.term, self.drive);
-        shift(self.courses, dofs, self.from, drive);
-        term.copy_from_slice(filters);
-        let mut x = self.x;
-        for k in 0..TERMS {
-            self.a.set_lanes(term, next);
-            // the coefficient of a course that drives this term
-            if let Some(drive) = drive.chunks(dofs).nth(k) {
-                self.b.add_lanes(drive, next);
-            }
-            let mut change = [0.0; LANES];
-            for (z, (term, sum)) in filters.iter_mut().zip(term.iter_mut().zip(&*next)) {
-                for lane in 0..LANES {
-                    term[lane] = x[lane] / (k as f64 + 1.0) * sum[lane];
-                    let before = z[lane];
-                    z[lane] += term[lane];
-                    change[lane] += (z[lane] - before).abs();
-                }
-            }
-            // all of the course has acted, and what follows is smaller
-            if k + 1 >= COEFFICIENTS {
-                for lane in 0..LANES {
-                    x[lane] = if change[lane] == 0.0 { 0.0 } else { x[lane] };
-                }
-                if x == [0.0; LANES] {
-                    break;
-                }
-            }
-        }
+        self.0.part(self.1, self.2);
     }
 }
 
@@ -354,26 +326,15 @@ fn shift(courses: &[Lanes], dofs: usize, [start, length]: [Lanes; 2], shifted: &
 }
 
 /// The matrix on the numbers of four strips.
-struct Product<'a> {
-    matrix: &'a [Lanes],
-    operand: &'a [Lanes],
-    sums: &'a mut [Lanes],
-}
-
-impl pulp::NullaryFnOnce for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let rows = self.sums.len();
-        self.sums.fill([0.0; LANES]);
-        let each = self.operand.chunks(LANES);
-        for (columns, numbers) in self.matrix.chunks(rows.max(1)).zip(each) {
-            for (sum, row) in self.sums.iter_mut().zip(columns) {
-                for (entry, number) in row.iter().zip(numbers) {
-                    for lane in 0..LANES {
-                        sum[lane] += entry * number[lane];
-                    }
+#[inline(always)]
+fn product(matrix: &[Lanes], operand: &[Lanes], sums: &mut [Lanes]) {
+    let rows = sums.len().max(1);
+    sums.fill([0.0; LANES]);
+    for (columns, numbers) in matrix.chunks(rows).zip(operand.chunks(LANES)) {
+        for (sum, row) in sums.iter_mut().zip(columns) {
+            for (entry, number) in row.iter().zip(numbers) {
+                for lane in 0..LANES {
+                    sum[lane] += entry * number[lane];
                 }
             }
         }
