@@ -53,7 +53,7 @@ fn radius(
         let mut found = vec![ForceAhead::default(); n];
         let rho = structure.air_density_kg_m3;
         forces
-            .ahead(&state, 0, &flow, prediction * h, rho, &mut found)
+            .ahead(&state, &[flow], prediction * h, rho, &mut found)
             .unwrap();
         let mut y = DVector::zeros(3 * n);
         for i in 0..n {

@@ -290,25 +290,6 @@ impl CoupledSection {
         self.outputs(&rows)
     }
 
-    /// Output matrices of `[q, q̇, q̈, F]` at the wind speed `V` (m/s). Those of the sampled system do not depend on its
-    /// step, so that still air and the lightest breeze are no special cases.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a speed that is negative or not finite.
-    pub fn output_matrices(&self, speed_m_s: f64) -> Result<(DMatrix<f64>, DMatrix<f64>)> {
-        non_negative("wind speed", speed_m_s)?;
-        match &self.aerodynamics {
-            Realization::Continuous(c) => {
-                let system = self.coupled_with(c, speed_m_s)?;
-                Ok((system.c, system.d))
-            }
-            Realization::Discrete(d) => {
-                let alone = self.structure_alone();
-                Ok(self.sampled_outputs(&alone.a, &self.force_of_filters(&d.c, speed_m_s)))
-            }
-        }
-    }
-
     /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; zero for a
     /// sampled one.
     pub fn filter_rates_per_wind(&self, state: &[f64], rates: &mut [f64]) {
@@ -322,7 +303,7 @@ impl CoupledSection {
         let motion = motion.map(|(dof, x)| x * dof.motion_scale(s.width_m));
         let drives = state[2 * n..].iter().copied().chain(motion);
         let columns = c.a.column_iter().chain(c.b.column_iter());
-        for (column, drive) in columns.zip(drives) {
+        for (column, drive) in columns.zip(drives).filter(|(_, drive)| *drive != 0.0) {
             for (rate, a) in rates.iter_mut().zip(&column) {
                 *rate += a * drive;
             }

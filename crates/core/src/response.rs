@@ -7,6 +7,8 @@
 //! the present dynamic pressure.
 
 mod gusts;
+mod linked;
+mod matrix_polynomial;
 mod packed;
 mod prescribed;
 mod quasi_steady;
@@ -27,8 +29,9 @@ use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use gusts::Gusts;
+use matrix_polynomial::MatrixPolynomial;
 use nalgebra::{DMatrix, DVector};
-use packed::{advanced, apply, settled};
+use packed::{advanced, settled};
 use sampling::Sampling;
 use series::{Drive, Moving, PowerSeries};
 use step_cache::{StepCache, active_columns, load};
@@ -80,10 +83,16 @@ pub struct Stepper {
     series: PowerSeries,
     /// Of the discrete model.
     sampling: Option<Sampling>,
+    /// Of the structure alone.
+    structure: Option<MatrixPolynomial>,
     /// `[z, w, ẇ]` of the step at hand.
     operand: Vec<f64>,
     /// State after it.
     next: Vec<f64>,
+    /// Both under gusts.
+    in_gusts: [Vec<f64>; 2],
+    /// Output equations, once they have been asked for.
+    rows: Option<MatrixPolynomial>,
     /// Accelerations and forces of the outputs at hand.
     both: Vec<f64>,
     /// Outputs at the instant of the rates at hand.
@@ -120,11 +129,14 @@ impl Stepper {
         let operand = vec![0.0; states + 2 * n];
         Self {
             next: vec![0.0; states],
+            in_gusts: Default::default(),
+            rows: None,
             both: vec![0.0; 2 * n],
             now: Outputs::default(),
             sampled: SectionState::default(),
             series: PowerSeries::new(&section, gusts),
             sampling: Sampling::of(&section),
+            structure: None,
             section,
             cache: StepCache::default(),
             operand,
@@ -225,7 +237,7 @@ impl Stepper {
         let steady = inputs.wind_speed_rate_m_s2 == 0.0 && same_wind;
         if steady && self.may_have_matrix() && !self.gusts_act(state, inputs) {
             self.advance_by_matrix(state, inputs, step_s)?;
-        } else {
+        } else if !(steady && self.advance_in_gusts(state, inputs, step_s)?) {
             self.advance_by_series(state, inputs, step_s)?;
         }
         state.last_wind_m_s = Some(inputs.wind_speed_m_s);
@@ -300,6 +312,33 @@ impl Stepper {
         Err(overgrown())
     }
 
+    /// A step under gusts by a matrix, where a series would need several parts; false where it is not worth one.
+    fn advance_in_gusts(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step: f64,
+    ) -> Result<bool> {
+        let wind = inputs.wind_speed_m_s;
+        let parts = self.series.parts(wind, step, true);
+        let worth = parts > 1.0 && parts <= MAX_SUBSTEPS && self.may_have_matrix();
+        let gusts = self.series.gusts().filter(|g| worth && g.on_section);
+        let Some(gusts) = gusts else {
+            return Ok(false);
+        };
+        let matrix = self.cache.in_gusts(&self.section, gusts, wind, step)?;
+        let [operand, next] = &mut self.in_gusts;
+        gusts.load(operand, state, inputs);
+        next.resize(state.values.len() + state.gusts.len(), 0.0);
+        if !advanced(matrix, operand, next) {
+            return Err(overgrown());
+        }
+        let (values, lagging) = next.split_at(state.values.len());
+        state.values.copy_from_slice(values);
+        state.gusts.copy_from_slice(lagging);
+        Ok(true)
+    }
+
     fn advance_by_series(
         &mut self,
         state: &mut SectionState,
@@ -333,45 +372,6 @@ impl Stepper {
         } else {
             Err(overgrown())
         }
-    }
-
-    /// Motion, accelerations and self-excited forces at the instant of `state`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for inputs that are not finite.
-    #[inline]
-    pub fn outputs(
-        &mut self,
-        state: &SectionState,
-        inputs: &Inputs,
-        outputs: &mut Outputs,
-    ) -> Result<()> {
-        let n = self.section.structure().dofs.len();
-        inputs.check(n)?;
-        outputs.displacement.clear();
-        outputs.displacement.extend_from_slice(&state.values[..n]);
-        outputs.rate.clear();
-        outputs.rate.extend_from_slice(&state.values[n..2 * n]);
-        outputs.acceleration.resize(n, 0.0);
-        outputs.self_excited_force.resize(n, 0.0);
-        let wind = inputs.wind_speed_m_s.max(0.0);
-        self.operand[..state.values.len()].copy_from_slice(&state.values);
-        let external = &mut self.operand[state.values.len()..][..n];
-        external.copy_from_slice(&inputs.force);
-        if let Some(gusts) = self.series.gusts() {
-            let by_gusts = &mut self.both[..n];
-            gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, by_gusts);
-            for (w, gust) in external.iter_mut().zip(by_gusts) {
-                *w += wind * *gust;
-            }
-        }
-        let rows = self.cache.output_rows(&self.section, wind)?;
-        let columns = state.values.len() + n;
-        let both = &mut self.both[..];
-        apply(rows, &self.operand[..columns], both);
-        outputs.acceleration.copy_from_slice(&both[..n]);
-        outputs.self_excited_force.copy_from_slice(&both[n..]);
-        Ok(())
     }
 }
 

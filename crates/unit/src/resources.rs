@@ -8,7 +8,9 @@ use super::location::{MODEL_FILE, beside, folder_of, own_binary, raw_folder, ref
 use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
+use crate::bridge::GustChannels;
 use crate::error::{Error, Result};
+use crate::response::Stepper;
 use crate::trained_model::{Model, TrainedModel};
 use std::path::Path;
 use uuid::Uuid;
@@ -40,6 +42,8 @@ pub struct Resources {
     pub gusts: Option<GustForce>,
     /// What makes it a whole bridge; `None` for a section.
     pub bridge: Option<BridgeOptions>,
+    /// What steps that bridge with the parameters of its export, and what gusts do to it.
+    pub(crate) exported: Option<(Stepper, Option<GustChannels>)>,
     /// Turbulence that blows on the bridge; `None` for calm air but what the inputs bring.
     pub turbulence: Option<TurbulenceOptions>,
     /// Its variables.
@@ -120,6 +124,7 @@ impl Resources {
             force,
             gusts,
             bridge: None,
+            exported: None,
             turbulence: None,
             table,
             guid,
@@ -139,7 +144,8 @@ impl Resources {
                 .map_err(|e| e.at(TURBULENCE_FILE))
         };
         let field = turbulence.map(field).transpose()?;
-        let table = VariableTable::of_bridge(&model, &options, field.is_some())?;
+        let exported = options.stepper(&options.bridge()?)?;
+        let table = VariableTable::of_bridge(&model, &options, &exported.0, field.is_some())?;
         let files: Vec<&[u8]> = [bytes, bridge].into_iter().chain(turbulence).collect();
         let guid = identity::guid(&table, &files);
         Ok(Self {
@@ -147,6 +153,7 @@ impl Resources {
             force: None,
             gusts: None,
             bridge: Some(options),
+            exported: Some(exported),
             turbulence: field,
             table,
             guid,

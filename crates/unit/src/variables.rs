@@ -36,6 +36,7 @@ use super::force_options::ForceOptions;
 use super::onset_bounds::OnsetBounds;
 use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
+use crate::response::Stepper;
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use variable::find;
@@ -70,16 +71,17 @@ impl VariableTable {
         Self::checked(variables)
     }
 
-    /// The table of a whole bridge, with or without turbulence of its own.
+    /// The table of a whole bridge that is stepped by `stepper`, with or without turbulence of its own.
     ///
     /// # Errors
     /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
     pub fn of_bridge(
         model: &TrainedModel,
         options: &BridgeOptions,
+        stepper: &Stepper,
         turbulence: bool,
     ) -> Result<Self> {
-        Self::checked(bridge::variables(model, options, turbulence)?)
+        Self::checked(bridge::variables(model, options, stepper, turbulence)?)
     }
 
     /// The same table of a section or bridge with one more number, for units that run in this process.

@@ -3,40 +3,43 @@
 //! Gusts act through channels, each with lags of its own speed: the two components on a section; on a bridge what all gusts of
 //! one wind and width do to each mode. Lags are linear, so those of a mode serve all strips.
 
+use super::linked::Sparse;
+use super::packed::largest_of;
+use super::values::{GustCourse, Inputs, SectionState, stated};
 use crate::aerodynamics::{GustForce, RationalAdmittance};
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
 use crate::section::Structure;
-use nalgebra::DMatrix;
-use std::ops::Range;
+use crate::state_space::StateEquation;
+use nalgebra::{DMatrix, DVector};
 
 /// Gust forces `F = V Q g` with `g` the channels through their lags.
 #[derive(Debug, Clone)]
 pub(super) struct Gusts {
-    force: ByChannel,
+    /// `Q` by the lags of all channels, n×states, one channel after the other.
+    by_lags: Sparse,
+    /// `Q` by the channels themselves where nothing lags, n×channels; otherwise empty.
+    at_once: Sparse,
+    motions: usize,
     channels: usize,
+    /// Whether they blow on a section, whose steps are those of its importer; on a bridge turbulence cuts them.
+    pub on_section: bool,
     /// Pole and weight of each lag.
     lags: &'static [[f64; 2]],
     /// How fast each number of the state follows its gust, 1/m times the wind: the pole of its lag over the width.
     speeds: Vec<f64>,
-    /// Part of a gust that acts at once.
-    direct: f64,
     series: LagSeries,
-}
-
-/// `Q`.
-#[derive(Debug, Clone)]
-enum ByChannel {
-    /// n×channels: `½ρ diag(B, B, B²) A` about the axis of a section.
-    Section(DMatrix<f64>),
-    /// Channels are forces per 1 m/s of wind on so many modes, once for each wind and width.
-    Modes(usize),
 }
 
 /// Memory of a series: the lags of each channel, one channel after the other.
 #[derive(Debug, Clone, Default)]
 struct LagSeries {
+    /// Channels in this order of time.
+    gusts: Vec<f64>,
     term: Vec<f64>,
     lacking: Vec<f64>,
-    passed: Vec<f64>,
+    /// `Q g` of this order and the one before, and the force.
+    felt: [Vec<f64>; 2],
     force: Vec<f64>,
     largest: f64,
     last: f64,
@@ -55,23 +58,8 @@ pub(super) struct SeriesPart {
     pub change: f64,
 }
 
-/// Gusts over a piece of time, in each channel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct GustCourse<'a> {
-    pub gust: &'a [f64],
-    pub rate: &'a [f64],
-    /// Time of the piece after that of `gust`, s.
-    pub after: f64,
-}
-
-impl GustCourse<'_> {
-    fn at(&self, channel: usize, time: f64) -> f64 {
-        stated(self.gust, channel) + (self.after + time) * stated(self.rate, channel)
-    }
-}
-
 impl Gusts {
-    /// On a section.
+    /// On a section: `½ρ diag(B, B, B²) A` about its axis.
     pub(super) fn new(force: &GustForce, structure: &Structure) -> Self {
         let n = structure.dofs.len();
         let about_axis =
@@ -81,26 +69,41 @@ impl Gusts {
             half_rho * structure.dofs[i].force_scale(structure.width_m) * about_axis[(i, j)]
         });
         let passing = vec![structure.width_m.recip(); 2];
-        Self::of(ByChannel::Section(by_gust), passing, force.admittance)
-    }
-
-    /// On a bridge: `passing` is the wind factor over the width of each group of `modes` channels.
-    pub(super) fn on_modes(modes: usize, passing: &[f64], admittance: RationalAdmittance) -> Self {
-        let passing = passing.iter().flat_map(|p| vec![*p; modes]).collect();
-        Self::of(ByChannel::Modes(modes), passing, admittance)
-    }
-
-    /// `passing`: 1/m of each channel.
-    fn of(force: ByChannel, passing: Vec<f64>, admittance: RationalAdmittance) -> Self {
-        let lags = admittance.lags();
-        let of_channel = |p: &f64| lags.iter().map(|[pole, _]| pole * p).collect::<Vec<_>>();
         Self {
-            force,
-            channels: passing.len(),
+            on_section: true,
+            ..Self::of(&by_gust, &passing, force.admittance)
+        }
+    }
+
+    /// On a bridge, whose channels are forces per 1 m/s of wind on each mode: `passing` is the wind factor over the width of each
+    /// group of `modes` channels.
+    pub(super) fn on_modes(modes: usize, passing: &[f64], admittance: RationalAdmittance) -> Self {
+        let passing: Vec<f64> = passing.iter().flat_map(|p| vec![*p; modes]).collect();
+        let by_gust = DMatrix::from_fn(modes, passing.len(), |i, j| {
+            f64::from(u8::from(j % modes == i))
+        });
+        Self::of(&by_gust, &passing, admittance)
+    }
+
+    /// `Q` by channel; `passing`: 1/m of each.
+    fn of(by_gust: &DMatrix<f64>, passing: &[f64], admittance: RationalAdmittance) -> Self {
+        let (lags, (n, channels)) = (admittance.lags(), by_gust.shape());
+        let of_channel = |p: &f64| lags.iter().map(|[pole, _]| pole * p).collect::<Vec<_>>();
+        let count = lags.len();
+        let by_lags = DMatrix::from_fn(n, channels * count, |i, g| {
+            by_gust[(i, g / count)] * lags[g % count][1]
+        });
+        let none = DMatrix::zeros(n, 0);
+        // the weights of lags sum to one
+        let at_once = if count == 0 { by_gust } else { &none };
+        Self {
+            by_lags: Sparse::of(&by_lags),
+            at_once: Sparse::of(at_once),
+            motions: n,
+            channels,
+            on_section: false,
             lags,
             speeds: passing.iter().flat_map(of_channel).collect(),
-            // the weights of lags sum to one
-            direct: if lags.is_empty() { 1.0 } else { 0.0 },
             series: LagSeries::default(),
         }
     }
@@ -115,33 +118,62 @@ impl Gusts {
         self.speeds.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Numbers of the state that belong to a channel.
-    fn of_channel(&self, j: usize) -> Range<usize> {
-        j * self.lags.len()..(j + 1) * self.lags.len()
-    }
-
-    /// A channel as it is felt.
-    fn passed(&self, gust: f64, lagging: &[f64]) -> f64 {
-        let lagged = self.lags.iter().zip(lagging).map(|([_, w], g)| w * g);
-        self.direct * gust + lagged.sum::<f64>()
-    }
-
     /// `Q g`: force per unit length and 1 m/s of wind.
+    #[inline(always)]
     pub(super) fn force_per_wind(&self, gust: &[f64], lagging: &[f64], force: &mut [f64]) {
         force.fill(0.0);
-        for j in 0..self.channels {
-            let felt = self.passed(stated(gust, j), &lagging[self.of_channel(j)]);
-            self.force.add(j, felt, force);
-        }
+        self.at_once.add(|j| stated(gust, j), force);
+        self.by_lags.add(|i| lagging[i], force);
     }
 
     /// Rates of the lagging gusts per 1 m/s of wind.
     pub(super) fn rates_per_wind(&self, gust: &[f64], lagging: &[f64], rates: &mut [f64]) {
-        for j in 0..self.channels {
-            let (gust, range) = (stated(gust, j), self.of_channel(j));
-            for i in range {
-                rates[i] = self.speeds[i] * (gust - lagging[i]);
-            }
+        for (i, (rate, speed)) in rates.iter_mut().zip(&self.speeds).enumerate() {
+            *rate = speed * (stated(gust, i / self.lags.len()) - lagging[i]);
+        }
+    }
+
+    /// The section in a steady wind with its lagging gusts: states `[z, g]`, inputs the forces, then the gusts of all channels.
+    ///
+    /// # Errors
+    /// As [`CoupledSection::at`].
+    pub(super) fn system(&self, section: &CoupledSection, wind_m_s: f64) -> Result<StateEquation> {
+        let alone = section.continuous_at(wind_m_s)?;
+        let (states, n) = alone.b.shape();
+        let (all, lags) = (states + self.states(), self.states());
+        let mut a = DMatrix::zeros(all, all);
+        let mut b = DMatrix::zeros(all, n + self.channels);
+        a.view_mut((0, 0), (states, states)).copy_from(&alone.a);
+        b.view_mut((0, 0), (states, n)).copy_from(&alone.b);
+        let (mut force, mut rates) = (vec![0.0; n], vec![0.0; lags]);
+        for i in 0..lags + self.channels {
+            let mut unit = vec![0.0; lags + self.channels];
+            unit[i] = wind_m_s;
+            let (lagging, gust) = unit.split_at(lags);
+            self.force_per_wind(gust, lagging, &mut force);
+            self.rates_per_wind(gust, lagging, &mut rates);
+            let mut column = match i.checked_sub(lags) {
+                None => a.column_mut(states + i),
+                Some(channel) => b.column_mut(n + channel),
+            };
+            column.rows_mut(states, lags).copy_from_slice(&rates);
+            let force = DVector::from_column_slice(&force);
+            column.rows_mut(0, states).copy_from(&(&alone.b * force));
+        }
+        Ok(StateEquation { a, b })
+    }
+
+    /// Writes `[z, g]` and the inputs of [`system`](Self::system), then their rates unless all are zero.
+    pub(super) fn load(&self, operand: &mut Vec<f64>, state: &SectionState, inputs: &Inputs) {
+        operand.clear();
+        operand.extend_from_slice(&state.values);
+        operand.extend_from_slice(&state.gusts);
+        operand.extend_from_slice(&inputs.force);
+        operand.extend((0..self.channels).map(|j| stated(&inputs.gust_m_s, j)));
+        let mut rates = inputs.force_rate.iter().chain(&inputs.gust_rate_m_s2);
+        if rates.any(|rate| *rate != 0.0) {
+            operand.extend_from_slice(&inputs.force_rate);
+            operand.extend((0..self.channels).map(|j| stated(&inputs.gust_rate_m_s2, j)));
         }
     }
 
@@ -152,14 +184,16 @@ impl Gusts {
         s.term.extend_from_slice(lagging);
         s.lacking.clear();
         s.lacking.resize(lagging.len(), 0.0);
-        s.passed.clear();
-        s.passed.resize(self.channels, 0.0);
-        s.force.resize(self.force.motions(), 0.0);
-        s.largest = largest(lagging);
+        for list in s.felt.iter_mut().chain([&mut s.force]) {
+            list.clear();
+            list.resize(self.motions, 0.0);
+        }
+        s.largest = largest_of(lagging);
         s.last = s.largest;
     }
 
     /// The force of order `k` over a part; adds the lagging gusts of order `k + 1` to `sum`.
+    #[inline(always)]
     pub(super) fn next(
         &mut self,
         k: usize,
@@ -167,70 +201,46 @@ impl Gusts {
         course: GustCourse<'_>,
         sum: &mut [f64],
     ) -> &[f64] {
-        let mut s = std::mem::take(&mut self.series);
         let SeriesPart { wind, change, .. } = part;
-        let factor = part.tau / (k + 1) as f64;
-        s.force.fill(0.0);
-        for j in 0..self.channels {
-            let gust = match k {
+        let s = &mut self.series;
+        if k <= 2 {
+            s.gusts.clear();
+            s.gusts.extend((0..self.channels).map(|j| match k {
                 0 => course.at(j, part.start),
                 1 => part.tau * stated(course.rate, j),
                 _ => 0.0,
-            };
-            let range = self.of_channel(j);
-            let term = &mut s.term[range.clone()];
-            let passed = self.passed(gust, term);
-            self.force
-                .add(j, wind * passed + change * s.passed[j], &mut s.force);
-            s.passed[j] = passed;
-            let lags = term.iter_mut().zip(&mut s.lacking[range.clone()]);
-            let places = sum[range.clone()].iter_mut().zip(&self.speeds[range]);
-            for ((term, lacking), (sum, speed)) in lags.zip(places) {
+            }));
+            s.largest = s.largest.max(largest_of(&s.gusts));
+        }
+        s.felt.swap(0, 1);
+        let [felt, before] = &mut s.felt;
+        felt.fill(0.0);
+        self.at_once.add(|j| s.gusts[j], felt);
+        self.by_lags.add(|i| s.term[i], felt);
+        for (force, (felt, before)) in s.force.iter_mut().zip(felt.iter().zip(before)) {
+            *force = wind * felt + change * *before;
+        }
+        let factor = part.tau / (k + 1) as f64;
+        let count = self.lags.len().max(1);
+        let lags = s.term.chunks_mut(count).zip(s.lacking.chunks_mut(count));
+        let places = sum.chunks_mut(count).zip(self.speeds.chunks(count));
+        for (gust, ((term, lacking), (sum, speed))) in s.gusts.iter().zip(lags.zip(places)) {
+            let each = term.iter_mut().zip(lacking).zip(sum.iter_mut().zip(speed));
+            for ((term, lacking), (sum, speed)) in each {
                 let now = gust - *term;
                 *term = factor * speed * (wind * now + change * *lacking);
                 *lacking = now;
                 *sum += *term;
             }
-            s.largest = s.largest.max(gust.abs());
         }
-        s.last = largest(&s.term);
+        s.last = largest_of(&s.term);
         s.largest = s.largest.max(s.last);
-        self.series = s;
-        &self.series.force
+        &s.force
     }
 
     /// Whether the last term is below `part` of the largest gust.
+    #[inline(always)]
     pub(super) fn settled(&self, part: f64) -> bool {
         self.series.last <= part * self.series.largest
     }
-}
-
-impl ByChannel {
-    fn motions(&self) -> usize {
-        match self {
-            Self::Section(matrix) => matrix.nrows(),
-            Self::Modes(modes) => *modes,
-        }
-    }
-
-    /// Adds what a channel does that is felt so strongly.
-    fn add(&self, channel: usize, felt: f64, force: &mut [f64]) {
-        match self {
-            Self::Section(matrix) => {
-                for (force, q) in force.iter_mut().zip(&matrix.column(channel)) {
-                    *force += q * felt;
-                }
-            }
-            Self::Modes(modes) => force[channel % modes] += felt,
-        }
-    }
-}
-
-/// Gust of a channel.
-fn stated(gusts: &[f64], channel: usize) -> f64 {
-    gusts.get(channel).copied().unwrap_or(0.0)
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |a, x| a.max(x.abs()))
 }

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 const DIED_OUT: f64 = 1e-250;
 
 /// Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
-const LANES: usize = 4;
+pub(super) const LANES: usize = 4;
 
 /// Groups whose sums run at once: as many as the registers of a processor hold, so that every number of the vector is
 /// fetched once for all of them.
@@ -18,7 +18,7 @@ const FEW_COLUMNS: usize = 64;
 /// A matrix stored for `y = W v`, in groups of rows.
 #[derive(Debug, Clone)]
 pub(super) struct Packed {
-    rows: usize,
+    pub rows: usize,
     columns: usize,
     /// For each block of `GROUPS` groups of `LANES` rows, the columns one after the other.
     blocks: Vec<[[f64; LANES]; GROUPS]>,
@@ -55,74 +55,41 @@ impl Packed {
     pub(super) fn of(m: &DMatrix<f64>) -> Self {
         Self::new(m.nrows(), m.ncols(), |i, j| m[(i, j)])
     }
-}
 
-/// A matrix of which most entries are zero, row by row.
-#[derive(Debug, Clone)]
-pub(super) struct Sparse {
-    /// Where the entries of each row end.
-    ends: Vec<usize>,
-    /// Column and entry.
-    entries: Vec<(usize, f64)>,
-}
-
-impl Sparse {
-    pub(super) fn of(m: &DMatrix<f64>) -> Self {
-        let (mut ends, mut entries) = (Vec::with_capacity(m.nrows()), Vec::new());
-        for row in m.row_iter() {
-            let filled = row.iter().enumerate().filter(|(_, x)| **x != 0.0);
-            entries.extend(filled.map(|(j, x)| (j, *x)));
-            ends.push(entries.len());
-        }
-        Self { ends, entries }
+    /// Becomes `Σ Wₖ xᵏ`, all of one shape.
+    #[inline(never)]
+    pub(super) fn set_polynomial(&mut self, powers: &[Self], x: f64) {
+        with_vectors(|| self.horner(powers, x));
     }
 
-    /// `y = W v`.
-    pub(super) fn apply(&self, v: &[f64], y: &mut [f64]) {
-        let mut from = 0;
-        for (y, end) in y.iter_mut().zip(&self.ends) {
-            *y = self.entries[from..*end]
-                .iter()
-                .map(|(j, x)| x * v[*j])
-                .sum();
-            from = *end;
-        }
-    }
-}
-
-/// Rows of a matrix that are multiplied one and all, because there are few of them.
-const FEW_ROWS: usize = 40;
-
-/// The equation of pressure and filters. Filters of a bridge hang together in short chains, one or a few for each mode, so
-/// that a product with their rows, taken by their links, costs modes × filters; on a section a row costs less than its links.
-#[derive(Debug, Clone)]
-pub(super) enum Linked {
-    Few(Packed),
-    /// Rows of which most entries count, and behind them those of the filters.
-    Many(Packed, Sparse),
-}
-
-impl Linked {
-    /// A matrix whose first `full` rows are full.
-    pub(super) fn of(matrix: &DMatrix<f64>, full: usize) -> Self {
-        let rest = matrix.nrows() - full;
-        if matrix.nrows() > FEW_ROWS {
-            let linked = Sparse::of(&matrix.rows(full, rest).into_owned());
-            Self::Many(Packed::of(&matrix.rows(0, full).into_owned()), linked)
-        } else {
-            Self::Few(Packed::of(matrix))
-        }
-    }
-
-    pub(super) fn apply(&self, v: &[f64], y: &mut [f64]) {
-        match self {
-            Self::Few(matrix) => apply(matrix, v, y),
-            Self::Many(full, linked) => {
-                let (first, rest) = y.split_at_mut(full.rows);
-                apply(full, v, first);
-                linked.apply(v, rest);
+    #[inline(always)]
+    fn horner(&mut self, powers: &[Self], x: f64) {
+        let (blocks, rest) = (&mut self.blocks, &mut self.rest);
+        let lists = [
+            blocks.as_flattened_mut().as_flattened_mut(),
+            rest.as_flattened_mut(),
+        ];
+        for (list, sums) in lists.into_iter().enumerate() {
+            sums.fill(0.0);
+            for power in powers.iter().rev() {
+                for (sum, w) in sums.iter_mut().zip(power.numbers()[list]) {
+                    *sum = w + x * *sum;
+                }
             }
         }
+    }
+
+    fn numbers(&self) -> [&[f64]; 2] {
+        [
+            self.blocks.as_flattened().as_flattened(),
+            self.rest.as_flattened(),
+        ]
+    }
+
+    /// [`apply`] within what already runs on the widest vectors.
+    #[inline(always)]
+    pub(super) fn set(&self, v: &[f64], y: &mut [f64]) {
+        product(self, v, y, |sums| sums);
     }
 }
 
@@ -147,7 +114,7 @@ pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
 
 /// Runs a product on the widest vectors that every processor may be asked for and this one has.
 #[inline(always)]
-fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
+pub(super) fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
     #[cfg(target_arch = "x86_64")]
     if let pulp::x86::Arch::V3(vectors) = pulp::Arch::new() {
         return vectors.vectorize(product);
@@ -175,7 +142,7 @@ impl pulp::NullaryFnOnce for Apply<'_> {
 
     #[inline(always)]
     fn call(self) {
-        product(self.w, self.v, self.y, |sums| sums);
+        self.w.set(self.v, self.y);
     }
 }
 
@@ -333,6 +300,28 @@ pub(super) fn settled(values: &mut [f64]) -> bool {
         *x = settle(*x, &mut spoilt);
     }
     spoilt == 0.0
+}
+
+/// Largest magnitude; what is no number counts nothing.
+#[inline(always)]
+pub(super) fn largest_of(values: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    let (groups, rest) = values.as_chunks::<LANES>();
+    let larger = |largest: &mut f64, x: f64| {
+        if x.abs() > *largest {
+            *largest = x.abs();
+        }
+    };
+    for group in groups {
+        for (largest, x) in lanes.iter_mut().zip(group) {
+            larger(largest, *x);
+        }
+    }
+    let mut largest = 0.0;
+    for x in lanes.iter().chain(rest) {
+        larger(&mut largest, *x);
+    }
+    largest
 }
 
 #[cfg(test)]

@@ -10,48 +10,21 @@
 
 mod course;
 mod filters;
+mod flow;
 mod instant;
 
+use super::packed::LANES;
 use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use course::{COEFFICIENTS, MotionCubic, NUMBERS, POINTS};
-use filters::{Buffers, MotionInterval, advance_continuous, advance_discrete};
-use nalgebra::{DMatrix, DVector};
+pub use flow::{Airflow, StripFlow};
+
+use filters::{FilterAdvance, FilterSeries, StripLanes};
+use nalgebra::DMatrix;
 
 /// Numbers of the state that all strips share: points known, wind at the newest, times of the points.
 const SHARED: usize = 2 + POINTS;
-
-/// The air around one strip.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StripFlow {
-    /// Width `B`, m.
-    pub width_m: f64,
-    /// Mean wind speed at the strip over that of [`GivenMotion`].
-    pub wind_factor: f64,
-}
-
-impl StripFlow {
-    /// The air that passes the strip in this mean wind (m/s), of this density (kg/m³).
-    pub fn in_air(&self, mean_wind_m_s: f64, density_kg_m3: f64) -> Airflow {
-        Airflow {
-            wind_m_s: mean_wind_m_s * self.wind_factor,
-            width_m: self.width_m,
-            density_kg_m3,
-        }
-    }
-}
-
-/// The air that passes a strip.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Airflow {
-    /// Wind speed there, m/s.
-    pub wind_m_s: f64,
-    /// Width of the deck, m.
-    pub width_m: f64,
-    /// kg/m³.
-    pub density_kg_m3: f64,
-}
 
 /// What is known of the motion of one coordinate at a point of time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -87,11 +60,9 @@ pub struct ForceAhead {
 pub struct PrescribedForces {
     realization: Realization,
     dofs: Vec<Dof>,
-    /// Size of the filter matrix, its largest sum over a row.
-    size: f64,
-    buffers: Buffers,
-    courses: Vec<MotionCubic>,
-    filters: Vec<f64>,
+    series: FilterSeries,
+    /// Strips at hand.
+    group: StripLanes,
     /// State at the point of time that is being taken.
     next: Vec<f64>,
 }
@@ -99,18 +70,12 @@ pub struct PrescribedForces {
 impl PrescribedForces {
     /// Forces of a realisation with these degrees of freedom.
     pub fn new(realization: Realization, dofs: Vec<Dof>) -> Self {
-        let size = match &realization {
-            Realization::Continuous(c) => row_sum(&c.a),
-            Realization::Discrete(_) => 0.0,
-        };
         Self {
-            courses: Vec::with_capacity(dofs.len()),
-            filters: Vec::with_capacity(realization.states()),
+            series: FilterSeries::of(&realization, dofs.len()),
+            group: StripLanes::default(),
             next: Vec::new(),
             realization,
             dofs,
-            size,
-            buffers: Buffers::default(),
         }
     }
 
@@ -196,38 +161,40 @@ impl PrescribedForces {
         strips: &[StripFlow],
     ) -> Result<()> {
         self.enter(new, given);
-        let points = Self::points(new);
-        for (s, flow) in strips.iter().enumerate() {
-            if points == 1 {
-                self.settle(new, s, flow)?;
-                continue;
-            }
-            let (now, before) = (new[2], new[3]);
+        let (per_strip, states) = (self.per_strip(), self.realization.states());
+        if Self::points(new) == 1 {
+            return self.settle(new, strips);
+        }
+        let (now, before) = (new[2], new[3]);
+        let step = FilterAdvance {
+            flows: strips,
             // to second order in the change of the wind over the step
-            let wind = 0.5 * (wind_before_m_s + given.wind_speed_m_s);
-            self.load_courses(new, s, flow, before - now);
-            let from = self.strip(s);
-            let (phase, filters) = new[from].split_at_mut(1);
-            let filters = &mut filters[..self.realization.states()];
-            let way = MotionInterval {
-                courses: &self.courses,
-                duration_s: now - before,
-                rate_per_s: wind * flow.wind_factor / flow.width_m,
-                strips: strips.len(),
-            };
-            advance(
-                &self.realization,
-                self.size,
-                filters,
-                &mut phase[0],
-                &way,
-                &mut self.buffers,
-            )?;
+            wind_m_s: 0.5 * (wind_before_m_s + given.wind_speed_m_s),
+            duration_s: now - before,
+        };
+        self.series.prepare(&step)?;
+        for (i, flows) in strips.chunks(LANES).enumerate() {
+            self.load(new, i * LANES, flows, before - now);
+            self.advance(&step, flows)?;
+            let each = new[SHARED + i * LANES * per_strip..].chunks_mut(per_strip);
+            for (lane, strip) in each.take(flows.len()).enumerate() {
+                strip[0] = self.group.phases[lane];
+                strip[1..=states].copy_from_slice(&self.group.filters[lane * states..][..states]);
+            }
         }
         Ok(())
     }
 
-    /// Forces on strip `s` in the order of the degrees of freedom, `ahead_s` seconds after the newest motion, under its
+    /// The filters of the strips at hand go on.
+    fn advance(&mut self, step: &FilterAdvance, flows: &[StripFlow]) -> Result<()> {
+        let (series, group) = (&mut self.series, &mut self.group);
+        match &self.realization {
+            Realization::Continuous(_) => series.advance(step, flows, group),
+            Realization::Discrete(d) => series.advance_sampled(d, step, flows, group),
+        }
+    }
+
+    /// Forces on all strips in the order of the degrees of freedom, `ahead_s` seconds after the newest motion, under its
     /// wind and in air of this density (kg/m³). Before any motion was given they are zero.
     ///
     /// # Errors
@@ -236,8 +203,7 @@ impl PrescribedForces {
     pub fn ahead(
         &mut self,
         state: &[f64],
-        s: usize,
-        flow: &StripFlow,
+        strips: &[StripFlow],
         ahead_s: f64,
         density: f64,
         forces: &mut [ForceAhead],
@@ -246,29 +212,28 @@ impl PrescribedForces {
             forces.fill(ForceAhead::default());
             return Ok(());
         }
-        let air = flow.in_air(state[1], density);
-        self.load_courses(state, s, flow, 0.0);
-        let strip = &state[self.strip(s)];
-        let mut phase = strip[0];
-        let mut filters = std::mem::take(&mut self.filters);
-        filters.clear();
-        filters.extend_from_slice(&strip[1..=self.realization.states()]);
-        let way = MotionInterval {
-            courses: &self.courses,
+        let (n, states) = (self.dofs.len(), self.realization.states());
+        let step = FilterAdvance {
+            flows: strips,
+            wind_m_s: state[1],
             duration_s: ahead_s,
-            rate_per_s: air.wind_m_s / air.width_m,
-            strips: (state.len() - SHARED) / self.per_strip(),
         };
-        if ahead_s > 0.0 {
-            let (realization, size) = (&self.realization, self.size);
-            let buffers = &mut self.buffers;
-            advance(realization, size, &mut filters, &mut phase, &way, buffers)?;
+        self.series.prepare(&step)?;
+        let groups = strips.chunks(LANES).zip(forces.chunks_mut(LANES * n));
+        for (i, (flows, forces)) in groups.enumerate() {
+            self.load(state, i * LANES, flows, 0.0);
+            if ahead_s > 0.0 {
+                self.advance(&step, flows)?;
+            }
+            let each = flows.iter().zip(forces.chunks_mut(n));
+            for (lane, (flow, forces)) in each.enumerate() {
+                let courses = &mut self.group.courses[lane * n..][..n];
+                courses.iter_mut().for_each(|c| *c = c.from(ahead_s));
+                let filters = &self.group.filters[lane * states..][..states];
+                let air = flow.in_air(state[1], density);
+                self.forces(filters, &self.group.courses[lane * n..], air, forces);
+            }
         }
-        for course in &mut self.courses {
-            *course = course.from(ahead_s);
-        }
-        self.forces(&filters, air, forces);
-        self.filters = filters;
         Ok(())
     }
 
@@ -292,43 +257,50 @@ impl PrescribedForces {
         }
     }
 
-    /// Dimensionless courses of strip `s`, their time beginning `from` seconds after the newest point.
-    fn load_courses(&mut self, state: &[f64], s: usize, flow: &StripFlow, from: f64) {
-        let points = Self::points(state);
-        let strip = &state[self.strip(s)];
-        let of_dofs = &strip[1 + self.realization.states()..];
-        self.courses.clear();
-        for (dof, known) in self.dofs.iter().zip(of_dofs.chunks(POINTS * NUMBERS)) {
-            let course = MotionCubic::through(&state[2..2 + points], &known[..points * NUMBERS]);
-            let scaled = course.times(dof.motion_scale(flow.width_m));
-            self.courses.push(scaled.from(from));
+    /// Loads strips from `first` on, the time of their dimensionless courses beginning `from` seconds after the newest point.
+    fn load(&mut self, state: &[f64], first: usize, flows: &[StripFlow], from: f64) {
+        let (points, states) = (Self::points(state), self.realization.states());
+        let (per_strip, group) = (self.per_strip(), &mut self.group);
+        group.filters.clear();
+        group.courses.clear();
+        let each = state[SHARED + first * per_strip..].chunks(per_strip);
+        for (lane, (strip, flow)) in each.zip(flows).enumerate() {
+            let (filters, of_dofs) = strip[1..].split_at(states);
+            group.phases[lane] = strip[0];
+            group.filters.extend_from_slice(filters);
+            for (dof, known) in self.dofs.iter().zip(of_dofs.chunks(POINTS * NUMBERS)) {
+                let known = &known[..points * NUMBERS];
+                let course = MotionCubic::through(&state[2..2 + points], known);
+                let scaled = course.times(dof.motion_scale(flow.width_m));
+                group.courses.push(scaled.from(from));
+            }
         }
     }
 
-    /// The filters of a section held where it is until the flow has settled.
-    fn settle(&mut self, state: &mut [f64], s: usize, flow: &StripFlow) -> Result<()> {
-        self.load_courses(state, s, flow, 0.0);
-        let motion = self.courses.iter().map(|c| c.coefficients()[0]);
-        let motion = DVector::from_iterator(self.dofs.len(), motion);
-        let (matrix, drive) = match &self.realization {
-            Realization::Continuous(c) => (-&c.a, &c.b),
-            Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
-        };
-        if matrix.is_empty() {
-            return Ok(());
+    /// The filters of sections held where they are until the flow has settled.
+    fn settle(&self, state: &mut [f64], strips: &[StripFlow]) -> Result<()> {
+        let settling = self.settling()?;
+        let states = self.realization.states();
+        for (strip, flow) in state[SHARED..].chunks_mut(self.per_strip()).zip(strips) {
+            let (filters, known) = strip[1..].split_at_mut(states);
+            let points = known.chunks(POINTS * NUMBERS);
+            let displacement: Vec<f64> = points.map(|newest| newest[0]).collect();
+            self.settle_at(&settling, &displacement, flow.width_m, filters);
         }
-        let settled = matrix.lu().solve(&(drive * motion));
-        let settled = settled.ok_or_else(unsettled)?;
-        let first = self.strip(s).start + 1;
-        state[first..first + settled.len()].copy_from_slice(settled.as_slice());
         Ok(())
     }
 
     /// `½ρ s (V²(e₀ r + C z) + V B e₁ ṙ + B² e₂ r̈)` with the scale `s` of each force, and its rate.
-    fn forces(&self, filters: &[f64], air: Airflow, forces: &mut [ForceAhead]) {
+    fn forces(
+        &self,
+        filters: &[f64],
+        courses: &[MotionCubic],
+        air: Airflow,
+        forces: &mut [ForceAhead],
+    ) {
         let (wind, width) = (air.wind_m_s, air.width_m);
         let mut motion = [[0.0; COEFFICIENTS]; Dof::THREE.len()];
-        for (motion, course) in motion.iter_mut().zip(&self.courses) {
+        for (motion, course) in motion.iter_mut().zip(courses) {
             *motion = course.derivatives();
         }
         let flow_rate = wind / width;
@@ -368,28 +340,6 @@ impl PrescribedForces {
 
 fn unsettled() -> Error {
     Error::Numerical("prescribed motion: a filter does not settle".into())
-}
-
-fn advance(
-    realization: &Realization,
-    size: f64,
-    filters: &mut [f64],
-    phase: &mut f64,
-    way: &MotionInterval,
-    buffers: &mut Buffers,
-) -> Result<()> {
-    match realization {
-        Realization::Continuous(c) => advance_continuous(c, size, filters, way, buffers),
-        Realization::Discrete(d) => advance_discrete(d, filters, phase, way, buffers),
-    }
-}
-
-fn row_sum(matrix: &DMatrix<f64>) -> f64 {
-    let sum = |row: nalgebra::RowDVector<f64>| row.iter().map(|x| x.abs()).sum::<f64>();
-    matrix
-        .row_iter()
-        .map(|r| sum(r.into_owned()))
-        .fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -1,9 +1,16 @@
-//! Rates of the state, for importers that integrate and for derivatives.
+//! Outputs, and rates of the state for importers that integrate and for derivatives.
 
-use super::{Inputs, SectionState, Stepper};
+use super::matrix_polynomial::MatrixPolynomial;
+use super::packed::{Packed, apply};
+use super::step_cache::load;
+use super::{Inputs, Outputs, SectionState, Stepper};
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::state_space::StateEquation;
 use nalgebra::DVector;
+
+/// Terms of the output equations.
+const POWERS_OF_WIND: usize = 3;
 
 impl Stepper {
     /// `d/dt` of the state values and, behind them, of the lagging gusts; filters of the discrete model stand still between samples.
@@ -73,4 +80,81 @@ impl Stepper {
             gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts, rates);
         }
     }
+
+    /// Motion, accelerations and self-excited forces at the instant of `state`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for inputs that are not finite.
+    #[inline]
+    pub fn outputs(
+        &mut self,
+        state: &SectionState,
+        inputs: &Inputs,
+        outputs: &mut Outputs,
+    ) -> Result<()> {
+        let n = self.section.structure().dofs.len();
+        inputs.check(n)?;
+        outputs.displacement.clear();
+        outputs.displacement.extend_from_slice(&state.values[..n]);
+        outputs.rate.clear();
+        outputs.rate.extend_from_slice(&state.values[n..2 * n]);
+        outputs.acceleration.resize(n, 0.0);
+        outputs.self_excited_force.resize(n, 0.0);
+        let wind = inputs.wind_speed_m_s.max(0.0);
+        self.operand[..state.values.len()].copy_from_slice(&state.values);
+        let external = &mut self.operand[state.values.len()..][..n];
+        external.copy_from_slice(&inputs.force);
+        if let Some(gusts) = self.series.gusts() {
+            let by_gusts = &mut self.both[..n];
+            gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, by_gusts);
+            for (w, gust) in external.iter_mut().zip(by_gusts) {
+                *w += wind * *gust;
+            }
+        }
+        let columns = state.values.len() + n;
+        let both = &mut self.both[..];
+        apply(
+            output_rows(&mut self.rows, &self.section, wind),
+            &self.operand[..columns],
+            both,
+        );
+        outputs.acceleration.copy_from_slice(&both[..n]);
+        outputs.self_excited_force.copy_from_slice(&both[n..]);
+        Ok(())
+    }
+
+    /// `[q̈, F]` after a step with so many columns that may be taken again, as long as nobody has touched inputs and state: see
+    /// [`RepeatableStep`](super::RepeatableStep).
+    #[inline(always)]
+    pub fn repeat_outputs(
+        &mut self,
+        state: &SectionState,
+        inputs: &Inputs,
+        columns: usize,
+    ) -> &[f64] {
+        let most = state.values.len() + inputs.force.len();
+        let operand = if columns == state.values.len() {
+            &state.values
+        } else {
+            load(&mut self.operand, &state.values, inputs);
+            &self.operand[..columns.min(most)]
+        };
+        apply(
+            output_rows(&mut self.rows, &self.section, inputs.wind_speed_m_s),
+            operand,
+            &mut self.both,
+        );
+        &self.both
+    }
+}
+
+/// Rows of accelerations and self-excited forces on state and external forces at a wind speed.
+#[inline(always)]
+fn output_rows<'a>(
+    rows: &'a mut Option<MatrixPolynomial>,
+    section: &CoupledSection,
+    wind_m_s: f64,
+) -> &'a Packed {
+    let rows = rows.get_or_insert_with(|| MatrixPolynomial::new(&section.output_rows_by_wind()));
+    rows.at(wind_m_s, POWERS_OF_WIND)
 }

@@ -1,9 +1,11 @@
 //! Steps of the discrete Laguerre model: the dimensionless force is sampled and held every `Δt = Δs B/V`. The dynamic
 //! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
+use super::matrix_polynomial::{MatrixPolynomial, terms_of_exponential};
 use super::packed::{apply, settled};
 use super::sampling::{Sampling, wind_after};
 use super::series::{Drive, Moving};
+use super::step_cache::{active_columns, load};
 use super::values::{Inputs, SectionState};
 use super::{PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, check_substeps, overgrown};
 use crate::error::{Error, Result};
@@ -11,6 +13,8 @@ use nalgebra::DMatrix;
 
 /// A sample closer to the end of the step than this part of `Δs` is taken: the phase is known to rounding only.
 const SAMPLE_TOLERANCE: f64 = 1e-10;
+/// Samples at most that one product takes.
+const MOST_SAMPLES: f64 = 16.0;
 /// A phase ends before the sample that rounding would make it reach.
 const LAST_PHASE: f64 = 1.0 - f64::EPSILON;
 
@@ -55,8 +59,16 @@ impl Stepper {
             let wait = time_to_cover((1.0 - next.phase) * way, wind, rate);
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
-            let again = stays && sampled && next.phase == 0.0;
-            self.move_structure(next, inputs, time, piece, again)?;
+            if stays && sampled && next.phase == 0.0 && !gusts {
+                let count = (remaining / piece + SAMPLE_TOLERANCE).floor();
+                let samples = [piece, count.clamp(1.0, MOST_SAMPLES)];
+                self.take_samples(next, inputs, time, samples)?;
+                let passed = piece * samples[1];
+                time += passed;
+                remaining = (remaining - passed).max(0.0);
+                continue;
+            }
+            self.move_structure(next, inputs, time, piece)?;
             if sampled {
                 self.sampling()?.sample(&mut next.values);
                 next.phase = 0.0;
@@ -71,6 +83,28 @@ impl Stepper {
         if !settled(&mut next.values) {
             return Err(overgrown());
         }
+        Ok(())
+    }
+
+    /// From one sample on, `time` after the start of the step: time between samples, and how many are taken.
+    fn take_samples(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        time: f64,
+        samples: [f64; 2],
+    ) -> Result<()> {
+        let (states, n) = (state.values.len(), inputs.force.len());
+        let sampling = self.sampling.as_mut().ok_or_else(not_sampled)?;
+        let (section, wind) = (&self.section, inputs.wind_speed_m_s);
+        let step = self.cache.samples(section, sampling, wind, samples)?;
+        load(&mut self.operand, &state.values, inputs);
+        let force = self.operand[states..].iter_mut().take(n);
+        for (w, rate) in force.zip(&inputs.force_rate) {
+            *w += rate * time;
+        }
+        let columns = active_columns(inputs, states);
+        apply(step, &self.operand[..columns], &mut state.values);
         Ok(())
     }
 
@@ -96,7 +130,7 @@ impl Stepper {
             state.values.resize(column.len(), 0.0);
             state.values[j] = 1.0;
             state.gusts.clear();
-            written = self.move_structure(&mut state, steady, 0.0, step, false);
+            written = self.move_structure(&mut state, steady, 0.0, step);
             if written.is_err() {
                 break;
             }
@@ -108,19 +142,16 @@ impl Stepper {
     }
 
     fn sampling(&mut self) -> Result<&mut Sampling> {
-        let none = || Error::Numerical("step: the model is not sampled".into());
-        self.sampling.as_mut().ok_or_else(none)
+        self.sampling.as_mut().ok_or_else(not_sampled)
     }
 
-    /// Structure alone under the force of the filters and the external one, from `time` on; `again` where pieces of this
-    /// length will follow.
+    /// Structure alone under the force of the filters and the external one, from `time` on.
     fn move_structure(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
         time: f64,
         piece: f64,
-        again: bool,
     ) -> Result<()> {
         if piece <= 0.0 {
             return Ok(());
@@ -136,13 +167,20 @@ impl Stepper {
         let fastest = drive.wind.max(wind_after(inputs, time + piece));
         let parts = self.series.parts(fastest, piece, gusts);
         let motion = &mut state.values[..2 * inputs.force.len()];
-        if drive.wind_rate == 0.0 && (again || parts > PARTS_OF_A_MATRIX) && !gusts {
+        let long = parts > PARTS_OF_A_MATRIX;
+        if drive.wind_rate == 0.0 && !gusts && (long || parts == 1.0) {
             let n = inputs.force.len();
             let operand = &mut self.operand[..4 * n];
             operand[..2 * n].copy_from_slice(motion);
             operand[2 * n..3 * n].copy_from_slice(&drive.force[0][..n]);
             operand[3 * n..].copy_from_slice(&drive.force[1][..n]);
-            let step = self.cache.structure(&self.section, piece)?;
+            let step = if long {
+                self.cache.structure(&self.section, piece)?
+            } else {
+                let alone = || MatrixPolynomial::exponential(&self.section.structure_alone());
+                let steps = self.structure.get_or_insert_with(alone);
+                steps.at(piece, terms_of_exponential(self.series.norm(0.0, piece)))
+            };
             apply(step, operand, motion);
             return Ok(());
         }
@@ -155,6 +193,10 @@ impl Stepper {
         }
         Ok(())
     }
+}
+
+fn not_sampled() -> Error {
+    Error::Numerical("step: the model is not sampled".into())
 }
 
 /// Time in which the wind covers `distance`, starting at `speed` with the acceleration `rate`; infinite if never.

@@ -13,8 +13,10 @@
 //! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy. Gusts add their lags
 //! to the system and their force to `w`.
 
-use super::gusts::{GustCourse, Gusts, SeriesPart};
-use super::packed::{Linked, Packed, apply};
+use super::gusts::{Gusts, SeriesPart};
+use super::linked::Linked;
+use super::packed::{Packed, largest_of, with_vectors};
+use super::values::GustCourse;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use nalgebra::DMatrix;
@@ -71,7 +73,7 @@ pub(super) struct PowerSeries {
     /// `[A₂; G]` on `[q, x]`.
     aerodynamic: Linked,
     /// `M⁻¹`, scaled.
-    force: DMatrix<f64>,
+    force: Packed,
     norms: Norms,
     gusts: Option<Gusts>,
     work: Work,
@@ -89,7 +91,9 @@ struct Work {
     aerodynamic: [Vec<f64>; 3],
     /// Gusts behind the lags of their admittance.
     gusts: Vec<f64>,
-    /// Accelerations by the external forces, by the power of time.
+    /// External forces of one power of time.
+    force: Vec<f64>,
+    /// Accelerations by them, by the power of time.
     push: [Vec<f64>; 3],
     /// Accelerations by the gusts, of the order at hand.
     by_gusts: Vec<f64>,
@@ -116,7 +120,7 @@ impl PowerSeries {
             filters: row_sum(&aerodynamic, n..n + filters),
             lags: gusts.as_ref().map_or(0.0, Gusts::fastest),
         };
-        let force = DMatrix::from_fn(n, n, |i, j| {
+        let force = Packed::new(n, n, |i, j| {
             section.inverse_mass()[(i, j)] * scale[i] / rate
         });
         Self {
@@ -134,6 +138,7 @@ impl PowerSeries {
                 structure: [vec![0.0; 2 * n], vec![0.0; 2 * n]],
                 aerodynamic: std::array::from_fn(|_| vec![0.0; n + filters]),
                 gusts: Vec::new(),
+                force: vec![0.0; n],
                 push: std::array::from_fn(|_| vec![0.0; n]),
                 by_gusts: vec![0.0; n],
             },
@@ -146,7 +151,7 @@ impl PowerSeries {
     }
 
     /// Norm of a step in winds up to `wind`.
-    fn norm(&self, wind: f64, step: f64) -> f64 {
+    pub(super) fn norm(&self, wind: f64, step: f64) -> f64 {
         let n = &self.norms;
         let motion = n.structure + wind * (n.damping + wind * n.pressure);
         step * n.rate.max(motion).max(wind * n.filters)
@@ -186,7 +191,8 @@ impl PowerSeries {
         let acting = acting.is_some();
         let tau = step / parts;
         for i in 0..parts as usize {
-            self.part(drive, i as f64 * tau, tau, acting);
+            let start = i as f64 * tau;
+            with_vectors(SeriesTerms(self, drive, [start, tau], acting));
         }
         let sum = &self.work.sum;
         if !sum.iter().chain(&self.work.gusts).all(|x| x.is_finite()) {
@@ -204,6 +210,7 @@ impl PowerSeries {
     }
 
     /// One part from the time `start` on.
+    #[inline(always)]
     fn part(&mut self, drive: &Drive<'_>, start: f64, tau: f64, gusts: bool) {
         // rounding must not turn a wind that comes to rest into a negative one
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
@@ -225,26 +232,26 @@ impl PowerSeries {
         let mut largest = work.begin();
         let mut last = [0.0; 3];
         for k in 0..MAX_TERMS {
-            work.structure.swap(0, 1);
-            work.aerodynamic.rotate_right(1);
+            if change != 0.0 {
+                work.structure.swap(0, 1);
+                work.aerodynamic.rotate_right(1);
+            }
             let (motion, filtered) = (&work.term[..2 * self.dofs], &work.term[self.dofs..]);
-            apply(&self.structure, motion, &mut work.structure[0]);
-            self.aerodynamic.apply(filtered, &mut work.aerodynamic[0]);
+            self.structure.set(motion, &mut work.structure[0]);
+            self.aerodynamic.set(filtered, &mut work.aerodynamic[0]);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
                 let force = gusts.next(k, part, drive.gust, &mut work.gusts);
-                for (i, push) in work.by_gusts.iter_mut().enumerate() {
-                    *push = (0..self.dofs).map(|j| self.force[(i, j)] * force[j]).sum();
-                    pushed = f64::max(pushed, tau * push.abs());
-                }
+                self.force.set(force, &mut work.by_gusts);
+                pushed = tau * largest_of(&work.by_gusts);
             }
             work.next_term(self.dofs, part, self.rate, k);
             let size = f64::max(largest_of(&work.term), pushed);
             largest = if size > largest { size } else { largest };
             last = [size, last[0], last[1]];
             // each term to come is below norm/(k+2) times the largest of those it is made from
-            let made_from = if change == 0.0 { 1 } else { 3 };
-            let rest = norm * largest_of(&last[..made_from]);
+            let made_from = last.into_iter().fold(size, f64::max);
+            let rest = norm * if change == 0.0 { size } else { made_from };
             let blown = gusts.as_ref().is_none_or(|g| g.settled(LEFT_OUT));
             let settled = blown && rest <= LEFT_OUT * (k + 2) as f64 * largest;
             if k >= 2 && (settled || rest.is_nan()) {
@@ -254,22 +261,33 @@ impl PowerSeries {
     }
 
     /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
+    #[inline(always)]
     fn accelerations(&mut self, drive: &Drive<'_>, start: f64, tau: f64) {
-        self.work.push.iter_mut().for_each(|p| p.fill(0.0));
-        for j in 0..self.dofs {
-            let [w0, w1, w2] = drive.force.map(|w| w.get(j).copied().unwrap_or(0.0));
-            let now = w0 + start * (w1 + start * w2);
-            let slope = tau * (w1 + 2.0 * start * w2);
-            let bend = tau * tau * w2;
-            if now == 0.0 && slope == 0.0 && bend == 0.0 {
-                continue;
+        let work = &mut self.work;
+        for (power, push) in work.push.iter_mut().enumerate() {
+            for (j, force) in work.force.iter_mut().enumerate() {
+                let [w0, w1, w2] = drive.force.map(|w| w.get(j).copied().unwrap_or(0.0));
+                *force = match power {
+                    0 => w0 + start * (w1 + start * w2),
+                    1 => tau * (w1 + 2.0 * start * w2),
+                    _ => tau * tau * w2,
+                };
             }
-            for (push, by_time) in self.work.push.iter_mut().zip([now, slope, bend]) {
-                for (push, by_force) in push.iter_mut().zip(self.force.column(j).iter()) {
-                    *push += by_force * by_time;
-                }
-            }
+            self.force.set(&work.force, push);
         }
+    }
+}
+
+/// A part, compiled for each set of vectors a processor may have: a closure would not always be.
+struct SeriesTerms<'a, 'b>(&'a mut PowerSeries, &'a Drive<'b>, [f64; 2], bool);
+
+impl pulp::NullaryFnOnce for SeriesTerms<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(series, drive, [start, tau], gusts) = self;
+        series.part(drive, start, tau, gusts);
     }
 }
 
@@ -283,6 +301,7 @@ impl Work {
     }
 
     /// Replaces the term by the next one and adds it to the sum.
+    #[inline(always)]
     fn next_term(&mut self, n: usize, part: SeriesPart, rate: f64, k: usize) {
         let SeriesPart { wind, change, .. } = part;
         let factor = part.tau / (k + 1) as f64;
@@ -362,15 +381,4 @@ fn power_of_two(x: f64) -> f64 {
 fn row_sum(m: &DMatrix<f64>, rows: std::ops::Range<usize>) -> f64 {
     let sum = |i: usize| m.row(i).iter().map(|x| x.abs()).sum::<f64>();
     rows.map(sum).fold(0.0, f64::max)
-}
-
-/// Largest magnitude; what is no number counts nothing.
-fn largest_of(values: &[f64]) -> f64 {
-    let mut largest = 0.0;
-    for x in values {
-        if x.abs() > largest {
-            largest = x.abs();
-        }
-    }
-    largest
 }

@@ -1,10 +1,13 @@
 //! Step and output matrices, kept per wind speed and step size.
 
-use super::packed::Packed;
+use super::gusts::Gusts;
+use super::packed::{Packed, apply};
+use super::sampling::Sampling;
 use super::values::Inputs;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::state_space::{StepMatrices, c2d};
+use crate::state_space::{StateEquation, StepMatrices, c2d};
+use nalgebra::DMatrix;
 
 /// Pairs of wind speed and step size that are remembered. Importers whose step jitters in the last bits come back to a
 /// handful of values; a wind speed that never repeats needs no more.
@@ -42,7 +45,8 @@ impl<K> Default for Recent<K> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct StepCache {
     steps: Recent<(u64, u64)>,
-    outputs: Recent<u64>,
+    in_gusts: Recent<(u64, u64)>,
+    samples: Recent<[u64; 3]>,
 }
 
 impl StepCache {
@@ -57,6 +61,20 @@ impl StepCache {
             Ok(pack(&section.continuous_at(speed)?.c2d(step)?))
         })?;
         Ok(())
+    }
+
+    /// Step of the whole continuous system with its lagging gusts.
+    pub(super) fn in_gusts(
+        &mut self,
+        section: &CoupledSection,
+        gusts: &Gusts,
+        speed: f64,
+        step: f64,
+    ) -> Result<&Packed> {
+        self.in_gusts.get((speed.to_bits(), step.to_bits()), || {
+            let StateEquation { a, b } = gusts.system(section, speed)?;
+            Ok(pack(&c2d(&a, &b, step)?))
+        })
     }
 
     /// Whether the newest step is that of this wind and this size.
@@ -80,17 +98,42 @@ impl StepCache {
         })
     }
 
-    pub(super) fn output_rows(&mut self, section: &CoupledSection, speed: f64) -> Result<&Packed> {
-        self.outputs.get(speed.to_bits(), || {
-            let (c, d) = section.output_matrices(speed)?;
-            let (n, states) = (section.structure().dofs.len(), section.states());
-            Ok(Packed::new(2 * n, states + n, |i, j| {
-                if j < states {
-                    c[(2 * n + i, j)]
-                } else {
-                    d[(2 * n + i, j - states)]
+    /// So many samples of a sampled model in a steady wind, from one on: what unit numbers of `[z, w, ẇ]` become.
+    pub(super) fn samples(
+        &mut self,
+        section: &CoupledSection,
+        sampling: &mut Sampling,
+        wind: f64,
+        [step, count]: [f64; 2],
+    ) -> Result<&Packed> {
+        let key = [wind, step, count].map(f64::to_bits);
+        self.samples.get(key, || {
+            let alone = section.structure_alone();
+            let structure = pack(&c2d(&alone.a, &alone.b, step)?);
+            let (states, n) = (section.states(), alone.b.ncols());
+            let mut matrix = DMatrix::zeros(states, states + 2 * n);
+            for (j, mut column) in matrix.column_iter_mut().enumerate() {
+                let mut z = vec![0.0; states + 2 * n];
+                z[j] = 1.0;
+                let mut external = z.split_off(states);
+                for _ in 0..count as usize {
+                    let mut operand = [&z[..2 * n], &external].concat();
+                    for (w, held) in operand[2 * n..3 * n]
+                        .iter_mut()
+                        .zip(sampling.force(&z, wind))
+                    {
+                        *w += held;
+                    }
+                    apply(&structure, &operand, &mut z[..2 * n]);
+                    sampling.sample(&mut z);
+                    let (w, rates) = external.split_at_mut(n);
+                    w.iter_mut()
+                        .zip(rates)
+                        .for_each(|(w, rate)| *w += *rate * step);
                 }
-            }))
+                column.copy_from_slice(&z);
+            }
+            Ok(Packed::of(&matrix))
         })
     }
 }

@@ -1,6 +1,5 @@
 //! What goes into a step and what comes out of it.
 
-use super::gusts::GustCourse;
 use crate::error::{Error, Result, non_negative};
 
 /// A wind below zero by this part of the wind before it (of 1 m/s at least) is at rest: what rounding leaves of a ramp
@@ -14,6 +13,26 @@ pub fn wind_at_rest(speed_m_s: f64, before_m_s: f64) -> f64 {
     } else {
         speed_m_s
     }
+}
+
+/// Gusts over a piece of time, in each channel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GustCourse<'a> {
+    pub gust: &'a [f64],
+    pub rate: &'a [f64],
+    /// Time of the piece after that of `gust`, s.
+    pub after: f64,
+}
+
+impl GustCourse<'_> {
+    pub(super) fn at(&self, channel: usize, time: f64) -> f64 {
+        stated(self.gust, channel) + (self.after + time) * stated(self.rate, channel)
+    }
+}
+
+/// Gust of a channel.
+pub(super) fn stated(gusts: &[f64], channel: usize) -> f64 {
+    gusts.get(channel).copied().unwrap_or(0.0)
 }
 
 /// Wind speed and external forces at the start of a step, and their constant rates over it.

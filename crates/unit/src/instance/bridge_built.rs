@@ -35,17 +35,26 @@ impl Built {
         values: &[f64],
     ) -> Result<Self> {
         let mut bridge = options.bridge()?;
+        let mut as_exported = true;
         for (variable, value) in resources.table.variables().iter().zip(values) {
-            match variable.role {
-                Role::Section(SectionParameter::AirDensity) => bridge.air_density_kg_m3 = *value,
-                Role::ModeParameter(m, which) => match which {
-                    ModeParameter::Frequency => bridge.modes[m].frequency_hz = *value,
-                    ModeParameter::DampingRatio => bridge.modes[m].damping_ratio = *value,
-                },
-                _ => {}
-            }
+            let parameter = match variable.role {
+                Role::Section(SectionParameter::AirDensity) => &mut bridge.air_density_kg_m3,
+                Role::ModeParameter(m, ModeParameter::Frequency) => {
+                    &mut bridge.modes[m].frequency_hz
+                }
+                Role::ModeParameter(m, ModeParameter::DampingRatio) => {
+                    &mut bridge.modes[m].damping_ratio
+                }
+                _ => continue,
+            };
+            as_exported &= parameter.to_bits() == value.to_bits();
+            *parameter = *value;
         }
-        let (stepper, gusts) = options.stepper(&bridge)?;
+        let exported = resources.exported.as_ref().filter(|_| as_exported);
+        let (stepper, gusts) = match exported {
+            Some(exported) => exported.clone(),
+            None => options.stepper(&bridge)?,
+        };
         let turbulence = match (&resources.turbulence, &options.gusts) {
             (Some(field), Some(gusts)) => Some(field.channels(&bridge, gusts)?),
             _ => None,

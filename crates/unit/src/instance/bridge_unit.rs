@@ -17,6 +17,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::lifecycle::State;
+use crate::onset_start::OnsetStart;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
@@ -41,6 +42,8 @@ pub(super) struct BridgeUnit {
     roots: Vec<f64>,
     release_pending: bool,
     calculated: CalculatedNumbers,
+    /// Onset of the bridge as it was exported, until something follows from it.
+    start: Option<OnsetStart>,
     /// From which the onset of other parameters is followed.
     searched: Option<SearchedOnset>,
     warned: bool,
@@ -56,9 +59,6 @@ impl BridgeUnit {
     pub(super) fn new(resources: &Resources, options: &BridgeOptions) -> Result<Self> {
         let table = &resources.table;
         let built = Built::new(resources, options, &starts(table))?;
-        // without a start the first onset is searched for
-        let start = options.onset.as_ref();
-        let searched = start.and_then(|start| SearchedOnset::from(&built, start).ok());
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
         Ok(Self {
             places: CoupledPlaces::of_bridge(table, options)?,
@@ -75,10 +75,19 @@ impl BridgeUnit {
             stale: false,
             release_pending: true,
             calculated: CalculatedNumbers::new(&resources.table),
-            searched,
+            // without a start the first onset is searched for
+            start: options.onset,
+            searched: None,
             warned: false,
             outputs: Outputs::default(),
         })
+    }
+
+    /// Makes the start that came with the archive one to follow, as long as the bridge is the one that was exported.
+    fn take_start(&mut self) {
+        if let Some(start) = self.start.take() {
+            self.searched = SearchedOnset::from(&self.built, &start).ok();
+        }
     }
 
     /// Loads wind, and forces and gusts on the modes, without the turbulence of the archive.
@@ -286,7 +295,9 @@ impl Unit for BridgeUnit {
         memory: &mut Memory,
     ) -> Result<&mut dyn Differentiable> {
         if let (true, Some(options)) = (self.stale, &resources.bridge) {
-            self.built = Built::new(resources, options, &memory.values)?;
+            let built = Built::new(resources, options, &memory.values)?;
+            self.take_start();
+            self.built = built;
             self.stale = false;
         }
         if self.release_pending && memory.state == State::Initialization {
@@ -350,6 +361,7 @@ impl Prepared for BridgeUnit {
             return;
         }
         let limit = self.places.limit(memory);
+        self.take_start();
         let known = self.searched.as_ref();
         let followed = known.and_then(|known| known.followed(&mut self.built, limit));
         let card = match followed {

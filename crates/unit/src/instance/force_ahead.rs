@@ -65,13 +65,13 @@ impl ForceUnit {
         work.forces.clear();
         work.forces
             .resize(self.coordinates(), ForceAhead::default());
-        let each = work.flows.iter().zip(work.forces.chunks_mut(n));
-        for (s, (flow, forces)) in each.enumerate() {
-            self.forces
-                .ahead(state, s, flow, ahead_s, density, forces)?;
-            if let Some((strips, _)) = &self.gusts {
-                let of = strips.per_strip();
-                let strip = &gusts[s * of..(s + 1) * of];
+        let found = &mut work.forces;
+        self.forces
+            .ahead(state, &work.flows, ahead_s, density, found)?;
+        if let Some((strips, _)) = &self.gusts {
+            let each = work.flows.iter().zip(found.chunks_mut(n));
+            let each = each.zip(gusts.chunks(strips.per_strip()));
+            for (s, ((flow, forces), strip)) in each.enumerate() {
                 let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
                 let air = flow.in_air(wind, density);
                 strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);

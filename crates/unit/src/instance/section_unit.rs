@@ -252,6 +252,25 @@ impl Unit for SectionUnit {
         taken.then(|| self.rotation_news(memory))
     }
 
+    fn repeat_outputs(&mut self, memory: &mut Memory) -> bool {
+        let LoadedInputs::Repeatable(last) = &self.loaded else {
+            return false;
+        };
+        let found = self
+            .stepper
+            .repeat_outputs(&memory.system, &self.inputs, last.columns);
+        if !found.iter().all(|x| x.is_finite()) {
+            return false;
+        }
+        let (accelerations, forces) = found.split_at(self.responses.len());
+        let each = self.responses.iter().zip(accelerations.iter().zip(forces));
+        for (places, (acceleration, force)) in each {
+            memory.values[places[2]] = *acceleration;
+            memory.values[places[3]] = *force;
+        }
+        true
+    }
+
     fn held_output(&self, place: usize) -> Option<usize> {
         self.places.state_entry[place]
     }
@@ -281,10 +300,14 @@ impl Prepared for SectionUnit {
         let (stepper, inputs) = (&mut self.stepper, &self.inputs);
         stepper.outputs(&memory.system, inputs, &mut self.outputs)?;
         check_finite(&self.outputs)?;
+        let Outputs {
+            acceleration,
+            self_excited_force,
+            ..
+        } = &self.outputs;
         for (i, places) in self.responses.iter().enumerate() {
-            for (place, list) in places.iter().zip(self.outputs.lists()) {
-                memory.values[*place] = list[i];
-            }
+            memory.values[places[2]] = acceleration[i];
+            memory.values[places[3]] = self_excited_force[i];
         }
         Ok(())
     }

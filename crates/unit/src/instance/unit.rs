@@ -78,6 +78,12 @@ pub(super) trait Unit: Debug + Send {
         None
     }
 
+    /// Writes all outputs into the memory where nothing has been set since a step by [`repeat`](Self::repeat); false where that
+    /// needs [`Prepared::outputs`].
+    fn repeat_outputs(&mut self, _memory: &mut Memory) -> bool {
+        false
+    }
+
     /// Entry of the state of what is simulated that the output at `place` is, if it is one.
     fn held_output(&self, _place: usize) -> Option<usize> {
         None

@@ -45,6 +45,11 @@ impl Instance {
     /// Reads one that needs work, after which others may need none.
     #[inline(never)]
     fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> CallResult<()> {
+        if self.memory.state == State::StepComplete && !self.outputs_current {
+            self.outputs_current = self.unit.repeat_outputs(&mut self.memory);
+            let read = self.read_at_hand(references, values);
+            (references, values) = (&references[read..], &mut values[read..]);
+        }
         while let ([reference, others @ ..], [value, rest @ ..]) = (references, values) {
             *value = self.number(*reference, DataType::Real)?;
             let read = self.read_at_hand(others, rest);
@@ -72,14 +77,16 @@ impl Instance {
         let (place, access) = self.readable(reference, wanted)?;
         let (resources, memory) = (&self.resources, &mut self.memory);
         match access.source {
-            Source::Response if !self.outputs_current => {
+            Source::Response => {
                 let unit = self.unit.prepared(resources, memory)?;
                 // what is part of the state needs no output equation
                 if let Some(entry) = self.layout.held(place) {
                     return state_number(memory, entry);
                 }
-                unit.outputs(resources, memory)?;
-                self.outputs_current = true;
+                if !self.outputs_current {
+                    unit.outputs(resources, memory)?;
+                    self.outputs_current = true;
+                }
             }
             Source::Status => {
                 let Role::Computed(number) = resources.table.variables()[place].role else {

@@ -10,6 +10,7 @@ use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, StartValu
 use super::{bridge_states, computed_rows, dependencies};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
+use crate::response::Stepper;
 use crate::section::Dof;
 use crate::si;
 use crate::trained_model::TrainedModel;
@@ -18,9 +19,9 @@ use crate::trained_model::TrainedModel;
 pub(super) fn variables(
     model: &TrainedModel,
     options: &BridgeOptions,
+    stepper: &Stepper,
     turbulence: bool,
 ) -> Result<Vec<Variable>> {
-    let (stepper, _) = options.stepper(&options.bridge()?)?;
     let mut table = vec![wind_speed(model)];
     let named = 0..options.named.len();
     table.extend(
@@ -41,7 +42,7 @@ pub(super) fn variables(
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
     fill_dependencies(&mut table);
-    bridge_states::add(&mut table, options, &stepper)?;
+    bridge_states::add(&mut table, options, stepper)?;
     computed_rows::fill_dependencies(&mut table);
     if options.structure_alone {
         for variable in &mut table {

@@ -21,6 +21,9 @@ const FILTER_SIZE: f64 = 0.01;
 /// Smallest inertia per length, kg·m²/m.
 const SMALLEST_INERTIA: f64 = 1e-9;
 
+/// Variables of a section of five filters a motion, about: room for more is made.
+const USUAL_VARIABLES: usize = 80;
+
 /// All variables without their dependencies.
 pub(super) fn variables(
     model: &TrainedModel,
@@ -28,7 +31,9 @@ pub(super) fn variables(
     bounds: Option<OnsetBounds>,
 ) -> Result<Vec<Variable>> {
     let dofs = model.section.dofs();
-    let mut table = inputs(model, &dofs);
+    let realization = model.model.realize();
+    let mut table = Vec::with_capacity(USUAL_VARIABLES);
+    table.extend(inputs(model, &dofs));
     table.extend(
         gusts
             .iter()
@@ -43,10 +48,10 @@ pub(super) fn variables(
     table.extend(dofs.iter().flat_map(|&dof| initial_values(dof, model)));
     table.push(search_limit(model));
     table.extend(SEARCHED.iter().map(ComputedNumber::variable));
-    table.extend(constants(model, model.model.realize().states())?);
+    table.extend(constants(model, realization.states())?);
     table.extend(bounds.into_iter().flat_map(|b| onset_bounds(b, "section")));
     table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
-    if let Realization::Continuous(c) = model.model.realize() {
+    if let Realization::Continuous(c) = realization {
         let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
         table.extend((0..filters).flat_map(|i| filter(i, &format!("filter[{}]", i + 1))));
         let lag = |i| gust_filter(filters + i, &format!("gust_filter[{}]", i + 1));

@@ -9,7 +9,7 @@ pub(super) const NUMBERS: usize = 4;
 pub(super) const COEFFICIENTS: usize = 4;
 
 /// `c₀ + c₁ t + c₂ t² + c₃ t³`, with the time `t` from some instant on, s.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct MotionCubic([f64; COEFFICIENTS]);
 
 impl MotionCubic {

@@ -5,6 +5,7 @@ use super::filters::add_product;
 use super::{Airflow, ForceAhead, PrescribedForces};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
+use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -54,18 +55,17 @@ impl PrescribedForces {
 
     /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate.
     pub fn at_instant(
-        &mut self,
+        &self,
         filters: &[f64],
         motion: &[[f64; 3]],
         air: Airflow,
         forces: &mut [ForceAhead],
     ) {
-        self.courses.clear();
-        for (dof, now) in self.dofs.iter().zip(motion) {
-            self.courses
-                .push(MotionCubic::now(*now).times(dof.motion_scale(air.width_m)));
+        let mut courses = [MotionCubic::default(); Dof::THREE.len()];
+        for ((course, dof), now) in courses.iter_mut().zip(&self.dofs).zip(motion) {
+            *course = MotionCubic::now(*now).times(dof.motion_scale(air.width_m));
         }
-        self.forces(filters, air, forces);
+        self.forces(filters, &courses, air, forces);
     }
 
     /// `ż = (V/B)(A z + B r)` of a strip, 1/s; sampled filters have no rate.

@@ -38,7 +38,7 @@ fn take(
 fn ahead(forces: &mut PrescribedForces, state: &[f64], ahead_s: f64) -> [ForceAhead; 2] {
     let mut found = [ForceAhead::default(); 2];
     forces
-        .ahead(state, 0, &FLOW, ahead_s, DENSITY, &mut found)
+        .ahead(state, &[FLOW], ahead_s, DENSITY, &mut found)
         .unwrap();
     found
 }

@@ -1,0 +1,98 @@
+//! Products with matrices of which most entries are zero.
+
+use super::packed::{LANES, Packed};
+use nalgebra::DMatrix;
+
+/// A matrix of which most entries are zero, row by row.
+#[derive(Debug, Clone)]
+pub(super) struct Sparse {
+    /// Where the entries of each row end.
+    ends: Vec<usize>,
+    /// Column and entry.
+    entries: Vec<(usize, f64)>,
+}
+
+impl Sparse {
+    pub(super) fn of(m: &DMatrix<f64>) -> Self {
+        let (mut ends, mut entries) = (Vec::with_capacity(m.nrows()), Vec::new());
+        for row in m.row_iter() {
+            let filled = row.iter().enumerate().filter(|(_, x)| **x != 0.0);
+            entries.extend(filled.map(|(j, x)| (j, *x)));
+            ends.push(entries.len());
+        }
+        Self { ends, entries }
+    }
+
+    /// `y += W v`.
+    #[inline(always)]
+    pub(super) fn add(&self, v: impl Fn(usize) -> f64, y: &mut [f64]) {
+        let mut from = 0;
+        for (y, end) in y.iter_mut().zip(&self.ends) {
+            let mut sum = *y;
+            for (j, x) in &self.entries[from..*end] {
+                sum += x * v(*j);
+            }
+            (*y, from) = (sum, *end);
+        }
+    }
+
+    /// `Y = W V` for as many vectors as there are lanes.
+    #[inline(always)]
+    pub(super) fn set_lanes(&self, v: &[[f64; LANES]], y: &mut [[f64; LANES]]) {
+        y.fill([0.0; LANES]);
+        self.add_lanes(v, y);
+    }
+
+    /// `Y += W V`.
+    #[inline(always)]
+    pub(super) fn add_lanes(&self, v: &[[f64; LANES]], y: &mut [[f64; LANES]]) {
+        let mut from = 0;
+        for (y, end) in y.iter_mut().zip(&self.ends) {
+            let mut sums = *y;
+            for (j, x) in &self.entries[from..*end] {
+                for lane in 0..LANES {
+                    sums[lane] += x * v[*j][lane];
+                }
+            }
+            (*y, from) = (sums, *end);
+        }
+    }
+}
+
+/// Rows of a matrix that are multiplied one and all, because there are few of them.
+const FEW_ROWS: usize = 40;
+
+/// The equation of pressure and filters. Filters of a bridge hang together in short chains, one or a few for each mode, so
+/// that a product with their rows, taken by their links, costs modes × filters; on a section a row costs less than its links.
+#[derive(Debug, Clone)]
+pub(super) enum Linked {
+    Few(Packed),
+    /// Rows of which most entries count, and behind them those of the filters.
+    Many(Packed, Sparse),
+}
+
+impl Linked {
+    /// A matrix whose first `full` rows are full.
+    pub(super) fn of(matrix: &DMatrix<f64>, full: usize) -> Self {
+        let rest = matrix.nrows() - full;
+        if matrix.nrows() > FEW_ROWS {
+            let linked = Sparse::of(&matrix.rows(full, rest).into_owned());
+            Self::Many(Packed::of(&matrix.rows(0, full).into_owned()), linked)
+        } else {
+            Self::Few(Packed::of(matrix))
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&self, v: &[f64], y: &mut [f64]) {
+        match self {
+            Self::Few(matrix) => matrix.set(v, y),
+            Self::Many(full, linked) => {
+                let (first, rest) = y.split_at_mut(full.rows);
+                full.set(v, first);
+                rest.fill(0.0);
+                linked.add(|j| v[j], rest);
+            }
+        }
+    }
+}
