@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::section::Dof;
 use crate::signal::mean;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Fourier frequencies on either side of the motion that tell the noise there: at least and at most.
@@ -198,17 +198,16 @@ fn noise_level(rest: &[f64], periods: usize) -> f64 {
     let reach = (periods / 2).clamp(NEIGHBOURS.0, NEIGHBOURS.1);
     // the first Fourier frequency is gone with the trend
     let bins = periods.saturating_sub(reach).max(2)..=(periods + reach).min(n / 2);
-    let levels: Vec<f64> = bins
-        .filter(|b| *b != periods)
-        .map(|b| {
-            let step = nalgebra::Complex::from_polar(1.0, -TAU * b as f64 / n as f64);
-            // Horner's rule from the last sample backwards
-            let sum = rest
-                .iter()
-                .rev()
-                .fold(nalgebra::Complex::new(0.0, 0.0), |sum, e| sum * step + e);
-            sum.norm_sqr() / n as f64
-        })
-        .collect();
-    mean(&levels)
+    let bins = bins.filter(|b| *b != periods);
+    let steps = bins.map(|b| Complex::from_polar(1.0, -TAU * b as f64 / n as f64));
+    let (re, im): (Vec<f64>, Vec<f64>) = steps.map(|step| (step.re, step.im)).unzip();
+    let mut sums = vec![[0.0; 2]; re.len()];
+    // Horner's rule from the last sample backwards, for all bins side by side
+    for e in rest.iter().rev() {
+        for (sum, (re, im)) in sums.iter_mut().zip(re.iter().zip(&im)) {
+            *sum = [sum[0] * re - sum[1] * im + e, sum[0] * im + sum[1] * re];
+        }
+    }
+    let level = |[re, im]: &[f64; 2]| (re * re + im * im) / n as f64;
+    mean(&sums.iter().map(level).collect::<Vec<_>>())
 }

@@ -8,6 +8,7 @@ use crate::signal::{
 };
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordHeader, RecordSource};
+use rayon::prelude::*;
 
 /// Harmonics of a driven motion: a rig is not perfectly linear.
 const HARMONICS: usize = 3;
@@ -69,9 +70,18 @@ pub(super) fn collect(
         let header = record.header();
         check(header, first)?;
         let Record { motion, force, .. } = Record::whole(*record)?;
-        let channels = [motion, force].concat();
-        for i in 0..header.segments.len() {
-            match stretch(header, &channels, i, options)? {
+        let channels: Vec<Vec<f64>> = motion.into_iter().chain(force).collect();
+        if !header.segments.is_empty() {
+            refuse_gaps(header, &channels)?;
+        }
+        let segments = (0..header.segments.len()).into_par_iter();
+        let stretches = segments.map(|i| stretch(header, &channels, i, options));
+        for (i, stretch) in stretches
+            .collect::<Result<Vec<_>>>()?
+            .into_iter()
+            .enumerate()
+        {
+            match stretch {
                 Some(stretch) => insert(&mut points.groups, stretch, options),
                 None => points.warnings.push(format!(
                     "record {}: no whole period of steady motion at {:.3} Hz",
@@ -117,7 +127,6 @@ fn stretch(
     segment: usize,
     options: &DerivativeOptions,
 ) -> Result<Option<TestRun>> {
-    refuse_gaps(header, channels)?;
     let Some(steady) = SteadyMotion::find(header, channels, segment, options)? else {
         return Ok(None);
     };
