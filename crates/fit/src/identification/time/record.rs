@@ -231,13 +231,7 @@ impl DimensionlessRecord {
         if ratio <= 1.0 + 1e-9 {
             return Ok((None, self.step_s));
         }
-        let mut channels = vec![Vec::with_capacity(self.signals.len()); 2 * self.signals.dofs()];
-        self.signals.for_each_block(|block| {
-            for (all, part) in channels.iter_mut().zip(&block.channels) {
-                all.extend_from_slice(part);
-            }
-            Ok(())
-        })?;
+        let channels = self.signals.range(0..self.signals.len())?;
         let channels: Vec<Vec<f64>> = channels.iter().map(|c| resampled(c, ratio)).collect();
         let mut signals = SignalWriter::new(self.signals.dofs());
         signals.extend(channels[0].len(), |c, k| channels[c][k])?;

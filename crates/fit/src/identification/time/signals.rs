@@ -4,6 +4,7 @@
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Rows of a block: a multiple of what is factored together.
@@ -150,6 +151,39 @@ impl Signals {
                 Ok(())
             }
         }
+    }
+
+    /// All channels over some of the samples.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that cannot be read.
+    pub(crate) fn range(&self, samples: Range<usize>) -> Result<Vec<Vec<f64>>> {
+        let mut channels = vec![Vec::with_capacity(samples.len()); 2 * self.dofs];
+        let mut take = |block: &SignalBlock| {
+            let end = block.first + block.rows();
+            let part = samples.start.max(block.first)..samples.end.min(end);
+            for (all, channel) in channels.iter_mut().zip(&block.channels) {
+                let part =
+                    part.start.min(end) - block.first..part.end.max(block.first) - block.first;
+                all.extend_from_slice(channel.get(part).unwrap_or_default());
+            }
+        };
+        let first = samples.start / SIGNAL_ROWS;
+        match &self.store {
+            Store::Memory(blocks) => {
+                let within = blocks.iter().skip(first);
+                within.take_while(|b| b.first < samples.end).for_each(take);
+            }
+            Store::File(file) => {
+                let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+                let end = samples.end.min(self.rows);
+                for first in (first * SIGNAL_ROWS..end).step_by(SIGNAL_ROWS) {
+                    self.read(file, first, &mut block, &mut bytes)?;
+                    take(&block);
+                }
+            }
+        }
+        Ok(channels)
     }
 
     /// Replaces every block by what `f` makes of it.
