@@ -136,11 +136,12 @@ impl Problem {
             .collect::<Option<Vec<_>>>()?;
         // W⁻¹ rows
         let mut scaled = self.rows.clone();
-        for (&(first, count), scaling) in self.spans.iter().zip(&scalings) {
-            for mut column in scaled.column_iter_mut() {
-                let v: Vector = from_fn(|r| if r < count { column[first + r] } else { 0.0 });
-                let v = scaling.divide(&v);
-                column.rows_mut(first, count).copy_from_slice(&v[..count]);
+        let rows = scaled.nrows().max(1);
+        for column in scaled.as_mut_slice().chunks_exact_mut(rows) {
+            for (&(first, count), scaling) in self.spans.iter().zip(&scalings) {
+                let part = &mut column[first..first + count];
+                let v = scaling.divide(&from_fn(|r| part.get(r).copied().unwrap_or(0.0)));
+                part.copy_from_slice(&v[..count]);
             }
         }
         let system = Weighted::new(&scaled)?;
@@ -310,8 +311,11 @@ impl pulp::NullaryFnOnce for TransposedTimes<'_> {
     #[inline(always)]
     fn call(self) -> DVector<f64> {
         let columns = self.rows.as_slice().chunks_exact(self.rows.nrows().max(1));
-        let products = columns.map(|c| in_eight_parts(c, self.y.as_slice()));
-        DVector::from_iterator(self.rows.ncols(), products)
+        let mut products = DVector::zeros(self.rows.ncols());
+        for (product, column) in products.iter_mut().zip(columns) {
+            *product = in_eight_parts(column, self.y.as_slice());
+        }
+        products
     }
 }
 
