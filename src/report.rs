@@ -13,6 +13,7 @@ mod first_order_figures;
 mod flutter_figures;
 mod font;
 mod geometry;
+mod growth_figure;
 mod heat_map;
 mod labels;
 mod legend;
@@ -41,6 +42,7 @@ pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure
 pub use figure::Figure;
 pub use first_order_figures::{ThesisFigure, first_order_figures};
 pub use flutter_figures::vf_vg_figure;
+pub use growth_figure::{GrowthPanel, growth_figure};
 pub(crate) use heat_map::{HeatMap, heat_map_figure};
 pub(crate) use metrics_figure::{MetricPanel, metrics_figure};
 pub(crate) use processing_figures::processing_figure;

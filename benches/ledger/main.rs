@@ -5,6 +5,8 @@
 //! - `cargo bench -- NAME …` runs the entry of this name, or all whose names begin so; `-- --list` names them.
 //! - `cargo bench -- --count` counts instructions under valgrind and peak memory, and fails where more is used than
 //!   `benches/instructions.json` has; `-- --count --store` writes that file, `-- --count NAME` counts some.
+//! - `cargo bench -- --growth` measures how cost grows with size, and prints a table; `-- --growth --write` also writes it to
+//!   `docs/performance.md`, with `docs/growth.svg`; `-- --growth NAME …` measures some curves.
 //!
 //! Every entry is timed, counted and weighed in a process of its own, which this program starts from itself: so peaks are
 //! its own, and the number of threads holds for it alone.
@@ -15,6 +17,7 @@ mod baseline;
 mod bridges;
 mod counting;
 mod entry;
+mod growth;
 mod jobs;
 mod peak;
 mod performance;
@@ -61,11 +64,14 @@ fn run(words: &[&str]) -> Result<(), String> {
         }
         ["--time", name] => timing::print(registry::named(name)?),
         ["--peak", name] => peak::print(registry::named(name)?),
+        ["--point", name, size] => growth::print_point(name, size),
+        ["--growth", "--write"] => growth::run(&[], true),
+        ["--growth", names @ ..] => growth::run(names, false),
         ["--count", "--store"] => counting::store(),
         ["--count", names @ ..] => counting::judge(&chosen(names)?),
         ["--write"] => {
             let head = performance::head();
-            performance::write(&head, &table::print(&chosen(&[])?)?)
+            performance::write("ledger", &head, &table::print(&chosen(&[])?)?)
         }
         names => table::print(&chosen(names)?).map(drop),
     }

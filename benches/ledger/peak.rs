@@ -27,8 +27,9 @@ pub(crate) fn print(entry: &Entry) -> Result<(), String> {
     Ok(())
 }
 
+/// Largest resident memory of this process or of one that it started, MiB.
 #[cfg(all(unix, target_pointer_width = "64"))]
-fn peak_mib() -> Option<f64> {
+pub(crate) fn peak_mib() -> Option<f64> {
     use std::ffi::{c_int, c_long};
     /// `struct rusage`: two times, then the maximum and thirteen counters.
     #[repr(C)]
@@ -62,6 +63,6 @@ fn peak_mib() -> Option<f64> {
 }
 
 #[cfg(not(all(unix, target_pointer_width = "64")))]
-fn peak_mib() -> Option<f64> {
+pub(crate) fn peak_mib() -> Option<f64> {
     None
 }

@@ -4,19 +4,18 @@ use crate::stored::compiler;
 use std::path::Path;
 use std::process::Command;
 
-const BEGIN: &str = "<!-- ledger:begin -->\n";
-const END: &str = "<!-- ledger:end -->";
-
-/// Puts the table in its place, with a head above it.
-pub(crate) fn write(head: &str, table: &str) -> Result<(), String> {
+/// Puts a table in its place, with a head above it.
+pub(crate) fn write(place: &str, head: &str, table: &str) -> Result<(), String> {
+    let begin = format!("<!-- {place}:begin -->\n");
+    let end = format!("<!-- {place}:end -->");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/performance.md");
     let said = |e: std::io::Error| format!("{}: {e}", path.display());
     let page = std::fs::read_to_string(&path).map_err(said)?;
     let parts = page
-        .split_once(BEGIN)
-        .and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+        .split_once(&begin)
+        .and_then(|(before, rest)| Some((before, rest.split_once(&end)?.1)));
     let (before, after) = parts.ok_or_else(|| format!("{}: no markers", path.display()))?;
-    let text = format!("{before}{BEGIN}\n{head}\n\n{table}\n{END}{after}");
+    let text = format!("{before}{begin}\n{head}\n\n{table}\n{end}{after}");
     std::fs::write(&path, text).map_err(said)
 }
 

@@ -85,23 +85,33 @@ fn cells(entry: &Entry, stored: &Stored) -> Result<[String; 8], String> {
 
 /// Median with least and most, in one unit.
 fn words(s: Seconds) -> String {
-    let (factor, unit) = match s.median {
+    let number = |x| in_unit_of(s.median, x);
+    let (unit, median) = (unit(s.median).1, number(s.median));
+    format!(
+        "{median} {unit} ({} to {})",
+        number(s.least),
+        number(s.most)
+    )
+}
+
+/// A time in the unit that it is read in.
+pub(crate) fn time_in_words(seconds: f64) -> String {
+    format!("{} {}", in_unit_of(seconds, seconds), unit(seconds).1)
+}
+
+fn unit(seconds: f64) -> (f64, &'static str) {
+    match seconds {
         m if m < 1e-6 => (1e9, "ns"),
         m if m < 1e-3 => (1e6, "µs"),
         m if m < 1.0 => (1e3, "ms"),
         _ => (1.0, "s"),
-    };
-    let number = |x: f64| {
-        let x = x * factor;
-        let decimals = 2_usize.saturating_sub(x.abs().log10().floor().max(0.0) as usize);
-        format!("{x:.decimals$}")
-    };
-    format!(
-        "{} {unit} ({} to {})",
-        number(s.median),
-        number(s.least),
-        number(s.most)
-    )
+    }
+}
+
+fn in_unit_of(median: f64, seconds: f64) -> String {
+    let x = seconds * unit(median).0;
+    let decimals = 2_usize.saturating_sub(x.abs().log10().floor().max(0.0) as usize);
+    format!("{x:.decimals$}")
 }
 
 /// Digits by threes.

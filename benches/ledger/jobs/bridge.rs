@@ -205,7 +205,7 @@ pub(crate) fn buffeting() -> Job {
 }
 
 /// A beam of 1000 m on the flat plate: half sines, a third of the modes vertical, lateral and torsional each.
-fn beam(nodes: usize, modes: usize) -> Bridge {
+pub(crate) fn beam(nodes: usize, modes: usize) -> Bridge {
     let along: Vec<f64> = (0..nodes)
         .map(|i| 1000.0 * i as f64 / (nodes - 1) as f64)
         .collect();
@@ -241,7 +241,8 @@ fn beam(nodes: usize, modes: usize) -> Bridge {
     Bridge::new("beam", 1.25, all, modes, vec![group]).expect("a bridge")
 }
 
-fn problem(bridge: &Bridge) -> SpanProblem<'_> {
+/// Turbulence along and across it.
+pub(crate) fn problem(bridge: &Bridge) -> SpanProblem<'_> {
     let gust = |length_m, intensity| {
         Some(Gust {
             spectrum: GustSpectrum {

@@ -1,5 +1,6 @@
 //! Fits to records: of one short record, of a full set, of hours, of a grid.
 
+use super::growth::finding;
 use super::models::{POLE, folder, full_set, laguerre, records, records_as_json, sources};
 use crate::entry::Job;
 use aerodeck::flutter::OnsetSearch;
@@ -112,11 +113,10 @@ fn continuous_axis() -> GridAxis {
 
 /// All models of the grid with their residuals.
 fn grid(axis: GridAxis) -> Job {
-    let records = full_set();
-    Job::new(move || {
-        let grid = Grid::new(&sources(&records), axis.clone(), FILTERS, &|_| ()).expect("a grid");
+    finding(full_set(), move |records| {
+        let grid = Grid::new(&sources(records), axis.clone(), FILTERS, &|_| ())?;
         let fits = |value| grid.fits(value, &|_| true);
-        black_box((0..VALUES).into_par_iter().map(fits).collect::<Vec<_>>());
+        Ok((0..VALUES).into_par_iter().map(fits).collect::<Vec<_>>())
     })
 }
 

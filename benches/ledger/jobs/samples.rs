@@ -1,5 +1,6 @@
 //! Onsets of many random sections.
 
+use super::growth::finding;
 use super::models::{SPEED_MAX_M_S, by_filters, rows};
 use crate::entry::Job;
 use aerodeck::aerodynamics::{LaguerreModel, Realizable, Realization};
@@ -40,13 +41,11 @@ distribution = { kind = "uniform", lower = 1.15, upper = 1.28 }
 "#;
 
 /// Random numbers, section, onset and tally of a whole analysis.
-fn analysis(samples: usize) -> Job {
+pub(crate) fn analysis(samples: usize) -> Job {
     let mut plan = MonteCarloPlan::from_toml(PLAN, "".into()).expect("a plan");
     plan.samples = samples;
     let trained = by_filters(LEAST_CHOSEN);
-    Job::new(move || {
-        black_box(monte_carlo(&plan, &trained, &|_, _| ()).expect("an analysis"));
-    })
+    finding(plan, move |plan| monte_carlo(plan, &trained, &|_, _| ()))
 }
 
 pub(crate) fn thousand() -> Job {

@@ -165,12 +165,16 @@ const STRIP_STEP_S: f64 = 0.02;
 
 /// Motion of all strips set, one step, all forces read.
 pub(crate) fn strips() -> Job {
+    strips_of(STRIPS.into())
+}
+
+pub(crate) fn strips_of(strips: u64) -> Job {
     let mut options = ForceOptions::single(0.5);
-    options.strips = vec![options.strips[0].clone(); STRIPS as usize];
+    options.strips = vec![options.strips[0].clone(); strips as usize];
     options.named_strips = true;
     let mut unit = running(Some(&options.to_json().expect("options")));
     let names = |of: &str| {
-        (1..=STRIPS)
+        (1..=strips)
             .map(|i| format!("strip[{i}].{of}"))
             .collect::<Vec<_>>()
     };

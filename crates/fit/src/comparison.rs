@@ -26,6 +26,7 @@ mod dtw;
 pub mod forces;
 mod morlet;
 mod phase;
+mod scalogram;
 mod stationarity;
 mod surrogates;
 mod wavelet;

@@ -1,15 +1,17 @@
 //! Metric of quadratic phase coupling.
 
 use super::amplitude::distance_metric;
-use super::morlet::{Morlet, WaveletParameters};
+use super::morlet::{Morlet, RowBuffer, WaveletParameters};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, non_negative, positive};
-use crate::signal::random_stream;
+use crate::signal::{mean_and_deviation, random_stream};
+use nalgebra::DMatrix;
 use rand::Rng;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 use serde::Serialize;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 /// Parameters of [`bicoherence`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -75,7 +77,7 @@ pub struct BicoherenceDetails {
 /// `f₁ ≤ f₂ ≤ f_max/2`; all pairs share the random factors of a surrogate. Samples inside the cone of influence of
 /// `f₁` count. No coupling in either signal gives 1, in one of them 0.
 ///
-/// Memory: `W` at all levels up to `f_max/2` and their sums, 24 bytes per level and sample, and 16 bytes per
+/// Memory: `W` at all levels up to `f_max/2` and their sums, 96 bytes per level and sample, and 16 bytes per
 /// surrogate and sample.
 ///
 /// # Errors
@@ -148,8 +150,18 @@ struct Plane {
     time_step_s: f64,
     /// `R(t)`.
     factors: Vec<f64>,
-    /// `e^{iφ(1 + R(t))}` of each surrogate.
-    surrogates: Vec<Vec<Complex64>>,
+    /// `e^{−2πiR(t)}`: what a biphase beyond π is turned back by.
+    turns: Vec<Complex64>,
+    /// `e^{iφ(1 + R(t))}` of each surrogate, real and imaginary part, a column each.
+    surrogates: DMatrix<f64>,
+}
+
+/// `W` at one level over time, in the parts of which the triple products consist.
+struct Row {
+    modulus: Vec<f64>,
+    argument: Vec<f64>,
+    /// `W e^{iR arg W}`: times one another they are `W W W* e^{iRβ}`, up to whole turns of the biphase β.
+    randomised: Vec<Complex64>,
 }
 
 impl Plane {
@@ -176,14 +188,20 @@ impl Plane {
             frequency_max_hz: first_hz + (level_count - 1) as f64 * whole.frequency_step_hz(),
             ..parameters.wavelet
         };
+        let (randomised, _) = factors(parameters, 0, count);
+        let streams = 1..=parameters.surrogate_count as u64;
+        let columns = streams.flat_map(|stream| surrogate(parameters, stream, count));
+        let columns = columns.collect();
         Ok(Self {
             single: Morlet::new(&grid(level_count, lowest), count, step)?,
             sums: Morlet::new(&grid(2 * level_count - 1, 2.0 * lowest), count, step)?,
             time_step_s: step,
-            factors: factors(parameters, 0, count).0,
-            surrogates: (1..=parameters.surrogate_count as u64)
-                .map(|stream| surrogate(parameters, stream, count))
+            turns: randomised
+                .iter()
+                .map(|r| Complex64::cis(-TAU * r))
                 .collect(),
+            factors: randomised,
+            surrogates: DMatrix::from_vec(count, 2 * parameters.surrogate_count, columns),
         })
     }
 
@@ -195,30 +213,15 @@ impl Plane {
 
     /// `B` of all pairs, zero where it is not above the threshold, and the threshold.
     fn thresholded(&self, signal: &[f64], parameters: &BicoherenceParameters) -> (Vec<f64>, f64) {
-        let rows = |plan: &Morlet| -> Vec<Vec<Complex64>> {
-            let spectrum = plan.spectrum(signal);
-            plan.by_groups(|levels| {
-                levels
-                    .map(|level| {
-                        let [row] = plan.rows(level, [&spectrum]);
-                        row
-                    })
-                    .collect::<Vec<_>>()
-            })
-            .concat()
-        };
-        let (single, sums) = (rows(&self.single), rows(&self.sums));
-        let cells: Vec<(usize, usize)> = self.cells().collect();
-        let values: Vec<[f64; 2]> = cells
-            .into_par_iter()
-            .map(|(i, j)| {
-                let inside = self.single.inside(i);
-                let products = inside
-                    .clone()
-                    .map(|t| single[i][t] * single[j][t] * sums[i + j][t].conj());
-                self.bispectrum(inside.start, products, parameters)
-            })
+        let (single, sums) = (
+            self.rows(&self.single, signal),
+            self.rows(&self.sums, signal),
+        );
+        let first = (0..single.len()).into_par_iter();
+        let values: Vec<Vec<[f64; 2]>> = first
+            .map(|i| self.bispectra(i, &single[i..], &sums[2 * i..], parameters))
             .collect();
+        let values = values.concat();
         let threshold = values.iter().fold(0.0_f64, |m, v| m.max(v[1]));
         let kept = values
             .iter()
@@ -227,36 +230,77 @@ impl Plane {
         (kept, threshold)
     }
 
-    /// `B` of one pair and the level its surrogates reach; the triple products start at sample `first`.
-    fn bispectrum(
+    /// All levels of a signal.
+    fn rows(&self, plan: &Morlet, signal: &[f64]) -> Vec<Row> {
+        let randomised = |(w, r): (&Complex64, &f64)| w * Complex64::cis(r * w.arg());
+        let groups = plan.by_groups(|group| {
+            let (spectrum, mut buffer) = (group.spectrum(signal), RowBuffer::default());
+            let mut row = |level| {
+                let w = group.row(&group.kernel(level), &spectrum, &mut buffer);
+                Row {
+                    modulus: w.iter().map(|w| w.norm()).collect(),
+                    argument: w.iter().map(|w| w.arg()).collect(),
+                    randomised: w.iter().zip(&self.factors).map(randomised).collect(),
+                }
+            };
+            group.levels.clone().map(&mut row).collect::<Vec<_>>()
+        });
+        groups.into_iter().flatten().collect()
+    }
+
+    /// `B` of the pairs of level `i` with itself and those above, and the level their surrogates reach. `single` are the levels
+    /// from `i` on, `sums` those of their sums with `i`.
+    fn bispectra(
         &self,
-        first: usize,
-        products: impl Iterator<Item = Complex64>,
+        i: usize,
+        single: &[Row],
+        sums: &[Row],
         parameters: &BicoherenceParameters,
-    ) -> [f64; 2] {
-        let mut sum = Complex64::default();
-        let mut moduli = Vec::new();
-        for (product, factor) in products.zip(&self.factors[first..]) {
-            let (modulus, biphase) = product.to_polar();
-            sum += Complex64::from_polar(modulus, biphase * (1.0 + factor));
-            moduli.push(modulus);
-        }
-        let (mut mean, mut squares) = (0.0, 0.0);
-        for (index, surrogate) in self.surrogates.iter().enumerate() {
-            let sum: Complex64 = moduli
+    ) -> Vec<[f64; 2]> {
+        let inside = self.single.inside(i);
+        let pairs = || single.iter().zip(sums);
+        // a row for each pair: the moduli of its triple products
+        let moduli = DMatrix::from_iterator(
+            single.len(),
+            inside.len(),
+            inside.clone().flat_map(|t| {
+                let modulus =
+                    move |(b, c): (&Row, &Row)| single[0].modulus[t] * b.modulus[t] * c.modulus[t];
+                pairs().map(modulus)
+            }),
+        );
+        let sums = moduli * self.surrogates.rows_range(inside.clone());
+        let levels = sums.row_iter().map(|row| {
+            let parts: Vec<f64> = row.iter().copied().collect();
+            let (pairs, _) = parts.as_chunks::<2>();
+            let roots = pairs
                 .iter()
-                .zip(&surrogate[first..])
-                .map(|(m, z)| z * m)
-                .sum();
-            let root = sum.norm() * self.time_step_s;
-            // Welford's recurrence.
-            let step = root - mean;
-            mean += step / (index + 1) as f64;
-            squares += step * (root - mean);
-        }
-        let deviation = (squares / (self.surrogates.len() - 1) as f64).sqrt();
-        let level = mean + parameters.threshold_deviations * deviation;
-        [(sum.norm() * self.time_step_s).powi(2), level * level]
+                .map(|[re, im]| re.hypot(*im) * self.time_step_s);
+            let (mean, deviation) = mean_and_deviation(roots);
+            (mean + parameters.threshold_deviations * deviation).powi(2)
+        });
+        let own = pairs().map(|(b, c)| {
+            let sum = self.randomised_sum(inside.clone(), [&single[0], b, c]);
+            (sum.norm() * self.time_step_s).powi(2)
+        });
+        own.zip(levels).map(|(own, level)| [own, level]).collect()
+    }
+
+    /// `Σ_t W W W* e^{iRβ}` of two levels and that of their sum.
+    fn randomised_sum(&self, inside: Range<usize>, [a, b, c]: [&Row; 3]) -> Complex64 {
+        let product = |t: usize| {
+            let product = a.randomised[t] * b.randomised[t] * c.randomised[t].conj();
+            let biphase = a.argument[t] + b.argument[t] - c.argument[t];
+            // the biphase lies between −π and π
+            if biphase > PI {
+                product * self.turns[t]
+            } else if biphase <= -PI {
+                product * self.turns[t].conj()
+            } else {
+                product
+            }
+        };
+        inside.map(product).sum()
     }
 }
 
@@ -271,12 +315,11 @@ fn factors(parameters: &BicoherenceParameters, stream: u64, count: usize) -> (Ve
     (factors, biphase)
 }
 
-fn surrogate(parameters: &BicoherenceParameters, stream: u64, count: usize) -> Vec<Complex64> {
+/// `e^{iφ(1 + R(t))}`: all real parts, then all imaginary ones.
+fn surrogate(parameters: &BicoherenceParameters, stream: u64, count: usize) -> Vec<f64> {
     let (factors, biphase) = factors(parameters, stream, count);
-    factors
-        .into_iter()
-        .map(|factor| Complex64::from_polar(1.0, biphase * (1.0 + factor)))
-        .collect()
+    let of = |part: fn(f64) -> f64| factors.iter().map(move |r| part(biphase * (1.0 + r)));
+    of(f64::cos).chain(of(f64::sin)).collect()
 }
 
 #[cfg(test)]

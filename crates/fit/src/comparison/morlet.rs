@@ -7,6 +7,7 @@ use rustfft::num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Parameters of the wavelet transform.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -48,8 +49,27 @@ pub(super) struct Morlet {
     parameters: WaveletParameters,
     sample_count: usize,
     time_step_s: f64,
-    fourier: Fourier,
+    /// Transforms of the groups of levels, each long enough for the longest wavelet of its own.
+    fourier: Vec<Arc<Fourier>>,
 }
+
+/// Levels that are computed together.
+pub(super) struct LevelGroup<'a> {
+    plan: &'a Morlet,
+    fourier: &'a Fourier,
+    /// Consecutive levels.
+    pub levels: Range<usize>,
+}
+
+/// Memory of [`LevelGroup::row`], kept from one level and signal to the next.
+#[derive(Default)]
+pub(super) struct RowBuffer {
+    values: Vec<Complex64>,
+    scratch: Vec<Complex64>,
+}
+
+/// Levels in a group.
+const GROUP: usize = 16;
 
 impl Morlet {
     /// For signals of `sample_count` samples.
@@ -63,15 +83,20 @@ impl Morlet {
         time_step_s: f64,
     ) -> Result<Self> {
         check(parameters, time_step_s)?;
-        let longest = half_width(parameters, parameters.frequency_min_hz, time_step_s);
-        // Kernels beyond the record multiply nothing; with this size the ends do not wrap into it.
-        let size = (sample_count + longest.min(sample_count - 1)).next_power_of_two();
-        let plan = Self {
+        let mut plan = Self {
             parameters: *parameters,
             sample_count,
             time_step_s,
-            fourier: Fourier::new(size),
+            fourier: Vec::new(),
         };
+        for first in (0..plan.level_count()).step_by(GROUP) {
+            // with this length the ends do not wrap into the record
+            let length = quick_length(sample_count + plan.half_width(first));
+            let same = plan.fourier.last().filter(|f| f.length() == length);
+            let transform = same.cloned();
+            let transform = transform.unwrap_or_else(|| Arc::new(Fourier::new(length)));
+            plan.fourier.push(transform);
+        }
         if plan.inside(plan.level_count() - 1).is_empty() {
             return Err(Error::input(
                 "signals for the wavelet transform",
@@ -125,64 +150,82 @@ impl Morlet {
         start.min(end)..end
     }
 
-    /// Spectrum of a signal, as [`Self::rows`] wants it.
-    pub(super) fn spectrum(&self, signal: &[f64]) -> Vec<Complex64> {
-        self.fourier.spectrum(signal.iter().copied())
+    /// Samples of the wavelet of a level on each side of its centre; those beyond the record multiply nothing.
+    fn half_width(&self, level: usize) -> usize {
+        let p = &self.parameters;
+        let scale = p.central_frequency / self.frequency_hz(level);
+        ((p.truncation * scale / SQRT_2 / self.time_step_s) as usize).min(self.sample_count - 1)
     }
 
-    /// Coefficients of several signals at one level: one row of `sample_count` values per spectrum.
-    pub(super) fn rows<const N: usize>(
-        &self,
-        level: usize,
-        spectra: [&[Complex64]; N],
-    ) -> [Vec<Complex64>; N] {
-        let mut kernel = self.kernel(level);
-        self.fourier.forward(&mut kernel);
-        spectra.map(|spectrum| {
-            let mut row: Vec<Complex64> = kernel.iter().zip(spectrum).map(|(k, x)| k * x).collect();
-            self.fourier.inverse(&mut row);
-            row.truncate(self.sample_count);
-            row
-        })
+    /// The groups of levels, in their order.
+    pub(super) fn groups(&self) -> impl ExactSizeIterator<Item = LevelGroup<'_>> {
+        (0..self.fourier.len()).map(|g| self.group(g))
     }
 
-    /// Wavelet of a level, its time 0 at index 0 and negative times at the end, scaled by `Δt/(√a M)`
-    /// (M for the transform back).
-    fn kernel(&self, level: usize) -> Vec<Complex64> {
-        let f = self.frequency_hz(level);
-        let scale = self.parameters.central_frequency / f;
-        let half = half_width(&self.parameters, f, self.time_step_s).min(self.sample_count - 1);
-        let factor =
-            PI.powf(-0.25) * self.time_step_s / scale.sqrt() / self.fourier.length() as f64;
-        let mut kernel = vec![Complex64::default(); self.fourier.length()];
-        for k in 0..=half {
-            let time = k as f64 * self.time_step_s;
-            let envelope = factor * (-0.5 * (time / scale).powi(2)).exp();
-            let value = Complex64::from_polar(envelope, TAU * f * time);
-            kernel[k] = value;
-            if k > 0 {
-                kernel[self.fourier.length() - k] = value.conj();
-            }
+    fn group(&self, g: usize) -> LevelGroup<'_> {
+        LevelGroup {
+            plan: self,
+            fourier: &self.fourier[g],
+            levels: g * GROUP..((g + 1) * GROUP).min(self.level_count()),
         }
-        kernel
     }
 
     /// `work` on groups of levels, in parallel; results in the order of the levels, so that sums over them do
     /// not depend on the number of threads.
-    pub(super) fn by_groups<T: Send>(&self, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-        const GROUP: usize = 16;
-        let count = self.level_count();
-        (0..count.div_ceil(GROUP))
-            .into_par_iter()
-            .map(|g| work(g * GROUP..((g + 1) * GROUP).min(count)))
-            .collect()
+    pub(super) fn by_groups<T: Send>(&self, work: impl Fn(LevelGroup<'_>) -> T + Sync) -> Vec<T> {
+        let groups = (0..self.fourier.len()).into_par_iter();
+        groups.map(|g| work(self.group(g))).collect()
     }
 }
 
-/// Samples of the wavelet on each side of its centre.
-fn half_width(parameters: &WaveletParameters, frequency_hz: f64, time_step_s: f64) -> usize {
-    let scale = parameters.central_frequency / frequency_hz;
-    (parameters.truncation * scale / SQRT_2 / time_step_s) as usize
+impl LevelGroup<'_> {
+    /// Spectrum of a signal, as [`Self::row`] wants it.
+    pub(super) fn spectrum(&self, signal: &[f64]) -> Vec<Complex64> {
+        self.fourier.spectrum(signal.iter().copied())
+    }
+
+    /// Coefficients of a signal at the level of a kernel.
+    pub(super) fn row<'b>(
+        &self,
+        kernel: &[f64],
+        spectrum: &[Complex64],
+        buffer: &'b mut RowBuffer,
+    ) -> &'b [Complex64] {
+        let RowBuffer { values, scratch } = buffer;
+        values.clear();
+        values.extend(kernel.iter().zip(spectrum).map(|(k, x)| x * k));
+        self.fourier.inverse_in(values, scratch);
+        &values[..self.plan.sample_count]
+    }
+
+    /// Spectrum of the wavelet of a level, scaled by `Δt/(√a M)` (M for the transform back). It is real: at negative times,
+    /// which stand at the end, the wavelet is the conjugate of itself.
+    pub(super) fn kernel(&self, level: usize) -> Vec<f64> {
+        let (plan, length) = (self.plan, self.fourier.length());
+        let f = plan.frequency_hz(level);
+        let scale = plan.parameters.central_frequency / f;
+        let factor = PI.powf(-0.25) * plan.time_step_s / scale.sqrt() / length as f64;
+        let mut kernel = vec![Complex64::default(); length];
+        for k in 0..=plan.half_width(level) {
+            let time = k as f64 * plan.time_step_s;
+            let envelope = factor * (-0.5 * (time / scale).powi(2)).exp();
+            let value = Complex64::from_polar(envelope, TAU * f * time);
+            kernel[k] = value;
+            if k > 0 {
+                kernel[length - k] = value.conj();
+            }
+        }
+        self.fourier.forward(&mut kernel);
+        kernel.iter().map(|z| z.re).collect()
+    }
+}
+
+/// The least length from `least` on that is 8, 9, 10, 12 or 14 times a power of two: quick to transform.
+fn quick_length(least: usize) -> usize {
+    let unit = (least.next_power_of_two() / 16).max(1);
+    let lengths = [8, 9, 10, 12, 14].map(|times| times * unit);
+    let long_enough = lengths.into_iter().find(|length| *length >= least);
+    long_enough.unwrap_or(16 * unit)
 }
 
 fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
@@ -222,6 +265,19 @@ mod tests {
         }
     }
 
+    fn row(plan: &Morlet, signal: &[f64], level: usize) -> Vec<Complex64> {
+        let rows = plan.by_groups(|group| {
+            let (spectrum, mut buffer) = (group.spectrum(signal), RowBuffer::default());
+            let mut row = |level| {
+                group
+                    .row(&group.kernel(level), &spectrum, &mut buffer)
+                    .to_vec()
+            };
+            group.levels.clone().map(&mut row).collect::<Vec<_>>()
+        });
+        rows.concat().swap_remove(level)
+    }
+
     #[test]
     fn rows_are_the_sums_of_the_definition() {
         let dt = 0.05;
@@ -229,11 +285,10 @@ mod tests {
             .map(|k| (0.3 * k as f64).sin() + 0.01 * k as f64)
             .collect();
         let plan = Morlet::new(&parameters(4), x.len(), dt).unwrap();
-        let spectrum = plan.spectrum(&x);
         // Level 0 has a wavelet longer than the record, level 3 a short one.
         for level in [0, 3] {
             let a = 6.0 / plan.frequency_hz(level);
-            let [row] = plan.rows(level, [&spectrum]);
+            let row = row(&plan, &x, level);
             for t in [0_usize, 1, 70, 149] {
                 let mut sum = Complex64::default();
                 for (k, value) in x.iter().enumerate() {
@@ -265,7 +320,7 @@ mod tests {
             ..WaveletParameters::default()
         };
         let plan = Morlet::new(&p, x.len(), dt).unwrap();
-        let [row] = plan.rows(0, [&plan.spectrum(&x)]);
+        let row = row(&plan, &x, 0);
         let expected = 0.4 * TAU.sqrt() * PI.powf(-0.25) * 3.0_f64.sqrt();
         // The tail left out beyond 9/√2 standard widths is erfc(4.5) = 2e-10 of the whole.
         assert_abs_diff_eq!(row[3000].norm(), expected, epsilon = 1e-8);

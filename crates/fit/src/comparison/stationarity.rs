@@ -1,7 +1,8 @@
 //! Metric of non-stationary content.
 
 use super::amplitude::{DistanceDetails, distance_metric};
-use super::morlet::{Morlet, WaveletParameters};
+use super::morlet::{LevelGroup, Morlet, RowBuffer, WaveletParameters};
+use super::scalogram::{Moments, Scalogram};
 use super::surrogates::{Gamma, phase_randomised};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, non_negative};
@@ -70,7 +71,7 @@ pub struct StationarityDetails {
 /// Content `F`: `|W|` where `S` exceeds, at its frequency, the largest over time of mean + g standard deviations of
 /// the surrogates' scalograms; both 0 gives 1, one 0 gives 0.
 ///
-/// Memory: the spectra of the surrogates, about 32 bytes per sample and surrogate (up to twice that).
+/// Memory: sums over the levels, 40 bytes per sample and surrogate.
 ///
 /// # Errors
 /// [`Error::Input`] for unusable parameters, a record too short for the cone, or a signal whose surrogates do not
@@ -91,7 +92,7 @@ pub fn stationarity(
     let value = match (reference.stationary, compared.stationary) {
         (true, true) => 1.0,
         (false, false) => {
-            let metric = content_metric(&plan, &signals, parameters.threshold_deviations)?;
+            let metric = content_metric(&plan, &signals)?;
             content = Some(metric.details);
             metric.value
         }
@@ -129,32 +130,58 @@ fn check(parameters: &StationarityParameters) -> Result<()> {
     Ok(())
 }
 
-/// Spectra of a signal and of its surrogates.
+/// Surrogates that one thread takes at a time.
+const CHUNK: usize = 16;
+
+/// What the transforms of a signal and of its surrogates give.
 struct Surrogates<'a> {
-    plan: &'a Morlet,
-    signal: Vec<Complex64>,
-    surrogates: Vec<Vec<Complex64>>,
+    signal: &'a [f64],
+    /// Statistic Θ of the signal.
+    own: f64,
+    /// Those of the surrogates.
+    others: Vec<f64>,
+    /// Largest over time of mean + g standard deviations of the surrogates' scalograms, at each level.
+    thresholds: Vec<f64>,
 }
 
 impl<'a> Surrogates<'a> {
-    fn new(plan: &'a Morlet, signal: &[f64], parameters: &StationarityParameters) -> Self {
-        let surrogates = phase_randomised(signal, parameters.surrogate_count, parameters.seed);
+    fn new(plan: &Morlet, signal: &'a [f64], parameters: &StationarityParameters) -> Self {
+        let drawn = phase_randomised(signal, parameters.surrogate_count, parameters.seed);
+        let mut own = Scalogram::new(signal.to_vec());
+        let mut others: Vec<Scalogram> = drawn.into_iter().map(Scalogram::new).collect();
+        let mut thresholds = Vec::with_capacity(plan.level_count());
+        for group in plan.groups() {
+            let levels = group.levels.clone().into_par_iter();
+            let kernels: Vec<Vec<f64>> = levels.map(|level| group.kernel(level)).collect();
+            own.advance(&group, &kernels, |_, _| ());
+            let chunks = others.par_chunks_mut(CHUNK).map(|chunk| {
+                let mut moments = vec![Moments::new(signal.len()); kernels.len()];
+                for other in chunk {
+                    other.advance(&group, &kernels, |at, power| moments[at].add(power));
+                }
+                moments
+            });
+            let mut chunks = chunks.collect::<Vec<_>>().into_iter();
+            let mut moments = chunks.next().unwrap_or_default();
+            for chunk in chunks {
+                let each = moments.iter_mut().zip(&chunk);
+                each.for_each(|(all, more)| all.merge(more));
+            }
+            let threshold = |m: &Moments| m.threshold(parameters.threshold_deviations);
+            thresholds.extend(moments.iter().map(threshold));
+        }
+        let step = plan.frequency_step_hz();
         Self {
-            plan,
-            signal: plan.spectrum(signal),
-            surrogates: surrogates.iter().map(|x| plan.spectrum(x)).collect(),
+            signal,
+            own: own.statistic(step),
+            others: others.iter().map(|s| s.statistic(step)).collect(),
+            thresholds,
         }
     }
 
     fn test(&self, place: &str, parameters: &StationarityParameters) -> Result<StationarityTest> {
-        let own = spread(self.plan, &self.signal);
-        let others: Vec<f64> = self
-            .surrogates
-            .par_iter()
-            .map(|spectrum| spread(self.plan, spectrum))
-            .collect();
-        let (_, deviation) = mean_and_deviation(others.iter().copied());
-        let scaled: Vec<f64> = others.iter().map(|x| x / deviation).collect();
+        let (_, deviation) = mean_and_deviation(self.others.iter().copied());
+        let scaled: Vec<f64> = self.others.iter().map(|x| x / deviation).collect();
         let Some(gamma) = Gamma::fit(&scaled) else {
             return Err(Error::input(
                 place,
@@ -162,7 +189,7 @@ impl<'a> Surrogates<'a> {
                 "one whose phase-randomised surrogates are all alike",
             ));
         };
-        let statistic = own / deviation;
+        let statistic = self.own / deviation;
         let probability = gamma.cumulative(statistic);
         Ok(StationarityTest {
             statistic,
@@ -171,59 +198,28 @@ impl<'a> Surrogates<'a> {
         })
     }
 
-    /// Largest over time of mean + g standard deviations of the surrogates' scalograms at a level.
-    fn threshold(&self, level: usize, deviations: f64) -> f64 {
-        let count = self.plan.sample_count();
-        let (mut mean, mut squares) = (vec![0.0; count], vec![0.0; count]);
-        for (index, spectrum) in self.surrogates.iter().enumerate() {
-            let [row] = self.plan.rows(level, [spectrum]);
-            for ((w, m), s) in row.iter().zip(&mut mean).zip(&mut squares) {
-                // Welford's recurrence.
-                let step = w.norm_sqr() - *m;
-                *m += step / (index + 1) as f64;
-                *s += step * (w.norm_sqr() - *m);
+    /// `|W|` inside the cone where it stands out of the surrogates, else 0; level after level.
+    fn content(&self, plan: &Morlet, group: &LevelGroup<'_>) -> Vec<f64> {
+        let (spectrum, mut buffer) = (group.spectrum(self.signal), RowBuffer::default());
+        let mut content = Vec::new();
+        for level in group.levels.clone() {
+            let (inside, threshold) = (plan.inside(level), self.thresholds[level]);
+            if !inside.is_empty() {
+                let row = group.row(&group.kernel(level), &spectrum, &mut buffer);
+                let stands_out = |w: &Complex64| w.norm_sqr() > threshold;
+                let modulus = |w: &Complex64| if stands_out(w) { w.norm() } else { 0.0 };
+                content.extend(row[inside].iter().map(modulus));
             }
         }
-        let freedom = (self.surrogates.len() - 1) as f64;
-        mean.iter()
-            .zip(&squares)
-            .map(|(m, s)| m + deviations * (s / freedom).sqrt())
-            .fold(0.0, f64::max)
-    }
-
-    /// `|W|` inside the cone where it stands out of the surrogates, else 0.
-    fn content(&self, level: usize, deviations: f64) -> Vec<f64> {
-        let inside = self.plan.inside(level);
-        if inside.is_empty() {
-            return Vec::new();
-        }
-        let threshold = self.threshold(level, deviations);
-        let [row] = self.plan.rows(level, [&self.signal]);
-        row[inside]
-            .iter()
-            .map(|w| {
-                if w.norm_sqr() > threshold {
-                    w.norm()
-                } else {
-                    0.0
-                }
-            })
-            .collect()
+        content
     }
 }
 
-fn content_metric(
-    plan: &Morlet,
-    signals: &[Surrogates<'_>; 2],
-    deviations: f64,
-) -> Result<Metric<DistanceDetails>> {
-    let groups = plan.by_groups(|levels| {
-        let mut pairs = Vec::new();
-        for level in levels {
-            let [first, second] = [&signals[0], &signals[1]].map(|s| s.content(level, deviations));
-            pairs.extend(first.into_iter().zip(second).filter(|p| *p != (0.0, 0.0)));
-        }
-        pairs
+fn content_metric(plan: &Morlet, signals: &[Surrogates<'_>; 2]) -> Result<Metric<DistanceDetails>> {
+    let groups = plan.by_groups(|group| {
+        let [first, second] = [&signals[0], &signals[1]].map(|s| s.content(plan, &group));
+        let pairs = first.into_iter().zip(second);
+        pairs.filter(|p| *p != (0.0, 0.0)).collect::<Vec<_>>()
     });
     let pairs = || groups.iter().flatten().copied();
     let nothing = |value| Metric {
@@ -239,41 +235,6 @@ fn content_metric(
         (false, false) => Ok(nothing(1.0)),
         _ => Ok(nothing(0.0)),
     }
-}
-
-/// Statistic Θ. With `s(t) = ΣS` and the mean spectrum `h = S̄`, `Σ(G − H) ln(G/H)` is
-/// `Σ S ln(S/h)/s − Σ h ln(S/h)/Σh`, which needs one level at a time.
-fn spread(plan: &Morlet, spectrum: &[Complex64]) -> f64 {
-    // Silence would have an infinite logarithm.
-    const FLOOR: f64 = 1e-30;
-    let count = plan.sample_count();
-    let mut power = vec![0.0; count];
-    let mut weighted_local = vec![0.0; count];
-    let mut weighted_global = vec![0.0; count];
-    let mut deviation = vec![0.0; count];
-    let mut global = 0.0;
-    for level in 0..plan.level_count() {
-        let [row] = plan.rows(level, [spectrum]);
-        let mean = row.iter().map(|w| w.norm_sqr()).sum::<f64>() / count as f64;
-        if mean == 0.0 {
-            continue;
-        }
-        global += mean;
-        for (t, w) in row.iter().enumerate() {
-            let ratio = (w.norm_sqr() / mean).max(FLOOR);
-            let logarithm = ratio.log10();
-            power[t] += ratio * mean;
-            weighted_local[t] += ratio * mean * logarithm;
-            weighted_global[t] += mean * logarithm;
-            deviation[t] += logarithm.abs();
-        }
-    }
-    let step = plan.frequency_step_hz();
-    let divergence = (0..count).map(|t| weighted_local[t] / power[t] - weighted_global[t] / global);
-    let log_deviation = deviation.iter().map(|d| d * step);
-    let (_, divergence_spread) = mean_and_deviation(divergence);
-    let (_, log_spread) = mean_and_deviation(log_deviation);
-    divergence_spread.powi(2) * (1.0 + log_spread.powi(2))
 }
 
 #[cfg(test)]
@@ -345,13 +306,12 @@ mod tests {
     fn statistic_is_the_sum_of_the_definition() {
         let p = parameters();
         let plan = Morlet::new(&p.wavelet, COUNT, 0.01).unwrap();
-        let spectrum = plan.spectrum(&burst(3.0, 4));
-        let scalogram: Vec<Vec<f64>> = (0..20)
-            .map(|level| {
-                let [row] = plan.rows(level, [&spectrum]);
-                row.iter().map(|w| w.norm_sqr()).collect()
-            })
-            .collect();
+        let mut signal = Scalogram::new(burst(3.0, 4));
+        let mut scalogram: Vec<Vec<f64>> = Vec::new();
+        for group in plan.groups() {
+            let kernels: Vec<_> = group.levels.clone().map(|l| group.kernel(l)).collect();
+            signal.advance(&group, &kernels, |_, power| scalogram.push(power.to_vec()));
+        }
         let df = 18.0 / 19.0;
         let mean: Vec<f64> = scalogram
             .iter()
@@ -371,7 +331,7 @@ mod tests {
         let (kl, lsd): (Vec<f64>, Vec<f64>) = (0..COUNT).map(at).unzip();
         let variance = |x: &[f64]| mean_and_deviation(x.iter().copied()).1.powi(2);
         assert_relative_eq!(
-            spread(&plan, &spectrum),
+            signal.statistic(df),
             variance(&kl) * (1.0 + variance(&lsd)),
             max_relative = 1e-10
         );

@@ -1,10 +1,9 @@
 //! Metrics of amplitude over time and frequency.
 
 use super::amplitude::DistanceDetails;
-use super::morlet::{Morlet, WaveletParameters};
+use super::morlet::{LevelGroup, Morlet, RowBuffer, WaveletParameters};
 use super::{Metric, SignalPair, exponential, zero_signal};
 use crate::error::Result;
-use rustfft::num_complex::Complex64;
 use serde::Serialize;
 
 /// What [`wavelet_normalised`] found.
@@ -23,14 +22,12 @@ pub fn wavelet(
     parameters: &WaveletParameters,
 ) -> Result<Metric<DistanceDetails>> {
     let transform = PairTransform::new(pair, parameters)?;
-    let sums = transform.plan.by_groups(|levels| {
+    let sums = transform.plan.by_groups(|group| {
         let (mut distance, mut reference) = (0.0, 0.0);
-        for level in levels {
-            transform.for_each_inside(level, |_, [first, second]| {
-                distance += (first - second) * (first - second);
-                reference += first * first;
-            });
-        }
+        transform.for_each_inside(&group, |_, [first, second]| {
+            distance += (first - second) * (first - second);
+            reference += first * first;
+        });
         [distance, reference]
     });
     let norm = |k: usize| sums.iter().map(|s| s[k]).sum::<f64>().sqrt();
@@ -95,34 +92,36 @@ fn normalised(modulus: f64, largest: f64) -> f64 {
     }
 }
 
-/// Both signals of a pair, ready to be transformed level by level.
-struct PairTransform {
+/// Both signals of a pair, transformed level by level.
+struct PairTransform<'a> {
     plan: Morlet,
-    reference: Vec<Complex64>,
-    compared: Vec<Complex64>,
+    signals: [&'a [f64]; 2],
 }
 
-impl PairTransform {
-    fn new(pair: &SignalPair<'_>, parameters: &WaveletParameters) -> Result<Self> {
-        let plan = Morlet::new(parameters, pair.sample_count(), pair.time_step_s())?;
-        let reference = plan.spectrum(pair.reference());
-        let compared = plan.spectrum(pair.compared());
+impl<'a> PairTransform<'a> {
+    fn new(pair: &SignalPair<'a>, parameters: &WaveletParameters) -> Result<Self> {
         Ok(Self {
-            plan,
-            reference,
-            compared,
+            plan: Morlet::new(parameters, pair.sample_count(), pair.time_step_s())?,
+            signals: [pair.reference(), pair.compared()],
         })
     }
 
-    /// Calls `visit(sample, [|W₁|, |W₂|])` for the samples of a level inside the cone.
-    fn for_each_inside(&self, level: usize, mut visit: impl FnMut(usize, [f64; 2])) {
-        let inside = self.plan.inside(level);
-        if inside.is_empty() {
-            return;
-        }
-        let [first, second] = self.plan.rows(level, [&self.reference, &self.compared]);
-        for sample in inside {
-            visit(sample, [first[sample].norm(), second[sample].norm()]);
+    /// Calls `visit(sample, [|W₁|, |W₂|])` for the samples inside the cone, level after level.
+    fn for_each_inside(&self, group: &LevelGroup<'_>, mut visit: impl FnMut(usize, [f64; 2])) {
+        let [first, second] = self.signals.map(|x| group.spectrum(x));
+        let mut buffers = [RowBuffer::default(), RowBuffer::default()];
+        for level in group.levels.clone() {
+            let inside = self.plan.inside(level);
+            if inside.is_empty() {
+                continue;
+            }
+            let kernel = group.kernel(level);
+            let [one, other] = &mut buffers;
+            let first = group.row(&kernel, &first, one);
+            let second = group.row(&kernel, &second, other);
+            for sample in inside {
+                visit(sample, [first[sample].norm(), second[sample].norm()]);
+            }
         }
     }
 
@@ -133,13 +132,11 @@ impl PairTransform {
         update: impl Fn(usize, &mut [f64; 2], [f64; 2]) + Sync,
         merge: impl Fn([f64; 2], [f64; 2]) -> [f64; 2],
     ) -> Vec<[f64; 2]> {
-        let groups = self.plan.by_groups(|levels| {
+        let groups = self.plan.by_groups(|group| {
             let mut cells = vec![[0.0; 2]; self.plan.sample_count()];
-            for level in levels {
-                self.for_each_inside(level, |sample, moduli| {
-                    update(sample, &mut cells[sample], moduli);
-                });
-            }
+            self.for_each_inside(&group, |sample, moduli| {
+                update(sample, &mut cells[sample], moduli);
+            });
             cells
         });
         let mut total = vec![[0.0; 2]; self.plan.sample_count()];

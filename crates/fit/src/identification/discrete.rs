@@ -142,7 +142,7 @@ pub fn fit_discrete(
         orders: if shared { fitted.orders(0) } else { Vec::new() },
         alpha_guideline: Some(guideline(&parameters, tested, delta_s, &records)),
         static_terms: [records.removed_means.clone(), fitted.constants()?].concat(),
-        memory: memory(&parameters, &records, delta_s),
+        memory: memory(&parameters, &records, delta_s)?,
         constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
         notes: Vec::new(),
@@ -281,14 +281,22 @@ fn model(
 }
 
 /// Memory of the slowest chain against the rest before the motion, at the step of the model.
-fn memory(parameters: &[(f64, usize)], records: &Records, delta_s: f64) -> Vec<MemoryReport> {
+fn memory(
+    parameters: &[(f64, usize)],
+    records: &Records,
+    delta_s: f64,
+) -> Result<Vec<MemoryReport>> {
     let memories = parameters.iter().map(|(a, l)| discrete_memory(*a, *l));
     let longest = memories.max().unwrap_or(0);
-    let account = |record: &DimensionlessRecord| MemoryReport {
-        record: record.name().to_owned(),
-        memory_samples: longest,
-        available_samples: record.at_step(Some(delta_s)).0.still_samples(),
-        step_s: delta_s / record.rate,
+    let account = |record: &DimensionlessRecord| {
+        let resampled = record.at_step(Some(delta_s))?.0;
+        let signals = resampled.as_ref().unwrap_or(&record.signals);
+        Ok(MemoryReport {
+            record: record.name().to_owned(),
+            memory_samples: longest,
+            available_samples: signals.still_samples()?,
+            step_s: delta_s / record.rate,
+        })
     };
     records.each.iter().map(account).collect()
 }

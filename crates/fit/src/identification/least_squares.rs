@@ -115,8 +115,14 @@ impl StreamingQr {
         }
     }
 
-    /// Reflects the pending rows into `R`, one column after the other.
+    /// Reflects the pending rows into `R`, one column after the other, with the widest vectors of the processor: they add in the
+    /// order of any other.
     fn factor_pending(&mut self) {
+        pulp::Arch::new().dispatch(Reflections(self));
+    }
+
+    #[inline(always)]
+    fn reflect_pending(&mut self) {
         let rows = self.pending_rows;
         for j in 0..self.columns {
             let (head, tail) = self.pending.split_at_mut((j + 1) * BLOCK_ROWS);
@@ -152,7 +158,20 @@ impl StreamingQr {
     }
 }
 
+/// What [`StreamingQr::factor_pending`] does.
+struct Reflections<'a>(&'a mut StreamingQr);
+
+impl pulp::NullaryFnOnce for Reflections<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.reflect_pending();
+    }
+}
+
 /// `a·b`, in eight partial sums so that the processor can work on them side by side.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut partial = [0.0; 8];
     let (a_blocks, a_tail) = a.as_chunks::<8>();
@@ -167,7 +186,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `to −= factor · v`.
-fn subtract(to: &mut [f64], factor: f64, v: &[f64]) {
+#[inline(always)]
+pub(crate) fn subtract(to: &mut [f64], factor: f64, v: &[f64]) {
     for (t, x) in to.iter_mut().zip(v) {
         *t -= factor * x;
     }

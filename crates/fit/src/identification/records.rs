@@ -218,7 +218,7 @@ impl FitAtPoles<'_> {
             Ok(MemoryReport {
                 record: record.name().to_owned(),
                 memory_samples,
-                available_samples: discarded.max(record.signals.still_samples()),
+                available_samples: discarded.max(record.signals.still_samples()?),
                 step_s: record.step_s,
             })
         };

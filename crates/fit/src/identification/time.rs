@@ -6,4 +6,5 @@ pub(crate) mod fitted;
 pub(crate) mod pass;
 pub(crate) mod record;
 pub(crate) mod search;
+pub(crate) mod signals;
 pub(crate) mod systems;

@@ -34,8 +34,15 @@ impl Fourier {
 
     /// Replaces `X_n` by `Σ_n X_n exp(2πi kn/N)`, which is `N x_k`.
     pub fn inverse(&self, values: &mut [Complex64]) {
+        self.inverse_in(values, &mut Vec::new());
+    }
+
+    /// [`Self::inverse`] in memory that the caller keeps from one transform to the next.
+    pub fn inverse_in(&self, values: &mut [Complex64], scratch: &mut Vec<Complex64>) {
         let plan = || FftPlanner::new().plan_fft_inverse(self.length);
-        self.inverse.get_or_init(plan).process(values);
+        let plan = self.inverse.get_or_init(plan);
+        scratch.resize(plan.get_inplace_scratch_len(), Complex64::default());
+        plan.process_with_scratch(values, scratch);
     }
 
     /// The spectrum of a signal; a shorter one is followed by zeros.

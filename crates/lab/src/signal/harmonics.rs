@@ -83,10 +83,10 @@ pub fn fit_harmonics(
             format!("{} to {}", range.start, range.end),
         ));
     }
-    let regressors = HarmonicRegressors {
+    let mut regressors = HarmonicRegressors {
         centre: 0.5 * (range.start + range.end - 1) as f64,
         half: (0.5 * range.len() as f64).max(1.0),
-        step: Complex::from_polar(1.0, TAU * frequency_hz / sampling_hz),
+        turns: Turns::new(TAU * frequency_hz / sampling_hz),
         harmonics,
     };
     let unknowns = regressors.unknowns();
@@ -136,8 +136,8 @@ struct HarmonicRegressors {
     /// Middle of the stretch, and half of its length, samples.
     centre: f64,
     half: f64,
-    /// Turn of the first harmonic from one sample to the next.
-    step: Complex<f64>,
+    /// Of the first harmonic.
+    turns: Turns,
     harmonics: usize,
 }
 
@@ -147,16 +147,45 @@ impl HarmonicRegressors {
     }
 
     /// Those of sample `k`.
-    fn at(&self, k: usize, row: &mut [f64]) {
+    fn at(&mut self, k: usize, row: &mut [f64]) {
         row[0] = 1.0;
         row[1] = (k as f64 - self.centre) / self.half;
-        let turn = self.step.powf(k as f64);
+        let turn = self.turns.at(k);
         let mut power = Complex::new(1.0, 0.0);
         for n in 0..self.harmonics {
             power *= turn;
             row[2 + 2 * n] = power.re;
             row[3 + 2 * n] = -power.im;
         }
+    }
+}
+
+/// `e^{iθk}` at one sample after the other: that of the first of a block of samples times that of the place in the block.
+struct Turns {
+    angle: f64,
+    places: [Complex<f64>; Self::BLOCK],
+    /// Number of the block, and its first turn.
+    block: (usize, Complex<f64>),
+}
+
+impl Turns {
+    const BLOCK: usize = 64;
+
+    fn new(angle: f64) -> Self {
+        Self {
+            angle,
+            places: std::array::from_fn(|k| Complex::cis(angle * k as f64)),
+            block: (0, Complex::new(1.0, 0.0)),
+        }
+    }
+
+    fn at(&mut self, k: usize) -> Complex<f64> {
+        let block = k / Self::BLOCK;
+        if self.block.0 != block {
+            let first = (block * Self::BLOCK) as f64;
+            self.block = (block, Complex::cis(self.angle * first));
+        }
+        self.block.1 * self.places[k % Self::BLOCK]
     }
 }
 
@@ -207,11 +236,15 @@ pub fn plateau(
         return None;
     }
     let starts: Vec<usize> = (range.start..=range.end - window).step_by(hop).collect();
-    let step = Complex::from_polar(1.0, TAU * frequency_hz / sampling_hz);
+    let angle = TAU * frequency_hz / sampling_hz;
+    let back: Vec<_> = (0..window)
+        .map(|k| Complex::cis(-angle * k as f64))
+        .collect();
     let amplitude = |start: &usize| {
-        let mean = signal[*start..start + window].iter().sum::<f64>() / window as f64;
-        let turned = |k: usize| step.powf(-(k as f64)) * (signal[start + k] - mean);
-        2.0 * (0..window).map(turned).sum::<Complex<f64>>().norm() / window as f64
+        let samples = &signal[*start..start + window];
+        let mean = samples.iter().sum::<f64>() / window as f64;
+        let turned = back.iter().zip(samples).map(|(turn, x)| turn * (x - mean));
+        2.0 * turned.sum::<Complex<f64>>().norm() / window as f64
     };
     let amplitudes: Vec<f64> = starts.iter().map(amplitude).collect();
     let largest = amplitudes.iter().copied().fold(0.0, f64::max);

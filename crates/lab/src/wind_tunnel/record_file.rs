@@ -149,6 +149,20 @@ fn push_number(text: &mut String, x: f64) {
     };
 }
 
+/// What stands between commas; as `split(',')`, without its search for characters of any size.
+struct Cells<'a>(Option<&'a str>);
+
+impl<'a> Iterator for Cells<'a> {
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        let rest = self.0?;
+        let comma = rest.bytes().position(|b| b == b',');
+        self.0 = comma.map(|at| &rest[at + 1..]);
+        Some(comma.map_or(rest, |at| &rest[..at]))
+    }
+}
+
 /// Rows being collected into a block.
 struct RecordRows<'a> {
     header: &'a RecordHeader,
@@ -203,13 +217,14 @@ impl<'a> RecordRows<'a> {
         if line.trim().is_empty() {
             return Ok(());
         }
-        let mut cells = line.split(',');
+        let mut cells = Cells(Some(line));
         for (column, channel) in self.columns.channels.iter().enumerate() {
-            let cell = cells.next().ok_or_else(|| self.unequal(line))?.trim();
-            let value = cell.parse::<f64>().ok().filter(|x| x.is_finite());
+            let cell = cells.next().ok_or_else(|| self.unequal(line))?;
+            let value = cell.parse().or_else(|_| cell.trim().parse::<f64>());
+            let value = value.ok().filter(|x| x.is_finite());
             let value = value.ok_or_else(|| {
                 let place = Place::line(self.line).column(&self.columns.names[column]);
-                Error::input(place, "a finite number", format!("`{cell}`"))
+                Error::input(place, "a finite number", format!("`{}`", cell.trim()))
             })?;
             let n = self.motion.len();
             match channel {

@@ -1,13 +1,13 @@
 //! Least squares at one test point, and the standard errors of its solution.
 
 use super::result::{DerivativeEstimate, IdentifiedDerivatives};
-use super::test_points::{CROSS_TALK, TestRun};
+use super::test_points::{CROSS_TALK, RunSamples, TestRun};
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::section::Dof;
 use crate::signal::mean;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Fourier frequencies on either side of the motion that tell the noise there: at least and at most.
@@ -19,7 +19,7 @@ pub(super) fn solve(
     group: &[TestRun],
     result: &mut IdentifiedDerivatives,
 ) -> Result<()> {
-    let point = TestPointEquations::new(dofs, group);
+    let point = TestPointEquations::new(dofs, group)?;
     result.warnings.extend(point.cross_talk());
     let factor = point.factor()?;
     let solution = factor.solve(point.columns)?;
@@ -45,23 +45,34 @@ struct TestPointEquations<'a> {
     columns: usize,
     /// Rows of each run.
     rows: Vec<DMatrix<f64>>,
+    /// `zᵀz` of each run.
+    grams: Vec<DMatrix<f64>>,
+    /// Forces of each run.
+    forces: Vec<Vec<Vec<f64>>>,
 }
 
 impl<'a> TestPointEquations<'a> {
-    fn new(dofs: &'a [Dof], group: &'a [TestRun]) -> Self {
+    fn new(dofs: &'a [Dof], group: &'a [TestRun]) -> Result<Self> {
         let driven = |j: &usize| group.iter().any(|s| s.driven == *j);
         let active: Vec<usize> = (0..dofs.len()).filter(driven).collect();
         let columns = 2 * active.len() + 2 * group.len();
-        let runs = group.iter().enumerate();
-        Self {
+        let (mut rows, mut grams, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+        for (run, stretch) in group.iter().enumerate() {
+            let samples = stretch.samples()?;
+            let z = regressors(&samples, run, &active, columns);
+            grams.push(z.tr_mul(&z));
+            rows.push(z);
+            forces.push(samples.force);
+        }
+        Ok(Self {
             dofs,
             group,
             columns,
-            rows: runs
-                .map(|(run, s)| regressors(s, run, &active, columns))
-                .collect(),
+            rows,
+            grams,
+            forces,
             active,
-        }
+        })
     }
 
     /// Warnings of motions that no run drives.
@@ -90,12 +101,12 @@ impl<'a> TestPointEquations<'a> {
     fn factor(&self) -> Result<Factor> {
         let mut qr = StreamingQr::new(self.columns, self.dofs.len());
         let mut line = vec![0.0; self.columns + self.dofs.len()];
-        for (stretch, z) in self.group.iter().zip(&self.rows) {
+        for (forces, z) in self.forces.iter().zip(&self.rows) {
             for k in 0..z.nrows() {
                 for (c, to) in line.iter_mut().enumerate().take(self.columns) {
                     *to = z[(k, c)];
                 }
-                for (i, force) in stretch.force.iter().enumerate() {
+                for (i, force) in forces.iter().enumerate() {
                     line[self.columns + i] = force[k];
                 }
                 qr.push_row(&line);
@@ -120,9 +131,9 @@ impl<'a> TestPointEquations<'a> {
         let mut relative = Vec::with_capacity(self.group.len());
         for (run, (stretch, z)) in self.group.iter().zip(&self.rows).enumerate() {
             let fitted = z * coefficients;
-            let measured = &stretch.force[force];
+            let measured = &self.forces[run][force];
             let rest: Vec<f64> = measured.iter().zip(&fitted).map(|(f, x)| f - x).collect();
-            meat += z.transpose() * z * noise_level(&rest, stretch.periods);
+            meat += &self.grams[run] * noise_level(&rest, stretch.periods);
             relative.push(self.relative(run, &rest, measured, coefficients));
         }
         (relative, meat)
@@ -176,7 +187,7 @@ impl<'a> TestPointEquations<'a> {
 }
 
 /// Rows of one run: motions and rates, then its own constant and trend.
-fn regressors(s: &TestRun, run: usize, active: &[usize], columns: usize) -> DMatrix<f64> {
+fn regressors(s: &RunSamples, run: usize, active: &[usize], columns: usize) -> DMatrix<f64> {
     let count = s.force[0].len();
     let middle = 0.5 * (count as f64 - 1.0);
     DMatrix::from_fn(count, columns, |k, c| {
@@ -198,17 +209,16 @@ fn noise_level(rest: &[f64], periods: usize) -> f64 {
     let reach = (periods / 2).clamp(NEIGHBOURS.0, NEIGHBOURS.1);
     // the first Fourier frequency is gone with the trend
     let bins = periods.saturating_sub(reach).max(2)..=(periods + reach).min(n / 2);
-    let levels: Vec<f64> = bins
-        .filter(|b| *b != periods)
-        .map(|b| {
-            let step = nalgebra::Complex::from_polar(1.0, -TAU * b as f64 / n as f64);
-            // Horner's rule from the last sample backwards
-            let sum = rest
-                .iter()
-                .rev()
-                .fold(nalgebra::Complex::new(0.0, 0.0), |sum, e| sum * step + e);
-            sum.norm_sqr() / n as f64
-        })
-        .collect();
-    mean(&levels)
+    let bins = bins.filter(|b| *b != periods);
+    let steps = bins.map(|b| Complex::from_polar(1.0, -TAU * b as f64 / n as f64));
+    let (re, im): (Vec<f64>, Vec<f64>) = steps.map(|step| (step.re, step.im)).unzip();
+    let mut sums = vec![[0.0; 2]; re.len()];
+    // Horner's rule from the last sample backwards, for all bins side by side
+    for e in rest.iter().rev() {
+        for (sum, (re, im)) in sums.iter_mut().zip(re.iter().zip(&im)) {
+            *sum = [sum[0] * re - sum[1] * im + e, sum[0] * im + sum[1] * re];
+        }
+    }
+    let level = |[re, im]: &[f64; 2]| (re * re + im * im) / n as f64;
+    mean(&sums.iter().map(level).collect::<Vec<_>>())
 }

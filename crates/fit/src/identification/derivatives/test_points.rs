@@ -2,12 +2,16 @@
 
 use super::result::DerivativeOptions;
 use crate::error::{Error, Result, positive};
+use crate::identification::time::signals::{SignalWriter, Signals};
 use crate::section::Dof;
 use crate::signal::{
     HarmonicFit, Plateau, fit_harmonics, largest_about_mean, plateau, refine_frequency,
 };
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::{Record, RecordHeader, RecordSource};
+use crate::wind_tunnel::{RecordHeader, RecordSource};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Harmonics of a driven motion: a rig is not perfectly linear.
 const HARMONICS: usize = 3;
@@ -23,12 +27,53 @@ pub(super) struct TestRun {
     pub frequency_hz: f64,
     pub k: ReducedFrequency,
     pub periods: usize,
-    /// `r_j` and `r_j'/K` at each sample.
-    pub motion: Vec<[Vec<f64>; 2]>,
     /// Amplitude of each motion.
     pub amplitude: Vec<f64>,
-    /// `q_i` at each sample.
+    header: RecordHeader,
+    /// The whole record in its own units, and the samples of the run in it.
+    signals: Arc<Signals>,
+    samples: Range<usize>,
+    /// Harmonics of each motion, over the time from the first sample of the run.
+    fits: Vec<HarmonicFit>,
+}
+
+/// What a run says at each sample, without dimensions.
+pub(super) struct RunSamples {
+    /// `r_j` and `r_j'/K`.
+    pub motion: Vec<[Vec<f64>; 2]>,
+    /// `q_i`.
     pub force: Vec<Vec<f64>>,
+}
+
+impl TestRun {
+    /// Its samples; only the harmonics of the motion, which alone is free of noise.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for long records whose file cannot be read any more.
+    pub(super) fn samples(&self) -> Result<RunSamples> {
+        let header = &self.header;
+        let (n, rate) = (header.dofs.len(), header.sampling_hz);
+        let omega = std::f64::consts::TAU * self.frequency_hz;
+        let motion_of = |j: usize| {
+            let scale = header.dofs[j].motion_scale(header.width_m);
+            let time = (0..self.samples.len()).map(|k| k as f64 / rate);
+            let (value, slope): (Vec<f64>, Vec<f64>) = time
+                .map(|t| self.fits[j].oscillation(t))
+                .map(|(value, slope)| (scale * value, scale * slope / omega))
+                .unzip();
+            [value, slope]
+        };
+        let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
+        let mut force = self.signals.range(self.samples.clone())?.split_off(n);
+        for (dof, force) in header.dofs.iter().zip(&mut force) {
+            let factor = 1.0 / (pressure * dof.force_scale(header.width_m));
+            force.iter_mut().for_each(|f| *f *= factor);
+        }
+        Ok(RunSamples {
+            motion: (0..n).map(motion_of).collect(),
+            force,
+        })
+    }
 }
 
 /// All test points.
@@ -68,10 +113,15 @@ pub(super) fn collect(
     for record in records {
         let header = record.header();
         check(header, first)?;
-        let Record { motion, force, .. } = Record::whole(*record)?;
-        let channels = [motion, force].concat();
-        for i in 0..header.segments.len() {
-            match stretch(header, &channels, i, options)? {
+        let signals = Arc::new(read(*record)?);
+        let segments = (0..header.segments.len()).into_par_iter();
+        let stretches = segments.map(|i| stretch(header, &signals, i, options));
+        for (i, stretch) in stretches
+            .collect::<Result<Vec<_>>>()?
+            .into_iter()
+            .enumerate()
+        {
+            match stretch {
                 Some(stretch) => insert(&mut points.groups, stretch, options),
                 None => points.warnings.push(format!(
                     "record {}: no whole period of steady motion at {:.3} Hz",
@@ -110,15 +160,38 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
     Ok(())
 }
 
+/// All channels of a record, motions and then forces.
+fn read(record: &dyn RecordSource) -> Result<Signals> {
+    let header = record.header();
+    let mut signals = SignalWriter::new(header.dofs.len());
+    record.for_each_block(&mut |block| {
+        let channels: Vec<&Vec<f64>> = block.motion.iter().chain(block.force).collect();
+        for (c, channel) in channels.iter().enumerate() {
+            if let Some(k) = channel.iter().position(|v| !v.is_finite()) {
+                let at = signals.rows() + k;
+                let place = format!("record {}, channel {}, sample {at}", header.name, c + 1);
+                let found = channel[k].to_string();
+                return Err(Error::input(place, "a finite number", found));
+            }
+        }
+        signals.extend(channels[0].len(), |c, k| channels[c][k])
+    })?;
+    signals.finish()
+}
+
 /// The steady part of one segment; `None` when it has no whole period.
 fn stretch(
     header: &RecordHeader,
-    channels: &[Vec<f64>],
+    signals: &Arc<Signals>,
     segment: usize,
     options: &DerivativeOptions,
 ) -> Result<Option<TestRun>> {
-    refuse_gaps(header, channels)?;
-    let Some(steady) = SteadyMotion::find(header, channels, segment, options)? else {
+    let (s, rate) = (header.segments[segment], header.sampling_hz);
+    let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(signals.len());
+    let start = at(s.start_s);
+    let mut channels = signals.range(start..at(s.end_s))?;
+    channels.truncate(header.dofs.len());
+    let Some(steady) = SteadyMotion::find(header, &channels, s.frequency_hz, options)? else {
         return Ok(None);
     };
     let SteadyMotion {
@@ -126,30 +199,14 @@ fn stretch(
         frequency_hz,
         plateau: p,
     } = steady;
-    let (n, rate) = (header.dofs.len(), header.sampling_hz);
-    let fit = |x: &[f64]| fit_harmonics(x, p.range(), rate, frequency_hz, HARMONICS, &|_| true);
-    let fits = channels[..n]
-        .iter()
-        .map(|x| fit(x))
-        .collect::<Result<Vec<HarmonicFit>>>()?;
-    let omega = std::f64::consts::TAU * frequency_hz;
-    let scale = |j: usize| header.dofs[j].motion_scale(header.width_m);
-    let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
-    let motion_of = |j: usize| {
-        let mut both = [Vec::with_capacity(p.samples), Vec::with_capacity(p.samples)];
-        for k in p.range() {
-            let (value, rate_of_change) = fits[j].oscillation(k as f64 / rate);
-            both[0].push(scale(j) * value);
-            both[1].push(scale(j) * rate_of_change / omega);
-        }
-        both
+    let fit = |x: &Vec<f64>| {
+        let run = &x[p.range()];
+        fit_harmonics(run, 0..p.samples, rate, frequency_hz, HARMONICS, &|_| true)
     };
-    let force_of = |i: usize| {
-        let factor = 1.0 / (pressure * header.dofs[i].force_scale(header.width_m));
-        let force = &channels[n + i][p.range()];
-        force.iter().map(|f| f * factor).collect()
-    };
-    let amplitude_of = |j: usize| scale(j) * fits[j].fundamental().norm();
+    let fits = channels.iter().map(fit).collect::<Result<Vec<_>>>()?;
+    let amplitudes = header.dofs.iter().zip(&fits);
+    let amplitudes =
+        amplitudes.map(|(dof, fit)| dof.motion_scale(header.width_m) * fit.fundamental().norm());
     Ok(Some(TestRun {
         run: header.name.clone(),
         driven,
@@ -157,21 +214,12 @@ fn stretch(
         frequency_hz,
         k: ReducedFrequency::from_hertz(frequency_hz, header.width_m, header.mean_speed_m_s),
         periods: p.periods,
-        motion: (0..n).map(motion_of).collect(),
-        amplitude: (0..n).map(amplitude_of).collect(),
-        force: (0..n).map(force_of).collect(),
+        amplitude: amplitudes.collect(),
+        header: header.clone(),
+        signals: Arc::clone(signals),
+        samples: start + p.first..start + p.range().end,
+        fits,
     }))
-}
-
-fn refuse_gaps(header: &RecordHeader, channels: &[Vec<f64>]) -> Result<()> {
-    for (c, channel) in channels.iter().enumerate() {
-        if let Some(k) = channel.iter().position(|v| !v.is_finite()) {
-            let place = format!("record {}, channel {}, sample {k}", header.name, c + 1);
-            let found = channel[k].to_string();
-            return Err(Error::input(place, "a finite number", found));
-        }
-    }
-    Ok(())
 }
 
 /// Whole periods of a driven motion at full amplitude.
@@ -186,27 +234,24 @@ impl SteadyMotion {
     /// Those of the greatest motion in a segment; `None` when nothing moves or there is no whole period.
     fn find(
         header: &RecordHeader,
-        channels: &[Vec<f64>],
-        segment: usize,
+        motions: &[Vec<f64>],
+        stated_hz: f64,
         options: &DerivativeOptions,
     ) -> Result<Option<Self>> {
-        let (s, rate) = (header.segments[segment], header.sampling_hz);
-        let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(channels[0].len());
-        let range = at(s.start_s)..at(s.end_s);
         let size = |j: usize| {
-            let greatest = largest_about_mean(&channels[j][range.clone()]);
+            let greatest = largest_about_mean(&motions[j]);
             greatest * header.dofs[j].motion_scale(header.width_m)
         };
         let driven = (0..header.dofs.len()).max_by(|a, b| size(*a).total_cmp(&size(*b)));
         let Some(driven) = driven.filter(|j| size(*j) > 0.0) else {
             return Ok(None);
         };
-        let motion = &channels[driven];
-        let steady = |f| plateau(motion, range.clone(), rate, f, options.full_amplitude);
-        let Some(rough) = steady(s.frequency_hz) else {
+        let (motion, rate) = (&motions[driven], header.sampling_hz);
+        let steady = |f| plateau(motion, 0..motion.len(), rate, f, options.full_amplitude);
+        let Some(rough) = steady(stated_hz) else {
             return Ok(None);
         };
-        let frequency_hz = refine_frequency(motion, rough.range(), rate, s.frequency_hz)?;
+        let frequency_hz = refine_frequency(motion, rough.range(), rate, stated_hz)?;
         Ok(steady(frequency_hz).map(|plateau| Self {
             driven,
             frequency_hz,

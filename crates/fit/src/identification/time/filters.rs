@@ -143,6 +143,59 @@ impl FilterStep {
     /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole piece; `out` holds one stretch of
     /// [`BLOCK_ROWS`] per filter.
     fn advance(&self, input: &Filtered, state: &mut [f64], out: &mut [f64]) {
+        pulp::Arch::new().dispatch(Drive {
+            step: self,
+            input,
+            out: &mut *out,
+        });
+        let rows = input.input.len() - 1;
+        match self.count {
+            1 => self.recur::<1>(rows, state, out),
+            2 => self.recur::<2>(rows, state, out),
+            3 => self.recur::<3>(rows, state, out),
+            4 => self.recur::<4>(rows, state, out),
+            5 => self.recur::<5>(rows, state, out),
+            6 => self.recur::<6>(rows, state, out),
+            _ => self.recur_by_row(rows, state, out),
+        }
+    }
+
+    /// The recursion of `N` filters, whose states stay in registers.
+    fn recur<const N: usize>(&self, rows: usize, state: &mut [f64], out: &mut [f64]) {
+        let own: [[f64; N]; N] =
+            std::array::from_fn(|l| std::array::from_fn(|m| self.own[l * N + m]));
+        let mut x: [f64; N] = std::array::from_fn(|l| state[l]);
+        let (columns, _) = out.as_chunks_mut::<BLOCK_ROWS>();
+        for k in 0..rows {
+            let mut next = [0.0; N];
+            for l in 0..N {
+                let mut sum = own[l][0] * x[0];
+                for m in 1..=l {
+                    sum += own[l][m] * x[m];
+                }
+                next[l] = sum + columns[l][k];
+                columns[l][k] = next[l];
+            }
+            x = next;
+        }
+        state.copy_from_slice(&x);
+    }
+
+    fn recur_by_row(&self, rows: usize, state: &mut [f64], out: &mut [f64]) {
+        for k in 0..rows {
+            // from the last filter to the first: each needs the old states of those before it
+            for l in (0..self.count).rev() {
+                let row = &self.own[l * self.count..l * self.count + l + 1];
+                let sum: f64 = row.iter().zip(state.iter()).map(|(p, x)| p * x).sum();
+                state[l] = sum + out[l * BLOCK_ROWS + k];
+                out[l * BLOCK_ROWS + k] = state[l];
+            }
+        }
+    }
+
+    /// `drive (w[k−1], u[k−1], u[k])`.
+    #[inline(always)]
+    fn drive(&self, input: &Filtered, out: &mut [f64]) {
         let rows = input.input.len() - 1;
         let [w0, w1, w2, w3] = &input.states;
         for (drive, out) in self.drive.iter().zip(out.chunks_exact_mut(BLOCK_ROWS)) {
@@ -157,15 +210,22 @@ impl FilterStep {
                     + drive[5] * u[1];
             }
         }
-        for k in 0..rows {
-            // from the last filter to the first: each needs the old states of those before it
-            for l in (0..self.count).rev() {
-                let row = &self.own[l * self.count..l * self.count + l + 1];
-                let sum: f64 = row.iter().zip(state.iter()).map(|(p, x)| p * x).sum();
-                state[l] = sum + out[l * BLOCK_ROWS + k];
-                out[l * BLOCK_ROWS + k] = state[l];
-            }
-        }
+    }
+}
+
+/// What [`FilterStep::advance`] does first.
+struct Drive<'a> {
+    step: &'a FilterStep,
+    input: &'a Filtered,
+    out: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Drive<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.step.drive(self.input, self.out);
     }
 }
 

@@ -1,7 +1,8 @@
 //! One pass over the records: the rows of many candidate models, factored stretch by stretch. Only inputs that have moved
 //! take columns; weights multiply whole stretches after they have been factored.
 
-use super::record::{DimensionlessRecord, Signals};
+use super::record::DimensionlessRecord;
+use super::signals::SignalBlock;
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{BLOCK_ROWS, Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
@@ -75,12 +76,13 @@ pub(crate) struct Piece<'a> {
     pub first: usize,
 }
 
-impl Signals {
+impl SignalBlock {
     fn piece(&self, range: Range<usize>) -> Piece<'_> {
-        let part = |c| &Vec::as_slice(c)[range.clone()];
+        let (motion, force) = self.channels.split_at(self.channels.len() / 2);
+        let within = range.start - self.first..range.end - self.first;
         Piece {
-            motion: self.motion.iter().map(part).collect(),
-            force: self.force.iter().map(part).collect(),
+            motion: motion.iter().map(|c| &c[within.clone()]).collect(),
+            force: force.iter().map(|c| &c[within.clone()]).collect(),
             first: range.start,
         }
     }
@@ -190,30 +192,35 @@ fn one_record<C: Columns>(
     plan: &PassPlan,
     maker: &mut C,
 ) -> Result<Vec<Stretch>> {
-    let (signals, step_s) = record.at_step(plan.delta_s);
+    let (resampled, step_s) = record.at_step(plan.delta_s)?;
+    let signals = resampled.as_ref().unwrap_or(&record.signals);
     let sample = |t: &f64| (t / step_s).ceil().max(0.0) as usize;
     let ends: Vec<usize> = boundaries_s(record, plan).iter().map(sample).collect();
     let mut ends = ends.into_iter().peekable();
     let discard = (plan.discard_s / step_s).ceil() as usize;
     let (mut closed, mut open) = (Vec::new(), OpenStretch::new(plan.order.inputs));
     let mut active: Vec<usize> = Vec::new();
-    let (mut at, mut rows) = (0, 0);
-    while at < signals.len() {
-        while ends.next_if_eq(&at).is_some() {
-            open.close(index, &mut closed);
+    let mut rows = 0;
+    signals.for_each_block(|block| {
+        let (mut at, stop) = (block.first, block.first + block.rows());
+        while at < stop {
+            while ends.next_if_eq(&at).is_some() {
+                open.close(index, &mut closed);
+            }
+            let whole = (at / BLOCK_ROWS + 1) * BLOCK_ROWS;
+            let end = ends.peek().map_or(whole, |e| whole.min(*e));
+            let range = at..end.min(stop);
+            let piece = block.piece(range.clone());
+            let moving = activate(&piece, &mut active);
+            maker.advance(&piece, &active);
+            if at >= discard {
+                open.take(&piece, moving, plan, &active, maker, at as f64 * step_s);
+                rows += piece.rows();
+            }
+            at = range.end;
         }
-        let block = (at / BLOCK_ROWS + 1) * BLOCK_ROWS;
-        let end = ends.peek().map_or(block, |e| block.min(*e));
-        let range = at..end.min(signals.len());
-        let piece = signals.piece(range.clone());
-        let moving = activate(&piece, &mut active);
-        maker.advance(&piece, &active);
-        if at >= discard {
-            open.take(&piece, moving, plan, &active, maker, at as f64 * step_s);
-            rows += piece.rows();
-        }
-        at = range.end;
-    }
+        Ok(())
+    })?;
     open.close(index, &mut closed);
     let least = plan.order.width(1).max(16) * plan.stride;
     if rows < least {

@@ -1,5 +1,6 @@
-//! A record without dimensions, in memory: an hour at 200 Hz of two motions and their forces is 23 MB.
+//! A record without dimensions.
 
+use super::signals::{SignalWriter, Signals};
 use crate::error::{Error, Result, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
@@ -10,8 +11,8 @@ use crate::signal::{mean, resampled};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
 use nalgebra::Complex;
+use rayon::prelude::*;
 use rustfft::FftPlanner;
-use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
@@ -28,13 +29,6 @@ pub(crate) struct DimensionlessRecord {
     pub rate: f64,
     /// Sampling step, s.
     pub step_s: f64,
-}
-
-/// Dimensionless motions and forces, one vector per degree of freedom, all of one length.
-#[derive(Clone)]
-pub(crate) struct Signals {
-    pub motion: Vec<Vec<f64>>,
-    pub force: Vec<Vec<f64>>,
 }
 
 /// The records of one fit.
@@ -61,12 +55,15 @@ impl Records {
         dofs.dedup();
         let mut heads = records.iter().map(|r| r.header());
         heads.try_for_each(|head| check_header(head, &dofs))?;
-        let read = records.iter().map(|r| DimensionlessRecord::read(*r, &dofs));
-        let mut each = read.collect::<Result<Vec<_>>>()?;
+        let read = records.par_iter();
+        let read = read.map(|r| DimensionlessRecord::read(*r, &dofs));
+        // the first that fails is named, whoever comes first
+        let read: Vec<Result<_>> = read.collect();
+        let mut each = read.into_iter().collect::<Result<Vec<_>>>()?;
         let mut removed_means = Vec::new();
         let without_mean = each.iter_mut();
         for record in without_mean.filter(|_| static_term == StaticTerm::Removed) {
-            for (value, &force) in record.remove_means().into_iter().zip(&dofs) {
+            for (value, &force) in record.remove_means()?.into_iter().zip(&dofs) {
                 removed_means.push(StaticReport {
                     force,
                     record: Some(record.name().to_owned()),
@@ -84,18 +81,18 @@ impl Records {
 
     /// Range of all records together.
     pub(crate) fn tested_range(&self) -> Result<ReducedFrequencyRange> {
-        ReducedFrequencyRange::covering(self.each.iter().flat_map(DimensionlessRecord::tested))
+        let tested = self.each.iter().map(DimensionlessRecord::tested);
+        let tested = tested.collect::<Result<Vec<_>>>()?;
+        ReducedFrequencyRange::covering(tested.into_iter().flatten())
             .ok_or_else(|| Error::input("records", "a motion", "none that moves"))
     }
 
     /// Numbers of a transfer function that the tests determine: two for each frequency and speed at which one degree of freedom
     /// was moved; no end of them where records move a whole band.
     pub(crate) fn rows_of_tests(&self) -> usize {
-        let tested: Vec<_> = self
-            .each
-            .iter()
-            .flat_map(DimensionlessRecord::tested)
-            .collect();
+        // a record that cannot be read has no range: `tested_range` says why
+        let tested = self.each.iter().filter_map(|record| record.tested().ok());
+        let tested: Vec<_> = tested.flatten().collect();
         if tested.iter().any(|range| range.min < range.max) {
             return usize::MAX;
         }
@@ -136,32 +133,20 @@ impl DimensionlessRecord {
         let header = record.header();
         let (width, speed) = (header.width_m, header.mean_speed_m_s);
         let pressure = 0.5 * header.air_density_kg_m3 * speed * speed;
-        let mut signals = Signals {
-            motion: vec![Vec::new(); dofs.len()],
-            force: vec![Vec::new(); dofs.len()],
-        };
+        let mut signals = SignalWriter::new(dofs.len());
         record.for_each_block(&mut |block| {
-            let read = signals.len();
+            let read = signals.rows();
             check_lengths(&header.name, &block, dofs.len(), read)?;
-            for (i, dof) in dofs.iter().enumerate() {
+            let (mut motions, mut forces) = (Vec::new(), Vec::new());
+            for dof in dofs {
                 let channel = index_of(&header.dofs, *dof, "dofs")?;
                 let force_scale = 1.0 / (pressure * dof.force_scale(width));
-                for (to, from, factor, what) in [
-                    (
-                        &mut signals.motion[i],
-                        &block.motion[channel],
-                        dof.motion_scale(width),
-                        "motion",
-                    ),
-                    (
-                        &mut signals.force[i],
-                        &block.force[channel],
-                        force_scale,
-                        "force",
-                    ),
-                ] {
-                    to.extend(from.iter().map(|x| factor * x));
-                    if let Some(bad) = to[read..].iter().position(|x| !x.is_finite()) {
+                motions.push((&block.motion[channel], dof.motion_scale(width)));
+                forces.push((&block.force[channel], force_scale));
+            }
+            for (motion, force) in motions.iter().zip(&forces) {
+                for ((from, factor), what) in [(motion, "motion"), (force, "force")] {
+                    if let Some(bad) = from.iter().position(|x| !(factor * x).is_finite()) {
                         return Err(Error::input(
                             format!("record {}, {what}, sample {}", header.name, read + bad),
                             "a finite number",
@@ -170,13 +155,12 @@ impl DimensionlessRecord {
                     }
                 }
             }
-            Ok(())
+            let channels = [motions, forces].concat();
+            signals.extend(channels[0].0.len(), |c, k| channels[c].1 * channels[c].0[k])
         })?;
-        let channels = signals.motion.iter_mut().chain(&mut signals.force);
-        channels.for_each(Vec::shrink_to_fit);
         Ok(Self {
             header: header.clone(),
-            signals,
+            signals: signals.finish()?,
             rate: speed / width,
             step_s: 1.0 / header.sampling_hz,
         })
@@ -203,47 +187,55 @@ impl DimensionlessRecord {
     }
 
     /// Reduced frequencies of the segments; for other motions the band that holds their power.
-    fn tested(&self) -> Vec<ReducedFrequencyRange> {
+    fn tested(&self) -> Result<Vec<ReducedFrequencyRange>> {
         let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
         if self.segments().is_empty() {
             let whole = |(low, high)| ReducedFrequencyRange::between(k(low), k(high));
-            return band(&self.signals.motion).map(whole).into_iter().collect();
+            return Ok(band(&self.signals)?.map(whole).into_iter().collect());
         }
         let of_hertz = |f: f64| ReducedFrequency::from_full_width(TAU * f / self.rate);
         let tone = |s: &Segment| of_hertz(s.frequency_hz);
         let tones = self.segments().iter().map(tone);
-        tones
+        Ok(tones
             .map(|k| ReducedFrequencyRange::between(k, k))
-            .collect()
+            .collect())
     }
 
     /// Subtracts the mean of each force over the record; returns the means, dimensionless.
-    fn remove_means(&mut self) -> Vec<f64> {
-        let rows = f64::max(self.signals.len() as f64, 1.0);
-        let remove = |force: &mut Vec<f64>| {
-            let sums = force.chunks(BLOCK_ROWS).map(|c| c.iter().sum::<f64>());
-            let mean = sums.sum::<f64>() / rows;
-            force.iter_mut().for_each(|x| *x -= mean);
-            mean
-        };
-        self.signals.force.iter_mut().map(remove).collect()
+    fn remove_means(&mut self) -> Result<Vec<f64>> {
+        let (dofs, rows) = (self.signals.dofs(), self.signals.len());
+        let mut means = vec![0.0; dofs];
+        self.signals.for_each_block(|block| {
+            for (sum, force) in means.iter_mut().zip(&block.channels[dofs..]) {
+                let parts = force.chunks(BLOCK_ROWS).map(|c| c.iter().sum::<f64>());
+                *sum = parts.fold(*sum, |sum, part| sum + part);
+            }
+            Ok(())
+        })?;
+        means
+            .iter_mut()
+            .for_each(|m| *m /= f64::max(rows as f64, 1.0));
+        self.signals.change(|block| {
+            for (mean, force) in means.iter().zip(&mut block.channels[dofs..]) {
+                force.iter_mut().for_each(|x| *x -= mean);
+            }
+        })?;
+        Ok(means)
     }
 
-    /// The signals at the record's own step, or at the dimensionless step `delta_s` if that is longer, and that step in
+    /// The signals at the dimensionless step `delta_s` where that is longer than the record's own, and the step of either in
     /// seconds.
-    pub(crate) fn at_step(&self, delta_s: Option<f64>) -> (Cow<'_, Signals>, f64) {
+    pub(crate) fn at_step(&self, delta_s: Option<f64>) -> Result<(Option<Signals>, f64)> {
         let ratio = delta_s.map_or(1.0, |d| d / self.delta_s());
         // a step equal but for rounding is the same step
         if ratio <= 1.0 + 1e-9 {
-            return (Cow::Borrowed(&self.signals), self.step_s);
+            return Ok((None, self.step_s));
         }
-        let at_ratio =
-            |channels: &[Vec<f64>]| channels.iter().map(|c| resampled(c, ratio)).collect();
-        let signals = Signals {
-            motion: at_ratio(&self.signals.motion),
-            force: at_ratio(&self.signals.force),
-        };
-        (Cow::Owned(signals), self.step_s * ratio)
+        let channels = self.signals.range(0..self.signals.len())?;
+        let channels: Vec<Vec<f64>> = channels.iter().map(|c| resampled(c, ratio)).collect();
+        let mut signals = SignalWriter::new(self.signals.dofs());
+        signals.extend(channels[0].len(), |c, k| channels[c][k])?;
+        Ok((Some(signals.finish()?), self.step_s * ratio))
     }
 }
 
@@ -261,28 +253,26 @@ fn check_lengths(name: &str, block: &RecordBlock<'_>, n: usize, read: usize) -> 
 }
 
 impl Signals {
-    /// Number of samples.
-    pub(crate) fn len(&self) -> usize {
-        self.motion[0].len()
-    }
-
     /// Number of samples before any motion starts; all of them when none ever does.
-    pub(crate) fn still_samples(&self) -> usize {
-        let departure = |k: usize| {
-            let each = self.motion.iter().map(|m| (m[k] - m[0]).abs());
-            each.fold(0.0, f64::max)
-        };
+    pub(crate) fn still_samples(&self) -> Result<usize> {
+        let mut first: Option<Vec<f64>> = None;
         let mut largest = 0.0;
         let mut growing = Vec::new();
-        for k in 0..self.len() {
-            let now = departure(k);
-            if now > GROWTH * largest {
-                largest = now;
-                growing.push((k, now));
+        self.for_each_block(|block| {
+            let motions = &block.channels[..self.dofs()];
+            let first = first.get_or_insert_with(|| motions.iter().map(|m| m[0]).collect());
+            for k in 0..block.rows() {
+                let each = motions.iter().zip(&*first).map(|(m, x)| (m[k] - x).abs());
+                let now = each.fold(0.0, f64::max);
+                if now > GROWTH * largest {
+                    largest = now;
+                    growing.push((block.first + k, now));
+                }
             }
-        }
+            Ok(())
+        })?;
         let start = growing.iter().find(|(_, d)| *d > STILL * largest);
-        start.map_or(self.len(), |(sample, _)| *sample)
+        Ok(start.map_or(self.len(), |(sample, _)| *sample))
     }
 }
 
@@ -293,11 +283,11 @@ const LEFT_OUT: f64 = 0.01;
 
 /// Lower and upper end of the band that holds the power of all motions together, radians per sample, from averaged periodograms
 /// (Welch 1967); `None` for motions that never move.
-fn band(motions: &[Vec<f64>]) -> Option<(f64, f64)> {
-    let power = power(motions);
+fn band(signals: &Signals) -> Result<Option<(f64, f64)>> {
+    let power = power(signals)?;
     let total: f64 = power.iter().sum();
     if !(total > 0.0 && total.is_finite()) {
-        return None;
+        return Ok(None);
     }
     let mut sum = 0.0;
     let cumulative: Vec<f64> = power
@@ -311,45 +301,62 @@ fn band(motions: &[Vec<f64>]) -> Option<(f64, f64)> {
         let bin = cumulative.iter().position(|c| *c >= part);
         TAU * bin.unwrap_or(PERIODOGRAM / 2 - 1).max(1) as f64 / PERIODOGRAM as f64
     };
-    Some((at(LEFT_OUT), at(1.0 - LEFT_OUT)))
+    Ok(Some((at(LEFT_OUT), at(1.0 - LEFT_OUT))))
 }
 
 /// Sum of the periodograms of blocks that overlap by half, without their mean, under a Hann window; the last block is
 /// what no whole one has held with its full weight, padded with zeros.
-fn power(motions: &[Vec<f64>]) -> Vec<f64> {
+fn power(signals: &Signals) -> Result<Vec<f64>> {
     let transform = FftPlanner::new().plan_fft_forward(PERIODOGRAM);
     let mut power = vec![0.0; PERIODOGRAM / 2];
-    let count = motions.first().map_or(0, Vec::len);
-    for start in (0..).step_by(PERIODOGRAM / 2) {
-        for motion in motions {
-            let samples = &motion[start..count.min(start + PERIODOGRAM)];
-            let mean = mean(samples);
-            let step = TAU / samples.len().max(1) as f64;
-            let windowed = samples
-                .iter()
-                .enumerate()
-                .map(|(k, x)| (x - mean) * (0.5 - 0.5 * (step * k as f64).cos()));
-            let mut spectrum: Vec<Complex<f64>> = windowed.map(Complex::from).collect();
-            spectrum.resize(PERIODOGRAM, Complex::default());
-            transform.process(&mut spectrum);
-            for (power, z) in power.iter_mut().zip(&spectrum) {
-                *power += z.norm_sqr();
+    let mut take = |samples: &[f64]| {
+        let mean = mean(samples);
+        let step = TAU / samples.len().max(1) as f64;
+        let windowed = samples
+            .iter()
+            .enumerate()
+            .map(|(k, x)| (x - mean) * (0.5 - 0.5 * (step * k as f64).cos()));
+        let mut spectrum: Vec<Complex<f64>> = windowed.map(Complex::from).collect();
+        spectrum.resize(PERIODOGRAM, Complex::default());
+        transform.process(&mut spectrum);
+        for (power, z) in power.iter_mut().zip(&spectrum) {
+            *power += z.norm_sqr();
+        }
+    };
+    let mut waiting = vec![Vec::new(); signals.dofs()];
+    signals.for_each_block(|block| {
+        for (waiting, motion) in waiting.iter_mut().zip(&block.channels) {
+            waiting.extend_from_slice(motion);
+        }
+        while waiting[0].len() >= PERIODOGRAM {
+            for waiting in &mut waiting {
+                take(&waiting[..PERIODOGRAM]);
+                waiting.drain(..PERIODOGRAM / 2);
             }
         }
-        if start + PERIODOGRAM > count {
-            break;
-        }
-    }
-    power
+        Ok(())
+    })?;
+    waiting.iter().for_each(|waiting| take(waiting));
+    Ok(power)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn signals(motion: Vec<Vec<f64>>) -> Signals {
+        let mut writer = SignalWriter::new(motion.len());
+        let value = |c, k| motion.get(c).map_or(0.0, |m: &Vec<f64>| m[k]);
+        writer.extend(motion[0].len(), value).unwrap();
+        writer.finish().unwrap()
+    }
+
     fn still(motion: Vec<Vec<f64>>) -> usize {
-        let force = Vec::new();
-        Signals { motion, force }.still_samples()
+        signals(motion).still_samples().unwrap()
+    }
+
+    fn band_of(motion: Vec<f64>) -> Option<(f64, f64)> {
+        band(&signals(vec![motion])).unwrap()
     }
 
     /// Noise of 0.2 % in both channels and an offset; the sine starts at sample 300 and passes 1 % of its amplitude there.
@@ -371,11 +378,11 @@ mod tests {
         for (samples, resolution) in [(40_000, 2.0), (3_000, 6.0)] {
             let sines =
                 (0..samples).map(|k| 7.0 + (low * k as f64).sin() + (high * k as f64).sin());
-            let (a, b) = band(&[sines.collect()]).unwrap();
+            let (a, b) = band_of(sines.collect()).unwrap();
             assert!((a - low).abs() < resolution * bin, "{a} {low}");
             assert!((b - high).abs() < resolution * bin, "{b} {high}");
         }
-        assert_eq!(band(&[vec![0.0; 20_000]]), None);
-        assert_eq!(band(&[Vec::new()]), None);
+        assert_eq!(band_of(vec![0.0; 20_000]), None);
+        assert_eq!(band_of(Vec::new()), None);
     }
 }

@@ -3,6 +3,7 @@
 use super::cone::Cone;
 use super::second_order::{Scaling, Vector, determinant, dot, product, quotient, reach, tail};
 use crate::error::{Error, Result};
+use crate::identification::least_squares::subtract;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::array::from_fn;
 
@@ -67,12 +68,12 @@ impl Problem {
 
     /// `rows w`, cone by cone.
     fn times(&self, w: &DVector<f64>) -> Vec<Vector> {
-        self.cut(&(&self.rows * w))
+        self.cut(&times(&self.rows, w))
     }
 
     /// `rowsᵀ z`.
     fn transposed(&self, z: &[Vector]) -> DVector<f64> {
-        self.rows.tr_mul(&self.flat(z))
+        transposed_times(&self.rows, &self.flat(z))
     }
 
     pub(super) fn solve(&self) -> Result<Point> {
@@ -135,11 +136,12 @@ impl Problem {
             .collect::<Option<Vec<_>>>()?;
         // W⁻¹ rows
         let mut scaled = self.rows.clone();
-        for (&(first, count), scaling) in self.spans.iter().zip(&scalings) {
-            for mut column in scaled.column_iter_mut() {
-                let v: Vector = from_fn(|r| if r < count { column[first + r] } else { 0.0 });
-                let v = scaling.divide(&v);
-                column.rows_mut(first, count).copy_from_slice(&v[..count]);
+        let rows = scaled.nrows().max(1);
+        for column in scaled.as_mut_slice().chunks_exact_mut(rows) {
+            for (&(first, count), scaling) in self.spans.iter().zip(&scalings) {
+                let part = &mut column[first..first + count];
+                let v = scaling.divide(&from_fn(|r| part.get(r).copied().unwrap_or(0.0)));
+                part.copy_from_slice(&v[..count]);
             }
         }
         let system = Weighted::new(&scaled)?;
@@ -205,10 +207,7 @@ struct Weighted<'a> {
 
 impl<'a> Weighted<'a> {
     fn new(rows: &'a DMatrix<f64>) -> Option<Self> {
-        let n = rows.ncols();
-        let mut gram = DMatrix::identity(n, n);
-        gram.gemm_tr(1.0, rows, rows, 1.0);
-        let factor = gram.cholesky()?;
+        let factor = pulp::Arch::new().dispatch(OnePlusGram(rows)).cholesky()?;
         Some(Self { rows, factor })
     }
 
@@ -218,18 +217,105 @@ impl<'a> Weighted<'a> {
         let mut y = DVector::zeros(b.len());
         let mut before = f64::INFINITY;
         for _ in 0..=REFINEMENTS {
-            let first = -a - &w - self.rows.tr_mul(&y);
-            let second = &y - b - self.rows * &w;
+            let first = -a - &w - transposed_times(self.rows, &y);
+            let second = &y - b - times(self.rows, &w);
             let left = first.norm_squared() + second.norm_squared();
             if left == 0.0 || left > 0.1 * before {
                 break;
             }
             before = left;
-            let by = self.factor.solve(&(first + self.rows.tr_mul(&second)));
-            y += self.rows * &by - second;
+            let right = first + transposed_times(self.rows, &second);
+            let by = self.factor.solve(&right);
+            y += times(self.rows, &by) - second;
             w += by;
         }
         (w, y)
+    }
+}
+
+/// `rows w`.
+fn times(rows: &DMatrix<f64>, w: &DVector<f64>) -> DVector<f64> {
+    pulp::Arch::new().dispatch(RowsTimes { rows, w })
+}
+
+/// `rowsᵀ y`.
+fn transposed_times(rows: &DMatrix<f64>, y: &DVector<f64>) -> DVector<f64> {
+    pulp::Arch::new().dispatch(TransposedTimes { rows, y })
+}
+
+/// `I + rowsᵀ rows`.
+struct OnePlusGram<'a>(&'a DMatrix<f64>);
+
+impl pulp::NullaryFnOnce for OnePlusGram<'_> {
+    type Output = DMatrix<f64>;
+
+    #[inline(always)]
+    fn call(self) -> DMatrix<f64> {
+        let n = self.0.ncols();
+        let columns = self.0.as_slice().chunks_exact(self.0.nrows().max(1));
+        let mut gram = DMatrix::identity(n, n);
+        for (i, one) in columns.clone().enumerate() {
+            for (j, other) in columns.clone().enumerate().take(i + 1) {
+                gram[(i, j)] += in_eight_parts(one, other);
+                gram[(j, i)] = gram[(i, j)];
+            }
+        }
+        gram
+    }
+}
+
+/// `a·b` in eight partial sums, which the processor works on side by side.
+#[inline(always)]
+fn in_eight_parts(a: &[f64], b: &[f64]) -> f64 {
+    let (a_blocks, a_rest) = a.as_chunks::<8>();
+    let (b_blocks, b_rest) = b.as_chunks::<8>();
+    let mut parts = [0.0; 8];
+    for (x, y) in a_blocks.iter().zip(b_blocks) {
+        for (part, (x, y)) in parts.iter_mut().zip(x.iter().zip(y)) {
+            *part += x * y;
+        }
+    }
+    let sum = (0..4).fold(0.0, |sum, i| sum + (parts[i] + parts[i + 4]));
+    let rest = a_rest.iter().zip(b_rest);
+    rest.fold(sum, |sum, (x, y)| sum + x * y)
+}
+
+struct RowsTimes<'a> {
+    rows: &'a DMatrix<f64>,
+    w: &'a DVector<f64>,
+}
+
+struct TransposedTimes<'a> {
+    rows: &'a DMatrix<f64>,
+    y: &'a DVector<f64>,
+}
+
+impl pulp::NullaryFnOnce for RowsTimes<'_> {
+    type Output = DVector<f64>;
+
+    #[inline(always)]
+    fn call(self) -> DVector<f64> {
+        let rows = self.rows.nrows();
+        let mut sum = DVector::zeros(rows);
+        let columns = self.rows.as_slice().chunks_exact(rows.max(1));
+        for (column, w) in columns.zip(self.w) {
+            subtract(sum.as_mut_slice(), -w, column);
+        }
+        sum
+    }
+}
+
+impl pulp::NullaryFnOnce for TransposedTimes<'_> {
+    type Output = DVector<f64>;
+
+    #[inline(always)]
+    fn call(self) -> DVector<f64> {
+        let columns = self.rows.as_slice().chunks_exact(self.rows.nrows().max(1));
+        let mut products = DVector::zeros(self.rows.ncols());
+        for (product, column) in products.iter_mut().zip(columns) {
+            *product = in_eight_parts(column, self.y.as_slice());
+        }
+        products
     }
 }
 

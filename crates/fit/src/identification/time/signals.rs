@@ -1,0 +1,285 @@
+//! Motions and forces of one record over time: in blocks, in memory or, where they are long, in a file of their own that goes
+//! with them. Whatever its length, a record then takes the memory of one block for each thread that reads it.
+
+use crate::error::{Error, Result};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Rows of a block: a multiple of what is factored together.
+pub(crate) const SIGNAL_ROWS: usize = 8192;
+/// Blocks in memory at most: ten minutes at 200 Hz.
+const IN_MEMORY: usize = 16;
+
+/// Dimensionless motions and forces, a channel per degree of freedom each, all of one length.
+pub(crate) struct Signals {
+    /// Number of degrees of freedom.
+    dofs: usize,
+    rows: usize,
+    store: Store,
+}
+
+enum Store {
+    Memory(Vec<SignalBlock>),
+    File(Mutex<File>),
+}
+
+/// Up to [`SIGNAL_ROWS`] consecutive samples.
+#[derive(Clone, Default)]
+pub(crate) struct SignalBlock {
+    /// Index of the first sample.
+    pub first: usize,
+    /// Motions, then forces.
+    pub channels: Vec<Vec<f64>>,
+}
+
+impl SignalBlock {
+    /// Number of samples.
+    pub(crate) fn rows(&self) -> usize {
+        self.channels.first().map_or(0, Vec::len)
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        let numbers = self.channels.iter().flatten();
+        numbers.flat_map(|x| x.to_le_bytes()).collect()
+    }
+}
+
+/// Signals being filled.
+pub(crate) struct SignalWriter {
+    signals: Signals,
+    last: SignalBlock,
+}
+
+impl SignalWriter {
+    pub(crate) fn new(dofs: usize) -> Self {
+        Self {
+            signals: Signals {
+                dofs,
+                rows: 0,
+                store: Store::Memory(Vec::new()),
+            },
+            last: SignalBlock {
+                first: 0,
+                channels: vec![Vec::new(); 2 * dofs],
+            },
+        }
+    }
+
+    /// Number of samples taken.
+    pub(crate) fn rows(&self) -> usize {
+        self.signals.rows + self.last.rows()
+    }
+
+    /// Takes samples of all channels, `value(channel, sample)`, the first `rows` of them.
+    pub(crate) fn extend(
+        &mut self,
+        rows: usize,
+        value: impl Fn(usize, usize) -> f64,
+    ) -> Result<()> {
+        let mut from = 0;
+        while from < rows {
+            let to = rows.min(from + SIGNAL_ROWS - self.last.rows());
+            for (c, channel) in self.last.channels.iter_mut().enumerate() {
+                channel.extend((from..to).map(|k| value(c, k)));
+            }
+            if self.last.rows() == SIGNAL_ROWS {
+                self.close()?;
+            }
+            from = to;
+        }
+        Ok(())
+    }
+
+    fn close(&mut self) -> Result<()> {
+        let signals = &mut self.signals;
+        if let Store::Memory(blocks) = &mut signals.store
+            && blocks.len() == IN_MEMORY
+        {
+            let mut file = tempfile::tempfile().map_err(io)?;
+            for block in blocks {
+                file.write_all(&block.bytes()).map_err(io)?;
+            }
+            signals.store = Store::File(Mutex::new(file));
+        }
+        match &mut signals.store {
+            Store::Memory(blocks) => blocks.push(self.last.clone()),
+            Store::File(file) => locked(file).write_all(&self.last.bytes()).map_err(io)?,
+        }
+        signals.rows += self.last.rows();
+        self.last.first = signals.rows;
+        self.last.channels.iter_mut().for_each(Vec::clear);
+        Ok(())
+    }
+
+    pub(crate) fn finish(mut self) -> Result<Signals> {
+        if self.last.rows() > 0 {
+            self.close()?;
+        }
+        Ok(self.signals)
+    }
+}
+
+impl Signals {
+    /// Number of samples.
+    pub(crate) fn len(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of degrees of freedom.
+    pub(crate) fn dofs(&self) -> usize {
+        self.dofs
+    }
+
+    /// Calls `f` with all blocks in their order.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that cannot be read, and those of `f`.
+    pub(crate) fn for_each_block(
+        &self,
+        mut f: impl FnMut(&SignalBlock) -> Result<()>,
+    ) -> Result<()> {
+        match &self.store {
+            Store::Memory(blocks) => blocks.iter().try_for_each(f),
+            Store::File(file) => {
+                let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+                for first in (0..self.rows).step_by(SIGNAL_ROWS) {
+                    self.read(file, first, &mut block, &mut bytes)?;
+                    f(&block)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// All channels over some of the samples.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that cannot be read.
+    pub(crate) fn range(&self, samples: Range<usize>) -> Result<Vec<Vec<f64>>> {
+        let mut channels = vec![Vec::with_capacity(samples.len()); 2 * self.dofs];
+        let mut take = |block: &SignalBlock| {
+            let end = block.first + block.rows();
+            let part = samples.start.max(block.first)..samples.end.min(end);
+            for (all, channel) in channels.iter_mut().zip(&block.channels) {
+                let part =
+                    part.start.min(end) - block.first..part.end.max(block.first) - block.first;
+                all.extend_from_slice(channel.get(part).unwrap_or_default());
+            }
+        };
+        let first = samples.start / SIGNAL_ROWS;
+        match &self.store {
+            Store::Memory(blocks) => {
+                let within = blocks.iter().skip(first);
+                within.take_while(|b| b.first < samples.end).for_each(take);
+            }
+            Store::File(file) => {
+                let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+                let end = samples.end.min(self.rows);
+                for first in (first * SIGNAL_ROWS..end).step_by(SIGNAL_ROWS) {
+                    self.read(file, first, &mut block, &mut bytes)?;
+                    take(&block);
+                }
+            }
+        }
+        Ok(channels)
+    }
+
+    /// Replaces every block by what `f` makes of it.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for a file that cannot be read or written.
+    pub(crate) fn change(&mut self, mut f: impl FnMut(&mut SignalBlock)) -> Result<()> {
+        if let Store::Memory(blocks) = &mut self.store {
+            blocks.iter_mut().for_each(f);
+            return Ok(());
+        }
+        if let Store::File(file) = &self.store {
+            let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+            for first in (0..self.rows).step_by(SIGNAL_ROWS) {
+                self.read(file, first, &mut block, &mut bytes)?;
+                f(&mut block);
+                let mut file = self.at(file, first)?;
+                file.write_all(&block.bytes()).map_err(io)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn at<'a>(&self, file: &'a Mutex<File>, first: usize) -> Result<MutexGuard<'a, File>> {
+        let mut file = locked(file);
+        let start = (first * 2 * self.dofs * size_of::<f64>()) as u64;
+        file.seek(SeekFrom::Start(start)).map_err(io)?;
+        Ok(file)
+    }
+
+    fn read(
+        &self,
+        file: &Mutex<File>,
+        first: usize,
+        block: &mut SignalBlock,
+        bytes: &mut Vec<u8>,
+    ) -> Result<()> {
+        let rows = SIGNAL_ROWS.min(self.rows - first);
+        bytes.resize(rows * 2 * self.dofs * size_of::<f64>(), 0);
+        self.at(file, first)?.read_exact(bytes).map_err(io)?;
+        block.first = first;
+        block.channels.resize(2 * self.dofs, Vec::new());
+        let (numbers, _) = bytes.as_chunks::<{ size_of::<f64>() }>();
+        for (channel, numbers) in block.channels.iter_mut().zip(numbers.chunks(rows)) {
+            channel.clear();
+            channel.extend(numbers.iter().map(|x| f64::from_le_bytes(*x)));
+        }
+        Ok(())
+    }
+}
+
+fn locked(file: &Mutex<File>) -> MutexGuard<'_, File> {
+    file.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn io(error: std::io::Error) -> Error {
+    Error::io(std::env::temp_dir(), error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A record that stays in memory and one that does not give back what they were given, in blocks, and as changed.
+    #[test]
+    fn long_signals_are_those_that_were_written() {
+        for rows in [10, 3 * SIGNAL_ROWS + 5, (IN_MEMORY + 2) * SIGNAL_ROWS + 7] {
+            let value = |c: usize, k: usize| (10 * k + c) as f64 + 0.1;
+            let mut writer = SignalWriter::new(1);
+            for first in (0..rows).step_by(5000) {
+                let part = 5000.min(rows - first);
+                writer.extend(part, |c, k| value(c, first + k)).unwrap();
+            }
+            let mut signals = writer.finish().unwrap();
+            assert_eq!(
+                matches!(signals.store, Store::File(_)),
+                rows > IN_MEMORY * SIGNAL_ROWS
+            );
+            for sign in [1.0, -1.0] {
+                let mut seen = 0;
+                let check = |block: &SignalBlock| {
+                    assert_eq!(block.first, seen);
+                    for (c, channel) in block.channels.iter().enumerate() {
+                        for (k, x) in channel.iter().enumerate() {
+                            assert_eq!(*x, sign * value(c, seen + k));
+                        }
+                    }
+                    seen += block.rows();
+                    Ok(())
+                };
+                signals.for_each_block(check).unwrap();
+                assert_eq!((seen, signals.len()), (rows, rows));
+                let negate = |x: &mut f64| *x = -*x;
+                let turn = |b: &mut SignalBlock| b.channels.iter_mut().flatten().for_each(negate);
+                signals.change(turn).unwrap();
+            }
+        }
+    }
+}
