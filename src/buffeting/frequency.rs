@@ -1,7 +1,7 @@
 //! Response in the frequency domain: `S_r = H S_F Hᴴ`, and its integral.
 
 use super::problem::BuffetingProblem;
-use super::quadrature::integrate;
+use super::quadrature::{each, integrate};
 use super::spectrum::GustComponent;
 use super::stability::turning;
 use crate::error::{Error, Result};
@@ -127,13 +127,13 @@ fn all_frequencies(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) ->
         let rates: Vec<f64> = added(&by_u, &by_w).map(|sum| square * sum).collect();
         Ok([by_u, by_w, rates].concat())
     };
-    let (inner, _) = integrate(densities, &breaks, TOLERANCE)?;
+    let (inner, _) = integrate(each(densities), &breaks, TOLERANCE)?;
     let beyond = |t: f64| -> Result<Vec<f64>> {
         let values = densities(1.0 / t)?;
         Ok(values.into_iter().map(|v| v / (t * t)).collect())
     };
     // a millionth of the whole at most, so a coarser tolerance does
-    let (tail, _) = integrate(beyond, &[0.0, 1.0 / last], 1e-4)?;
+    let (tail, _) = integrate(each(beyond), &[0.0, 1.0 / last], 1e-4)?;
     Ok(added(&inner, &tail).collect())
 }
 
@@ -150,7 +150,11 @@ fn tested_part(
     let mut breaks = vec![low];
     breaks.extend(peaks.iter().filter(|f| (low..high).contains(f)));
     breaks.push(high);
-    let (inside, _) = integrate(|f| response_spectrum(problem, f, speed), &breaks, 1e-6)?;
+    let (inside, _) = integrate(
+        each(|f| response_spectrum(problem, f, speed)),
+        &breaks,
+        1e-6,
+    )?;
     Ok(inside
         .iter()
         .zip(rms)

@@ -41,16 +41,15 @@ struct QuadratureInterval {
 
 /// `∫ f` over the polygon of `breaks`, each component to the relative `tolerance`; the values and their estimated errors.
 ///
-/// `f` must give the same number of components everywhere; peaks are found when they stand near a break.
+/// `f` gives the values at many points at once, the same number of components everywhere; peaks are found when they stand near a
+/// break.
 pub(super) fn integrate(
-    f: impl Fn(f64) -> Result<Vec<f64>>,
+    f: impl Fn(&[f64]) -> Result<Vec<Vec<f64>>>,
     breaks: &[f64],
     tolerance: f64,
 ) -> Result<(Vec<f64>, Vec<f64>)> {
-    let mut pieces = Vec::with_capacity(breaks.len());
-    for ends in breaks.windows(2) {
-        pieces.push(piece(&f, ends[0], ends[1])?);
-    }
+    let ends = breaks.windows(2).map(|ends| piece(&f, ends[0], ends[1]));
+    let mut pieces = ends.collect::<Result<Vec<_>>>()?;
     for _ in 0..MAX_HALVINGS {
         let (value, error) = totals(&pieces);
         if value.iter().chain(&error).any(|x| !x.is_finite()) {
@@ -91,20 +90,32 @@ fn totals(pieces: &[QuadratureInterval]) -> (Vec<f64>, Vec<f64>) {
     (sum(|p| &p.value), sum(|p| &p.error))
 }
 
-fn piece(f: &impl Fn(f64) -> Result<Vec<f64>>, low: f64, high: f64) -> Result<QuadratureInterval> {
+/// One after the other: values at many points of a function that is asked for little.
+pub(super) fn each(
+    f: impl Fn(f64) -> Result<Vec<f64>>,
+) -> impl Fn(&[f64]) -> Result<Vec<Vec<f64>>> {
+    move |points| points.iter().map(|x| f(*x)).collect()
+}
+
+fn piece(
+    f: &impl Fn(&[f64]) -> Result<Vec<Vec<f64>>>,
+    low: f64,
+    high: f64,
+) -> Result<QuadratureInterval> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let mut kronrod: Vec<f64> = Vec::new();
-    let mut gauss: Vec<f64> = Vec::new();
-    for (x, by_kronrod, by_gauss) in RULE {
-        let sides: &[f64] = if x == 0.0 { &[0.0] } else { &[-1.0, 1.0] };
-        for side in sides {
-            let values = f(middle + side * half * x)?;
-            kronrod.resize(values.len(), 0.0);
-            gauss.resize(values.len(), 0.0);
-            for (i, v) in values.iter().enumerate() {
-                kronrod[i] += half * by_kronrod * v;
-                gauss[i] += half * by_gauss * v;
-            }
+    let sides = RULE.iter().flat_map(|(x, kronrod, gauss)| {
+        let sides: &[f64] = if *x == 0.0 { &[0.0] } else { &[-1.0, 1.0] };
+        let at = sides.iter().map(move |side| middle + side * half * x);
+        at.map(move |at| (at, half * kronrod, half * gauss))
+    });
+    let points: Vec<_> = sides.collect();
+    let values = f(&points.iter().map(|p| p.0).collect::<Vec<_>>())?;
+    let mut kronrod = vec![0.0; values.first().map_or(0, Vec::len)];
+    let mut gauss = kronrod.clone();
+    for (values, (_, by_kronrod, by_gauss)) in values.iter().zip(points) {
+        for (i, v) in values.iter().enumerate() {
+            kronrod[i] += by_kronrod * v;
+            gauss[i] += by_gauss * v;
         }
     }
     let error = kronrod
@@ -128,7 +139,8 @@ mod tests {
     #[test]
     fn the_rule_is_exact_for_polynomials() {
         for degree in [0, 2, 10, 12, 22] {
-            let p = piece(&|x: f64| Ok(vec![x.powi(degree)]), -1.0, 1.0).unwrap();
+            let power = each(|x: f64| Ok(vec![x.powi(degree)]));
+            let p = piece(&power, -1.0, 1.0).unwrap();
             let exact = 2.0 / f64::from(degree + 1);
             assert!((p.value[0] - exact).abs() < 1e-15, "{degree}");
             assert!(degree > 13 || p.error[0] < 1e-15, "{degree}");
@@ -139,7 +151,7 @@ mod tests {
     fn narrow_peaks_are_integrated() {
         let width = 1e-6;
         let peak = |x: f64| Ok(vec![width / ((x - 0.3).powi(2) + width * width), x.sin()]);
-        let (value, error) = integrate(peak, &[0.0, 0.300_01, 1.0], 1e-10).unwrap();
+        let (value, error) = integrate(each(peak), &[0.0, 0.300_01, 1.0], 1e-10).unwrap();
         let exact = (0.7f64 / width).atan() + (0.3f64 / width).atan();
         assert!((value[0] / exact - 1.0).abs() < 1e-10);
         assert!((value[1] - (1.0 - 1f64.cos())).abs() < 1e-12);

@@ -15,10 +15,10 @@ pub use frequency::{SpanResponse, SpanSpectra};
 pub(crate) use time::span_ensemble;
 pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_record};
 
-use super::problem::Turbulence;
+use super::problem::{Gust, Turbulence};
 use super::spectrum::GustComponent;
 use crate::aeroelastic::CoupledSection;
-use crate::bridge::{Bridge, motion_index};
+use crate::bridge::{Bridge, StripGroup, motion_index};
 use crate::error::{Error, Result, counted, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -126,30 +126,16 @@ impl SpanProblem<'_> {
         factors
     }
 
-    /// Force on the mass-normalised modes by a gust of 1 m/s at each node (nodes×modes), admittance included.
-    fn force_of_gusts(
-        &self,
-        component: GustComponent,
-        frequency_hz: f64,
-        speed_m_s: f64,
-    ) -> DMatrix<Complex<f64>> {
+    /// Force on the mass-normalised modes by a gust of 1 m/s at each node (nodes×modes) that is longer than the deck is wide.
+    fn force_of_long_gusts(&self, component: GustComponent, speed_m_s: f64) -> DMatrix<f64> {
         let bridge = self.bridge;
         let column = match component {
             GustComponent::Along => 0,
             GustComponent::Vertical => 1,
         };
         let mut forces = DMatrix::zeros(bridge.nodes.len(), bridge.modes.len());
-        let Some(gust) = self.turbulence.component(component) else {
-            return forces;
-        };
         for (group, matrix) in bridge.groups.iter().zip(&self.gust_matrices) {
-            let local = group.wind_factor * speed_m_s;
-            if local == 0.0 {
-                continue;
-            }
-            let k = ReducedFrequency::from_hertz(frequency_hz, group.width_m, local);
-            let chi = gust.admittance.amplitude(k);
-            let pressure = 0.5 * bridge.air_density_kg_m3 * local;
+            let pressure = 0.5 * bridge.air_density_kg_m3 * group.wind_factor * speed_m_s;
             let of = |dof: Dof| {
                 pressure * dof.force_scale(group.width_m) * matrix[motion_index(dof)][column]
             };
@@ -157,16 +143,31 @@ impl SpanProblem<'_> {
             for &n in &group.nodes {
                 let length = bridge.nodes[n].length_m;
                 for (m, mode) in bridge.modes.iter().enumerate() {
-                    let work: f64 = mode.shape[n]
-                        .iter()
-                        .zip(per_length)
-                        .map(|(phi, f)| phi * f)
-                        .sum();
-                    forces[(n, m)] = chi * (length * work / mode.generalised_mass.sqrt());
+                    let shape = mode.shape[n].iter().zip(per_length);
+                    let work: f64 = shape.map(|(phi, f)| phi * f).sum();
+                    forces[(n, m)] = length * work / mode.generalised_mass.sqrt();
                 }
             }
         }
         forces
+    }
+
+    /// Part of that force that gusts of a frequency exert at the nodes of a group in wind.
+    fn admittance(
+        &self,
+        gust: &Gust,
+        group: &StripGroup,
+        frequency_hz: f64,
+        speed_m_s: f64,
+    ) -> Complex<f64> {
+        let local = group.wind_factor * speed_m_s;
+        let k = ReducedFrequency::from_hertz(frequency_hz, group.width_m, local);
+        gust.admittance.amplitude(k)
+    }
+
+    /// Groups that the wind blows at.
+    fn blown(&self) -> impl Iterator<Item = &StripGroup> {
+        self.bridge.groups.iter().filter(|g| g.wind_factor != 0.0)
     }
 
     /// The coupled bridge, which must be stable.

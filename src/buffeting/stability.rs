@@ -9,9 +9,10 @@
 use super::problem::BuffetingProblem;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
-use crate::flutter::impedance;
+use crate::flutter::{impedance, pivots};
 use crate::section::Structure;
 use nalgebra::Complex;
+use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Frequencies of the first pass.
@@ -71,11 +72,15 @@ pub(crate) fn turning(
     };
     let mut passed = Vec::new();
     let mut before: Option<DeterminantPoint> = None;
-    for f in frequencies(structure) {
-        let next = at(f)?;
+    let grid = frequencies(structure);
+    let first_pass: Vec<DeterminantPoint> = match structure.dofs.len() > FEW {
+        true => grid.into_par_iter().map(&at).collect::<Result<_>>()?,
+        false => grid.into_iter().map(&at).collect::<Result<_>>()?,
+    };
+    for next in first_pass {
         match &before {
             // the ends lie off the real axis by as much as the damping does there
-            None => passed.push((f, off_axis(next.phase))),
+            None => passed.push((next.hertz, off_axis(next.phase))),
             Some(before) => turn(&at, before, &next, 0, &mut passed)?,
         }
         before = Some(next);
@@ -133,12 +138,11 @@ fn range(hertz: &[f64]) -> (f64, f64) {
 
 /// The determinant over its size: that of many modes is beyond all numbers.
 fn phase(impedance: nalgebra::DMatrix<Complex<f64>>) -> Complex<f64> {
-    let lu = impedance.lu();
-    let sign: f64 = lu.p().determinant();
-    let pivots = lu.lu_internal().diagonal();
-    pivots.iter().fold(Complex::from(sign), |product, z| {
-        product * z.unscale(z.norm())
-    })
+    let unit = |z: &Complex<f64>| z.unscale(z.norm());
+    match pivots(&impedance) {
+        Some(pivots) => pivots.iter().map(unit).product(),
+        None => Complex::from(f64::NAN),
+    }
 }
 
 /// Angle of a value to the real axis, in (−π/2, π/2].

@@ -11,6 +11,7 @@ use crate::signal::{Fourier, random_stream};
 use nalgebra::Complex;
 use rand::Rng;
 use rand_distr::StandardNormal;
+use rayon::prelude::*;
 
 /// Samples of a field at each node.
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=1 << 22;
@@ -47,6 +48,30 @@ pub fn turbulence_field(
     samples: usize,
     seed: u64,
 ) -> Result<TurbulenceField> {
+    check(problem, speed_m_s, step_s, samples)?;
+    let fourier = Fourier::new(samples);
+    let gusts = GustComponent::BOTH.map(|component| {
+        let rows = coefficients(problem, component, speed_m_s, step_s, samples, seed);
+        let in_time = rows.into_par_iter().map(|mut row| {
+            row.resize(samples, Complex::default());
+            fourier.sums(row)
+        });
+        in_time.collect()
+    });
+    Ok(TurbulenceField {
+        step_s,
+        along_m: problem.bridge.nodes.iter().map(|n| n.along_m).collect(),
+        gusts,
+    })
+}
+
+/// Whether such a field can be made.
+pub(super) fn check(
+    problem: &SpanProblem<'_>,
+    speed_m_s: f64,
+    step_s: f64,
+    samples: usize,
+) -> Result<()> {
     problem.validate(speed_m_s)?;
     positive("time step of the turbulence", step_s)?;
     let nodes = problem.bridge.nodes.len();
@@ -63,22 +88,12 @@ pub fn turbulence_field(
             samples.to_string(),
         ));
     }
-    let fourier = Fourier::new(samples);
-    let gusts = GustComponent::BOTH.map(|component| {
-        let coefficients = coefficients(problem, component, speed_m_s, step_s, samples, seed);
-        let in_time = coefficients.into_iter().map(|x| fourier.sums(x));
-        in_time.collect()
-    });
-    Ok(TurbulenceField {
-        step_s,
-        along_m: problem.bridge.nodes.iter().map(|n| n.along_m).collect(),
-        gusts,
-    })
+    Ok(())
 }
 
-/// Fourier coefficients of one component, a row per node. Twice those of the positive frequencies stand there alone: the real
-/// part of the inverse transform is the gust.
-fn coefficients(
+/// Fourier coefficients of one component, a row per node, from zero to half the rate of the samples. Twice those of the positive
+/// frequencies stand there alone: the real part of the inverse transform is the gust.
+pub(super) fn coefficients(
     problem: &SpanProblem<'_>,
     component: GustComponent,
     speed: f64,
@@ -88,7 +103,7 @@ fn coefficients(
 ) -> Vec<Vec<Complex<f64>>> {
     let factors = problem.wind_factors();
     let nodes = factors.len();
-    let mut rows = vec![vec![Complex::<f64>::default(); samples]; nodes];
+    let mut rows = vec![vec![Complex::<f64>::default(); samples / 2 + 1]; nodes];
     let Some(gust) = problem.turbulence.component(component) else {
         return rows;
     };

@@ -7,10 +7,11 @@ use crate::buffeting::quadrature::integrate;
 use crate::buffeting::spectrum::GustComponent;
 use crate::buffeting::stability::{Turning, turning};
 use crate::error::{Error, Result};
-use crate::flutter::impedance;
+use crate::flutter::{impedance, solve_complex};
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -69,7 +70,8 @@ pub(crate) struct SpanFrequency<'a> {
     structure: Structure,
     forces: ModalForces,
     speed_m_s: f64,
-    wind_factors: Vec<f64>,
+    /// Components of the turbulence with the forces of their long gusts, nodes×modes.
+    gust_forces: Vec<(GustComponent, DMatrix<f64>)>,
     /// Hz, and half of the half-power width of each.
     resonances_hz: Vec<(f64, f64)>,
     highest_hz: f64,
@@ -98,7 +100,9 @@ impl<'a> SpanFrequency<'a> {
             structure,
             forces,
             speed_m_s,
-            wind_factors: problem.wind_factors(),
+            gust_forces: GustComponent::BOTH
+                .map(|c| (c, problem.force_of_long_gusts(c, speed_m_s)))
+                .to_vec(),
             resonances_hz,
             highest_hz: highest,
         })
@@ -132,7 +136,8 @@ impl<'a> SpanFrequency<'a> {
             let part = spectra.iter().map(|s| if inside { *s } else { 0.0 });
             Ok(spectra.iter().copied().chain(rates).chain(part).collect())
         };
-        let (variances, _) = integrate(densities, &breaks, TOLERANCE)?;
+        let at_all = |all: &[f64]| all.par_iter().map(|f| densities(*f)).collect();
+        let (variances, _) = integrate(at_all, &breaks, TOLERANCE)?;
         let rows = shapes.nrows();
         let list = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 3]> {
             let count = 0..nodes.len();
@@ -160,8 +165,9 @@ impl<'a> SpanFrequency<'a> {
         let frequencies_hz = resolved(&self.resonances_hz);
         let shapes = self.problem.bridge.shapes_at(nodes);
         let mut densities = vec![[const { Vec::new() }; 3]; nodes.len()];
-        for frequency in &frequencies_hz {
-            let all = self.spectra_at(*frequency, &shapes)?;
+        let each = frequencies_hz.par_iter();
+        let each = each.map(|f| self.spectra_at(*f, &shapes));
+        for all in each.collect::<Result<Vec<_>>>()? {
             for (row, density) in all.into_iter().enumerate() {
                 densities[row / 3][row % 3].push(density);
             }
@@ -179,36 +185,38 @@ impl<'a> SpanFrequency<'a> {
         let (problem, speed) = (self.problem, self.speed_m_s);
         let z = impedance(&self.structure, &self.forces, speed, TAU * frequency)?;
         // rows of Φ H: (Zᵀ)⁻¹ Φᵀ
-        let rows = z
-            .transpose()
-            .lu()
-            .solve(&shapes.transpose().map(Complex::from))
-            .ok_or_else(|| {
-                Error::Numerical(format!(
-                    "buffeting: the impedance is singular at {frequency} Hz and {speed} m/s"
-                ))
-            })?;
+        let sides = shapes.transpose().map(Complex::from);
+        let rows = solve_complex(&z.transpose(), &sides).ok_or_else(|| {
+            Error::Numerical(format!(
+                "buffeting: the impedance is singular at {frequency} Hz and {speed} m/s"
+            ))
+        })?;
+        // real and imaginary parts beside each other, since the forces of long gusts are real
+        let parts = DMatrix::from_fn(rows.nrows(), 2 * rows.ncols(), |m, column| {
+            let z = rows[(m, column / 2)];
+            if column % 2 == 0 { z.re } else { z.im }
+        });
         let mut total = vec![0.0; shapes.nrows()];
-        for component in GustComponent::BOTH {
-            let Some(gust) = problem.turbulence.component(component) else {
+        for (component, forces) in &self.gust_forces {
+            let Some(gust) = problem.turbulence.component(*component) else {
                 continue;
             };
-            let gaps = problem
-                .coherence
-                .of_gaps(component, problem.bridge, frequency, speed);
-            // motion of each row by a gust of the size of the turbulence at each node
-            let mut motion = problem.force_of_gusts(component, frequency, speed) * &rows;
-            for (factor, mut row) in self.wind_factors.iter().zip(motion.row_iter_mut()) {
-                let local = factor * speed;
-                let density = if local > 0.0 {
-                    gust.spectrum.density(component, frequency, local)
-                } else {
-                    0.0
-                };
-                row *= Complex::from(density.sqrt());
+            let coherence = &problem.coherence;
+            let gaps = coherence.of_gaps(*component, problem.bridge, frequency, speed);
+            let mut sizes = vec![Complex::default(); forces.nrows()];
+            for group in problem.blown() {
+                let local = group.wind_factor * speed;
+                let density = gust.spectrum.density(*component, frequency, local);
+                let size = problem.admittance(gust, group, frequency, speed) * density.sqrt();
+                group.nodes.iter().for_each(|n| sizes[*n] = size);
             }
-            for (sum, column) in total.iter_mut().zip(motion.column_iter()) {
-                *sum += coherent_power(column.as_slice(), &gaps);
+            // motion of each row by a gust of the size of the turbulence at each node
+            let motion = forces * &parts;
+            for (row, sum) in total.iter_mut().enumerate() {
+                let (re, im) = (motion.column(2 * row), motion.column(2 * row + 1));
+                let unit = re.iter().zip(im.iter());
+                let each = unit.map(|(re, im)| Complex::new(*re, *im));
+                *sum += coherent_power(each.zip(&sizes).map(|(z, size)| z * size), &gaps);
             }
         }
         Ok(total)
@@ -250,10 +258,10 @@ fn resolved(resonances_hz: &[(f64, f64)]) -> Vec<f64> {
 }
 
 /// `vᴴ C v` with the exponential coherence of a line, in one pass: `C = T + Tᴴ − I` with a recursion for `T`.
-fn coherent_power(v: &[Complex<f64>], gaps: &[f64]) -> f64 {
+fn coherent_power(v: impl Iterator<Item = Complex<f64>>, gaps: &[f64]) -> f64 {
     let mut sum = 0.0;
     let mut before = Complex::default();
-    for (n, z) in v.iter().enumerate() {
+    for (n, z) in v.enumerate() {
         if n > 0 {
             before *= gaps[n - 1];
         }
@@ -284,6 +292,6 @@ mod tests {
                 expected += a.conj() * b * coherence;
             }
         }
-        assert!((coherent_power(&v, &gaps) - expected.re).abs() < 1e-13);
+        assert!((coherent_power(v.iter().copied(), &gaps) - expected.re).abs() < 1e-13);
     }
 }

@@ -1,13 +1,27 @@
-//! Response of a bridge in the time domain: a turbulence field stepped through the coupled modes, many records.
+//! Response of a bridge in the time domain to a turbulence field that repeats itself, many records.
+//!
+//! The forces run on straight lines between samples, for which the steps `z⁺ = Φ z + Γ₀ u + Γ₁ (u⁺ − u)/h` are exact. A period of `N`
+//! steps that repeats itself is as many numbers `ζ = e^{2πik/N}`, and the response to each is
+//!
+//! ```text
+//! G(ζ) = C B₁ + C (ζI − Φ)⁻¹ (B₀ + Φ B₁),   B₁ = Γ₁/h,   B₀ = Γ₀ − B₁
+//! (ζI − Φ)⁻¹ = Σ_n ζ^{−n−1} Φⁿ (I − Φᴺ)⁻¹
+//! ```
+//!
+//! the transform of the `N` matrices `C Φⁿ (I − Φᴺ)⁻¹ (B₀ + Φ B₁)`, which are products of a few `C Φⁱ` with a few `Φ^{sj} …`: no record
+//! is stepped.
 
-use super::{SpanProblem, TurbulenceField, turbulence_field};
+use super::field::{check, coefficients};
+use super::{SpanProblem, TurbulenceField};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::spectrum::GustComponent;
 use crate::error::{Error, Result, counted, positive};
-use crate::response::{Inputs, SectionState, Stepper};
 use crate::signal::Fourier;
-use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How many records, how long, how fine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -62,7 +76,7 @@ pub struct SpanRecord {
     pub peak_factor: Vec<[f64; 3]>,
 }
 
-/// Steps one field through the coupled bridge, as one period of a periodic process.
+/// The response to one field, as one period of a periodic process.
 ///
 /// # Errors
 /// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
@@ -74,11 +88,25 @@ pub fn span_record(
     field: &TurbulenceField,
 ) -> Result<SpanRecord> {
     problem.validate(speed_m_s)?;
-    let coupled = problem.coupled(speed_m_s)?;
-    let mut periodic = Periodic::new(coupled, speed_m_s, field.step_s, field.samples())?;
-    let forces = modal_forces(problem, field, speed_m_s)?;
-    let shapes = problem.bridge.shapes_at(nodes);
-    let found = run(&mut periodic, &forces, &shapes, speed_m_s, field.step_s)?;
+    let (count, samples) = (problem.bridge.nodes.len(), field.samples());
+    let fits =
+        |rows: &Vec<Vec<f64>>| rows.len() == count && rows.iter().all(|r| r.len() == samples);
+    if samples < 2 || !field.gusts.iter().all(fits) {
+        let expected = format!(
+            "gusts at {}, as many samples at each",
+            counted(count, "node")
+        );
+        return Err(Error::input(
+            "turbulence field",
+            expected,
+            counted(field.gusts[0].len(), "node"),
+        ));
+    }
+    let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, field.step_s, samples)?;
+    let found = bridge.run(|component| {
+        let rows = field.gusts[component as usize].par_iter();
+        rows.map(|row| bridge.amplitudes(row)).collect()
+    });
     let list = |of: fn(&(f64, f64)) -> f64| -> Vec<[f64; 3]> {
         (0..nodes.len())
             .map(|n| std::array::from_fn(|i| of(&found[3 * n + i])))
@@ -91,35 +119,7 @@ pub fn span_record(
     })
 }
 
-/// What a period from rest leaves behind becomes the state with which the period repeats itself: `z₀ = (I − Φᴺ)⁻¹ z_N`.
-struct Periodic {
-    stepper: Stepper,
-    less_one_period: LU<f64, Dyn, Dyn>,
-}
-
-impl Periodic {
-    fn new(coupled: CoupledSection, speed: f64, step: f64, samples: usize) -> Result<Self> {
-        let mut square = coupled.continuous_at(speed)?.c2d(step)?.phi;
-        let n = square.nrows();
-        let mut power = DMatrix::<f64>::identity(n, n);
-        let mut left = samples;
-        while left > 0 {
-            if left % 2 == 1 {
-                power = &power * &square;
-            }
-            left /= 2;
-            if left > 0 {
-                square = &square * &square;
-            }
-        }
-        Ok(Self {
-            stepper: Stepper::new(coupled),
-            less_one_period: (DMatrix::identity(n, n) - power).lu(),
-        })
-    }
-}
-
-/// Steps `plan.records` fields through the coupled bridge. `progress` gets how many are done.
+/// Responses to `plan.records` fields. `progress` gets how many are done, from any thread.
 ///
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
@@ -129,11 +129,12 @@ pub(crate) fn span_ensemble(
     nodes: &[usize],
     speed_m_s: f64,
     plan: &SpanPlan,
-    progress: &dyn Fn(usize, usize),
+    progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<SpanEnsemble> {
     problem.validate(speed_m_s)?;
-    positive("duration_s", plan.duration_s)?;
-    positive("step_s", plan.step_s)?;
+    let (duration, step) = (plan.duration_s, plan.step_s);
+    positive("duration_s", duration)?;
+    positive("step_s", step)?;
     if plan.records < 2 {
         return Err(Error::input(
             "records",
@@ -141,127 +142,199 @@ pub(crate) fn span_ensemble(
             plan.records.to_string(),
         ));
     }
-    let coupled = problem.coupled(speed_m_s)?;
-    let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
-    let mut periodic = Periodic::new(coupled, speed_m_s, plan.step_s, samples)?;
-    let shapes = problem.bridge.shapes_at(nodes);
-    let mut runs = Vec::with_capacity(plan.records);
-    for i in 0..plan.records {
+    let samples = 2 * (0.5 * duration / step).round() as usize;
+    check(problem, speed_m_s, step, samples)?;
+    let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, step, samples)?;
+    let done = AtomicUsize::new(0);
+    let record = |i: usize| {
         let seed = plan.seed.wrapping_add(i as u64);
-        let field = turbulence_field(problem, speed_m_s, plan.step_s, samples, seed)?;
-        let forces = modal_forces(problem, &field, speed_m_s)?;
-        runs.push(run(
-            &mut periodic,
-            &forces,
-            &shapes,
-            speed_m_s,
-            plan.step_s,
-        )?);
-        progress(i + 1, plan.records);
-    }
-    Ok(gathered(speed_m_s, plan, nodes, &runs))
-}
-
-/// Forces on the mass-normalised modes by a field, one row per mode; the admittance is exact at every frequency of the record.
-pub(crate) fn modal_forces(
-    problem: &SpanProblem<'_>,
-    field: &TurbulenceField,
-    speed_m_s: f64,
-) -> Result<Vec<Vec<f64>>> {
-    let (nodes, samples) = (problem.bridge.nodes.len(), field.samples());
-    let fits =
-        |rows: &Vec<Vec<f64>>| rows.len() == nodes && rows.iter().all(|r| r.len() == samples);
-    if samples < 2 || !field.gusts.iter().all(fits) {
-        let expected = format!(
-            "gusts at {}, as many samples at each",
-            counted(nodes, "node")
-        );
-        return Err(Error::input(
-            "turbulence field",
-            expected,
-            counted(field.gusts[0].len(), "node"),
-        ));
-    }
-    let fourier = Fourier::new(samples);
-    let modes = problem.bridge.modes.len();
-    let mut spectrum = DMatrix::<Complex<f64>>::zeros(modes, samples);
-    for (component, rows) in GustComponent::BOTH.into_iter().zip(&field.gusts) {
-        if problem.turbulence.component(component).is_none() {
-            continue;
-        }
-        let transform = |row: &Vec<f64>| fourier.spectrum(row.iter().copied());
-        let transformed: Vec<_> = rows.iter().map(transform).collect();
-        for k in 0..=samples / 2 {
-            let frequency = k as f64 / (samples as f64 * field.step_s);
-            let forces = problem.force_of_gusts(component, frequency, speed_m_s);
-            let mut column = spectrum.column_mut(k);
-            for (n, x) in transformed.iter().enumerate() {
-                for (sum, force) in column.iter_mut().zip(forces.row(n).iter()) {
-                    *sum += force * x[k];
-                }
-            }
-        }
-    }
-    let scale = 1.0 / samples as f64;
-    let to_time = |m: usize| {
-        let mut x: Vec<Complex<f64>> = spectrum.row(m).iter().copied().collect();
-        // the negative frequencies are the conjugates: twice the real part of the positive ones
-        x[1..samples.div_ceil(2)].iter_mut().for_each(|z| *z *= 2.0);
-        fourier.sums(x).iter().map(|x| x * scale).collect()
+        let run = bridge
+            .run(|component| coefficients(problem, component, speed_m_s, step, samples, seed));
+        progress(1 + done.fetch_add(1, Ordering::Relaxed), plan.records);
+        run
     };
-    Ok((0..modes).map(to_time).collect())
+    let runs: Vec<Run> = (0..plan.records).into_par_iter().map(record).collect();
+    Ok(gathered(speed_m_s, plan, nodes, &runs))
 }
 
 /// Variance and greatest departure of each row over one record.
 type Run = Vec<(f64, f64)>;
 
-fn run(
-    periodic: &mut Periodic,
-    forces: &[Vec<f64>],
+/// A stable bridge that is driven by gusts of one period.
+struct PeriodicBridge<'a> {
+    problem: &'a SpanProblem<'a>,
+    speed_m_s: f64,
+    step_s: f64,
+    fourier: Fourier,
+    /// `G` of one mode each: a row per frequency from zero to half the rate of the samples, a column per motion of a node.
+    transfer: Vec<DMatrix<Complex<f64>>>,
+}
+
+impl<'a> PeriodicBridge<'a> {
+    fn new(
+        problem: &'a SpanProblem<'a>,
+        nodes: &[usize],
+        speed_m_s: f64,
+        step_s: f64,
+        samples: usize,
+    ) -> Result<Self> {
+        let coupled = problem.coupled(speed_m_s)?;
+        let shapes = problem.bridge.shapes_at(nodes);
+        let fourier = Fourier::new(samples);
+        let transfer = transfer(&coupled, &shapes, speed_m_s, step_s, &fourier)?;
+        Ok(Self {
+            problem,
+            speed_m_s,
+            step_s,
+            fourier,
+            transfer,
+        })
+    }
+
+    /// Numbers of a signal whose sum over the positive frequencies has it as its real part.
+    fn amplitudes(&self, signal: &[f64]) -> Vec<Complex<f64>> {
+        let samples = self.fourier.length();
+        let mut spectrum = self.fourier.spectrum(signal.iter().copied());
+        spectrum.truncate(samples / 2 + 1);
+        for (k, z) in spectrum.iter_mut().enumerate() {
+            // the negative frequencies are the conjugates, but for those that have none
+            let both = if k == 0 || 2 * k == samples { 1.0 } else { 2.0 };
+            *z *= both / samples as f64;
+        }
+        spectrum
+    }
+
+    /// What the rows do in gusts, of which a row per node is made for each component.
+    fn run(&self, gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>) -> Run {
+        let samples = self.fourier.length();
+        let forces = self.modal_forces(gusts);
+        let rows = self.transfer.first().map_or(0, DMatrix::ncols);
+        let row = |row: usize| {
+            let mut spectrum = vec![Complex::<f64>::default(); samples];
+            for (transfer, force) in self.transfer.iter().zip(forces.column_iter()) {
+                let parts = force.as_slice().chunks_exact(2);
+                let driven = transfer.column(row);
+                for ((sum, g), part) in spectrum.iter_mut().zip(driven.iter()).zip(parts) {
+                    *sum += g * Complex::new(part[0], part[1]);
+                }
+            }
+            let values = self.fourier.sums(spectrum);
+            let mean = values.iter().sum::<f64>() / samples as f64;
+            let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples as f64;
+            let peak = values.iter().map(|x| (x - mean).abs()).fold(0.0, f64::max);
+            (square, peak)
+        };
+        (0..rows).map(row).collect()
+    }
+
+    /// Forces on the mass-normalised modes, one column each, real and imaginary parts of every frequency one after the other; the
+    /// admittance is exact at each.
+    fn modal_forces(
+        &self,
+        gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>,
+    ) -> DMatrix<f64> {
+        let (problem, speed) = (self.problem, self.speed_m_s);
+        let bridge = problem.bridge;
+        let frequencies = self.fourier.length() / 2 + 1;
+        let width_hz = 1.0 / (self.fourier.length() as f64 * self.step_s);
+        let mut forces = DMatrix::zeros(2 * frequencies, bridge.modes.len());
+        for component in GustComponent::BOTH {
+            let Some(gust) = problem.turbulence.component(component) else {
+                continue;
+            };
+            let rows = gusts(component);
+            // long gusts of the same forces
+            let mut long = DMatrix::<f64>::zeros(2 * frequencies, bridge.nodes.len());
+            for group in problem.blown() {
+                let factor = |k| problem.admittance(gust, group, k as f64 * width_hz, speed);
+                let factors: Vec<Complex<f64>> = (0..frequencies).map(factor).collect();
+                for &n in &group.nodes {
+                    let mut column = long.column_mut(n);
+                    let parts = column.as_mut_slice().chunks_exact_mut(2);
+                    for ((part, x), factor) in parts.zip(&rows[n]).zip(&factors) {
+                        let force = factor * x;
+                        (part[0], part[1]) = (force.re, force.im);
+                    }
+                }
+            }
+            forces.gemm(
+                1.0,
+                &long,
+                &problem.force_of_long_gusts(component, speed),
+                1.0,
+            );
+        }
+        forces
+    }
+}
+
+/// See the module: for each mode what its force does to the rows of `shapes`.
+fn transfer(
+    coupled: &CoupledSection,
     shapes: &DMatrix<f64>,
     speed: f64,
-    step: f64,
-) -> Result<Run> {
-    let (modes, samples) = (forces.len(), forces[0].len());
-    let stepper = &mut periodic.stepper;
-    let mut state = stepper.released(&vec![0.0; modes], &vec![0.0; modes])?;
-    let mut inputs = Inputs::steady(speed, modes);
-    let mut advance = |state: &mut SectionState, now: usize| {
-        let next = (now + 1) % samples;
-        for (m, force) in forces.iter().enumerate() {
-            inputs.force[m] = force[now];
-            inputs.force_rate[m] = (force[next] - force[now]) / step;
-        }
-        stepper.advance(state, &inputs, step)
-    };
-    for i in 0..samples {
-        advance(&mut state, i)?;
-    }
-    let left = DVector::from_column_slice(&state.values);
-    let start = periodic.less_one_period.solve(&left).ok_or_else(|| {
+    step_s: f64,
+    fourier: &Fourier,
+) -> Result<Vec<DMatrix<Complex<f64>>>> {
+    let samples = fourier.length();
+    let step = coupled.continuous_at(speed)?.c2d(step_s)?;
+    let (rows, modes) = shapes.shape();
+    let states = step.phi.nrows();
+    let next = &step.gamma_1 / step_s;
+    let driven = &step.gamma_0 - &next + &step.phi * &next;
+    let repeated = DMatrix::identity(states, states) - power(&step.phi, samples);
+    let first = repeated.lu().solve(&driven).ok_or_else(|| {
         Error::Numerical("buffeting: the motion does not repeat itself with the record".into())
     })?;
-    state.values.copy_from_slice(start.as_slice());
-    let mut rows = vec![Vec::with_capacity(samples); shapes.nrows()];
-    for i in 0..samples {
-        advance(&mut state, i)?;
-        for (row, values) in rows.iter_mut().enumerate() {
-            let shape = shapes.row(row);
-            let value: f64 = shape
-                .iter()
-                .zip(&state.values)
-                .map(|(phi, x)| phi * x)
-                .sum();
-            values.push(value);
+    let mut output = DMatrix::zeros(rows, states);
+    output.columns_mut(0, modes).copy_from(shapes);
+    let direct = &output * next;
+    // as many products on the one side as on the other
+    let block = ((samples * modes) as f64 / rows as f64).sqrt().ceil() as usize;
+    let block = block.clamp(1, samples);
+    let mut outputs = DMatrix::zeros(rows * block, states);
+    for i in 0..block {
+        for row in 0..rows {
+            outputs.row_mut(row * block + i).copy_from(&output.row(row));
+        }
+        output = &output * &step.phi;
+    }
+    let stride = power(&step.phi, block);
+    let blocks = std::iter::successors(Some(first), |z| Some(&stride * z));
+    let blocks: Vec<DMatrix<f64>> = blocks.take(samples.div_ceil(block)).collect();
+    let turn = |k: usize| Complex::from_polar(1.0, -TAU * k as f64 / samples as f64);
+    let turns: Vec<Complex<f64>> = (0..=samples / 2).map(turn).collect();
+    let of_mode = |mode: usize| {
+        let starts: Vec<_> = blocks.iter().map(|z| z.column(mode)).collect();
+        let response = &outputs * DMatrix::from_columns(&starts);
+        let mut all = DMatrix::zeros(turns.len(), rows);
+        for (row, mut column) in all.column_iter_mut().enumerate() {
+            let at = |n: usize| response[(row * block + n % block, n / block)];
+            let spectrum = fourier.spectrum((0..samples).map(at));
+            for ((to, z), turn) in column.iter_mut().zip(&spectrum).zip(&turns) {
+                *to = z * turn + direct[(row, mode)];
+            }
+        }
+        all
+    };
+    Ok((0..modes).into_par_iter().map(of_mode).collect())
+}
+
+/// A power of a square matrix by repeated squaring.
+fn power(matrix: &DMatrix<f64>, exponent: usize) -> DMatrix<f64> {
+    let mut square = matrix.clone();
+    let mut power = DMatrix::identity(matrix.nrows(), matrix.nrows());
+    let mut left = exponent;
+    while left > 0 {
+        if left % 2 == 1 {
+            power = &power * &square;
+        }
+        left /= 2;
+        if left > 0 {
+            square = &square * &square;
         }
     }
-    let statistics = |values: &Vec<f64>| {
-        let mean = values.iter().sum::<f64>() / samples as f64;
-        let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples as f64;
-        let peak = values.iter().map(|x| (x - mean).abs()).fold(0.0, f64::max);
-        (square, peak)
-    };
-    Ok(rows.iter().map(statistics).collect())
+    power
 }
 
 fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> SpanEnsemble {

@@ -132,14 +132,17 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let mut failed = Vec::new();
     let mut answers = Vec::new();
     let search = study.search();
-    if let Some(bridge) = &study.by_table {
-        match by_table(bridge, &search) {
-            Ok(answer) => answers.push(answer),
-            Err(e) => failed.push(format!("p-k iteration of the tables: {e}")),
-        }
-    }
     let tested = study.tested_range();
-    let mut by_model = by_model(&study.by_model, &search, tested)?;
+    let (of_tables, by_model) = rayon::join(
+        || study.by_table.as_ref().map(|b| by_table(b, &search)),
+        || by_model(&study.by_model, &search, tested),
+    );
+    match of_tables {
+        Some(Ok(answer)) => answers.push(answer),
+        Some(Err(e)) => failed.push(format!("p-k iteration of the tables: {e}")),
+        None => {}
+    }
+    let mut by_model = by_model?;
     if let FlutterSearch::Onset(onset) = &mut by_model.search {
         match study.onset_interval(onset) {
             Ok(interval) => onset.interval = interval,
@@ -328,7 +331,7 @@ fn fewer_modes(
             .by_model
             .with_modes(|i| modes.contains(&study.by_model.modes[i].number))?;
         // the whole bridge was searched: the modes that are left are followed alone
-        let found = find_onset_of_modes(
+        let onset_m_s = find_onset_of_modes(
             "fewer modes",
             &coupled(&part)?,
             search,
@@ -337,7 +340,7 @@ fn fewer_modes(
         all.push(LeftOut {
             modes,
             below_share,
-            onset_m_s: found.critical_speed_m_s(),
+            onset_m_s,
         });
     }
     Ok(all)

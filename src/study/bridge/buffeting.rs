@@ -169,18 +169,25 @@ impl BridgeStudy {
         &self,
         block: &BuffetingBlock,
         speed_m_s: f64,
-        progress: &dyn Fn(usize, usize),
+        progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<BridgeBuffeting> {
         let nodes = self.named(&block.nodes)?;
         let models = self.problem(block)?;
         let answering = self.by_table.as_ref().unwrap_or(&self.by_model);
         let problem = self.problem_of(answering, block)?;
         let tables = problem.bridge.forces().known_range();
-        let domain = SpanFrequency::new(&problem, speed_m_s)?;
-        let frequency = domain.response(&nodes, tables.or_else(|| self.tested_range()))?;
-        let beside = self.by_table.is_some();
-        let beside = beside.then(|| self.beside_tables(&models, &frequency));
-        let time = span_ensemble(&models, &nodes, speed_m_s, &block.time, progress);
+        let of_frequencies = || -> Result<_> {
+            let domain = SpanFrequency::new(&problem, speed_m_s)?;
+            let frequency = domain.response(&nodes, tables.or_else(|| self.tested_range()))?;
+            let beside = self.by_table.is_some();
+            let beside = beside.then(|| self.beside_tables(&models, &frequency));
+            let spectra = domain.spectra(&nodes)?;
+            Ok((frequency, beside.transpose()?, spectra))
+        };
+        let (of_frequencies, time) = rayon::join(of_frequencies, || {
+            span_ensemble(&models, &nodes, speed_m_s, &block.time, progress)
+        });
+        let (frequency, beside, spectra) = of_frequencies?;
         let (time, no_time) = match time {
             Ok(time) => (Some(time), None),
             // the tables know of no growth at this speed
@@ -192,8 +199,8 @@ impl BridgeStudy {
         Ok(BridgeBuffeting {
             nodes: self.names_of(&nodes),
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
-            spectra: domain.spectra(&nodes)?,
-            models: beside.transpose()?,
+            spectra,
+            models: beside,
             frequency,
             time,
             no_time,

@@ -226,13 +226,8 @@ impl OnsetSampler<'_> {
             return Ok(Some(speed));
         }
         let other = coupled(&self.sample(index, 1.0)?)?;
-        let found = find_onset_of_modes(
-            "sample",
-            &other,
-            &self.study.search(),
-            self.study.tested_range(),
-        )?;
-        Ok(found.critical_speed_m_s())
+        let (search, tested) = (self.study.search(), self.study.tested_range());
+        find_onset_of_modes("sample", &other, &search, tested)
     }
 
     /// The same motion from the mean to the sample, by as many bridges between them as it takes to know it again.
@@ -328,7 +323,7 @@ mod tests {
             let found = find_onset("sample", &other, &search, study.tested_range()).unwrap();
             let of_modes =
                 find_onset_of_modes("sample", &other, &search, study.tested_range()).unwrap();
-            assert_eq!(of_modes.critical_speed_m_s(), found.critical_speed_m_s());
+            assert_eq!(of_modes, found.critical_speed_m_s());
             // where the onset lies outside the tested range the search names the end of that instead
             if let Some(onset) = found.onset() {
                 assert!((speed / onset.at.speed_m_s - 1.0).abs() < 1e-8, "{index}");

@@ -33,10 +33,12 @@ pub fn impedance(
     omega: f64,
 ) -> Result<DMatrix<Complex<f64>>> {
     let k = ReducedFrequency::from_circular(omega, structure.width_m, speed_m_s);
-    Ok(complex(&structure.mass) * Complex::new(-omega * omega, 0.0)
-        + complex(&structure.damping) * Complex::new(0.0, omega)
-        + complex(&structure.stiffness)
-        - self_excited(structure, model, k, speed_m_s)?)
+    let forces = self_excited(structure, model, k, speed_m_s)?;
+    let (s, n) = (structure, forces.nrows());
+    Ok(DMatrix::from_fn(n, n, |i, j| {
+        let elastic = s.stiffness[(i, j)] - omega * omega * s.mass[(i, j)];
+        Complex::new(elastic, omega * s.damping[(i, j)]) - forces[(i, j)]
+    }))
 }
 
 /// Self-excited forces of unit motions, `½ρV² P(G(K))`: N/m and N·m/m for m and rad.

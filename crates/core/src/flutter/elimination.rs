@@ -127,13 +127,21 @@ impl Factors {
     }
 }
 
-/// The solution `x` of `a x = sides`, compiled for the vectors of the processor; `None` where `a` is singular or not finite.
-pub(super) fn solve(
+/// The solution `x` of `a x = sides`, n×n and n×m, compiled for the vectors of the processor; `None` where `a` is singular or not
+/// finite.
+pub fn solve_complex(
     a: &DMatrix<Complex64>,
     sides: &DMatrix<Complex64>,
 ) -> Option<DMatrix<Complex64>> {
     let solve = Solve(ComplexColumns::of(a), ComplexColumns::of(sides));
     Some(pulp::Arch::new().dispatch(solve)?.to_matrix())
+}
+
+/// Numbers whose product is the determinant of `a`, n×n: that of many modes is beyond all numbers. `None` as for
+/// [`solve_complex`].
+pub fn pivots(a: &DMatrix<Complex64>) -> Option<Vec<Complex64>> {
+    let factors = pulp::Arch::new().dispatch(Decompose(ComplexColumns::of(a)))?;
+    Some(factors.pivots().collect())
 }
 
 struct Solve(ComplexColumns, ComplexColumns);
@@ -144,6 +152,17 @@ impl pulp::NullaryFnOnce for Solve {
     #[inline(always)]
     fn call(self) -> Option<ComplexColumns> {
         Some(self.0.factors()?.solve(self.1))
+    }
+}
+
+struct Decompose(ComplexColumns);
+
+impl pulp::NullaryFnOnce for Decompose {
+    type Output = Option<Factors>;
+
+    #[inline(always)]
+    fn call(self) -> Option<Factors> {
+        self.0.factors()
     }
 }
 
@@ -170,7 +189,7 @@ mod tests {
             });
             let sides = DMatrix::from_fn(n, 2, |i, j| entry(j, i));
             let expected = a.clone().lu().solve(&sides).expect("a regular matrix");
-            let found = solve(&a, &sides).expect("a solution");
+            let found = solve_complex(&a, &sides).expect("a solution");
             assert!((&found - &expected).norm() < 1e-11 * expected.norm(), "{n}");
             assert!((&a * found - &sides).norm() < 1e-12 * sides.norm() * n as f64);
             let side = sides.columns(0, 1).into_owned();
@@ -187,7 +206,7 @@ mod tests {
         let side = DMatrix::from_element(2, 1, Complex64::from(1.0));
         for bad in [0.0, f64::NAN, f64::INFINITY] {
             let a = DMatrix::from_element(2, 2, Complex64::from(bad));
-            assert!(solve(&a, &side).is_none(), "{bad}");
+            assert!(solve_complex(&a, &side).is_none(), "{bad}");
         }
     }
 }

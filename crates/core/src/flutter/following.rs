@@ -15,6 +15,9 @@ pub(super) const MIN_ASSURANCE: f64 = 0.9;
 /// Two modes closer than this, relatively, are one root found twice.
 pub(super) const SEPARATION: f64 = 1e-9;
 
+/// Modes around another: those up to this part of its eigenvalue, and this many at least.
+const AROUND: f64 = 0.1;
+const NEAREST: usize = 4;
 /// Part of a wind speed that is no step.
 const NO_STEP: f64 = 1e-6;
 /// Growth up to this part of the eigenvalue is rounding.
@@ -97,6 +100,23 @@ impl Modes {
     pub(super) fn mode(&self, branch: usize) -> Option<&Mode> {
         self.all.iter().find(|m| m.branch == branch)
     }
+
+    /// The mode of a branch with those that it may meet: what they do together, the others leave alone.
+    pub(super) fn around(&self, branch: usize) -> Self {
+        let Some(mode) = self.mode(branch) else {
+            return self.clone();
+        };
+        let distance = |m: &Mode| (m.lambda - mode.lambda).norm();
+        let mut all: Vec<f64> = self.all.iter().map(distance).collect();
+        all.sort_by(f64::total_cmp);
+        let nearest = all.get(NEAREST).copied().unwrap_or(f64::INFINITY);
+        let far = nearest.max(AROUND * mode.lambda.norm());
+        let near = self.all.iter().filter(|m| distance(m) <= far);
+        Self {
+            speed: self.speed,
+            all: near.cloned().collect(),
+        }
+    }
 }
 
 /// A route that follows the modes of a structure over wind speed.
@@ -117,7 +137,7 @@ pub(super) trait Follower {
 
     /// The mode of a branch at `speed`, from the modes nearby.
     fn mode_at(&self, from: &Modes, speed: f64, branch: usize) -> Result<Mode> {
-        let modes = self.advance(from, speed)?;
+        let modes = self.advance(&from.around(branch), speed)?;
         modes.mode(branch).cloned().ok_or_else(|| Self::lost(speed))
     }
 

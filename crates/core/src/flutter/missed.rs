@@ -27,7 +27,7 @@ impl Scan<'_> {
             .filter(|(_, k)| self.tested.is_none_or(|range| range.spans(*k)))
             .map(|(speed, _)| speed)
             .fold(to_m_s, f64::min);
-        for band in self.bands(0.0, to_m_s, coarse)? {
+        for band in self.bands(0.0, to_m_s, coarse, f64::INFINITY)? {
             let at = self.at(band.from_m_s)?;
             if let Some(lambda) = at.fastest.filter(|_| !found.knows(band.from_m_s)) {
                 if band.from_start {

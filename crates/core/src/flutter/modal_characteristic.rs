@@ -12,7 +12,7 @@
 mod chains;
 
 use super::columns::{ComplexColumns, RealColumns, Term};
-use super::elimination::{Factors, solve};
+use super::elimination::{Factors, solve_complex};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use chains::{Chain, chains};
@@ -323,7 +323,7 @@ pub(super) fn inverse_step(
     shape: &mut Shape,
 ) -> Option<Complex64> {
     let slope = DMatrix::from_columns(&[slope]);
-    let better = solve(value, &slope)?.column(0).into_owned();
+    let better = solve_complex(value, &slope)?.column(0).into_owned();
     let step = shape.dotc(&better).inv();
     let size = better.norm();
     if !(step.re.is_finite() && step.im.is_finite() && size > 0.0) {

@@ -13,6 +13,8 @@ use crate::section::Structure;
 use crate::state_space::{ValueAt, eigenvalues, eigenvector, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A step is halved until every mode changes little, at most this many times.
@@ -99,7 +101,7 @@ impl StructureInWind<'_> {
             let end = |at: f64, mode: &Mode| ValueAt::new(at, beyond(self.k(at, mode)));
             let last = end(target, mode);
             let speed = root(end(from.speed, before), last, |v| {
-                let modes = self.advance(from, v)?;
+                let modes = self.advance(&from.around(mode.branch), v)?;
                 Ok(modes
                     .mode(mode.branch)
                     .map_or(last.value, |m| beyond(self.k(v, m))))
@@ -151,8 +153,7 @@ impl StructureInWind<'_> {
         range: ReducedFrequencyRange,
         still: &Modes,
     ) -> Result<Vec<StartingMode>> {
-        let mut entries = Vec::with_capacity(still.all.len());
-        for mode in &still.all {
+        let entry = |mode: &Mode| -> Result<Option<StartingMode>> {
             let mut thin = self.structure.clone();
             let mut at = Some((0.0, mode.clone()));
             for i in 1..=AIR_STEPS {
@@ -163,9 +164,25 @@ impl StructureInWind<'_> {
                     None => None,
                 };
             }
-            entries.extend(at.map(|(speed, mode)| StartingMode { speed, mode }));
+            Ok(at.map(|(speed, mode)| StartingMode { speed, mode }))
+        };
+        self.of_each(&still.all, entry)
+    }
+
+    /// What is found of each mode, on all cores where there are many.
+    fn of_each<T: Send>(
+        &self,
+        modes: &[Mode],
+        find: impl Fn(&Mode) -> Result<Option<T>> + Send + Sync,
+    ) -> Result<Vec<T>> {
+        #[cfg(feature = "parallel")]
+        if self.structure.is_modal() {
+            return modes
+                .par_iter()
+                .filter_map(|m| find(m).transpose())
+                .collect();
         }
-        Ok(entries)
+        modes.iter().filter_map(|m| find(m).transpose()).collect()
     }
 
     /// The modes in still air; an undamped one counts as damped, so that it can lose its damping.
@@ -243,10 +260,8 @@ impl StructureInWind<'_> {
 
     /// The modes at `speed` that settle and oscillate.
     fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let mut all = Vec::with_capacity(from.all.len());
-        for mode in &from.all {
-            all.extend(pk_mode(self.structure, self.model, speed, mode)?);
-        }
+        let settled = |mode: &Mode| pk_mode(self.structure, self.model, speed, mode);
+        let all = self.of_each(&from.all, settled)?;
         Ok(Modes { speed, all })
     }
 

@@ -1,4 +1,4 @@
-//! The modes of a bridge at a wind speed that changes a little at a time, without the eigenvalue problem of all states.
+//! The modes of a bridge at a wind speed that changes a little at a time, or at many, without the eigenvalue problem of all states.
 //!
 //! The modes of the structure are followed from the last wind speed by their shapes. That no other eigenvalue has as little damping is
 //! counted, not assumed: with the modes `λ_i` that were followed divided out,
@@ -11,7 +11,7 @@
 //! way along a ray `λ = r e^{iφ}` from infinity to zero its argument turns by `π` for each zero in the sector between the ray and its
 //! mirror image (the principle of the argument): one that does not turn has none there.
 
-use super::following::{Follower, Modes};
+use super::following::{Follower, Modes, growing};
 use super::modal_characteristic::ModalCharacteristic;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
@@ -161,41 +161,74 @@ impl PresentModes {
     /// The smallest damping ratio of `section`, that of which they are the modes, at `wind`, m/s; `None` where it has to be
     /// found among all eigenvalues.
     pub fn smallest_damping(&mut self, section: &CoupledSection, wind: f64) -> Option<f64> {
+        let now = self.follow(section, wind)?;
+        let least = now.iter().map(|z| damping_ratio(*z)).reduce(f64::min)?;
+        let alone = self.none_below(&now, wind, (least + MARGIN).min(STEEPEST));
+        (alone == Some(true) && least < STEEPEST).then_some(least)
+    }
+
+    /// The eigenvalues of all modes of `section` at `wind`, m/s, rad/s; `None` where one is lost.
+    fn follow(&mut self, section: &CoupledSection, wind: f64) -> Option<Vec<Complex<f64>>> {
         let tracker = Tracker::by_shapes(section, Arc::clone(&self.problem));
-        let all = section.structure().dofs.len();
         let from = match self.last.take() {
             Some(last) => last,
             None => tracker.start().ok()?,
         };
         // one that has stopped to oscillate may begin again
         let now = tracker.advance(&from, wind).ok();
-        let now = now.filter(|modes| modes.all.len() == all)?;
-        let damping = now.all.iter().map(|m| damping_ratio(m.lambda));
-        let least = damping.reduce(f64::min)?;
-        let alone = self.none_below(&now, (least + MARGIN).min(STEEPEST));
+        let now = now.filter(|modes| modes.all.len() == section.structure().dofs.len())?;
+        let all = now.all.iter().map(|m| m.lambda).collect();
         self.last = Some(now);
-        (alone == Some(true) && least < STEEPEST).then_some(least)
+        Some(all)
     }
 
     /// Whether no eigenvalue but the modes has a damping ratio below `ratio`; `None` where it cannot be counted.
-    fn none_below(&self, modes: &Modes, ratio: f64) -> Option<bool> {
-        let at = self.problem.at(modes.speed);
+    fn none_below(&self, modes: &[Complex<f64>], wind: f64, ratio: f64) -> Option<bool> {
+        let at = self.problem.at(wind);
         let ray = Complex::from_polar(1.0, FRAC_PI_2 + ratio.asin());
         let rest = |distance: f64| -> Option<Complex<f64>> {
             let lambda = ray * distance;
-            let mut modes = modes.all.iter().map(|m| m.lambda);
+            let mut modes = modes.iter();
             let rest = at.determinant(lambda, |pivot| {
-                let mode = modes.next().unwrap_or_default();
+                let mode = modes.next().copied().unwrap_or_default();
                 pivot / ((lambda - mode) * (lambda - mode.conj()))
             })?;
             (rest.re.is_finite() && rest.im.is_finite()).then_some(rest)
         };
-        let sizes = modes.all.iter().map(|m| m.lambda.norm());
-        let sizes = sizes.chain(self.problem.filter_rates(modes.speed));
+        let sizes = modes.iter().map(|z| z.norm());
+        let sizes = sizes.chain(self.problem.filter_rates(wind));
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
         });
         turn(rest, [ENDS[0] * low, ENDS[1] * high])
+    }
+}
+
+/// The modes of a bridge at many wind speeds, up to where one is lost.
+pub(super) struct ModesOverWind<'a> {
+    modes: PresentModes,
+    speeds: &'a [f64],
+    /// Eigenvalues at each of the speeds, rad/s.
+    at: Vec<Vec<Complex<f64>>>,
+}
+
+impl<'a> ModesOverWind<'a> {
+    /// The modes of `section` at rising `speeds`, m/s; `None` where all eigenvalues are found sooner.
+    pub(super) fn new(section: &CoupledSection, speeds: &'a [f64]) -> Option<Self> {
+        let many = section.states() > MOST_STATES_SOLVED;
+        let mut modes = PresentModes::new(section).filter(|_| many)?;
+        let each = speeds.iter().map_while(|v| modes.follow(section, *v));
+        let at = each.collect();
+        Some(Self { modes, speeds, at })
+    }
+
+    /// The mode that decays slowest at one of the speeds, where none grows and every other eigenvalue is damped by
+    /// [`MARGIN`] at least; `None` where that is not known.
+    pub(super) fn slowest_decay(&self, place: usize) -> Option<Complex<f64>> {
+        let all = self.at.get(place)?;
+        let slowest = all.iter().max_by(|a, b| a.re.total_cmp(&b.re))?;
+        let alone = || self.modes.none_below(all, self.speeds[place], MARGIN);
+        (!growing(slowest) && alone() == Some(true)).then_some(*slowest)
     }
 }
 

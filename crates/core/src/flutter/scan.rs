@@ -1,8 +1,11 @@
-//! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
+//! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes; of a bridge with as
+//! many states as take long, by the modes and a count of all others (`present_modes`) wherever none of them grows.
 
 use super::critical::critical_speeds;
 use super::following::{dimensionless, growing, oscillates};
+use super::growth_band::GrowthBand;
 use super::judged::StableRange;
+use super::present_modes::ModesOverWind;
 use super::still_air::lowest_speed;
 use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
@@ -12,7 +15,6 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
@@ -33,62 +35,11 @@ const ALONE: usize = 40;
 /// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
 const PEAK_STEPS: usize = 24;
 
-/// A band of wind speeds in which an oscillating eigenvalue has a positive real part.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GrowthBand {
-    /// Lowest speed with growth, m/s.
-    pub from_m_s: f64,
-    /// Highest speed with growth, m/s; the end of the scan where it goes on.
-    pub to_m_s: f64,
-    /// Whether there is growth at the lowest speed of the scan already, so that the band begins there or below.
-    pub from_start: bool,
-    /// Fastest growth rate that was met in the band, 1/s.
-    pub fastest_growth_per_s: f64,
-    /// Speed of the fastest growth, m/s.
-    pub fastest_at_m_s: f64,
-    /// Frequency of the fastest growth, Hz.
-    pub frequency_hz: f64,
-    /// `K` of the fastest growth.
-    pub reduced_frequency: ReducedFrequency,
-    /// Lowest speed of the band at which a motion with `K` inside the tested range grows, m/s; that of the band itself
-    /// where there is no such range, `None` where nothing grows inside.
-    pub tested_from_m_s: Option<f64>,
-    /// Name of the structural mode with the fastest growth; `aerodynamic` for an eigenvalue of the force model itself.
-    pub branch: String,
-}
-
-impl GrowthBand {
-    /// Whether all growth of the band lies outside the tested range: the model extrapolates there.
-    pub fn extrapolated(&self) -> bool {
-        self.tested_from_m_s.is_none()
-    }
-
-    /// The band in words.
-    pub fn explain(&self) -> String {
-        let tested = if self.extrapolated() {
-            ", outside the tested range"
-        } else {
-            ""
-        };
-        let below = if self.from_start { "at or below " } else { "" };
-        format!(
-            "grows from {below}{:.3} to {:.3} m/s, by {:.4} 1/s at {:.3} m/s ({} branch, {:.4} Hz, K {:.3}{tested})",
-            self.from_m_s,
-            self.to_m_s,
-            self.fastest_growth_per_s,
-            self.fastest_at_m_s,
-            self.branch,
-            self.frequency_hz,
-            self.reduced_frequency.full_width(),
-        )
-    }
-}
-
 /// Bands of wind speed between two speeds in which an oscillation grows, in rising order.
 ///
 /// Sections find all speeds at which growth may begin or end at once (`critical`), so that no growth
 /// between two speeds is a statement about every one between; what is sampled or large looks at every eigenvalue at speeds a
-/// twentieth apart or closer, and at peaks between them. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
+/// twentieth apart or closer, and at peaks between them; of a bridge it is counted that none but the modes comes near growth. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
 ///
 /// ```
 /// # extern crate aerodeck_core as aerodeck;
@@ -113,7 +64,7 @@ pub fn growth_scan(
     to_m_s: f64,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<Vec<GrowthBand>> {
-    Scan::new("", section, tested).bands(from_m_s, to_m_s, false)
+    Scan::new("", section, tested).bands(from_m_s, to_m_s, false, f64::INFINITY)
 }
 
 /// What is found for each of many speeds, on all cores where a section has so many `states` that it pays.
@@ -227,18 +178,20 @@ impl<'a> Scan<'a> {
         Ok(all)
     }
 
-    /// Every band of growth between two speeds; `coarse` where the structural modes are followed besides.
+    /// Every band of growth between two speeds that begins below a third; `coarse` where the structural modes are followed
+    /// besides.
     pub(super) fn bands(
         &self,
         from_m_s: f64,
         to_m_s: f64,
         coarse: bool,
+        below_m_s: f64,
     ) -> Result<Vec<GrowthBand>> {
         let grid = self.speeds(from_m_s, to_m_s, coarse)?;
         let points = match critical_speeds(self.section) {
             Some(critical) => self.between(&critical, &grid)?,
             None => {
-                let mut points = self.all_at(&grid)?;
+                let mut points = self.by_modes(&grid)?;
                 self.add_peaks(&mut points)?;
                 points
             }
@@ -247,12 +200,22 @@ impl<'a> Scan<'a> {
         let mut i = 0;
         while i < points.len() {
             let count = points[i..].iter().take_while(|p| p.grows()).count();
-            if count > 0 {
+            if count > 0 && self.begins_below(below_m_s, &points[..=i])? {
                 bands.push(self.band(&points, i, i + count)?);
             }
             i += count.max(1);
         }
+        bands.retain(|band| band.from_m_s < below_m_s);
         Ok(bands)
+    }
+
+    /// Whether a band may begin below a speed whose first point is the last of `points`: its end need not be found if not.
+    fn begins_below(&self, speed: f64, points: &[ScanPoint]) -> Result<bool> {
+        Ok(match points {
+            [.., first] if first.speed < speed => true,
+            [.., before, _] if before.speed < speed => self.at(speed)?.grows(),
+            _ => false,
+        })
     }
 
     /// Whether the motion with this eigenvalue lies between the lowest and the highest tested `K`; `None` when there are none.
@@ -278,6 +241,22 @@ impl<'a> Scan<'a> {
 
     fn all_at(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
         shared(speeds, self.section.states(), |v| self.at(*v))
+    }
+
+    /// The same at rising speeds, by the modes alone where these decay and everything else decays faster.
+    fn by_modes(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
+        let modes = ModesOverWind::new(self.section, speeds);
+        let places: Vec<usize> = (0..speeds.len()).collect();
+        shared(&places, self.section.states(), |place| {
+            let decaying = modes.as_ref().and_then(|m| m.slowest_decay(*place));
+            let point = |fastest| ScanPoint {
+                speed: speeds[*place],
+                fastest: Some(fastest),
+                inside: None,
+                unstable: 0,
+            };
+            decaying.map_or_else(|| self.at(speeds[*place]), |fastest| Ok(point(fastest)))
+        })
     }
 
     /// Points on both sides of all critical speeds and half way between them. Where no two eigenvalues have a positive real
@@ -311,7 +290,9 @@ impl<'a> Scan<'a> {
     fn add_peaks(&self, points: &mut Vec<ScanPoint>) -> Result<()> {
         let is_peak = |three: &&[ScanPoint]| {
             let rate = |i: usize| three[i].rate();
-            !three[1].grows() && rate(1) >= rate(0) && rate(1) >= rate(2)
+            // one that stands no higher over its neighbours than below growth does not reach it
+            let reaches = 2.0 * rate(1) >= rate(0).min(rate(2));
+            reaches && !three[1].grows() && rate(1) >= rate(0) && rate(1) >= rate(2)
         };
         let around: Vec<&[ScanPoint]> = points.windows(3).filter(is_peak).collect();
         let highest = |three: &&[ScanPoint]| self.peak(three[0].speed, three[2].speed);

@@ -107,7 +107,7 @@ pub fn find_onset(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {
     let scan = Scan::new(model, section, tested);
-    let (mut found, ended) = followed(model, &scan, search)?;
+    let (mut found, ended) = followed(model, &scan, search, |_| false)?;
     let lost = ended.is_some();
     if let Some(why) = ended {
         // without names the answer still stands
@@ -141,7 +141,7 @@ pub fn judged_speeds(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<JudgedSpeeds> {
     let scan = Scan::new("", section, tested);
-    let (mut found, ended) = followed("", &scan, search)?;
+    let (mut found, ended) = followed("", &scan, search, |_| false)?;
     scan.bound(&mut found, ended.is_some(), &search.speeds_m_s()?)?;
     Ok(JudgedSpeeds {
         tested_from: found.reach.tested_from(),
@@ -149,8 +149,8 @@ pub fn judged_speeds(
     })
 }
 
-/// The same by the modes that are followed alone, without all eigenvalues: for one of many sections of which another was searched
-/// whole. Where modes cannot be told apart all eigenvalues are looked at after all.
+/// The critical speed alone, m/s, by the modes that are followed, without all eigenvalues: for one of many sections of which another
+/// was searched whole. Where modes cannot be told apart all eigenvalues are looked at after all.
 ///
 /// # Errors
 /// As [`find_onset`].
@@ -159,36 +159,44 @@ pub fn find_onset_of_modes(
     section: &CoupledSection,
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
-) -> Result<FlutterSearch> {
+) -> Result<Option<f64>> {
     let scan = Scan::new(model, section, tested);
-    match followed(model, &scan, search)? {
-        (mut found, None) => {
-            if found.is_empty() {
-                scan.bound(&mut found, false, &search.speeds_m_s()?)?;
-            }
-            Ok(choose(found, tested))
-        }
-        (_, Some(_)) => find_onset(model, section, search, tested),
-    }
+    // what is found above an onset inside the tested range does not matter
+    let inside = |found: &Findings| {
+        let mut crossings = found.crossings.iter();
+        crossings.any(|o| tested.is_none_or(|range| range.spans(o.at.reduced_frequency)))
+    };
+    let search = match followed(model, &scan, search, inside)? {
+        (found, None) => choose(found, tested),
+        (_, Some(_)) => find_onset(model, section, search, tested)?,
+    };
+    Ok(search.critical_speed_m_s())
 }
 
-/// What the structural modes do, and why they could not be followed to the end, if so.
+/// What the structural modes do, up to where it is `enough`, and why they could not be followed to the end, if so.
 fn followed(
     model: &str,
     scan: &Scan<'_>,
     search: &OnsetSearch,
+    enough: impl Fn(&Findings) -> bool,
 ) -> Result<(Findings, Option<String>)> {
     let speeds = search.speeds_m_s()?;
     let mut found = Findings::between(scan.looked_at(search.speed_max_m_s)?);
-    let ended = match follow(model, scan, &speeds, &mut found) {
+    let ended = match follow(model, scan, &speeds, &mut found, enough) {
         Err(Error::NotDistinct(why) | Error::Numerical(why)) => Some(why),
         other => other.map(|()| None)?,
     };
     Ok((found, ended))
 }
 
-/// What the structural modes do between the lowest and the highest speed of a scan.
-fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) -> Result<()> {
+/// What the structural modes do between the lowest and the highest speed of a scan, up to where it is `enough`.
+fn follow(
+    model: &str,
+    scan: &Scan<'_>,
+    speeds: &[f64],
+    found: &mut Findings,
+    enough: impl Fn(&Findings) -> bool,
+) -> Result<()> {
     let tracker = Tracker::new(scan.section);
     let watch = OnsetWatch {
         model,
@@ -209,6 +217,9 @@ fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) ->
         watch.step(&modes, &next, found)?;
         modes = next;
         found.followed_to_m_s = speed;
+        if enough(found) {
+            return Ok(());
+        }
     }
     let above = modes.all.iter().filter(|mode| {
         let k = tracker.k(highest, mode);

@@ -94,6 +94,10 @@ fn order_by_dof(section: &CoupledSection, modes: &mut [Mode]) {
 /// Lowest speed at which the system can be judged: still air, or for the sampled system the speed with enough samples a
 /// period.
 pub(super) fn lowest_speed(section: &CoupledSection) -> Result<f64> {
+    // no sampled system has these, and all of them oscillate
+    if modes_of_many(section).is_some() {
+        return Ok(0.0);
+    }
     Ok(start_speed(section, &natural_modes(section)?))
 }
 

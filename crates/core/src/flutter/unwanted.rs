@@ -3,7 +3,8 @@
 use super::answer::FlutterSearch;
 use super::critical::all_speeds_are_known;
 use super::critical_point::OnsetMethod;
-use super::scan::{GrowthBand, growth_scan};
+use super::growth_band::GrowthBand;
+use super::scan::Scan;
 use super::search::{OnsetSearch, find_onset};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -75,8 +76,7 @@ pub fn unwanted_growth_below(
         Some(at) if at.speed_m_s > 0.0 => (at.speed_m_s, at.speed_m_s * (1.0 - BELOW)),
         _ => (highest, highest),
     };
-    let mut bands = growth_scan(section, 0.0, limit * BEYOND, tested)?;
-    bands.retain(|band| band.from_m_s < below);
+    let bands = Scan::new("", section, tested).bands(0.0, limit * BEYOND, false, below)?;
     let (bands, own): (Vec<_>, Vec<_>) = bands.into_iter().partition(GrowthBand::extrapolated);
     Ok(UnwantedGrowth {
         scanned_to_m_s: limit,

@@ -112,12 +112,14 @@ pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
     with_vectors(Advance(Apply { w, v, y }))
 }
 
-/// Runs a product on the widest vectors that every processor may be asked for and this one has.
+/// Runs a product on vectors of four numbers where this processor has them: wider ones are no faster for so few.
 #[inline(always)]
 pub(super) fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
     #[cfg(target_arch = "x86_64")]
-    if let pulp::x86::Arch::V3(vectors) = pulp::Arch::new() {
-        return vectors.vectorize(product);
+    match pulp::Arch::new() {
+        pulp::x86::Arch::V4(wider) => return pulp::x86::V3::vectorize(*wider, product),
+        pulp::x86::Arch::V3(vectors) => return vectors.vectorize(product),
+        _ => {}
     }
     with_baseline(product)
 }
