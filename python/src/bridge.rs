@@ -1,7 +1,7 @@
 //! `Bridge`: modes and strips of a whole bridge.
 
 use crate::bridge_scatter::{BridgeScatter, Derivatives};
-use crate::convert::{rows, shown, to_python};
+use crate::convert::{Reduced, reduced, restored, rows, shown, to_python};
 use crate::error::{raised, warned, wrong};
 use crate::export::existing;
 use crate::onset::Onset;
@@ -42,6 +42,19 @@ impl Bridge {
         let study = study.map_err(raised)?;
         warned(py, &study.findings)?;
         Ok(Self(study))
+    }
+
+    /// The file and its folder: what it names is read again.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let file = &slf.get().0.file;
+        reduced(slf, &(file, std::path::absolute(&file.directory)?))
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        let (file, directory): (BridgeFile, PathBuf) = restored(state)?;
+        let study = BridgeStudy::new(BridgeFile { directory, ..file });
+        study.map(Self).map_err(raised)
     }
 
     /// Name in the file.

@@ -4,7 +4,7 @@ use crate::error::{raised, wrong};
 use aerodeck::section::Dof;
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -13,6 +13,39 @@ pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound
     let text = serde_json::to_string(value)
         .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
     py.import("json")?.call_method1("loads", (text,))
+}
+
+/// What `pickle` and `copy` make an object from again: `_from_state` of its class and its state as JSON.
+pub type Reduced<'py> = (Bound<'py, PyAny>, (String,));
+
+/// The state of an object for `__reduce__`.
+pub fn reduced<'py, T: pyo3::PyClass>(
+    slf: &Bound<'py, T>,
+    state: &impl Serialize,
+) -> PyResult<Reduced<'py>> {
+    let text = serde_json::to_string(state)
+        .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
+    let slf = slf.as_any();
+    Ok((slf.get_type().getattr("_from_state")?, (text,)))
+}
+
+/// The state that [`reduced`] wrote.
+pub fn restored<T: DeserializeOwned>(state: &str) -> PyResult<T> {
+    serde_json::from_str(state).map_err(|e| wrong("state", "one of this version", e.to_string()))
+}
+
+/// The same of an object of arrays: `_from_parts` of its class and the arrays.
+pub type Parts<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
+
+/// The attributes of an object for `__reduce__`.
+pub fn parts<'py, T: pyo3::PyClass>(slf: &Bound<'py, T>, names: &[&str]) -> PyResult<Parts<'py>> {
+    let slf = slf.as_any();
+    let parts = names.iter().map(|name| slf.getattr(*name));
+    let parts = parts.collect::<PyResult<Vec<_>>>()?;
+    Ok((
+        slf.get_type().getattr("_from_parts")?,
+        PyTuple::new(slf.py(), parts)?,
+    ))
 }
 
 /// Keys and values as a value of the library, with the words of a study file; `place` is named when they do not fit.

@@ -1,12 +1,14 @@
 //! `Derivatives`: a table of measured aerodynamic derivatives.
 
-use crate::convert::{dof_names, rows, shown, word};
+use crate::convert::{Reduced, dof_names, reduced, restored, rows, shown, word};
 use crate::error::{raised, warned, wrong};
 use aerodeck::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedPoint, Notation, StatedConvention,
 };
 use aerodeck::aerodynamics::derivatives::{DerivativeTable, Missing, TableHeader};
-use aerodeck::files::derivatives::{ReadOptions, embedded, read_table_with, write_csv_in};
+use aerodeck::files::derivatives::{
+    ReadOptions, embedded, parse_csv_in, read_table_with, write_csv, write_csv_in,
+};
 use aerodeck::plausibility::{Finding, of_table};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -62,6 +64,20 @@ impl Derivatives {
         };
         let read = read_table_with(path, &options).map_err(raised)?;
         Self::judged(py, read.table, &read.convention)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let Self(table, findings) = slf.get();
+        let mut text = Vec::new();
+        write_csv(table, &mut text)?;
+        reduced(slf, &(String::from_utf8_lossy(&text), findings))
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        let (text, findings): (String, _) = restored(state)?;
+        let read = parse_csv_in(&text, StatedConvention::default()).map_err(raised)?;
+        Ok(Self(read.table, findings))
     }
 
     /// A measured deck that comes with the package: one of `Derivatives.decks()`.

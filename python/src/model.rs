@@ -1,6 +1,6 @@
 //! `Model`: a trained model of the self-excited forces.
 
-use crate::convert::{dof_names, shown, to_python};
+use crate::convert::{Reduced, dof_names, reduced, restored, shown, to_python};
 use crate::error::{raised, wrong};
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
@@ -58,6 +58,28 @@ impl Model {
     fn save(&self, path: PathBuf, section: Option<&Bound<'_, Section>>) -> PyResult<()> {
         let trained = self.trained(section.map(|s| s.get()))?;
         Ok(std::fs::write(path, trained.to_json().map_err(raised)?)?)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let m = slf.get();
+        let of_data = (&m.tested, &m.provenance, &m.report, &m.uncertainty);
+        reduced(slf, &(&m.model, of_data, &m.stored, &m.name, &m.findings))
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        let (model, of_data, stored, name, findings) = restored(state)?;
+        let (tested, provenance, report, uncertainty) = of_data;
+        Ok(Self {
+            model,
+            tested,
+            provenance,
+            report,
+            uncertainty,
+            stored,
+            name,
+            findings,
+        })
     }
 
     /// The transfer matrix at reduced frequencies K = ωB/V.

@@ -1,18 +1,20 @@
 //! `Onset`: at which wind speed a motion grows.
 
-use crate::convert::shown;
+use crate::convert::{Reduced, reduced, restored, shown};
 use crate::error::raised;
 use aerodeck::flutter::{FlutterSearch, OnsetInterval};
 use aerodeck::verdict::{Outcome, Verdict};
 use pyo3::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// The flutter onset of a section in a force model.
 #[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(Serialize, Deserialize)]
 pub struct Onset {
     /// `onset`; `unstable` when a motion grows already at the lowest speed that could be judged (the onset is there or below);
     /// `stable` when there is none.
-    state: &'static str,
+    state: Cow<'static, str>,
     /// Wind speed, m/s; None when stable.
     speed_m_s: Option<f64>,
     /// Frequency of the motion, Hz; None when stable.
@@ -28,7 +30,7 @@ pub struct Onset {
     /// The answer in one line; begins with the outcome where a speed is required.
     headline: String,
     /// `met`, `not_met` or `cannot_be_judged`; None where no speed is required.
-    outcome: Option<&'static str>,
+    outcome: Option<Cow<'static, str>>,
     /// Why, or what it takes to have one.
     explanation: String,
     /// What limits trust in it, the gravest first.
@@ -53,6 +55,15 @@ impl Onset {
     fn verdict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("json")?
             .call_method1("loads", (&self.verdict_json,))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduced(slf, slf.get())
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        restored(state)
     }
 
     fn __repr__(&self) -> String {
@@ -80,7 +91,7 @@ impl Onset {
         let failed = |e: serde_json::Error| raised(aerodeck::Error::Numerical(e.to_string()));
         let json = serde_json::to_string(card).map_err(failed)?;
         let mut answer = Self {
-            state: "stable",
+            state: "stable".into(),
             speed_m_s: None,
             frequency_hz: None,
             reduced_velocity: None,
@@ -89,9 +100,9 @@ impl Onset {
             in_tested_range: None,
             headline: verdict.headline.clone(),
             outcome: verdict.outcome.as_ref().map(|outcome| match outcome {
-                Outcome::Met => "met",
-                Outcome::NotMet { .. } => "not_met",
-                Outcome::CannotBeJudged { .. } => "cannot_be_judged",
+                Outcome::Met => "met".into(),
+                Outcome::NotMet { .. } => "not_met".into(),
+                Outcome::CannotBeJudged { .. } => "cannot_be_judged".into(),
             }),
             explanation: verdict.explanation.clone(),
             warnings: verdict.warnings().map(str::to_owned).collect(),
@@ -101,7 +112,7 @@ impl Onset {
         };
         let at = match search {
             FlutterSearch::Onset(onset) => {
-                answer.state = "onset";
+                answer.state = "onset".into();
                 answer.in_tested_range = onset.in_tested_range;
                 match &onset.interval {
                     OnsetInterval::Known {
@@ -117,7 +128,7 @@ impl Onset {
                 &onset.at
             }
             FlutterSearch::UnstableAtOrBelow(start) => {
-                answer.state = "unstable";
+                answer.state = "unstable".into();
                 answer.in_tested_range = start.in_tested_range;
                 &start.at
             }

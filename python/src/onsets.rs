@@ -1,5 +1,6 @@
 //! `onsets`: one model on many sections, from arrays.
 
+use crate::convert::{Parts, parts};
 use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::section::{Section, place};
@@ -25,6 +26,25 @@ pub struct Onsets {
 
 #[pymethods]
 impl Onsets {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        parts(slf, &["speed_m_s", "frequency_hz", "tested", "unstable"])
+    }
+
+    #[staticmethod]
+    fn _from_parts(
+        speed_m_s: Py<PyArray1<f64>>,
+        frequency_hz: Py<PyArray1<f64>>,
+        tested: Py<PyArray1<bool>>,
+        unstable: Py<PyArray1<bool>>,
+    ) -> Self {
+        Self {
+            speed_m_s,
+            frequency_hz,
+            tested,
+            unstable,
+        }
+    }
+
     fn __len__(&self, py: Python<'_>) -> usize {
         self.speed_m_s.bind(py).len()
     }

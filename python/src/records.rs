@@ -1,6 +1,6 @@
 //! `Records`: forced-vibration records.
 
-use crate::convert::{dof_names, dofs, from_python, rows, to_python};
+use crate::convert::{Reduced, dof_names, dofs, from_python, reduced, restored, rows, to_python};
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
 use aerodeck::error::without_control_characters;
@@ -36,6 +36,23 @@ impl Records {
         };
         let records = py.detach(read).map_err(raised)?;
         Ok(Self(records, Vec::new()))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let Self(records, findings) = slf.get();
+        let records = records.iter().map(|r| (&r.header, &r.motion, &r.force));
+        reduced(slf, &(records.collect::<Vec<_>>(), findings))
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        let (records, findings): (Vec<_>, _) = restored(state)?;
+        let record = |(header, motion, force)| Record {
+            header,
+            motion,
+            force,
+        };
+        Ok(Self(records.into_iter().map(record).collect(), findings))
     }
 
     /// One record from arrays.

@@ -1,6 +1,6 @@
 //! `Section`: what is suspended.
 
-use crate::convert::{dof_names, from_python, shown, to_python};
+use crate::convert::{Reduced, dof_names, from_python, reduced, restored, shown, to_python};
 use crate::error::{raised, warned};
 use aerodeck::plausibility::of_section;
 use aerodeck::section::{Rotation, SectionModel, Translation};
@@ -123,6 +123,15 @@ impl Section {
     #[getter]
     fn dofs(&self) -> Vec<&'static str> {
         dof_names(&self.0.dofs())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduced(slf, &slf.get().0)
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        restored(state).map(Self)
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

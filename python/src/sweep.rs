@@ -1,6 +1,6 @@
 //! `sweep`: frequency and damping of every mode over the wind speed.
 
-use crate::convert::{dof_names, rows, shown};
+use crate::convert::{Parts, dof_names, parts, rows, shown};
 use crate::error::raised;
 use crate::model::Model;
 use crate::section::{Section, usual_range};
@@ -29,6 +29,39 @@ pub struct Sweep {
 
 #[pymethods]
 impl Sweep {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        parts(
+            slf,
+            &[
+                "speed_m_s",
+                "frequency_hz",
+                "damping_ratio",
+                "tested",
+                "modes",
+                "ended",
+            ],
+        )
+    }
+
+    #[staticmethod]
+    fn _from_parts(
+        speed_m_s: Py<PyArray1<f64>>,
+        frequency_hz: Py<numpy::PyArray2<f64>>,
+        damping_ratio: Py<numpy::PyArray2<f64>>,
+        tested: Py<numpy::PyArray2<bool>>,
+        modes: Vec<String>,
+        ended: Option<String>,
+    ) -> Self {
+        Self {
+            speed_m_s,
+            frequency_hz,
+            damping_ratio,
+            tested,
+            modes,
+            ended,
+        }
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let count = self.speed_m_s.bind(py).len();
         Ok(format!(

@@ -1,5 +1,7 @@
 """A whole bridge: what the command line says of it, as arrays."""
 
+import pickle
+
 import aerodeck
 import numpy as np
 import pytest
@@ -40,6 +42,12 @@ def test_modes_and_nodes_are_arrays(bridge):
     assert bridge.shapes.shape == (m, n, 3) and bridge.along_m.shape == (n,)
     assert bridge.frequency_hz.shape == bridge.damping_ratio.shape == (m,)
     assert np.all(np.diff(bridge.along_m) > 0) and np.all(bridge.damping_ratio == 0.002)
+
+
+def test_a_bridge_is_pickled(bridge):
+    """By its file and folder, from which it is read again."""
+    other = pickle.loads(pickle.dumps(bridge))
+    assert other.name == bridge.name and np.array_equal(other.shapes, bridge.shapes)
 
 
 @pytest.fixture(scope="module")

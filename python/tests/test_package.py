@@ -1,11 +1,14 @@
 """The package against the library's own figures, and what a user touches first."""
 
+import copy
+import multiprocessing
 import os
 import pickle
 import re
 import subprocess
 import sys
 import threading
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import aerodeck
@@ -321,6 +324,49 @@ def test_plots(table, section, model):
         aerodeck.simulate(section, model, 30.0, stop_time_s=1.0).plot(),
     ]
     assert all(figure.axes[0].lines for figure in figures)
+
+
+def test_objects_are_pickled_and_copied(section, model, table):
+    """The same numbers to the last bit, as they are handed to the processes of joblib, multiprocessing or Dask."""
+    def again(thing):
+        for other in (pickle.loads(pickle.dumps(thing)), copy.deepcopy(thing)):
+            assert type(other) is type(thing) and repr(other) == repr(thing)
+            yield other
+
+    for other in again(section):
+        assert other == section
+    onset = aerodeck.flutter(section, model)
+    for other in again(model):
+        assert np.array_equal(other.transfer([0.1, 0.7]), model.transfer([0.1, 0.7]))
+        found = aerodeck.flutter(section, other)
+        assert (found.speed_m_s, found.interval) == (onset.speed_m_s, onset.interval)
+    for other in again(table):
+        assert all(np.array_equal(a, b) for a, b in zip(other.to_numpy().values(), table.to_numpy().values()))
+    for other in again(onset):
+        assert (other.speed_m_s, other.headline, other.verdict) == (onset.speed_m_s, onset.headline, onset.verdict)
+    sweep = aerodeck.sweep(section, model)
+    for other in again(sweep):
+        assert np.array_equal(other.damping_ratio, sweep.damping_ratio, equal_nan=True)
+    many = aerodeck.onsets(section, model, {"vertical.mass_kg_m": np.array([14.0, 15.0])})
+    for other in again(many):
+        assert np.array_equal(other.speed_m_s, many.speed_m_s)
+    records = aerodeck.Records.from_arrays(
+        np.random.default_rng(1).normal(size=(50, 2)),
+        np.zeros((50, 2)),
+        sampling_hz=100.0,
+        mean_speed_m_s=8.0,
+        width_m=0.5,
+        air_density_kg_m3=1.2,
+    )
+    for other in again(records):
+        assert all(np.array_equal(a, b) for a, b in zip(other.to_numpy(0), records.to_numpy(0)))
+
+
+def test_onsets_are_found_in_other_processes(section, model):
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        found = list(pool.map(aerodeck.flutter, [section] * 2, [model] * 2))
+    expected = aerodeck.flutter(section, model)
+    assert [o.speed_m_s for o in found] == [expected.speed_m_s] * 2
 
 
 def test_nothing_but_numpy_is_needed():
