@@ -165,16 +165,16 @@ impl FilterStep {
         let own: [[f64; N]; N] =
             std::array::from_fn(|l| std::array::from_fn(|m| self.own[l * N + m]));
         let mut x: [f64; N] = std::array::from_fn(|l| state[l]);
-        let (columns, _) = out.as_chunks_mut::<BLOCK_ROWS>();
-        for k in 0..rows {
+        let out = &mut out[..N * BLOCK_ROWS];
+        for k in 0..rows.min(BLOCK_ROWS) {
             let mut next = [0.0; N];
             for l in 0..N {
                 let mut sum = own[l][0] * x[0];
                 for m in 1..=l {
                     sum += own[l][m] * x[m];
                 }
-                next[l] = sum + columns[l][k];
-                columns[l][k] = next[l];
+                next[l] = sum + out[l * BLOCK_ROWS + k];
+                out[l * BLOCK_ROWS + k] = next[l];
             }
             x = next;
         }
