@@ -166,8 +166,10 @@ struct PeriodicBridge<'a> {
     speed_m_s: f64,
     step_s: f64,
     fourier: Fourier,
-    /// `G` of one mode each: a row per frequency from zero to half the rate of the samples, a column per motion of a node.
+    /// `G` of the force on one mode each: a row per frequency from zero to half the rate of the samples, a column per motion.
     transfer: Vec<DMatrix<Complex<f64>>>,
+    /// Motions of the nodes, in columns, by those motions, which are the modes' where nodes have more of them.
+    of_motions: DMatrix<f64>,
 }
 
 impl<'a> PeriodicBridge<'a> {
@@ -181,13 +183,19 @@ impl<'a> PeriodicBridge<'a> {
         let coupled = problem.coupled(speed_m_s)?;
         let shapes = problem.bridge.shapes_at(nodes);
         let fourier = Fourier::new(samples);
-        let transfer = transfer(&coupled, &shapes, speed_m_s, step_s, &fourier)?;
+        let (rows, modes) = shapes.shape();
+        let (motions, of_motions) = match rows > modes {
+            true => (DMatrix::identity(modes, modes), shapes.transpose()),
+            false => (shapes, DMatrix::identity(rows, rows)),
+        };
+        let transfer = transfer(&coupled, &motions, speed_m_s, step_s, &fourier)?;
         Ok(Self {
             problem,
             speed_m_s,
             step_s,
             fourier,
             transfer,
+            of_motions,
         })
     }
 
@@ -208,16 +216,24 @@ impl<'a> PeriodicBridge<'a> {
     fn run(&self, gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>) -> Run {
         let samples = self.fourier.length();
         let forces = self.modal_forces(gusts);
-        let rows = self.transfer.first().map_or(0, DMatrix::ncols);
-        let row = |row: usize| {
-            let mut spectrum = vec![Complex::<f64>::default(); samples];
-            for (transfer, force) in self.transfer.iter().zip(forces.column_iter()) {
-                let parts = force.as_slice().chunks_exact(2);
-                let driven = transfer.column(row);
-                for ((sum, g), part) in spectrum.iter_mut().zip(driven.iter()).zip(parts) {
-                    *sum += g * Complex::new(part[0], part[1]);
+        let (motions, rows) = self.of_motions.shape();
+        // real and imaginary parts one after the other, as those of the forces
+        let mut parts = DMatrix::<f64>::zeros(forces.nrows(), motions);
+        for (transfer, force) in self.transfer.iter().zip(forces.column_iter()) {
+            for (mut sums, driven) in parts.column_iter_mut().zip(transfer.column_iter()) {
+                let sums = sums.as_mut_slice().chunks_exact_mut(2);
+                let force = force.as_slice().chunks_exact(2);
+                for ((sum, g), part) in sums.zip(driven.iter()).zip(force) {
+                    sum[0] += g.re * part[0] - g.im * part[1];
+                    sum[1] += g.re * part[1] + g.im * part[0];
                 }
             }
+        }
+        let row = |row: usize| {
+            let column = &parts * self.of_motions.column(row);
+            let pairs = column.as_slice().chunks_exact(2);
+            let mut spectrum: Vec<_> = pairs.map(|z| Complex::new(z[0], z[1])).collect();
+            spectrum.resize(samples, Complex::default());
             let values = self.fourier.sums(spectrum);
             let mean = values.iter().sum::<f64>() / samples as f64;
             let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples as f64;
