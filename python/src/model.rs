@@ -8,7 +8,7 @@ use aerodeck::identification::FitReport;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
-use aerodeck::uncertainty::CoefficientUncertainty;
+use aerodeck::uncertainty::{CoefficientUncertainty, UncertaintyWithData};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
@@ -62,20 +62,22 @@ impl Model {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let m = slf.get();
-        let of_data = (&m.tested, &m.provenance, &m.report, &m.uncertainty);
+        let known = m.uncertainty.clone().map(UncertaintyWithData::from);
+        let of_data = (&m.tested, &m.provenance, &m.report, &known);
         reduced(slf, &(&m.model, of_data, &m.stored, &m.name, &m.findings))
     }
 
     #[staticmethod]
     fn _from_state(state: &str) -> PyResult<Self> {
         let (model, of_data, stored, name, findings) = restored(state)?;
-        let (tested, provenance, report, uncertainty) = of_data;
+        let (tested, provenance, report, known) = of_data;
+        let known: Result<UncertaintyWithData, String> = known;
         Ok(Self {
             model,
             tested,
             provenance,
             report,
-            uncertainty,
+            uncertainty: known.map(CoefficientUncertainty::from),
             stored,
             name,
             findings,

@@ -36,6 +36,7 @@ mod speed_prior;
 mod speed_scatter;
 mod statistics;
 mod table_covariance;
+mod with_data;
 
 pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, coverage};
@@ -51,6 +52,7 @@ pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
 pub use statistics::sample_quantile;
 pub use table_covariance::table_uncertainty;
+pub use with_data::UncertaintyWithData;
 
 #[cfg(test)]
 mod tests;

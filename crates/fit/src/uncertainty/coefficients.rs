@@ -45,7 +45,7 @@ pub struct CoefficientUncertainty {
     pub(super) design: Option<Design>,
     /// Reduced frequencies over which the scatter between mean speeds was asked.
     #[serde(skip)]
-    tested: Option<ReducedFrequencyRange>,
+    pub(super) tested: Option<ReducedFrequencyRange>,
     #[serde(skip)]
     pub(super) effects: Vec<Effect>,
 }

@@ -12,12 +12,13 @@
 use crate::error::{Error, Result};
 use crate::identification::least_squares::StreamingQr;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use serde::{Deserialize, Serialize};
 
 /// Directions in which a block is the only one to determine the parameters leave no residual to judge by.
 const LEVERAGE_TOLERANCE: f64 = 1e-9;
 
 /// Rows of one block and their residuals.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Block {
     /// What the block is, in words.
     pub name: String,
@@ -26,10 +27,13 @@ pub(crate) struct Block {
     /// Reduced frequency of its motion, where it has one.
     pub k: Option<f64>,
     /// r×P.
+    #[serde(with = "crate::state_space::rows")]
     pub rows: DMatrix<f64>,
     /// r.
+    #[serde(with = "numbers")]
     pub residual: DVector<f64>,
     /// Working variance of each row: relative sizes only.
+    #[serde(with = "numbers")]
     pub variance: DVector<f64>,
 }
 
@@ -97,17 +101,58 @@ impl Block {
 }
 
 /// Blocks of one fit with what is common to all of them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Design {
     blocks: Vec<Block>,
     /// `M⁻¹`, or what is left of it along the tangent, P×P.
+    #[serde(with = "crate::state_space::rows")]
     inverse: DMatrix<f64>,
     /// Orthonormal directions that active constraints leave to the parameters, P×q; none where nothing holds them.
+    #[serde(with = "perhaps_rows")]
     tangent: Option<DMatrix<f64>>,
     /// `Σ AᵀDA` with the working variances, P×P.
+    #[serde(with = "crate::state_space::rows")]
     working: DMatrix<f64>,
     /// Enlargement of the residuals of each block, r×r, symmetric.
+    #[serde(with = "crate::state_space::rows::list")]
     enlarge: Vec<DMatrix<f64>>,
+}
+
+/// A column of numbers as a list.
+mod numbers {
+    use nalgebra::DVector;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(v: &DVector<f64>, to: S) -> Result<S::Ok, S::Error> {
+        v.as_slice().serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<DVector<f64>, D::Error> {
+        Vec::deserialize(from).map(DVector::from_vec)
+    }
+}
+
+/// A matrix, or none, as a list of at most one.
+mod perhaps_rows {
+    use crate::state_space::rows::list;
+    use nalgebra::DMatrix;
+    use serde::{Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(
+        m: &Option<DMatrix<f64>>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let all: Vec<DMatrix<f64>> = m.iter().cloned().collect();
+        list::serialize(&all, to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Option<DMatrix<f64>>, D::Error> {
+        list::deserialize(from).map(|mut all| all.pop())
+    }
 }
 
 impl Design {

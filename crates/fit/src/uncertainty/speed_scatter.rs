@@ -78,9 +78,10 @@ pub(super) struct Slopes {
 }
 
 /// A random effect on the parameters.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Effect {
     /// Each column times an independent standard normal number, P×m.
+    #[serde(with = "crate::state_space::rows")]
     pub columns: DMatrix<f64>,
     /// Variance between speeds over that part of it which exceeds the blocks'.
     pub total: f64,
