@@ -157,7 +157,7 @@ struct Plane {
 }
 
 /// `W` at one level over time, in the parts of which the triple products consist.
-struct Row {
+struct LevelRow {
     modulus: Vec<f64>,
     argument: Vec<f64>,
     /// `W e^{iR arg W}`: times one another they are `W W W* e^{iRβ}`, up to whole turns of the biphase β.
@@ -231,13 +231,13 @@ impl Plane {
     }
 
     /// All levels of a signal.
-    fn rows(&self, plan: &Morlet, signal: &[f64]) -> Vec<Row> {
+    fn rows(&self, plan: &Morlet, signal: &[f64]) -> Vec<LevelRow> {
         let randomised = |(w, r): (&Complex64, &f64)| w * Complex64::cis(r * w.arg());
         let groups = plan.by_groups(|group| {
             let (spectrum, mut buffer) = (group.spectrum(signal), RowBuffer::default());
             let mut row = |level| {
                 let w = group.row(&group.kernel(level), &spectrum, &mut buffer);
-                Row {
+                LevelRow {
                     modulus: w.iter().map(|w| w.norm()).collect(),
                     argument: w.iter().map(|w| w.arg()).collect(),
                     randomised: w.iter().zip(&self.factors).map(randomised).collect(),
@@ -253,8 +253,8 @@ impl Plane {
     fn bispectra(
         &self,
         i: usize,
-        single: &[Row],
-        sums: &[Row],
+        single: &[LevelRow],
+        sums: &[LevelRow],
         parameters: &BicoherenceParameters,
     ) -> Vec<[f64; 2]> {
         let inside = self.single.inside(i);
@@ -264,8 +264,9 @@ impl Plane {
             single.len(),
             inside.len(),
             inside.clone().flat_map(|t| {
-                let modulus =
-                    move |(b, c): (&Row, &Row)| single[0].modulus[t] * b.modulus[t] * c.modulus[t];
+                let modulus = move |(b, c): (&LevelRow, &LevelRow)| {
+                    single[0].modulus[t] * b.modulus[t] * c.modulus[t]
+                };
                 pairs().map(modulus)
             }),
         );
@@ -287,7 +288,7 @@ impl Plane {
     }
 
     /// `Σ_t W W W* e^{iRβ}` of two levels and that of their sum.
-    fn randomised_sum(&self, inside: Range<usize>, [a, b, c]: [&Row; 3]) -> Complex64 {
+    fn randomised_sum(&self, inside: Range<usize>, [a, b, c]: [&LevelRow; 3]) -> Complex64 {
         let product = |t: usize| {
             let product = a.randomised[t] * b.randomised[t] * c.randomised[t].conj();
             let biphase = a.argument[t] + b.argument[t] - c.argument[t];

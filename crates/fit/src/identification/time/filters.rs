@@ -143,7 +143,7 @@ impl FilterStep {
     /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole piece; `out` holds one stretch of
     /// [`BLOCK_ROWS`] per filter.
     fn advance(&self, input: &Filtered, state: &mut [f64], out: &mut [f64]) {
-        pulp::Arch::new().dispatch(Drive {
+        pulp::Arch::new().dispatch(DrivenFilters {
             step: self,
             input,
             out: &mut *out,
@@ -214,13 +214,13 @@ impl FilterStep {
 }
 
 /// What [`FilterStep::advance`] does first.
-struct Drive<'a> {
+struct DrivenFilters<'a> {
     step: &'a FilterStep,
     input: &'a Filtered,
     out: &'a mut [f64],
 }
 
-impl pulp::NullaryFnOnce for Drive<'_> {
+impl pulp::NullaryFnOnce for DrivenFilters<'_> {
     type Output = ();
 
     #[inline(always)]
