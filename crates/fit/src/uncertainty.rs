@@ -18,6 +18,7 @@
 
 mod coefficients;
 mod columns;
+mod columns_in_files;
 mod coverage;
 mod design;
 mod draws;

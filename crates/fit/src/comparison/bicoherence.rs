@@ -77,8 +77,7 @@ pub struct BicoherenceDetails {
 /// `f₁ ≤ f₂ ≤ f_max/2`; all pairs share the random factors of a surrogate. Samples inside the cone of influence of
 /// `f₁` count. No coupling in either signal gives 1, in one of them 0.
 ///
-/// Memory: `W` at all levels up to `f_max/2` and their sums, 96 bytes per level and sample, and 16 bytes per
-/// surrogate and sample.
+/// Memory: `W` at all levels up to `f_max/2` and their sums, 96 bytes per level and sample, and 16 bytes per surrogate and sample.
 ///
 /// # Errors
 /// [`Error::Input`] for unusable parameters or a record too short for the cone at `f_max/2`.

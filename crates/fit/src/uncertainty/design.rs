@@ -30,10 +30,10 @@ pub(crate) struct Block {
     #[serde(with = "crate::state_space::rows")]
     pub rows: DMatrix<f64>,
     /// r.
-    #[serde(with = "numbers")]
+    #[serde(with = "super::columns_in_files::numbers")]
     pub residual: DVector<f64>,
     /// Working variance of each row: relative sizes only.
-    #[serde(with = "numbers")]
+    #[serde(with = "super::columns_in_files::numbers")]
     pub variance: DVector<f64>,
 }
 
@@ -108,7 +108,7 @@ pub(crate) struct Design {
     #[serde(with = "crate::state_space::rows")]
     inverse: DMatrix<f64>,
     /// Orthonormal directions that active constraints leave to the parameters, P×q; none where nothing holds them.
-    #[serde(with = "perhaps_rows")]
+    #[serde(with = "super::columns_in_files::perhaps_rows")]
     tangent: Option<DMatrix<f64>>,
     /// `Σ AᵀDA` with the working variances, P×P.
     #[serde(with = "crate::state_space::rows")]
@@ -116,43 +116,6 @@ pub(crate) struct Design {
     /// Enlargement of the residuals of each block, r×r, symmetric.
     #[serde(with = "crate::state_space::rows::list")]
     enlarge: Vec<DMatrix<f64>>,
-}
-
-/// A column of numbers as a list.
-mod numbers {
-    use nalgebra::DVector;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(v: &DVector<f64>, to: S) -> Result<S::Ok, S::Error> {
-        v.as_slice().serialize(to)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        from: D,
-    ) -> Result<DVector<f64>, D::Error> {
-        Vec::deserialize(from).map(DVector::from_vec)
-    }
-}
-
-/// A matrix, or none, as a list of at most one.
-mod perhaps_rows {
-    use crate::state_space::rows::list;
-    use nalgebra::DMatrix;
-    use serde::{Deserializer, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(
-        m: &Option<DMatrix<f64>>,
-        to: S,
-    ) -> Result<S::Ok, S::Error> {
-        let all: Vec<DMatrix<f64>> = m.iter().cloned().collect();
-        list::serialize(&all, to)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        from: D,
-    ) -> Result<Option<DMatrix<f64>>, D::Error> {
-        list::deserialize(from).map(|mut all| all.pop())
-    }
 }
 
 impl Design {
