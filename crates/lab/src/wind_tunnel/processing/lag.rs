@@ -22,6 +22,9 @@ struct Ratio {
     variance: f64,
 }
 
+/// Inertia of a cell up to this part of that of the model is rounding, which has no scatter to be judged by.
+const ROUNDING: f64 = 1e-9;
+
 /// Lag and inertia of `still` in `dof`, the one that moves; `None` without harmonic segments.
 ///
 /// # Errors
@@ -69,7 +72,7 @@ pub(crate) fn still_air_inertia(
     for (place, cell) in rig.cells.iter().zip(&cells) {
         if let Some(one) = of(&cell[channel])?
             && one.is_certain()
-            && one.inertia < 0.0
+            && one.inertia < -ROUNDING * result.inertia.abs()
         {
             return Err(wrong_sign(run, &format!("cell {}", place.name), dof, &one));
         }
