@@ -2,7 +2,7 @@
 took what:
 
     python3 fmu_build/importers.py             the table; fails when an importer that is there fails
-    python3 fmu_build/importers.py --readme    the same, and writes the table into README.md
+    python3 fmu_build/importers.py --write     the same, and writes the table into docs/hosts.md
 
 The importers come from the Python package index into `target/importers-env`, at the versions stated here; what cannot be
 installed is named and skipped. fmi-sim is used where it is installed (`cargo install fmi-sim`, which needs libclang); Ecos
@@ -23,7 +23,7 @@ RUNS = pathlib.Path(__file__).with_name("importer_runs.py")
 MODELS = ROOT / "tests" / "data" / "models"
 SECONDS = 120
 TOLERANCE = 1e-9  # of the largest output; importers that add steps up differ in the last bits of the time
-BEGIN, END = "<!-- importers: python3 fmu_build/importers.py --readme -->", "<!-- end of importers -->"
+BEGIN, END = "<!-- importers: python3 fmu_build/importers.py --write -->", "<!-- end of importers -->"
 
 # name in words, run in importer_runs.py, package that it needs, further options of pip
 IMPORTERS = [
@@ -132,19 +132,19 @@ def table(python, missing, files):
     return lines, skipped, failures
 
 
-def into_readme(lines):
-    readme = ROOT / "README.md"
-    text = readme.read_text(encoding="utf-8")
+def into_manual(lines):
+    page = ROOT / "docs" / "hosts.md"
+    text = page.read_text(encoding="utf-8")
     head, rest = text.split(BEGIN)
     _, tail = rest.split(END)
-    readme.write_text("\n".join([head + BEGIN, *lines, END + tail]), encoding="utf-8")
+    page.write_text("\n".join([head + BEGIN, *lines, END + tail]), encoding="utf-8")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--aerodeck", help="the program [default: built from this source by cargo]")
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "target" / "importers", help="folder for the FMUs")
-    parser.add_argument("--readme", action="store_true", help="write the table into README.md")
+    parser.add_argument("--write", action="store_true", help="write the table into docs/hosts.md")
     arguments = parser.parse_args()
     if arguments.aerodeck is None:
         subprocess.run(["cargo", "build", "--release", "--locked"], cwd=ROOT, check=True)
@@ -156,8 +156,8 @@ def main():
     print("\n".join(lines))
     for reason in skipped:
         print(f"not run: {reason}")
-    if arguments.readme:
-        into_readme(lines)
+    if arguments.write:
+        into_manual(lines)
     if failures:
         sys.exit("\n".join(["failed:", *failures]))
 
