@@ -1,6 +1,6 @@
 //! One run at a time in a folder of results.
 
-use super::interrupt::Temporary;
+use super::interrupt::{Temporary, uninterrupted};
 use crate::error::{Error, Result};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read as _, Write as _};
@@ -24,6 +24,8 @@ impl FolderLock {
     /// [`Error::Input`] naming the other process while one has it; [`Error::Io`] when the file cannot be written.
     pub(crate) fn take(folder: &Path) -> Result<Self> {
         let path = folder.join(LOCK_FILE);
+        // an interrupt between making the file and taking charge of it would leave it behind
+        let _whole = uninterrupted();
         loop {
             let mut file = OpenOptions::new()
                 .read(true)

@@ -1,16 +1,20 @@
 //! `aerodeck new`: a commented study to begin with.
 
 use super::answer::Answer;
+use super::common::folder_of;
 use super::output::{OutputDir, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
 use crate::error::{Error, Result};
 use crate::files::derivatives::named_sheet;
-use crate::study::{Deck, Study, new_study_text};
+use crate::study::bridge::new_bridge_text;
+use crate::study::{Deck, Study, example_wind_study_text, new_study_text};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Write a commented study file for an embedded deck, the flat plate or a table of your own
+/// Write a commented study file for an embedded deck, the flat plate or a table of your own; or a bridge file, or one of wind
 ///
 /// Example: aerodeck new --workbook AerodynamicDerivatives_LN21_5200.xlsx --out my-bridge.toml
+/// Example: aerodeck new --bridge
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct NewArgs {
@@ -32,22 +36,36 @@ pub(crate) struct NewArgs {
     /// Direction of heave and lift in the table: heave_up, heave_down.
     #[arg(long, value_name = "AXES", requires = "workbook")]
     from_axes: Option<Axes>,
-    /// The study file.
-    #[arg(long, default_value = "study.toml")]
-    out: PathBuf,
-    /// Replace a study file that differs.
+    /// A file of a whole bridge instead, for `aerodeck bridge`.
+    #[arg(long, conflicts_with_all = ["deck", "workbook", "wind"])]
+    bridge: bool,
+    /// A file of wind on a section instead, for `aerodeck buffeting` and `aerodeck quasi-steady`.
+    #[arg(long, conflicts_with_all = ["deck", "workbook"])]
+    wind: bool,
+    /// The file [default: study.toml, bridge.toml or wind.toml].
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Replace a file that differs.
     #[arg(long)]
     force: bool,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
-    let folder = args.out.parent().filter(|p| !p.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    let name = args.out.file_name().ok_or_else(|| {
-        let found = args.out.display().to_string();
-        Error::input("--out", "the name of a file", found)
-    })?;
+    if args.bridge {
+        return args.template(
+            "bridge.toml",
+            new_bridge_text(),
+            "state your bridge in it, then run `aerodeck bridge flutter",
+        );
+    }
+    if args.wind {
+        let next = "state your section and its wind in it, then run `aerodeck buffeting";
+        return args.template("wind.toml", example_wind_study_text(), next);
+    }
+    let path = args.out.clone().unwrap_or_else(|| "study.toml".into());
+    let folder = folder_of(&path);
+    let name = file_name(&path)?;
     let source = match &args.workbook {
         Some(table) => named_sheet(&beside(table, folder)?, args.sheet.as_deref()),
         None => args.deck.clone(),
@@ -72,12 +90,34 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
     said.push_str(&format!(
         "{}state your section in it, then run `aerodeck study {}`\n",
         list(&written),
-        args.out.display()
+        path.display()
     ));
     Answer::new(
         said,
         &serde_json::json!({ "deck": deck.description(), "warnings": deck.warnings(), "files": written }),
     )
+}
+
+/// The last part of a path.
+fn file_name(path: &Path) -> Result<&OsStr> {
+    path.file_name().ok_or_else(|| {
+        let found = path.display().to_string();
+        Error::input("--out", "the name of a file", found)
+    })
+}
+
+impl NewArgs {
+    /// Writes a file that needs no more than to be edited.
+    fn template(&self, usual: &str, text: &str, next: &str) -> Result<Answer> {
+        let path = self.out.clone().unwrap_or_else(|| usual.into());
+        let name = file_name(&path)?;
+        let mut out = OutputDir::new(folder_of(&path))?;
+        out.write(name, text)?;
+        out.refuse_edited(&name.to_string_lossy(), self.force, "choose another --out")?;
+        let written = out.commit()?;
+        let said = format!("{}{next} {}`\n", list(&written), path.display());
+        Answer::new(said, &serde_json::json!({ "files": written }))
+    }
 }
 
 /// The path of a table as the study in `folder` has to name it.

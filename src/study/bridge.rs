@@ -41,6 +41,11 @@ pub(crate) fn demo_bridge_text() -> &'static str {
     include_str!("bridge/demo.toml")
 }
 
+/// Text of a new bridge file, with a comment at every key that is left out most often.
+pub(crate) fn new_bridge_text() -> &'static str {
+    include_str!("bridge/new_bridge.toml")
+}
+
 /// Winds of one section at most; with more, the profile is taken in steps.
 const WINDS_AT_MOST: usize = 8;
 /// Those steps, as a part of the wind speed of the bridge, and how many there are at most.

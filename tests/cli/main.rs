@@ -26,5 +26,6 @@ mod process;
 mod report;
 mod required_speeds;
 mod select;
+mod templates;
 mod verdicts;
 mod wind;
