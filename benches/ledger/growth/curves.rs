@@ -115,7 +115,7 @@ pub(crate) static CURVES: &[Curve] = &[
     },
     Curve {
         name: "buffeting",
-        what: "turbulence and response, 4096 samples",
+        what: "response, 4096 samples",
         of: "nodes × modes",
         job: growth::buffeting,
         measure: |modes| growth::nodes(modes) * modes as f64,
@@ -159,7 +159,7 @@ pub(crate) static CURVES: &[Curve] = &[
     },
     Curve {
         name: "threads-sweep",
-        what: "all modes of a bridge at ten winds",
+        what: "modes at ten winds",
         job: growth::sweep_by_threads,
         exponent: 0.0,
         reason: "each wind starts from the modes of the one before",
@@ -179,7 +179,7 @@ pub(crate) static CURVES: &[Curve] = &[
     },
     Curve {
         name: "threads-buffeting",
-        what: "turbulence and response of a bridge",
+        what: "response of a bridge",
         job: growth::buffeting_by_threads,
         ..THREADS
     },

@@ -84,7 +84,7 @@ impl Stepper {
     /// Motion, accelerations and self-excited forces at the instant of `state`.
     ///
     /// # Errors
-    /// [`Error::Input`] for inputs that are not finite.
+    /// [`crate::Error::Input`] for inputs that are not finite.
     #[inline]
     pub fn outputs(
         &mut self,

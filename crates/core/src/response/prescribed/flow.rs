@@ -5,7 +5,7 @@
 pub struct StripFlow {
     /// Width `B`, m.
     pub width_m: f64,
-    /// Mean wind speed at the strip over that of [`GivenMotion`].
+    /// Mean wind speed at the strip over that of [`super::GivenMotion`].
     pub wind_factor: f64,
 }
 
