@@ -36,6 +36,7 @@ fn archives_are_reproducible_and_complete() {
             "model.png",
             "modelDescription.xml",
             "resources/model.json",
+            "terminalsAndIcons/terminalsAndIcons.xml",
         ]
     );
     for i in 0..zip.len() {
