@@ -116,10 +116,8 @@ pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
 #[inline(always)]
 pub(super) fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
     #[cfg(target_arch = "x86_64")]
-    match pulp::Arch::new() {
-        pulp::x86::Arch::V4(wider) => return pulp::x86::V3::vectorize(*wider, product),
-        pulp::x86::Arch::V3(vectors) => return vectors.vectorize(product),
-        _ => {}
+    if let Some(vectors) = pulp::x86::V3::try_new() {
+        return vectors.vectorize(product);
     }
     with_baseline(product)
 }
