@@ -127,7 +127,7 @@ pub(crate) static CURVES: &[Curve] = &[
         what: "a step of the bridge",
         job: growth::bridge_step,
         exponent: 2.0,
-        reason: "a product with the matrix of all states, four a mode, whatever the nodes",
+        reason: "a product with the matrix of all states, four a mode, whatever the nodes; matrices of more than 350 states leave the second cache, which costs more",
         kind: Kind::Call,
         ..BRIDGE
     },
@@ -161,8 +161,6 @@ pub(crate) static CURVES: &[Curve] = &[
         name: "threads-sweep",
         what: "modes at ten winds",
         job: growth::sweep_by_threads,
-        exponent: 0.0,
-        reason: "each wind starts from the modes of the one before",
         ..THREADS
     },
     Curve {
