@@ -61,19 +61,18 @@ const FAILED: u8 = 1;
 const NOT_MET: u8 = 3;
 
 /// What each exit code means.
-const EXIT_CODES: [(&str, &str); 6] = [
-    ("0", "done; where a wind speed is required, it is met"),
+const EXIT_CODES: [(u8, &str); 5] = [
+    (0, "done; where a wind speed is required, it is met"),
     (
-        "1",
+        FAILED,
         "a computation failed or a check did not pass, or there is no room on the disk; what was finished is written",
     ),
-    ("2", "wrong input: arguments, a file, a number"),
+    (WRONG_INPUT, "wrong input: arguments, a file, a number"),
     (
-        "3",
+        NOT_MET,
         "a wind speed is required, and it is not known to be met: see [the verdict](verdict.md)",
     ),
-    ("70", "a fault of the program itself"),
-    ("128 + n", "ended by signal n"),
+    (apology::OWN_FAULT, "a fault of the program itself"),
 ];
 
 /// Bridge aeroelasticity from wind-tunnel data to an FMI 2.0 co-simulation FMU.

@@ -3,14 +3,15 @@
 use crate::bridge_scatter::{BridgeScatter, Derivatives};
 use crate::convert::{Reduced, reduced, restored, rows, shown, to_python};
 use crate::error::{raised, warned, wrong};
-use crate::export::existing;
 use crate::onset::Onset;
 use crate::sweep::Sweep;
 use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::flutter::{find_onset, trace_modes};
-use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_archive};
+use aerodeck::fmu::package::{
+    FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
+};
 use aerodeck::study::bridge::{
     BridgeBuffeting, BridgeExportOptions, BridgeStudy, Scatter, bridge_flutter,
 };
@@ -318,7 +319,7 @@ impl Bridge {
             export.verdict = Some(self.0.verdict()?);
             let (runtimes, label) = (Runtime::available()?, label.dated()?);
             let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;
-            write_archive(&path, &bytes, existing(overwrite))
+            write_archive(&path, &bytes, Overwrite::replacing(overwrite))
         })?;
         written.map_err(raised)
     }

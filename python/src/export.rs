@@ -119,7 +119,13 @@ pub fn export_fmu(
             Some(platforms) => Runtime::chosen(&platforms)?,
             None => Runtime::available()?,
         };
-        write_fmu(&path, &trained, &runtimes, existing(overwrite), export)
+        write_fmu(
+            &path,
+            &trained,
+            &runtimes,
+            Overwrite::replacing(overwrite),
+            export,
+        )
     })
     .map_err(raised)
 }
@@ -148,15 +154,6 @@ fn growing(allow_unstable: bool) -> GrowthPolicy {
         GrowthPolicy::Allow
     } else {
         GrowthPolicy::Refuse
-    }
-}
-
-/// What becomes of a file that is there.
-pub fn existing(overwrite: bool) -> Overwrite {
-    if overwrite {
-        Overwrite::Replace
-    } else {
-        Overwrite::Refuse
     }
 }
 

@@ -63,7 +63,7 @@ fn purpose(command: &Command) -> String {
 }
 
 /// Every command with what it does, by groups, the options of all and the exit codes, in Markdown.
-pub(super) fn page(cli: &Command, exit_codes: &[(&str, &str)]) -> String {
+pub(super) fn page(cli: &Command, exit_codes: &[(u8, &str)]) -> String {
     let mut text = String::new();
     for (group, names) in GROUPS {
         let _ = writeln!(text, "## {group}\n\n| command | what it does |\n|---|---|");
@@ -86,6 +86,7 @@ pub(super) fn page(cli: &Command, exit_codes: &[(&str, &str)]) -> String {
     for (code, meaning) in exit_codes {
         let _ = writeln!(text, "| {code} | {meaning} |");
     }
+    text.push_str("| 128 + n | ended by signal n |\n");
     text
 }
 

@@ -51,11 +51,7 @@ pub(super) fn run(command: &SspCommand, progress: &Progress) -> Result<Answer> {
         .out
         .clone()
         .unwrap_or_else(|| args.bridge.with_file_name("bridge.ssp"));
-    let overwrite = match args.force {
-        true => Overwrite::Replace,
-        false => Overwrite::Refuse,
-    };
-    write_archive(&path, &system.package()?, overwrite)?;
+    write_archive(&path, &system.package()?, Overwrite::replacing(args.force))?;
     drop(stage);
     let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
     let parameters: usize = system.components.iter().map(|c| c.values.len()).sum();

@@ -56,6 +56,16 @@ pub enum Overwrite {
     Replace,
 }
 
+impl Overwrite {
+    /// Replaces a file that is there where that is wanted.
+    pub fn replacing(wanted: bool) -> Self {
+        match wanted {
+            true => Self::Replace,
+            false => Self::Refuse,
+        }
+    }
+}
+
 /// What is exported of a model: its section in its forces or, with options, its forces alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
@@ -341,8 +351,12 @@ pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<
         Overwrite::Replace => file.persist(path).map_err(|e| failed(e.error))?,
         Overwrite::Refuse => file.persist_noclobber(path).map_err(|e| {
             if e.error.kind() == std::io::ErrorKind::AlreadyExists {
-                Error::input("FMU", "no file there yet", "one, which was left as it is")
-                    .in_file(path)
+                Error::input(
+                    "archive",
+                    "no file there yet",
+                    "one, which was left as it is",
+                )
+                .in_file(path)
             } else {
                 failed(e.error)
             }

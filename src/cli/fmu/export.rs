@@ -172,10 +172,7 @@ impl FmuExportArgs {
 
 impl FmuExportArgs {
     fn overwrite(&self) -> Overwrite {
-        match self.force {
-            true => Overwrite::Replace,
-            false => Overwrite::Refuse,
-        }
+        Overwrite::replacing(self.force)
     }
 
     fn listing(&self) -> Listing {

@@ -48,12 +48,18 @@ impl BridgeStudy {
             let expected = "none: gusts belong to the forces, not to the structure";
             return Err(Error::input("gusts", expected, "some"));
         }
-        let mut whole = self.export(wanted)?;
+        self.structure_of(self.export(wanted)?, wanted.nodes.is_empty())
+    }
+
+    /// The structure of the whole bridge as it is exported, at its nodes or at all.
+    pub(super) fn structure_of(
+        &self,
+        mut whole: BridgeExport,
+        all_nodes: bool,
+    ) -> Result<BridgeExport> {
         let nodes = self.by_model.nodes.len();
-        let every_node = whole.bridge.nodes.iter().map(|n| n.name.clone());
-        let every_node: Vec<String> = every_node.collect();
-        if wanted.nodes.is_empty() {
-            whole.bridge.named = self.named(&every_node)?;
+        if all_nodes {
+            whole.bridge.named = (0..nodes).collect();
         }
         let width_m = self.by_model.width_m();
         whole.bridge = BridgeOptions {
@@ -97,7 +103,15 @@ impl BridgeStudy {
         wanted: &BridgeExportOptions,
         gusts: Option<RationalAdmittance>,
     ) -> Result<Vec<SectionForcePart>> {
-        let whole = self.export(wanted)?;
+        self.section_forces_of(&self.export(wanted)?, gusts)
+    }
+
+    /// The wind forces of the whole bridge as it is exported.
+    pub(super) fn section_forces_of(
+        &self,
+        whole: &BridgeExport,
+        gusts: Option<RationalAdmittance>,
+    ) -> Result<Vec<SectionForcePart>> {
         let matrices = gusts.map(|_| self.gust_matrices()).transpose()?;
         let mut all = Vec::new();
         for (s, (block, forces)) in self.file.sections.iter().zip(&self.sections).enumerate() {

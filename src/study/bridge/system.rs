@@ -96,9 +96,10 @@ impl BridgeStudy {
         runtimes: &[Runtime],
         label: &Label,
     ) -> Result<System> {
-        let mut structure = self.structure(wanted)?;
+        let whole = self.export(wanted)?;
+        let forces = self.section_forces_of(&whole, None)?;
+        let mut structure = self.structure_of(whole, true)?;
         structure.verdict = Some(verdict.clone());
-        let forces = self.section_forces(wanted, None)?;
         let mut system = System {
             name: self.file.name.clone(),
             components: Vec::new(),

@@ -222,7 +222,8 @@ fn is_argument(name: &str, argument: Argument) -> bool {
         Argument::VHat => &["V\u{302}", "V̂", "Vhat", "V/(wB)", "V/wB", "V/(Bw)"],
         Argument::VStar => &["V*", "Vstar", "V/(fB)", "V/fB", "V/(nB)", "V/nB", "V/(Bf)"],
         Argument::KFull => &["K", "wB/V", "Bw/V"],
-        Argument::KSemi => &["k", "wb/V", "bw/V"],
+        // `k` is that of the full width for some
+        Argument::KSemi => &["wb/V", "bw/V"],
     };
     name.eq_ignore_ascii_case(argument.name())
         || name == argument.definition()

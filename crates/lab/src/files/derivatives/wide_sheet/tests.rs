@@ -146,11 +146,20 @@ fn one_of_several_sheets_is_named() {
 fn what_is_not_understood_is_named() {
     let (_folder, path) = saved(|book| write(book.add_worksheet(), 0, "Vred", NAMES, 1.0));
     let message = in_scanlan(&path).unwrap_err().to_string();
-    assert!(message.contains("argument"), "{message}");
+    assert!(
+        message.contains("argument: expected it stated"),
+        "{message}"
+    );
     let mut options = ReadOptions::default();
     options.convention.notation = Some(Notation::Scanlan);
     options.convention.argument = Some(Argument::VStar);
     same(&read_table_with(&path, &options).unwrap().table, 1.0);
+    let (_folder, path) = saved(|book| write(book.add_worksheet(), 0, "k", NAMES, 1.0));
+    let message = in_scanlan(&path).unwrap_err().to_string();
+    assert!(
+        message.contains("argument: expected it stated"),
+        "{message}"
+    );
     let (_folder, path) = saved(|book| {
         let sheet = book.add_worksheet();
         write(sheet, 0, "V*", NAMES, 1.0);
