@@ -149,6 +149,7 @@ pub fn commands_page() -> String {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
+    common::is_program();
     apology::install();
     interrupt::install();
     let _temporary = interrupt::own_temporary_folder();
@@ -161,18 +162,7 @@ pub fn main() -> ExitCode {
             Ok(cli) => cli,
             Err(error) => return usage(&error),
         };
-        if cli.no_figures {
-            figures::leave_out();
-        }
-        let images = || {
-            if cli.png {
-                figures::as_images_too()
-            } else {
-                Ok(())
-            }
-        };
-        let progress = progress::Progress::new(!cli.quiet && !cli.json, cli.verbose);
-        let result = images().and_then(|()| run(&cli.command, &progress));
+        let result = cli.answer();
         // a signal that is being obeyed ends the program with a code of its own
         let _busy = interrupt::uninterrupted();
         match result {
@@ -181,6 +171,38 @@ pub fn main() -> ExitCode {
         }
     });
     ExitCode::from(code)
+}
+
+/// What a command line, without the name of the program, answers to another program: the JSON that `--json` prints and the exit
+/// code. Nothing is printed but progress, where standard error is a terminal, unless `--quiet` is said.
+///
+/// # Errors
+/// [`Error::Input`] with what is said of a wrong command line; those of the command.
+pub fn answer(arguments: &[String]) -> Result<(serde_json::Value, u8)> {
+    let name = std::iter::once("aerodeck");
+    let line = name.chain(arguments.iter().map(String::as_str));
+    let cli = Cli::try_parse_from(line).map_err(|e| {
+        let said = e.to_string();
+        Error::input("arguments", "a command line of the program", said.trim())
+    })?;
+    let answer = cli.answer()?;
+    Ok((answer.value(), exit_code(&answer)))
+}
+
+impl Cli {
+    fn answer(&self) -> Result<Answer> {
+        figures::wanted(!self.no_figures, self.png)?;
+        let progress = progress::Progress::new(!self.quiet && !self.json, self.verbose);
+        run(&self.command, &progress)
+    }
+}
+
+fn exit_code(answer: &Answer) -> u8 {
+    match (answer.refused(), answer.passed()) {
+        (true, _) => NOT_MET,
+        (false, true) => 0,
+        (false, false) => FAILED,
+    }
 }
 
 /// Names that are no UTF-8 cannot be said in results, which are text.
@@ -218,9 +240,7 @@ fn print(answer: &Answer, json: bool) -> u8 {
             complain(&error);
             FAILED
         }
-        Ok(()) if answer.refused() => NOT_MET,
-        Ok(()) if answer.passed() => 0,
-        Ok(()) => FAILED,
+        Ok(()) => exit_code(answer),
     }
 }
 

@@ -43,6 +43,7 @@ from ._aerodeck import (
     sweep,
 )
 from ._errors import AerodeckError, AerodeckWarning, FileError, InputError, NumericalError, UnstableError
+from ._study import Study, StudyResult
 
 __all__ = [
     "AerodeckError",
@@ -63,6 +64,8 @@ __all__ = [
     "Records",
     "Section",
     "Stepper",
+    "Study",
+    "StudyResult",
     "Sweep",
     "UnstableError",
     "__version__",

@@ -4,6 +4,8 @@ from html import escape
 
 import numpy as np
 
+from ._errors import InputError
+
 # Okabe and Ito: told apart by colour-blind readers; line styles differ as well, for print.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 DASHES = ("-", "--", "-.", ":")
@@ -15,6 +17,17 @@ def _pyplot():
     except ImportError as missing:
         raise ImportError("plots need matplotlib: pip install matplotlib") from missing
     return pyplot
+
+
+def _panels(ax, count=1, **keywords):
+    """The figure and its axes: those that are given, or of a new figure, one below the other."""
+    if ax is None:
+        figure, axes = _pyplot().subplots(count, 1, sharex=True, layout="constrained", **keywords)
+        return figure, np.atleast_1d(axes)
+    axes = np.atleast_1d(np.asarray(ax, object)).ravel()
+    if len(axes) != count:
+        raise InputError(None, "ax", f"{count} axes" if count > 1 else "one axes", str(len(axes)))
+    return axes[0].figure, axes
 
 
 def _table(title, rows):
@@ -77,7 +90,7 @@ def sweep_html(sweep):
     for name, damping in zip(sweep.modes, sweep.damping_ratio.T):
         known = damping[np.isfinite(damping)]
         if known.size:
-            rows.append((f"damping, {name} branch", f"{100 * known.min():.2f} to {100 * known.max():.2f} %"))
+            rows.append((f"damping, {name} mode", f"{100 * known.min():.2f} to {100 * known.max():.2f} %"))
     return _table("Modes over wind speed", rows)
 
 
@@ -105,11 +118,10 @@ def buffeting_html(found):
     return _table(f"Response to turbulence at {found.speed_m_s:g} m/s", rows)
 
 
-def bridge_plot(bridge, modes=6):
-    pyplot = _pyplot()
+def bridge_plot(bridge, modes=6, *, ax=None):
     count = min(modes, len(bridge.modes))
-    figure, panels = pyplot.subplots(count, 1, sharex=True, layout="constrained", figsize=(7, 1.2 * count))
-    for i, axes in enumerate(np.atleast_1d(panels)):
+    figure, panels = _panels(ax, count, figsize=(7, 1.2 * count))
+    for i, axes in enumerate(panels):
         scale = np.abs(bridge.shapes[i]).max(axis=0)
         largest = max(scale[:2].max(), np.finfo(float).tiny)
         axes.plot(bridge.along_m, bridge.shapes[i, :, 0] / largest, color=COLOURS[0], label="vertical")
@@ -117,16 +129,15 @@ def bridge_plot(bridge, modes=6):
         turn = bridge.shapes[i, :, 2] / max(scale[2], np.finfo(float).tiny)
         axes.plot(bridge.along_m, turn, color=COLOURS[1], linestyle="--", label="rotation, scaled by itself")
         axes.set_ylabel(f"{bridge.modes[i]}: {bridge.frequency_hz[i]:.3f} Hz", fontsize=8)
-    np.atleast_1d(panels)[0].legend(fontsize=8, ncols=3)
+    panels[0].legend(fontsize=8, ncols=3)
     axes.set_xlabel("along the girder (m)")
     return figure
 
 
-def sweep_plot(sweep, onset=None):
-    pyplot = _pyplot()
-    figure, (above, below) = pyplot.subplots(2, 1, sharex=True, layout="constrained")
+def sweep_plot(sweep, onset=None, *, ax=None):
+    figure, (above, below) = _panels(ax, 2)
     for i, name in enumerate(sweep.modes):
-        style = {"color": COLOURS[i % 7], "linestyle": DASHES[i % 4], "label": f"{name} branch"}
+        style = {"color": COLOURS[i % 7], "linestyle": DASHES[i % 4], "label": f"{name} mode"}
         above.plot(sweep.speed_m_s, sweep.frequency_hz[:, i], **style)
         below.plot(sweep.speed_m_s, 100 * sweep.damping_ratio[:, i], **style)
     below.axhline(0, color="0.5", linewidth=0.8)
@@ -143,10 +154,9 @@ def sweep_plot(sweep, onset=None):
     return figure
 
 
-def motion_plot(motion):
-    pyplot = _pyplot()
-    figure, panels = pyplot.subplots(len(motion.dofs), 1, sharex=True, layout="constrained")
-    for i, (name, axes) in enumerate(zip(motion.dofs, np.atleast_1d(panels))):
+def motion_plot(motion, *, ax=None):
+    figure, panels = _panels(ax, len(motion.dofs))
+    for i, (name, axes) in enumerate(zip(motion.dofs, panels)):
         unit, scale = ("deg", 180 / np.pi) if name == "torsion" else ("mm", 1e3)
         axes.plot(motion.time_s, scale * motion.displacement[:, i], color=COLOURS[0])
         axes.set_ylabel(f"{name} ({unit})")
@@ -154,9 +164,8 @@ def motion_plot(motion):
     return figure
 
 
-def monte_carlo_plot(result):
-    pyplot = _pyplot()
-    figure, axes = pyplot.subplots(layout="constrained")
+def monte_carlo_plot(result, *, ax=None):
+    figure, (axes,) = _panels(ax)
     edges, counts = result.histogram
     axes.stairs(counts, edges, fill=True, color=COLOURS[0], alpha=0.6)
     axes.set_xlabel("onset speed (m/s)")
@@ -181,8 +190,7 @@ def _of_model(model, v_hat):
     return found
 
 
-def _derivatives_figure(measured, models):
-    pyplot = _pyplot()
+def _derivatives_figure(measured, models, ax):
     order = [f"{letter}{n}" for letter in "HAP" for n in range(1, 7)]
     curves = []
     for name, model in models.items():
@@ -190,9 +198,13 @@ def _derivatives_figure(measured, models):
         v_hat = np.linspace(1 / high, 1 / low, 200)
         curves.append((name, v_hat, _of_model(model, v_hat)))
     present = [d for d in order if d in measured or any(d in c for _, _, c in curves)]
-    rows = -(-len(present) // 4)
-    figure, panels = pyplot.subplots(rows, 4, sharex=True, layout="constrained", figsize=(11, 2.3 * rows))
-    for axes, name in zip(panels.flat, present):
+    if ax is None:
+        rows = -(-len(present) // 4)
+        figure, panels = _pyplot().subplots(rows, 4, sharex=True, layout="constrained", figsize=(11, 2.3 * rows))
+        panels = panels.ravel()
+    else:
+        figure, panels = _panels(ax, len(present))
+    for axes, name in zip(panels, present):
         if name in measured:
             axes.plot(measured[name][:, 1], measured[name][:, 2], "o", color="black", markersize=3, label="measured")
         for i, (label, v_hat, values) in enumerate(curves):
@@ -200,17 +212,18 @@ def _derivatives_figure(measured, models):
                 axes.plot(v_hat, values[name], color=COLOURS[i % 7], linestyle=DASHES[i % 4], label=label)
         axes.axhline(0, color="0.7", linewidth=0.6)
         axes.set_title(f"{name}*", fontsize=10)
-    for axes in list(panels.flat)[len(present):]:
+    for axes in panels[len(present):]:
         axes.set_visible(False)
-    figure.supxlabel("V̂ = V/(ωB)")
-    panels.flat[0].legend(fontsize=8)
+    if ax is None:
+        figure.supxlabel("V̂ = V/(ωB)")
+    panels[0].legend(fontsize=8)
     return figure
 
 
-def derivatives_plot(table, models=()):
+def derivatives_plot(table, models=(), *, ax=None):
     named = models if isinstance(models, dict) else {m.kind: m for m in np.atleast_1d(np.asarray(models, object))}
-    return _derivatives_figure(table.to_numpy(), named)
+    return _derivatives_figure(table.to_numpy(), named, ax)
 
 
-def model_plot(model, derivatives=None):
-    return _derivatives_figure(derivatives.to_numpy() if derivatives is not None else {}, {model.kind: model})
+def model_plot(model, derivatives=None, *, ax=None):
+    return _derivatives_figure(derivatives.to_numpy() if derivatives is not None else {}, {model.kind: model}, ax)

@@ -1,7 +1,7 @@
 //! `Bridge`: modes and strips of a whole bridge.
 
 use crate::bridge_scatter::{BridgeScatter, Derivatives};
-use crate::convert::{Reduced, reduced, restored, rows, shown, to_python};
+use crate::convert::{Reduced, list, reduced, restored, rows, shown, to_python};
 use crate::error::{raised, warned, wrong};
 use crate::onset::Onset;
 use crate::sweep::Sweep;
@@ -16,7 +16,7 @@ use aerodeck::study::bridge::{
     BridgeBuffeting, BridgeExportOptions, BridgeStudy, Scatter, bridge_flutter,
 };
 use aerodeck::verdict::Verdict;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::json;
@@ -169,14 +169,10 @@ impl Bridge {
     /// -------
     /// Sweep
     #[pyo3(signature = (speeds_m_s = None))]
-    fn sweep(
-        &self,
-        py: Python<'_>,
-        speeds_m_s: Option<PyReadonlyArray1<'_, f64>>,
-    ) -> PyResult<Sweep> {
+    fn sweep(&self, py: Python<'_>, speeds_m_s: Option<&Bound<'_, PyAny>>) -> PyResult<Sweep> {
         let study = &self.0;
         let speeds: Vec<f64> = match speeds_m_s {
-            Some(speeds) => speeds.as_array().to_vec(),
+            Some(speeds) => list("speeds_m_s", speeds)?,
             None => {
                 let search = &study.file.flutter;
                 let step = search.speed_max_m_s / search.speeds as f64;

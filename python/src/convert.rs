@@ -2,7 +2,7 @@
 
 use crate::error::{raised, wrong};
 use aerodeck::section::Dof;
-use numpy::{PyArray2, PyArrayMethods};
+use numpy::{AllowTypeChange, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use serde::Serialize;
@@ -97,6 +97,33 @@ pub fn dofs(names: &[String]) -> PyResult<Vec<Dof>> {
     names.iter().map(one).collect()
 }
 
+/// Numbers of an array or of any sequence; `place` is named where there are others.
+pub fn list(place: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let wrong = || {
+        let found = value
+            .repr()
+            .map_or_else(|e| e.to_string(), |r| r.to_string());
+        wrong(
+            place,
+            "numbers, in one dimension",
+            found.chars().take(80).collect(),
+        )
+    };
+    let array: PyArrayLike1<'_, f64, AllowTypeChange> = value.extract().map_err(|_| wrong())?;
+    Ok(array.as_array().to_vec())
+}
+
+/// Rows of numbers, of an array or of sequences in a sequence.
+pub fn table<'py>(
+    place: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<PyArrayLike2<'py, f64, AllowTypeChange>> {
+    value.extract().map_err(|_| {
+        let found = value.get_type().to_string();
+        wrong(place, "numbers, in rows of one length", found)
+    })
+}
+
 /// Rows as an array.
 pub fn rows<'py>(
     py: Python<'py>,
@@ -108,14 +135,30 @@ pub fn rows<'py>(
     numpy::PyArray1::from_vec(py, flat).reshape([count, width])
 }
 
-/// Calls a method of `aerodeck/_show.py` on `of`.
+/// Calls a function of `aerodeck/_show.py` on `of`.
 pub fn shown<'py>(
     of: &Bound<'py, PyAny>,
     function: &str,
     keywords: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    of.py()
-        .import("aerodeck._show")?
-        .getattr(function)?
-        .call((of,), keywords)
+    in_python(of, "aerodeck._show", function, keywords)
+}
+
+/// Calls a function of `aerodeck/_frames.py` on `of`.
+pub fn framed<'py>(
+    of: &Bound<'py, PyAny>,
+    function: &str,
+    keywords: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    in_python(of, "aerodeck._frames", function, keywords)
+}
+
+fn in_python<'py>(
+    of: &Bound<'py, PyAny>,
+    module: &str,
+    function: &str,
+    keywords: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let module = of.py().import(module)?;
+    module.getattr(function)?.call((of,), keywords)
 }

@@ -1,6 +1,6 @@
 //! `Derivatives`: a table of measured aerodynamic derivatives.
 
-use crate::convert::{Reduced, dof_names, reduced, restored, rows, shown, word};
+use crate::convert::{Reduced, dof_names, framed, reduced, restored, rows, shown, word};
 use crate::error::{raised, warned, wrong};
 use aerodeck::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedPoint, Notation, StatedConvention,
@@ -229,6 +229,42 @@ impl Derivatives {
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         shown(slf.as_any(), "derivatives_html", None)
+    }
+
+    /// A table from a pandas DataFrame: a column for every derivative by its name in the notation (`"H1"` or `"H1*"`, …), and the
+    /// reduced velocities or frequencies as the index or as the column of the argument's name (`"v_hat"`, …). Empty cells are
+    /// left out.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : pandas.DataFrame
+    /// **keywords
+    ///     `notation`, `argument`, `axes`, `width_m` and `name` as in `from_arrays`; the argument may be the index's name.
+    #[staticmethod]
+    #[pyo3(signature = (frame, **keywords))]
+    fn from_frame<'py>(
+        frame: &Bound<'py, PyAny>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        framed(frame, "derivatives_from_frame", keywords)
+    }
+
+    /// All test points as a pandas DataFrame, a row a reduced velocity or frequency and a column a derivative; keywords as in `to_numpy`.
+    #[pyo3(signature = (**keywords))]
+    fn to_frame<'py>(
+        slf: &Bound<'py, Self>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "derivatives_frame", keywords)
+    }
+
+    /// All test points as an xarray DataArray over derivative and reduced velocity or frequency; keywords as in `to_numpy`.
+    #[pyo3(signature = (**keywords))]
+    fn to_xarray<'py>(
+        slf: &Bound<'py, Self>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "derivatives_array", keywords)
     }
 
     /// Draw the derivatives over V̂ with matplotlib, with models if they are given; returns the figure.

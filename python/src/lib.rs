@@ -5,6 +5,7 @@
 
 mod bridge;
 mod bridge_scatter;
+mod command;
 mod convert;
 mod derivatives;
 mod error;
@@ -49,6 +50,9 @@ fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(onsets::onsets, m)?)?;
     m.add_function(wrap_pyfunction!(response::simulate, m)?)?;
     m.add_function(wrap_pyfunction!(monte_carlo::monte_carlo, m)?)?;
+    m.add_function(wrap_pyfunction!(monte_carlo::_monte_carlo_part, m)?)?;
+    m.add_function(wrap_pyfunction!(monte_carlo::_monte_carlo_of, m)?)?;
+    m.add_function(wrap_pyfunction!(command::_command, m)?)?;
     m.add_function(wrap_pyfunction!(export::export_fmu, m)?)?;
     m.add_function(wrap_pyfunction!(process::process, m)?)
 }

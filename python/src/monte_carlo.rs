@@ -1,15 +1,17 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
-use crate::convert::{from_python, set_default, shown, to_python};
+use crate::convert::{Reduced, from_python, reduced, restored, set_default, shown, to_python};
 use crate::error::raised;
 use crate::model::Model;
 use crate::section::Section;
-use crate::work::Work;
-use aerodeck::uncertainty::monte_carlo::{self as analysis, MonteCarloPlan, MonteCarloResult};
+use crate::work::{Work, on_threads};
+use aerodeck::uncertainty::monte_carlo::{
+    self as analysis, MonteCarloPlan, MonteCarloResult, Tally,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Distribution of the onset speed.
 #[pyclass(frozen, module = "aerodeck")]
@@ -85,6 +87,15 @@ impl MonteCarlo {
         to_python(py, &self.0)
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduced(slf, &slf.get().0)
+    }
+
+    #[staticmethod]
+    fn _from_state(state: &str) -> PyResult<Self> {
+        restored(state).map(Self)
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "MonteCarlo({} samples, {} onsets)",
@@ -151,6 +162,30 @@ pub fn monte_carlo(
 ) -> PyResult<MonteCarlo> {
     let trained = model.get().trained(Some(section.get()))?;
     let plan = plan.map_or_else(|| Ok(PyDict::new(py)), |p| p.copy())?;
+    plan.set_item("samples", samples)?;
+    plan.set_item("seed", seed)?;
+    for (key, value) in [
+        ("design_speed_m_s", design_speed_m_s),
+        ("speed_max_m_s", speed_max_m_s),
+        ("aerodynamic_scatter", aerodynamic_scatter),
+    ] {
+        set_default(&plan, key, value)?;
+    }
+    let plan = plan_of(parameters, &plan)?;
+    let work = Work::new(progress);
+    let result = work.run(py, || {
+        analysis::monte_carlo(&plan, &trained, &|done, total| work.tell(done, total))
+    })?;
+    result.map(MonteCarlo).map_err(raised)
+}
+
+/// The plan of these distributions, with the keywords of `monte_carlo`.
+fn plan_of(
+    parameters: &Bound<'_, PyDict>,
+    keywords: &Bound<'_, PyDict>,
+) -> PyResult<MonteCarloPlan> {
+    let py = parameters.py();
+    let plan = keywords.copy()?;
     let list = PyList::empty(py);
     for (name, distribution) in parameters {
         let one = PyDict::new(py);
@@ -159,24 +194,50 @@ pub fn monte_carlo(
         list.append(one)?;
     }
     plan.set_item("parameter", list)?;
-    for (key, value) in [
-        ("schema", json!(1)),
-        ("model", json!("model.json")),
-        ("samples", json!(samples)),
-        ("seed", json!(seed)),
-        ("design_speed_m_s", json!(design_speed_m_s)),
-        ("speed_max_m_s", json!(speed_max_m_s)),
-        (
-            "aerodynamics",
-            json!({ "relative_scatter": aerodynamic_scatter }),
-        ),
-    ] {
-        set_default(&plan, key, value)?;
+    if let Some(scatter) = plan.get_item("aerodynamic_scatter")? {
+        plan.del_item("aerodynamic_scatter")?;
+        let block = PyDict::new(py);
+        block.set_item("relative_scatter", scatter)?;
+        set_default(&plan, "aerodynamics", from_python::<Value>("", &block)?)?;
     }
-    let plan: MonteCarloPlan = from_python("parameters", plan.as_any())?;
-    let work = Work::new(progress);
-    let result = work.run(py, || {
-        analysis::monte_carlo(&plan, &trained, &|done, total| work.tell(done, total))
-    })?;
+    set_default(&plan, "schema", json!(1))?;
+    set_default(&plan, "model", json!("model.json"))?;
+    from_python("parameters", plan.as_any())
+}
+
+/// Answers of the samples `first` to `last`, without the last, on one core: a part of a distribution for
+/// `aerodeck.distributed`.
+#[pyfunction]
+pub fn _monte_carlo_part(
+    py: Python<'_>,
+    section: &Bound<'_, Section>,
+    model: &Bound<'_, Model>,
+    parameters: &Bound<'_, PyDict>,
+    keywords: &Bound<'_, PyDict>,
+    first: usize,
+    last: usize,
+) -> PyResult<String> {
+    let trained = model.get().trained(Some(section.get()))?;
+    let plan = plan_of(parameters, keywords)?;
+    let samples = || analysis::tally(&plan, &trained, first..last, &|_, _| {});
+    let part = py.detach(|| on_threads(Some(1), samples).and_then(|part| part));
+    serde_json::to_string(&part.map_err(raised)?)
+        .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))
+}
+
+/// The distribution of which these are all parts, in their order.
+#[pyfunction]
+pub fn _monte_carlo_of(
+    section: &Bound<'_, Section>,
+    model: &Bound<'_, Model>,
+    parameters: &Bound<'_, PyDict>,
+    keywords: &Bound<'_, PyDict>,
+    parts: Vec<String>,
+) -> PyResult<MonteCarlo> {
+    let trained = model.get().trained(Some(section.get()))?;
+    let plan = plan_of(parameters, keywords)?;
+    let parts = parts.iter().map(|part| restored(part));
+    let parts = parts.collect::<PyResult<Vec<Tally>>>()?;
+    let result = analysis::summarise(&plan, &trained, parts);
     result.map(MonteCarlo).map_err(raised)
 }

@@ -1,13 +1,13 @@
 //! `onsets`: one model on many sections, from arrays.
 
-use crate::convert::{Parts, parts};
+use crate::convert::{Parts, framed, list, parts};
 use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::section::{Section, place};
-use crate::work::Work;
+use crate::work::{Work, on_threads};
 use aerodeck::section::SectionModel;
 use aerodeck::uncertainty::monte_carlo::{OnsetKind, SectionProperty, many_onsets};
-use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -45,6 +45,11 @@ impl Onsets {
         }
     }
 
+    /// The onsets as a pandas DataFrame, a row for every section.
+    fn to_frame<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "onsets_frame", None)
+    }
+
     fn __len__(&self, py: Python<'_>) -> usize {
         self.speed_m_s.bind(py).len()
     }
@@ -61,10 +66,12 @@ impl Onsets {
 /// section : Section
 ///     What is not varied.
 /// model : Model
-/// values : dict of str to array of shape (n,)
+/// values : dict of str to array or sequence of n numbers
 ///     Numbers of the section by their names in a study file: `"vertical.mass_kg_m"`, `"torsion.frequency_hz"`, …
 /// speed_max_m_s : float, optional
 ///     Highest wind speed searched, m/s.
+/// threads : int, optional
+///     Threads that compute; left out, one for each core. The results are the same.
 /// progress : callable, optional
 ///     Called with (done, total), from any thread.
 ///
@@ -72,13 +79,15 @@ impl Onsets {
 /// -------
 /// Onsets
 #[pyfunction]
-#[pyo3(signature = (section, model, values, *, speed_max_m_s = None, progress = None))]
+#[pyo3(signature = (section, model, values, *, speed_max_m_s = None, threads = None, progress = None))]
+#[allow(clippy::too_many_arguments)] // keywords of Python, not positions
 pub fn onsets(
     py: Python<'_>,
     section: &Bound<'_, Section>,
     model: &Bound<'_, Model>,
     values: &Bound<'_, PyDict>,
     speed_max_m_s: Option<f64>,
+    threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Onsets> {
     let trained = model.get().trained(Some(section.get()))?;
@@ -86,9 +95,8 @@ pub fn onsets(
     for (name, array) in values {
         let name: String = name.extract()?;
         place(&name, &mut trained.section.clone())?;
-        let array: PyReadonlyArray1<f64> = array.extract()?;
         let parameter = SectionProperty::named(&name).map_err(raised)?;
-        varied.push((parameter, array.as_array().to_vec()));
+        varied.push((parameter, list(&name, &array)?));
     }
     let count = varied.first().map_or(1, |v| v.1.len());
     if let Some((_, other)) = varied.iter().find(|v| v.1.len() != count) {
@@ -105,11 +113,13 @@ pub fn onsets(
     let limit = speed_max_m_s.unwrap_or(trained.experiment.onset_search_limit_m_s);
     let work = Work::new(progress);
     let found = work.run(py, || {
-        many_onsets(&trained, count, &make, limit, &|done| {
-            work.tell(done, count)
+        on_threads(threads, || {
+            many_onsets(&trained, count, &make, limit, &|done| {
+                work.tell(done, count)
+            })
         })
     })?;
-    let found = found.map_err(raised)?;
+    let found = found.and_then(|found| found).map_err(raised)?;
     let are = |kind: OnsetKind| {
         let all = found.kinds.iter().map(|k| *k == kind).collect();
         PyArray1::from_vec(py, all).unbind()

@@ -1,6 +1,6 @@
 //! `process`: from the load cells of a campaign to records and derivatives.
 
-use crate::convert::{from_python, to_python};
+use crate::convert::{Parts, from_python, parts, to_python};
 use crate::derivatives::Derivatives;
 use crate::error::raised;
 use crate::records::Records;
@@ -31,6 +31,28 @@ pub struct Processing {
 
 #[pymethods]
 impl Processing {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        let names = ["records", "derivatives", "estimates", "report", "warnings"];
+        parts(slf, &names)
+    }
+
+    #[staticmethod]
+    fn _from_parts(
+        records: Py<Records>,
+        derivatives: Py<Derivatives>,
+        estimates: Py<PyAny>,
+        report: Py<PyAny>,
+        warnings: Vec<String>,
+    ) -> Self {
+        Self {
+            records,
+            derivatives,
+            estimates,
+            report,
+            warnings,
+        }
+    }
+
     fn __repr__(&self) -> String {
         let (records, warnings) = (self.records.get().0.len(), self.warnings.len());
         format!("Processing({records} records, {warnings} warnings)")

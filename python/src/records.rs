@@ -1,6 +1,8 @@
 //! `Records`: forced-vibration records.
 
-use crate::convert::{Reduced, dof_names, dofs, from_python, reduced, restored, rows, to_python};
+use crate::convert::{
+    Reduced, dof_names, dofs, from_python, reduced, restored, rows, table, to_python,
+};
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
 use aerodeck::error::without_control_characters;
@@ -73,8 +75,8 @@ impl Records {
         dofs = vec!["vertical".to_owned(), "torsion".to_owned()], segments = vec![], name = "record"))]
     #[allow(clippy::too_many_arguments)] // keywords of Python, not positions
     fn from_arrays(
-        motion: PyReadonlyArray2<'_, f64>,
-        force: PyReadonlyArray2<'_, f64>,
+        motion: &Bound<'_, PyAny>,
+        force: &Bound<'_, PyAny>,
         sampling_hz: f64,
         mean_speed_m_s: f64,
         width_m: f64,
@@ -85,6 +87,7 @@ impl Records {
     ) -> PyResult<Self> {
         without_control_characters("name", name).map_err(raised)?;
         let dofs = self::dofs(&dofs)?;
+        let (motion, force) = (table("motion", motion)?, table("force", force)?);
         let shapes = [motion.shape(), force.shape()];
         if shapes[0] != shapes[1] || shapes[0][1] != dofs.len() {
             let expected = format!("two arrays of one shape (n, {})", dofs.len());

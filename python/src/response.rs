@@ -1,6 +1,6 @@
 //! `simulate`, `Stepper`: how a section moves.
 
-use crate::convert::{dof_names, rows, shown};
+use crate::convert::{Parts, dof_names, framed, parts, rows, shown};
 use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::section::Section;
@@ -28,19 +28,63 @@ pub struct Motion {
     /// Self-excited forces per metre, N/m and N·m/m; shape (n, d).
     force: Py<PyArray2<f64>>,
     /// Names of the motions.
-    dofs: Vec<&'static str>,
+    dofs: Vec<String>,
     /// Wind speed, m/s.
     wind_speed_m_s: f64,
 }
 
 #[pymethods]
 impl Motion {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        let names = [
+            "time_s",
+            "displacement",
+            "rate",
+            "acceleration",
+            "force",
+            "dofs",
+            "wind_speed_m_s",
+        ];
+        parts(slf, &names)
+    }
+
+    #[staticmethod]
+    fn _from_parts(
+        time_s: Py<PyArray1<f64>>,
+        displacement: Py<PyArray2<f64>>,
+        rate: Py<PyArray2<f64>>,
+        acceleration: Py<PyArray2<f64>>,
+        force: Py<PyArray2<f64>>,
+        dofs: Vec<String>,
+        wind_speed_m_s: f64,
+    ) -> Self {
+        Self {
+            time_s,
+            displacement,
+            rate,
+            acceleration,
+            force,
+            dofs,
+            wind_speed_m_s,
+        }
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Motion({} at {} m/s)",
             self.dofs.join(", "),
             self.wind_speed_m_s
         )
+    }
+
+    /// The motion as a pandas DataFrame over time: displacement, rate, acceleration and force of every motion.
+    fn to_frame<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "motion_frame", None)
+    }
+
+    /// The motion as an xarray Dataset over time and motion.
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "motion_dataset", None)
     }
 
     /// Draw the displacements over time with matplotlib; returns the figure.
@@ -117,7 +161,7 @@ pub fn simulate(
         rate: array(rate)?,
         acceleration: array(acceleration)?,
         force: array(force)?,
-        dofs: dof_names(&dofs),
+        dofs: dof_names(&dofs).into_iter().map(str::to_owned).collect(),
         wind_speed_m_s,
     })
 }

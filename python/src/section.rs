@@ -3,11 +3,15 @@
 use crate::convert::{Reduced, dof_names, from_python, reduced, restored, shown, to_python};
 use crate::error::{raised, warned};
 use aerodeck::plausibility::of_section;
-use aerodeck::section::{Rotation, SectionModel, Translation};
+use aerodeck::section::{Rotation, STANDARD_AIR_DENSITY_KG_M3, SectionModel, Translation};
 use aerodeck::study::{FlutterBlock, SpeedRange};
 use aerodeck::uncertainty::monte_carlo::SectionProperty;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::f64::consts::TAU;
+
+// shown in the help of `Section`
+const _: () = assert!(STANDARD_AIR_DENSITY_KG_M3 == 1.25);
 
 /// Wind speeds that follow from the section, as in a study that states none.
 pub fn usual_range(section: &SectionModel) -> SpeedRange {
@@ -29,7 +33,7 @@ pub fn usual_range(section: &SectionModel) -> SpeedRange {
 /// vertical_damping_ratio, torsion_damping_ratio : float
 ///     Ratios to critical damping.
 /// air_density_kg_m3 : float
-///     Density of the air, kg/m³.
+///     Density of the air, kg/m³; left out, that of EN 1991-1-4, 1.25.
 /// lateral : tuple of float, optional
 ///     Mass (kg/m), frequency (Hz) and damping ratio of sway; left out, the section has two degrees of freedom.
 /// axis_offset_m, mass_offset_m : float, optional
@@ -119,6 +123,68 @@ impl Section {
         self.0.width_m
     }
 
+    /// Mass, kg/m.
+    #[getter]
+    fn mass_kg_m(&self) -> f64 {
+        self.0.vertical.mass_kg_m
+    }
+
+    /// Mass moment of inertia about the axis, kg·m²/m.
+    #[getter]
+    fn inertia_kg_m2_m(&self) -> f64 {
+        self.0.torsion.inertia_kg_m2_m
+    }
+
+    /// Still-air natural frequency of the vertical motion alone, Hz.
+    #[getter]
+    fn vertical_frequency_hz(&self) -> f64 {
+        frequency(&self.0.vertical)
+    }
+
+    /// Still-air natural frequency of the torsional motion alone, Hz.
+    #[getter]
+    fn torsion_frequency_hz(&self) -> f64 {
+        let t = &self.0.torsion;
+        natural(t.frequency_hz, t.stiffness_n, t.inertia_kg_m2_m)
+    }
+
+    /// Ratio to critical damping of the vertical motion.
+    #[getter]
+    fn vertical_damping_ratio(&self) -> f64 {
+        self.0.vertical.damping_ratio
+    }
+
+    /// Ratio to critical damping of the torsional motion.
+    #[getter]
+    fn torsion_damping_ratio(&self) -> f64 {
+        self.0.torsion.damping_ratio
+    }
+
+    /// Density of the air, kg/m³.
+    #[getter]
+    fn air_density_kg_m3(&self) -> f64 {
+        self.0.air_density_kg_m3
+    }
+
+    /// Mass (kg/m), frequency (Hz) and damping ratio of sway; None for a section of two motions.
+    #[getter]
+    fn lateral(&self) -> Option<(f64, f64, f64)> {
+        let of = |t: &Translation| (t.mass_kg_m, frequency(t), t.damping_ratio);
+        self.0.lateral.as_ref().map(of)
+    }
+
+    /// Axis from mid-chord, m, positive downwind; None where none is stated: on mid-chord.
+    #[getter]
+    fn axis_offset_m(&self) -> Option<f64> {
+        self.0.axis_offset_m
+    }
+
+    /// Centre of mass from the axis, m, positive downwind; None where none is stated: on the axis.
+    #[getter]
+    fn mass_offset_m(&self) -> Option<f64> {
+        self.0.mass_offset_m
+    }
+
     /// Names of the motions in the order of every array: vertical, lateral (if suspended), torsion.
     #[getter]
     fn dofs(&self) -> Vec<&'static str> {
@@ -161,6 +227,19 @@ impl Section {
         Python::attach(|py| warned(py, &of_section(&section)))?;
         Ok(Self(section))
     }
+}
+
+/// Frequency, Hz, of a translation that states it or a stiffness.
+fn frequency(t: &Translation) -> f64 {
+    natural(t.frequency_hz, t.stiffness_n_m2, t.mass_kg_m)
+}
+
+/// The stated frequency, or that of a stiffness and an inertia, Hz.
+fn natural(frequency_hz: Option<f64>, stiffness: Option<f64>, inertia: f64) -> f64 {
+    let of_stiffness = |k: f64| (k / inertia).sqrt() / TAU;
+    frequency_hz
+        .or(stiffness.map(of_stiffness))
+        .unwrap_or(f64::NAN)
 }
 
 /// The number of that name in a section.

@@ -1,12 +1,12 @@
 //! `sweep`: frequency and damping of every mode over the wind speed.
 
-use crate::convert::{Parts, dof_names, parts, rows, shown};
+use crate::convert::{Parts, dof_names, framed, list, parts, rows, shown};
 use crate::error::raised;
 use crate::model::Model;
 use crate::section::{Section, usual_range};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterCurves, ModePoint, trace_modes};
-use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -74,6 +74,16 @@ impl Sweep {
         shown(slf.as_any(), "sweep_html", None)
     }
 
+    /// The curves as a pandas DataFrame: a row for every wind speed and mode.
+    fn to_frame<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "sweep_frame", None)
+    }
+
+    /// The curves as an xarray Dataset over wind speed and mode.
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        framed(slf.as_any(), "sweep_dataset", None)
+    }
+
     /// Draw frequency and damping over wind speed with matplotlib; returns the figure.
     #[pyo3(signature = (**keywords))]
     fn plot<'py>(
@@ -102,11 +112,11 @@ pub fn sweep(
     py: Python<'_>,
     section: &Bound<'_, Section>,
     model: &Bound<'_, Model>,
-    speeds_m_s: Option<PyReadonlyArray1<'_, f64>>,
+    speeds_m_s: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Sweep> {
     let (section, model) = (&section.get().0, model.get());
     let speeds: Vec<f64> = match speeds_m_s {
-        Some(speeds) => speeds.as_array().to_vec(),
+        Some(speeds) => list("speeds_m_s", speeds)?,
         None => usual_range(section).curve_speeds_m_s(),
     };
     let curves = py.detach(|| {

@@ -87,3 +87,19 @@ impl Work {
         self.raised.lock().unwrap_or_else(|e| e.into_inner())
     }
 }
+
+/// Does it on so many threads; left out, on one for each core.
+///
+/// # Errors
+/// [`aerodeck::Error::Numerical`] when the system gives no thread.
+pub fn on_threads<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send,
+) -> aerodeck::Result<T> {
+    let Some(threads) = threads else {
+        return Ok(work());
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| aerodeck::Error::Numerical(e.to_string()))?;
+    Ok(pool.install(work))
+}

@@ -390,4 +390,6 @@ def test_readme_runs(tmp_path, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)
     assert len(blocks) >= 5
     for block in blocks:
+        for package in re.findall(r"(dask|frame)", block)[:1]:
+            pytest.importorskip({"dask": "dask.distributed", "frame": "pandas"}[package])
         exec(compile(block, "README.md", "exec"), {})

@@ -72,6 +72,11 @@ impl Answer {
         }
     }
 
+    /// The same for machines.
+    pub(crate) fn value(&self) -> serde_json::Value {
+        self.json.clone()
+    }
+
     /// The same as indented JSON.
     pub(crate) fn json(&self) -> String {
         format!("{:#}", self.json)

@@ -11,9 +11,21 @@ use serde::de::value::Error as NotOne;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Reports implausible values of a file at once, since they may cause a later failure.
+/// Whether this process is the program, whose standard error is ours.
+static IS_PROGRAM: AtomicBool = AtomicBool::new(false);
+
+/// Says that this process is the program.
+pub(crate) fn is_program() {
+    IS_PROGRAM.store(true, Ordering::Relaxed);
+}
+
+/// Reports implausible values of a file at once, since they may cause a later failure; another program finds them in the answer.
 pub(crate) fn warn(file: &Path, warnings: &[String]) {
+    if !IS_PROGRAM.load(Ordering::Relaxed) {
+        return;
+    }
     for warning in warnings {
         // standard error may be closed
         let line = plain(&format!("warning: {}: {warning}", file.display()));

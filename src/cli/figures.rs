@@ -5,28 +5,24 @@ use crate::error::{Error, Result};
 use crate::report::Figure;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Said once, at the start of the program.
+/// Said at the start of a command.
 static WANTED: AtomicBool = AtomicBool::new(true);
 static IMAGES: AtomicBool = AtomicBool::new(false);
 
-/// Leaves out all figures.
-pub(super) fn leave_out() {
-    WANTED.store(false, Ordering::Relaxed);
-}
-
-/// Writes every figure as a PNG image too.
+/// Whether figures are written, and whether each as a PNG image too.
 ///
 /// # Errors
-/// [`Error::Input`] where the program was built without the renderer.
-pub(super) fn as_images_too() -> Result<()> {
-    if cfg!(not(feature = "png")) {
+/// [`Error::Input`] for images where the program was built without the renderer.
+pub(super) fn wanted(figures: bool, images: bool) -> Result<()> {
+    if images && cfg!(not(feature = "png")) {
         return Err(Error::input(
             "--png",
             "a program built with `--features png` (figures are written as SVG, which browsers and word processors show)",
             "one without",
         ));
     }
-    IMAGES.store(true, Ordering::Relaxed);
+    WANTED.store(figures, Ordering::Relaxed);
+    IMAGES.store(images, Ordering::Relaxed);
     Ok(())
 }
 

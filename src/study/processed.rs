@@ -5,7 +5,7 @@ use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result};
 use crate::files::toml_lines;
-use crate::section::{Dof, SectionModel};
+use crate::section::{Dof, STANDARD_AIR_DENSITY_KG_M3, SectionModel};
 use crate::wind_tunnel::RawCampaign;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -63,7 +63,8 @@ pub(crate) fn processed_study_text(
 
 /// The place of the section, to be filled in. It stands last, since whatever follows it would belong to it.
 fn marked_place(raw: &RawCampaign, dofs: &[Dof]) -> String {
-    let density = raw.runs.first().map_or(1.25, |run| run.air_density_kg_m3);
+    let density = raw.runs.first().map(|run| run.air_density_kg_m3);
+    let density = density.unwrap_or(STANDARD_AIR_DENSITY_KG_M3);
     let translation = "{ mass_kg_m = ?, frequency_hz = ?, damping_ratio = ? }";
     let lateral = if dofs.contains(&Dof::Lateral) {
         format!("# lateral = {translation}\n")

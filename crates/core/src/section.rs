@@ -14,6 +14,9 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// Density of air where nothing else is stated, kg/m³ (EN 1991-1-4, 4.5).
+pub const STANDARD_AIR_DENSITY_KG_M3: f64 = 1.25;
+
 /// A degree of freedom of the section.
 ///
 /// ```

@@ -15,8 +15,8 @@ mod scatter;
 
 pub use distribution::Distribution;
 pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter, SectionProperty};
-pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile};
-pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo};
+pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile, Tally};
+pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo, summarise, tally};
 
 #[cfg(test)]
 mod tests;

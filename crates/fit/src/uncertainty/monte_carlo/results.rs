@@ -4,7 +4,7 @@ use super::plan::MonteCarloPlan;
 use crate::flutter::{SweepOutcome, SweptOnset};
 use crate::signal::mean_and_deviation;
 use crate::uncertainty::statistics::{clopper_pearson, sample_quantile};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Failed samples that are named one by one; of more, their number is given.
@@ -13,7 +13,7 @@ const NAMED_FAILURES: usize = 20;
 const MAX_BINS: f64 = 60.0;
 
 /// Distribution of the onset speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MonteCarloResult {
     /// Name of the model.
     pub model: String,
@@ -64,7 +64,7 @@ pub struct MonteCarloResult {
 }
 
 /// A sample without an answer.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FailedSample {
     /// Its number, from 0.
     pub sample: usize,
@@ -73,7 +73,7 @@ pub struct FailedSample {
 }
 
 /// One quantile.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quantile {
     /// Probability of an onset at or below the speed.
     pub probability: f64,
@@ -84,7 +84,7 @@ pub struct Quantile {
 }
 
 /// Counts in bins of equal width.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Histogram {
     /// Lower end of the first bin, m/s.
     pub from_m_s: f64,
@@ -95,7 +95,7 @@ pub struct Histogram {
 }
 
 /// Probability of an onset below the design speed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DesignCheck {
     /// Design speed, m/s.
     pub speed_m_s: f64,
@@ -114,9 +114,9 @@ pub struct DesignCheck {
     pub confidence: f64,
 }
 
-/// Answers of a run of samples.
-#[derive(Debug, Default)]
-pub(super) struct Tally {
+/// Answers of some samples, to be put together with those of others.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tally {
     pub(super) onsets: Vec<f64>,
     /// Speeds at which samples grow that could not be judged below.
     pub(super) starts: Vec<f64>,
@@ -130,12 +130,21 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Empty, and ready to take all of these.
-    pub(super) fn with_room_for(parts: &[Self]) -> Self {
-        Self {
+    /// Answers of parts that follow one another.
+    pub(super) fn joined(parts: Vec<Self>) -> Self {
+        let mut all = Self {
             onsets: Vec::with_capacity(parts.iter().map(|t| t.onsets.len()).sum()),
             ..Self::default()
+        };
+        for part in parts {
+            all.add(part);
         }
+        all
+    }
+
+    /// Samples that were drawn.
+    pub(super) fn len(&self) -> usize {
+        self.onsets.len() + self.starts.len() + self.stable.len() + self.failed
     }
 
     pub(super) fn onset(&mut self, onset: &SweptOnset) {
@@ -163,7 +172,7 @@ impl Tally {
     }
 
     /// Adds a later run.
-    pub(super) fn add(&mut self, later: Self) {
+    fn add(&mut self, later: Self) {
         self.onsets.extend(later.onsets);
         self.starts.extend(later.starts);
         self.stable.extend(later.stable);

@@ -4,7 +4,7 @@ use super::coefficients;
 use super::plan::MonteCarloPlan;
 use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
-use super::scatter::drawn_model;
+use super::scatter::{CovarianceFactor, drawn_model};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, all_or_errors};
 use crate::flutter::{
@@ -13,6 +13,7 @@ use crate::flutter::{
 use crate::section::SectionModel;
 use crate::trained_model::{Model, TrainedModel};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Samples or sections between two reports of progress, on one core.
@@ -43,40 +44,84 @@ pub fn monte_carlo(
     model: &TrainedModel,
     progress: OnSamples<'_>,
 ) -> Result<MonteCarloResult> {
+    let tally = tally(plan, model, 0..plan.samples, progress)?;
+    summarise(plan, model, [tally])
+}
+
+/// Answers of some samples of a plan, by their numbers from 0, over the cores of the current pool: for several machines, each
+/// with its part.
+///
+/// # Errors
+/// As [`monte_carlo`]; [`crate::Error::Input`] for samples that the plan has not.
+pub fn tally(
+    plan: &MonteCarloPlan,
+    model: &TrainedModel,
+    samples: Range<usize>,
+    progress: OnSamples<'_>,
+) -> Result<Tally> {
+    if samples.start > samples.end || samples.end > plan.samples {
+        let expected = format!("numbers of samples up to {}", plan.samples);
+        return Err(Error::input("samples", expected, format!("{samples:?}")));
+    }
+    let (limit, model, covariance) = drawn(plan, model)?;
+    let finder = Finder::new(&model, limit)?;
+    let (values, _) = coefficients::of(&model.model);
+    let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
+    let count = samples.len();
+    let done = AtomicUsize::new(0);
+    let tallies: Vec<Tally> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let from = samples.start + chunk * CHUNK;
+            let range = from..samples.end.min(from + CHUNK);
+            let length = range.len();
+            // who wants no more need not wait for what has not begun
+            progress(done.load(Ordering::Relaxed), count);
+            let tally = finder.tally(&sampler, range);
+            let before = done.fetch_add(length, Ordering::Relaxed);
+            progress(before + length, count);
+            tally
+        })
+        .collect();
+    Ok(Tally::joined(tallies))
+}
+
+/// What the answers of all samples of a plan amount to, in the order of their numbers.
+///
+/// # Errors
+/// As [`monte_carlo`]; [`crate::Error::Input`] when they are not as many as the plan has.
+pub fn summarise(
+    plan: &MonteCarloPlan,
+    model: &TrainedModel,
+    tallies: impl IntoIterator<Item = Tally>,
+) -> Result<MonteCarloResult> {
+    let (limit, model, _) = drawn(plan, model)?;
+    let (values, _) = coefficients::of(&model.model);
+    let (nominal, _) = Finder::new(&model, limit)?.onset(&model.section, &values)?;
+    let total = Tally::joined(tallies.into_iter().collect());
+    if total.len() != plan.samples {
+        let expected = format!("answers of {} samples", plan.samples);
+        return Err(Error::input("samples", expected, total.len().to_string()));
+    }
+    Ok(total.summarise(plan, limit, &model.name, nominal))
+}
+
+/// Highest speed searched, m/s, and the model that a plan draws from.
+fn drawn(
+    plan: &MonteCarloPlan,
+    model: &TrainedModel,
+) -> Result<(f64, TrainedModel, Option<CovarianceFactor>)> {
     plan.validate()?;
     let limit = plan
         .speed_max_m_s
         .unwrap_or(model.experiment.onset_search_limit_m_s);
     plan.check_design_speed(limit)?;
     let (drawn, covariance) = drawn_model(plan, model)?;
-    let model = &TrainedModel {
+    let model = TrainedModel {
         model: drawn,
         ..model.clone()
     };
-    let finder = Finder::new(model, limit)?;
-    let (values, _) = coefficients::of(&model.model);
-    let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
-    let nominal = finder.onset(&model.section, &values)?.0;
-    let chunks = plan.samples.div_ceil(CHUNK);
-    let done = AtomicUsize::new(0);
-    let tallies: Vec<Tally> = (0..chunks)
-        .into_par_iter()
-        .map(|chunk| {
-            let range = chunk * CHUNK..plan.samples.min((chunk + 1) * CHUNK);
-            let count = range.len();
-            // who wants no more need not wait for what has not begun
-            progress(done.load(Ordering::Relaxed), plan.samples);
-            let tally = finder.tally(&sampler, range);
-            let before = done.fetch_add(count, Ordering::Relaxed);
-            progress(before + count, plan.samples);
-            tally
-        })
-        .collect();
-    let mut total = Tally::with_room_for(&tallies);
-    for tally in tallies {
-        total.add(tally);
-    }
-    Ok(total.summarise(plan, limit, &model.name, nominal))
+    Ok((limit, model, covariance))
 }
 
 impl<'a> Finder<'a> {
@@ -94,7 +139,7 @@ impl<'a> Finder<'a> {
         })
     }
 
-    fn tally(&self, sampler: &Sampler, samples: std::ops::Range<usize>) -> Tally {
+    fn tally(&self, sampler: &Sampler, samples: Range<usize>) -> Tally {
         let mut tally = Tally::default();
         let mut sample: Sample = sampler.empty();
         for index in samples {
