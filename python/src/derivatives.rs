@@ -16,7 +16,7 @@ use pyo3::types::{PyDict, PyTuple};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-const NOTATIONS: &str = "scanlan, classical, polimi or starossek";
+const NOTATIONS: &str = "scanlan, simiu, classical, polimi or starossek";
 const ARGUMENTS: &str = "v_hat, v_star, k_full or k_semi";
 const AXES: &str = "heave_up or heave_down";
 
@@ -36,7 +36,7 @@ impl Derivatives {
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    /// notation : {"scanlan", "classical", "polimi", "starossek"}, optional
+    /// notation : {"scanlan", "simiu", "classical", "polimi", "starossek"}, optional
     /// argument : {"v_hat", "v_star", "k_full", "k_semi"}, optional
     /// axes : {"heave_up", "heave_down"}, optional
     /// width_m : float, optional

@@ -81,7 +81,7 @@ def test_transfer_is_the_formula_of_the_table(table, model):
     assert rms < 0.1
 
 
-@pytest.mark.parametrize("notation", ["scanlan", "classical", "polimi", "starossek"])
+@pytest.mark.parametrize("notation", ["scanlan", "simiu", "wawi", "zasso", "classical", "polimi", "starossek"])
 def test_notations_round_trip(table, notation):
     argument = "k_semi"
     columns = table.to_numpy(notation, argument=argument)

@@ -48,7 +48,7 @@ struct TableArgs {
     /// The sheet of a workbook that is meant, where several hold derivatives.
     #[arg(long)]
     sheet: Option<String>,
-    /// Notation of the file: scanlan, classical, polimi, starossek. A CSV file states it itself; what is stated here must
+    /// Notation of the file: scanlan, simiu, classical, polimi, starossek. A CSV file states it itself; what is stated here must
     /// not contradict it.
     #[arg(long, value_name = "NOTATION")]
     from: Option<Notation>,
@@ -261,11 +261,12 @@ pub(crate) struct NotationsArgs {
 
 fn notations(args: &NotationsArgs) -> Result<Answer> {
     let mut text = String::from("notation\n");
-    for notation in Notation::ALL {
+    for notation in Notation::NAMED {
         let _ = writeln!(
             text,
-            "  {notation:<10} {}; {}; usually over {}, {}\n             {}",
+            "  {notation:<10} {}{}; {}; usually over {}, {}\n             {}",
             notation.title(),
+            also(notation),
             notation.names(),
             notation.usual_argument(),
             notation.usual_axes(),
@@ -280,9 +281,10 @@ fn notations(args: &NotationsArgs) -> Result<Answer> {
     for axes in Axes::ALL {
         let _ = writeln!(text, "  {axes:<10} {}", axes.words());
     }
-    let notations = Notation::ALL.map(|n| {
+    let notations = Notation::NAMED.map(|n| {
         serde_json::json!({
             "notation": n,
+            "aliases": n.aliases(),
             "title": n.title(),
             "usual_argument": n.usual_argument(),
             "usual_axes": n.usual_axes(),
@@ -296,6 +298,14 @@ fn notations(args: &NotationsArgs) -> Result<Answer> {
     let mut out = OutputDir::new(folder)?;
     figures::write("axes", &mut out, || Ok(axes_sketch()))?;
     out.answer(text, value)
+}
+
+/// Other words for a notation.
+fn also(notation: Notation) -> String {
+    match notation.aliases() {
+        [] => String::new(),
+        words => format!(" (also {})", words.join(", ")),
+    }
 }
 
 /// Write an empty workbook to be filled with a table of derivatives, with instructions

@@ -1,19 +1,23 @@
 //! `aerodeck new`: a commented study to begin with.
 
+mod questions;
+
 use super::answer::Answer;
 use super::common::folder_of;
 use super::output::{OutputDir, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
 use crate::error::{Error, Result};
-use crate::files::derivatives::named_sheet;
+use crate::files::derivatives::{is_table_file, named_sheet};
 use crate::study::bridge::new_bridge_text;
 use crate::study::{Deck, Study, example_wind_study_text, new_study_text};
 use std::ffi::OsStr;
+use std::io::{stderr, stdin};
 use std::path::{Path, PathBuf};
 
-/// Write a commented study file for an embedded deck, the flat plate or a table of your own; or a bridge file, or one of wind
+/// Write a commented study file for an embedded deck, the flat plate or a table of your own; or a file of another kind
 ///
 /// Example: aerodeck new --workbook AerodynamicDerivatives_LN21_5200.xlsx --out my-bridge.toml
+/// Example: aerodeck new --interactive
 /// Example: aerodeck new --bridge
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -27,7 +31,7 @@ pub(crate) struct NewArgs {
     /// The sheet of the workbook that is meant, where several hold derivatives.
     #[arg(long, requires = "workbook")]
     sheet: Option<String>,
-    /// Notation of the table, where it does not state it: scanlan, classical, polimi, starossek.
+    /// Notation of the table, where it does not state it: scanlan, simiu, classical, polimi, starossek.
     #[arg(long, value_name = "NOTATION", requires = "workbook")]
     from: Option<Notation>,
     /// What the table is tabulated over: v_hat = V/(omega B), v_star = V/(f B), k_full = omega B/V, k_semi = omega b/V.
@@ -36,13 +40,12 @@ pub(crate) struct NewArgs {
     /// Direction of heave and lift in the table: heave_up, heave_down.
     #[arg(long, value_name = "AXES", requires = "workbook")]
     from_axes: Option<Axes>,
-    /// A file of a whole bridge instead, for `aerodeck bridge`.
-    #[arg(long, conflicts_with_all = ["deck", "workbook", "wind"])]
-    bridge: bool,
-    /// A file of wind on a section instead, for `aerodeck buffeting` and `aerodeck quasi-steady`.
+    /// Ask for deck and section: five questions.
     #[arg(long, conflicts_with_all = ["deck", "workbook"])]
-    wind: bool,
-    /// The file [default: study.toml, bridge.toml or wind.toml].
+    interactive: bool,
+    #[command(flatten)]
+    instead: Instead,
+    /// The file [default: study.toml, bridge.toml, wind.toml, campaign.toml or scatter.toml].
     #[arg(long)]
     out: Option<PathBuf>,
     /// Replace a file that differs.
@@ -50,25 +53,84 @@ pub(crate) struct NewArgs {
     force: bool,
 }
 
+/// A file of another kind.
+#[derive(clap::Args)]
+#[group(multiple = false, conflicts_with_all = ["deck", "workbook", "interactive"])]
+struct Instead {
+    /// A file of a whole bridge instead, for `aerodeck bridge`.
+    #[arg(long)]
+    bridge: bool,
+    /// A file of wind on a section instead, for `aerodeck buffeting` and `aerodeck quasi-steady`.
+    #[arg(long)]
+    wind: bool,
+    /// A file of raw wind-tunnel runs instead, for `aerodeck campaign` and `aerodeck process`.
+    #[arg(long)]
+    campaign: bool,
+    /// A file of scatter instead, for `aerodeck monte-carlo`.
+    #[arg(long)]
+    monte_carlo: bool,
+}
+
+impl Instead {
+    /// Its usual name, its text and what to do with it.
+    fn template(&self) -> Option<[&'static str; 3]> {
+        let all = [
+            (
+                self.bridge,
+                [
+                    "bridge.toml",
+                    new_bridge_text(),
+                    "state your bridge in it, then run `aerodeck bridge flutter",
+                ],
+            ),
+            (
+                self.wind,
+                [
+                    "wind.toml",
+                    example_wind_study_text(),
+                    "state your section and its wind in it, then run `aerodeck buffeting",
+                ],
+            ),
+            (
+                self.campaign,
+                [
+                    "campaign.toml",
+                    include_str!("new/campaign.toml"),
+                    "state your rig, channels and files in it, then run `aerodeck campaign check",
+                ],
+            ),
+            (
+                self.monte_carlo,
+                [
+                    "scatter.toml",
+                    include_str!("new/monte_carlo.toml"),
+                    "name your model in it, then run `aerodeck monte-carlo",
+                ],
+            ),
+        ];
+        all.into_iter()
+            .find(|(is_wanted, _)| *is_wanted)
+            .map(|(_, template)| template)
+    }
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
-    if args.bridge {
-        return args.template(
-            "bridge.toml",
-            new_bridge_text(),
-            "state your bridge in it, then run `aerodeck bridge flutter",
-        );
-    }
-    if args.wind {
-        let next = "state your section and its wind in it, then run `aerodeck buffeting";
-        return args.template("wind.toml", example_wind_study_text(), next);
+    if let Some([usual, text, next]) = args.instead.template() {
+        return args.template(usual, text, next);
     }
     let path = args.out.clone().unwrap_or_else(|| "study.toml".into());
     let folder = folder_of(&path);
     let name = file_name(&path)?;
+    let answers = match args.interactive {
+        true => Some(questions::ask(&mut stdin().lock(), &mut stderr())?),
+        false => None,
+    };
+    let named = answers.as_ref().map_or(&args.deck, |a| &a.source);
     let source = match &args.workbook {
         Some(table) => named_sheet(&beside(table, folder)?, args.sheet.as_deref()),
-        None => args.deck.clone(),
+        None if is_table_file(named) => beside(Path::new(named), folder)?,
+        None => named.clone(),
     };
     let convention = StatedConvention {
         notation: args.from,
@@ -76,6 +138,9 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
         axes: args.from_axes,
     };
     let text = new_study_text(&source, &convention);
+    let text = answers
+        .as_ref()
+        .map_or(text.clone(), |a| a.stated_in(&text));
     let study = Study::from_toml(&text, folder.to_path_buf())?;
     let deck = Deck::load(&study)?;
     let mut out = OutputDir::new(folder)?;
@@ -88,8 +153,12 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
         said.push_str(&format!("warning: deck: {warning}\n"));
     }
     said.push_str(&format!(
-        "{}state your section in it, then run `aerodeck study {}`\n",
+        "{}{}run `aerodeck study {}`\n",
         list(&written),
+        match args.interactive {
+            true => "",
+            false => "state your section in it, then ",
+        },
         path.display()
     ));
     Answer::new(

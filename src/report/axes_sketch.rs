@@ -33,7 +33,7 @@ fn panel(scene: &mut Scene, axes: Axes) {
     let (title, who, heave, sway, turn, down) = match axes {
         Axes::HeaveUp => (
             "heave_up",
-            "Scanlan with ½ (this program), PoliMi",
+            "Scanlan with ½ (this program, wawi), PoliMi (Zasso)",
             "y or z, lift",
             "x, drag",
             "θ, moment, nose-up",
@@ -41,7 +41,7 @@ fn panel(scene: &mut Scene, axes: Axes) {
         ),
         Axes::HeaveDown => (
             "heave_down",
-            "classical, Küssner/Starossek",
+            "Simiu–Scanlan, classical, Küssner/Starossek",
             "h, lift",
             "p, drag",
             "α, moment, nose-up",

@@ -245,7 +245,7 @@ fn contradictions_are_refused() {
         (
             "# notation: polimi",
             "# notation: milan",
-            "(notation): expected one of scanlan, classical",
+            "(notation): expected one of scanlan, simiu, classical",
         ),
         (
             "= V/(f B)\n",

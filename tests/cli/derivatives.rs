@@ -13,7 +13,7 @@ fn tables_are_converted_there_and_back() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
     let deck = embedded::deck("LN21-5200").unwrap();
-    for notation in ["classical", "polimi", "starossek"] {
+    for notation in ["classical", "simiu", "polimi", "starossek"] {
         let file = format!("{notation}.csv");
         let text = succeeds(
             at,
@@ -68,7 +68,7 @@ fn tables_are_converted_there_and_back() {
     refused(
         at,
         &["derivatives", "show", "LN21-5200", "--to", "milan"],
-        &["scanlan, classical, polimi, starossek"],
+        &["scanlan, simiu, classical, polimi, starossek"],
     );
 }
 

@@ -1,12 +1,12 @@
 //! Notations of aerodynamic derivatives: which numbers a table holds, how they are scaled, which way the axes point.
 //!
 //! Inside the crate there is one convention, [`Convention::default`]; everything else exists in files only and is
-//! converted at the border. All four notations describe one matrix `G(K)` and differ, entry by entry, by a real factor
+//! converted at the border. All notations describe one matrix `G(K)` and differ, entry by entry, by a real factor
 //! that depends on `K` alone, so a conversion keeps every test point and its own reduced velocity.
 //!
 //! | notation | force due to heave, velocity part | factor on Scanlan's derivative |
 //! |---|---|---|
-//! | Scanlan with ½ | `½ρV²B · K H1* ẏ/V` | 1 |
+//! | Scanlan with ½; Simiu and Scanlan, h down | `½ρV²B · K H1* ẏ/V` | 1 and signs |
 //! | classical, without ½ | `ρV²B · K H1* ḣ/V`, h down | ½ and signs |
 //! | PoliMi | `½ρV²B · (−h1* ż/V)` | −K, K² or 2/π |
 //! | Küssner/Starossek | `ω²πρb² · i c″_hh h`, h down | 2/π, 4/π, 8/π and signs |
@@ -37,20 +37,25 @@ use std::str::FromStr;
 pub enum Notation {
     /// Scanlan's derivatives with ½ρV² and K²: (1.15)–(1.17) of the thesis, (C.1) corrected. The crate's own.
     #[default]
+    #[serde(alias = "wawi")]
     Scanlan,
+    /// The same with h and lift down, over V/(fB): E. Simiu, R. H. Scanlan, *Wind Effects on Structures* (Wiley, 3rd ed. 1996).
+    Simiu,
     /// Scanlan's derivatives as first published, with ρV² instead of ½ρV²: half as large, and usually h down
     /// (R. H. Scanlan, J. J. Tomko, J. Eng. Mech. Div. ASCE 97, 1971, and its extension to 18 numbers).
     Classical,
     /// Politecnico di Milano: `h`, `a`, `p` of (C.2) with V* = V/(fB) and the corrected (C.3).
+    #[serde(alias = "zasso")]
     Polimi,
     /// Complex coefficients `c_mn` after H. G. Küssner as U. Starossek uses them (*Brückendynamik*, Vieweg 1992):
     /// `L = ω²πρb² (c_hh h + b c_hα α)`, `M = ω²πρb² (b c_αh h + b² c_αα α)` with the semi-chord `b = B/2`; sway `p` and
     /// drag are scaled like heave and lift.
+    #[serde(alias = "kussner", alias = "kuessner", alias = "küssner")]
     Starossek,
 }
 
 impl Notation {
-    /// All notations.
+    /// All that differ in their numbers or names; [`Notation::Simiu`] is the first of them in other axes.
     pub const ALL: [Self; 4] = [
         Self::Scanlan,
         Self::Classical,
@@ -58,10 +63,35 @@ impl Notation {
         Self::Starossek,
     ];
 
+    /// All that have a word of their own.
+    pub const NAMED: [Self; 5] = [
+        Self::Scanlan,
+        Self::Simiu,
+        Self::Classical,
+        Self::Polimi,
+        Self::Starossek,
+    ];
+
+    /// Other words for it: a program, an author.
+    pub fn aliases(self) -> &'static [&'static str] {
+        match self {
+            Self::Scanlan => &["wawi"],
+            Self::Simiu | Self::Classical => &[],
+            Self::Polimi => &["zasso"],
+            Self::Starossek => &["kussner", "kuessner", "küssner"],
+        }
+    }
+
+    /// Words for all notations, as messages list them.
+    pub fn words() -> String {
+        Self::NAMED.map(Self::name).join(", ")
+    }
+
     /// The word for it in files, studies and commands.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scanlan => "scanlan",
+            Self::Simiu => "simiu",
             Self::Classical => "classical",
             Self::Polimi => "polimi",
             Self::Starossek => "starossek",
@@ -72,6 +102,7 @@ impl Notation {
     pub fn title(self) -> &'static str {
         match self {
             Self::Scanlan => "Scanlan with 1/2",
+            Self::Simiu => "Simiu and Scanlan (Scanlan with 1/2, heave down)",
             Self::Classical => "classical (Scanlan without 1/2)",
             Self::Polimi => "PoliMi",
             Self::Starossek => "Küssner/Starossek",
@@ -82,7 +113,7 @@ impl Notation {
     pub fn usual_axes(self) -> Axes {
         match self {
             Self::Scanlan | Self::Polimi => Axes::HeaveUp,
-            Self::Classical | Self::Starossek => Axes::HeaveDown,
+            Self::Simiu | Self::Classical | Self::Starossek => Axes::HeaveDown,
         }
     }
 
@@ -90,7 +121,7 @@ impl Notation {
     pub fn usual_argument(self) -> Argument {
         match self {
             Self::Scanlan => Argument::VHat,
-            Self::Classical | Self::Polimi => Argument::VStar,
+            Self::Simiu | Self::Classical | Self::Polimi => Argument::VStar,
             Self::Starossek => Argument::KSemi,
         }
     }
@@ -99,7 +130,7 @@ impl Notation {
     /// heave, `x` sway, `theta` rotation, in the axes stated beside it.
     pub fn definition(self) -> &'static str {
         match self {
-            Self::Scanlan => {
+            Self::Scanlan | Self::Simiu => {
                 "with K = omega B/V: lift = (rho V^2 B/2) K^2 [(H4 + i H1) z/B + (H6 + i H5) x/B + (H3 + i H2) theta]; drag the same with (P6 + i P5) z/B + (P4 + i P1) x/B + (P3 + i P2) theta; moment = (rho V^2 B^2/2) K^2 [(A4 + i A1) z/B + (A6 + i A5) x/B + (A3 + i A2) theta]"
             }
             Self::Classical => {
@@ -119,7 +150,7 @@ impl Notation {
         let k = k.full_width();
         let turning = |dof: Dof| i32::from(dof == Dof::Torsion);
         match self {
-            Self::Scanlan => 1.0,
+            Self::Scanlan | Self::Simiu => 1.0,
             Self::Classical => 0.5,
             // (C.3), rows h and a as printed; −h1 ż/V stands for K H1 ż/V, h3 θ for K² H3 θ
             Self::Polimi => match (derivative.part(), derivative.motion()) {
@@ -141,18 +172,14 @@ displayed_by_name!(Notation);
 impl FromStr for Notation {
     type Err = Error;
 
-    /// Reads the word for a notation; `kussner` is another word for `starossek`.
+    /// Reads the word for a notation, or another word for it.
     fn from_str(text: &str) -> Result<Self> {
         let word = text.trim().to_lowercase();
-        if ["kussner", "kuessner", "küssner"].contains(&word.as_str()) {
-            return Ok(Self::Starossek);
-        }
-        Self::ALL
-            .into_iter()
-            .find(|n| n.name() == word)
-            .ok_or_else(|| {
-                let all = Self::ALL.map(Self::name).join(", ");
-                Error::input("notation", format!("one of {all}"), format!("`{text}`"))
-            })
+        let is_meant = |n: &Self| n.name() == word || n.aliases().contains(&word.as_str());
+        let found = Self::NAMED.into_iter().find(is_meant);
+        found.ok_or_else(|| {
+            let expected = format!("one of {}", Self::words());
+            Error::input("notation", expected, format!("`{text}`"))
+        })
     }
 }

@@ -5,7 +5,7 @@
 //! # name: LN21-5200
 //! # source: …
 //! # licence: …
-//! # notation: scanlan       or classical, polimi, starossek
+//! # notation: scanlan       or simiu, classical, polimi, starossek
 //! # argument: v_hat = V/(omega B)
 //! # axes: heave and lift up, rotation and moment nose-up, sway and drag downwind
 //! # definition: …           the notation in words

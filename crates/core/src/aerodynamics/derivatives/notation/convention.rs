@@ -98,7 +98,7 @@ impl StatedConvention {
     /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
     pub fn with_file(self, file: Self) -> Result<Convention> {
         let notation = agree("notation", self.notation, file.notation)?
-            .ok_or_else(|| unstated("notation", &Notation::ALL.map(Notation::name).join(", ")))?;
+            .ok_or_else(|| unstated("notation", &Notation::words()))?;
         let argument = agree("argument", self.argument, file.argument)?
             .ok_or_else(|| unstated("argument", &Argument::ALL.map(Argument::name).join(", ")))?;
         let axes = agree("axes", self.axes, file.axes)?.unwrap_or(notation.usual_axes());

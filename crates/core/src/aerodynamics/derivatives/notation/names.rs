@@ -23,7 +23,7 @@ impl Notation {
     /// PoliMi's `p1` stands where Scanlan's `P5` does.
     pub fn name_of(self, derivative: Derivative) -> &'static str {
         match self {
-            Self::Scanlan | Self::Classical => derivative.name(),
+            Self::Scanlan | Self::Simiu | Self::Classical => derivative.name(),
             Self::Polimi => POLIMI[derivative as usize],
             Self::Starossek => STAROSSEK[derivative as usize],
         }
@@ -50,7 +50,7 @@ impl Notation {
     /// All names, in words.
     pub fn names(self) -> &'static str {
         match self {
-            Self::Scanlan | Self::Classical => "one of P1 to P6, H1 to H6, A1 to A6",
+            Self::Scanlan | Self::Simiu | Self::Classical => "one of P1 to P6, H1 to H6, A1 to A6",
             Self::Polimi => "one of p1 to p6, h1 to h6, a1 to a6",
             Self::Starossek => "c_mn_re or c_mn_im with m, n out of h, p, a",
         }
