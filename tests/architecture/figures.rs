@@ -112,9 +112,9 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 81_546),
+        ("code lines", found.line_count(), 83_490),
         ("code lines of the core", core, 17_465),
-        ("types", found.type_count(), 1_062),
+        ("types", found.type_count(), 1_082),
         ("names of several types", found.names_used_twice(), 0),
         (
             "functions with a tuple parameter",
