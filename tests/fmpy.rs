@@ -116,7 +116,7 @@ fn export() -> PathBuf {
     export_reals(&folder, &runtimes);
     export_fmi3(&folder, &runtimes);
     bridge_fmu::export(&folder, &runtimes);
-    let matrix = matrix_fmus::export(&folder, &runtimes);
+    let matrix = matrix_fmus::export(&folder, &runtimes, |_, _| true);
     let text = serde_json::to_string(&json!({
         "matrix": matrix, "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
     }))
@@ -147,6 +147,7 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     };
     for (name, options) in [("force", single), ("force_strips", strips)] {
         let export = Export {
+            reference_runs: true,
             growing: GrowthPolicy::Refuse,
             force: Some(options),
             gusts: None,
@@ -176,6 +177,7 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
     let forces = ForceOptions::single(model.section.width_m);
     for (name, force) in [("gusts_section", None), ("gusts_force", Some(forces))] {
         let export = Export {
+            reference_runs: true,
             growing: GrowthPolicy::Refuse,
             force,
             gusts: Some(gusts.clone()),
@@ -225,6 +227,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
         let forces = ForceOptions::single(model.section.width_m);
         for (unit, force) in [("section", None), ("force", Some(forces))] {
             let export = Export {
+                reference_runs: true,
                 growing: GrowthPolicy::Allow,
                 force,
                 gusts: None,

@@ -113,6 +113,7 @@ pub fn export_fmu(
         },
         label: label.dated().map_err(raised)?,
         version: version(fmi)?,
+        reference_runs: true,
     };
     py.detach(|| {
         let runtimes = match platforms {

@@ -1,17 +1,19 @@
-//! `aerodeck fmu`: exporting and checking FMUs.
+//! `aerodeck fmu`: exporting, checking and replaying FMUs.
 
 mod check;
 mod export;
+mod replay;
 
 use super::answer::Answer;
 use super::progress::Progress;
 use crate::error::Result;
 
-/// Export and check FMUs
+/// Export, check and replay FMUs
 #[derive(clap::Subcommand)]
 pub(super) enum FmuCommand {
     Export(Box<export::FmuExportArgs>),
     Check(check::FmuCheckArgs),
+    Replay(replay::FmuReplayArgs),
 }
 
 /// Runs the command.
@@ -19,5 +21,6 @@ pub(super) fn run(command: &FmuCommand, progress: &Progress) -> Result<Answer> {
     match command {
         FmuCommand::Export(args) => export::run(args, progress),
         FmuCommand::Check(args) => check::run(args, progress),
+        FmuCommand::Replay(args) => replay::run(args, progress),
     }
 }

@@ -8,6 +8,7 @@ mod parts;
 mod variables;
 
 use super::answer::Answer;
+use super::bridge::files::BRIDGE_FMU;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
@@ -15,11 +16,12 @@ use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use super::summary::{FitSummary, Summary};
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetMethod};
+use crate::fmu::package::with_report;
 use crate::identification::EntryReport;
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
-use folder::{REPORT, SUMMARY, SummaryKind, digest, parsed};
+use folder::{PagePlace, REPORT, SUMMARY, SummaryKind, digest, parsed};
 use parts::{card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
@@ -36,23 +38,41 @@ pub(crate) struct ReportArgs {
 
 /// Runs the command.
 pub(super) fn run(args: &ReportArgs) -> Result<Answer> {
-    let page = page(&args.folder, &args.folder)?;
+    let page = page(&args.folder, &args.folder, PagePlace::Folder)?;
     let mut out = OutputDir::new(&args.folder)?;
     out.write(REPORT, page)?;
     let written = out.commit()?;
     Answer::new(list(&written), &serde_json::json!({ "files": written }))
 }
 
+/// Writes the page of the results that are staged, beside their archive and into it.
+///
+/// # Errors
+/// Those of reading and writing the results.
+pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
+    let folder = out.target("");
+    for name in [FMU_FILE, BRIDGE_FMU] {
+        let fmu = out.staging().join(name);
+        if fmu.is_file() {
+            let page = page(out.staging(), &folder, PagePlace::Archive)?;
+            let bytes = std::fs::read(&fmu).map_err(|e| Error::io(&fmu, e))?;
+            out.write(name, with_report(&bytes, &page)?)?;
+        }
+    }
+    let page = page(out.staging(), &folder, PagePlace::Folder)?;
+    out.write(REPORT, page)
+}
+
 /// The page of the results in `folder`; the study stands there or else in `study_folder`.
 ///
 /// # Errors
 /// [`Error::Io`] and [`Error::Input`] for a folder without results of `study`.
-pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
+fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> {
     let path = folder.join(SUMMARY);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
     let kind: SummaryKind = parsed(&path, &text)?;
     if kind.bridge.is_some() {
-        return bridge::page(folder, &text);
+        return bridge::page(folder, &text, place);
     }
     let summary: Summary = parsed(&path, &text)?;
     let staged = folder.join(&summary.study_file);
@@ -78,7 +98,8 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     page.live = live::sliders(&study, read(MODEL_FILE))?;
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
-    for name in [MODEL_FILE, FMU_FILE, CURVES] {
+    let said = |name: &&str| place == PagePlace::Folder || *name != FMU_FILE;
+    for name in [MODEL_FILE, FMU_FILE, CURVES].into_iter().filter(said) {
         let hash = read(name).map(|bytes| (name.to_owned(), digest(&bytes)));
         page.hashes.extend(hash);
     }

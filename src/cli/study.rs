@@ -301,8 +301,7 @@ impl StudyStages<'_> {
         summary.files = self.out.targets();
         summary.files.sort();
         self.out.write_json(SUMMARY, &summary)?;
-        let page = report::page(self.out.staging(), &self.out.target(""))?;
-        self.out.write(REPORT, page)?;
+        report::leave(&mut self.out)?;
         let written = shown(&self.out.commit()?);
         let verbose = self.progress.verbose();
         let text = account::chain(&self.study, &self.deck, &summary, &written, verbose);

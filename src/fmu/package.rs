@@ -3,14 +3,19 @@
 //! The archive holds the description, one runtime binary per platform, the model, a page that documents it, licences and
 //! an icon. The runtime for the platform of this program is embedded in it; further ones come from a folder.
 
+mod archive_file;
 mod bridge_page;
 mod documentation;
 mod growth;
 pub(in crate::fmu) mod label;
+mod reference_runs;
 mod runtime;
 mod terminals;
 
 pub use super::standard::FmiVersion;
+pub(super) use archive_file::archive;
+pub(crate) use archive_file::with_report;
+pub use archive_file::{Overwrite, write_archive};
 pub use documentation::documentation;
 pub use growth::GrowthPolicy;
 pub(crate) use growth::growth_of;
@@ -33,10 +38,7 @@ use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::{Cursor, Write};
 use std::path::Path;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// Licence texts: file below `documentation/licenses/` and contents.
 const LICENCES: [(&str, &str); 3] = [
@@ -46,25 +48,6 @@ const LICENCES: [(&str, &str); 3] = [
 ];
 
 const ICON: &[u8] = include_bytes!("package/model.png");
-
-/// What to do with a file that is already there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Overwrite {
-    /// Leave it and say so.
-    Refuse,
-    /// Replace it.
-    Replace,
-}
-
-impl Overwrite {
-    /// Replaces a file that is there where that is wanted.
-    pub fn replacing(wanted: bool) -> Self {
-        match wanted {
-            true => Self::Replace,
-            false => Self::Refuse,
-        }
-    }
-}
 
 /// What is exported of a model: its section in its forces or, with options, its forces alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,6 +68,8 @@ pub struct Export {
     pub label: Label,
     /// Of the standard.
     pub version: FmiVersion,
+    /// Whether it carries runs by which an importer sees that it does what it should.
+    pub reference_runs: bool,
 }
 
 impl From<GrowthPolicy> for Export {
@@ -98,6 +83,7 @@ impl From<GrowthPolicy> for Export {
             listing: Listing::All,
             label: Label::default(),
             version: FmiVersion::default(),
+            reference_runs: true,
         }
     }
 }
@@ -121,12 +107,13 @@ pub fn package(
         listing,
         label,
         version,
+        reference_runs,
     } = export.into();
     check_listing(listing, version)?;
     growth::check(model, growing)?;
     let force = force.map(|force| force.to_json()).transpose()?;
     let gusts = gusts.as_ref().map(as_json).transpose()?;
-    let bounds = bounds.as_ref().map(as_json).transpose()?;
+    let bounds_json = bounds.as_ref().map(as_json).transpose()?;
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
@@ -135,27 +122,29 @@ pub fn package(
     let files = OptionFiles {
         force: force.as_deref().map(str::as_bytes),
         gusts: gusts.as_deref().map(str::as_bytes),
-        bounds: bounds.as_deref().map(str::as_bytes),
+        bounds: bounds_json.as_deref().map(str::as_bytes),
     };
     let resources = Resources::from_bytes(json.as_bytes(), files)?;
     let page = documentation(&resources, runtimes, listing, verdict.as_ref())?;
     let options = [
         (FORCE_FILE, force),
         (GUST_FILE, gusts),
-        (BOUNDS_FILE, bounds),
+        (BOUNDS_FILE, bounds_json),
     ];
     let options = options
         .into_iter()
         .filter_map(|(name, text)| Some((name, text?)));
-    assembled(
-        &resources,
+    let parts = ArchiveParts {
+        resources,
+        bounds,
         listing,
-        &label,
+        label: &label,
         version,
-        [(MODEL_FILE, json)].into_iter().chain(options),
         page,
         runtimes,
-    )
+        reference_runs,
+    };
+    assembled(parts, [(MODEL_FILE, json)].into_iter().chain(options))
 }
 
 fn check_listing(listing: Listing, version: FmiVersion) -> Result<()> {
@@ -184,6 +173,8 @@ pub struct BridgeExport {
     pub verdict: Option<Verdict>,
     /// Which variables its description lists.
     pub listing: Listing,
+    /// Whether it carries runs by which an importer sees that it does what it should.
+    pub reference_runs: bool,
 }
 
 /// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it.
@@ -215,30 +206,49 @@ pub fn package_bridge(
     let page = bridge_page::documentation(&resources, &export.bridge, export.verdict.as_ref());
     let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)].into_iter();
     let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
-    assembled(
-        &resources,
-        export.listing,
+    let parts = ArchiveParts {
+        resources,
+        bounds: None,
+        listing: export.listing,
         label,
         version,
-        files,
         page,
         runtimes,
-    )
+        reference_runs: export.reference_runs,
+    };
+    assembled(parts, files)
+}
+
+/// What an archive is made of, beside the files of its resources.
+struct ArchiveParts<'a> {
+    resources: Resources,
+    bounds: Option<OnsetBounds>,
+    listing: Listing,
+    label: &'a Label,
+    version: FmiVersion,
+    page: String,
+    runtimes: &'a [Runtime],
+    reference_runs: bool,
 }
 
 /// The archive of what has been made.
 fn assembled(
-    resources: &Resources,
-    listing: Listing,
-    label: &Label,
-    version: FmiVersion,
+    parts: ArchiveParts<'_>,
     options: impl IntoIterator<Item = (&'static str, String)>,
-    page: String,
-    runtimes: &[Runtime],
 ) -> Result<Vec<u8>> {
+    let ArchiveParts {
+        resources,
+        bounds,
+        listing,
+        label,
+        version,
+        page,
+        runtimes,
+        reference_runs,
+    } = parts;
     let xml = match version {
-        FmiVersion::Two => model_description(resources, listing, label)?,
-        FmiVersion::Three => description_fmi3::model_description(resources, label)?,
+        FmiVersion::Two => model_description(&resources, listing, label)?,
+        FmiVersion::Three => description_fmi3::model_description(&resources, label)?,
     };
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
@@ -273,6 +283,9 @@ fn assembled(
                 format!("two for {}", runtime.platform),
             ));
         }
+    }
+    if reference_runs {
+        files.extend(reference_runs::files(resources, bounds, listing, version)?);
     }
     archive(&files)
 }
@@ -328,72 +341,6 @@ pub fn write_fmu(
     export: impl Into<Export>,
 ) -> Result<()> {
     write_archive(path, &package(model, runtimes, export)?, overwrite)
-}
-
-/// Writes the bytes of an archive as [`write_fmu`] does.
-///
-/// # Errors
-/// [`Error::Input`] when the file is there and is not to be replaced; [`Error::Io`].
-pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let failed = |e| Error::io(path, e);
-    let mut file = tempfile::Builder::new()
-        .prefix(".aerodeck-")
-        .suffix(".fmu")
-        .tempfile_in(folder)
-        .map_err(failed)?;
-    file.write_all(bytes).map_err(failed)?;
-    readable_by_all(file.as_file()).map_err(failed)?;
-    match overwrite {
-        Overwrite::Replace => file.persist(path).map_err(|e| failed(e.error))?,
-        Overwrite::Refuse => file.persist_noclobber(path).map_err(|e| {
-            if e.error.kind() == std::io::ErrorKind::AlreadyExists {
-                Error::input(
-                    "archive",
-                    "no file there yet",
-                    "one, which was left as it is",
-                )
-                .in_file(path)
-            } else {
-                failed(e.error)
-            }
-        })?,
-    };
-    Ok(())
-}
-
-/// Temporary files are for their owner alone; an FMU is not.
-#[cfg(unix)]
-fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable_by_all(_: &std::fs::File) -> std::io::Result<()> {
-    Ok(())
-}
-
-/// Entries in alphabetical order without dates, owners or other traces of the machine.
-pub(super) fn archive(files: &BTreeMap<String, Vec<u8>>) -> Result<Vec<u8>> {
-    zipped(files).map_err(|e| Error::Numerical(format!("packing: {e}")))
-}
-
-fn zipped(files: &BTreeMap<String, Vec<u8>>) -> zip::result::ZipResult<Vec<u8>> {
-    let options = SimpleFileOptions::default()
-        .compression_method(CompressionMethod::Deflated)
-        .compression_level(Some(9))
-        .last_modified_time(DateTime::default())
-        .unix_permissions(0o644);
-    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, bytes) in files {
-        zip.start_file(name.as_str(), options)?;
-        zip.write_all(bytes)?;
-    }
-    Ok(zip.finish()?.into_inner())
 }
 
 fn licence(model: &TrainedModel) -> String {

@@ -3,6 +3,7 @@
 
 use super::description::number;
 use super::package::archive;
+use super::ssv::{VERSION, parameter_set};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
@@ -10,8 +11,6 @@ use std::collections::BTreeMap;
 
 const STRUCTURE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
 const COMMON: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";
-const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
-const VERSION: &str = "1.0";
 
 /// A unit of a system.
 #[derive(Debug, Clone)]
@@ -63,7 +62,7 @@ impl System {
             self.description()?.into_bytes(),
         );
         for component in &self.components {
-            let values = parameter_set(component)?.into_bytes();
+            let values = parameter_set(&component.name, &component.values)?.into_bytes();
             files.insert(resource(&component.name, "ssv"), values);
             files.insert(resource(&component.name, "fmu"), component.fmu.clone());
         }
@@ -144,22 +143,4 @@ fn component(of: &SystemComponent) -> Element {
             Element::new("ssd:Connectors").containing(connectors),
             Element::new("ssd:ParameterBindings").containing([binding]),
         ])
-}
-
-fn parameter_set(of: &SystemComponent) -> Result<String> {
-    let mut all = Vec::new();
-    for (name, value) in &of.values {
-        let value = Element::new("ssv:Real").with("value", number(*value)?);
-        all.push(
-            Element::new("ssv:Parameter")
-                .with("name", name)
-                .containing([value]),
-        );
-    }
-    let root = Element::new("ssv:ParameterSet")
-        .with("xmlns:ssv", VALUES)
-        .with("version", VERSION)
-        .with("name", &of.name)
-        .containing([Element::new("ssv:Parameters").containing(all)]);
-    Ok(root.document())
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 /// Commands that write nothing, or to standard output, or to a place that is an argument of its own.
-const WITHOUT_OUT: [&str; 12] = [
+const WITHOUT_OUT: [&str; 13] = [
     "bridge convert",
     "campaign check",
     "compare signals",
@@ -18,6 +18,7 @@ const WITHOUT_OUT: [&str; 12] = [
     "derivatives show",
     "derivatives template",
     "fmu check",
+    "fmu replay",
     "report",
     "validate",
 ];

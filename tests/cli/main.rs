@@ -23,6 +23,7 @@ mod names;
 mod newcomer;
 mod onsets;
 mod process;
+mod replay;
 mod report;
 mod required_speeds;
 mod select;

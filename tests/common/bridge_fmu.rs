@@ -55,6 +55,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         ..ForceOptions::single(bridge.width_m())
     };
     let force = Export {
+        reference_runs: true,
         growing: GrowthPolicy::Refuse,
         force: Some(options),
         gusts: None,

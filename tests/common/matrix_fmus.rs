@@ -12,11 +12,14 @@ use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedMod
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Writes the archives and returns what is expected of them, one object per cell.
-pub fn export(folder: &Path, runtimes: &[Runtime]) -> Value {
+/// Writes the archives of the cells (deck, section) that are wanted and returns what is expected of them, one object per cell.
+pub fn export(folder: &Path, runtimes: &[Runtime], wanted: fn(usize, usize) -> bool) -> Value {
     let mut cells = Vec::new();
     for (i, deck) in decks().iter().enumerate() {
         for (j, section) in sections().iter().enumerate() {
+            if !wanted(i, j) {
+                continue;
+            }
             let table = if i == j { &made_bluff(deck) } else { deck };
             // both forms on every deck and on every section
             let form = if (i + j) % 2 == 0 {

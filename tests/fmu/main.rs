@@ -6,6 +6,8 @@ mod bridges;
 #[path = "../common/matrix.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod matrix;
+#[path = "../common/matrix_fmus.rs"]
+mod matrix_fmus;
 #[path = "../common/models.rs"]
 mod models;
 #[path = "../common/three_dof.rs"]
@@ -20,4 +22,5 @@ mod importer;
 mod manual;
 mod one_row;
 mod parts;
+mod replay;
 mod stepped_answers;

@@ -1,4 +1,4 @@
-//! What `modelDescription.xml` of an FMI 2.0 co-simulation FMU says, as plain values.
+//! What `modelDescription.xml` of a co-simulation FMU says, as plain values in the words of FMI 2.0.
 
 pub use crate::standard::{Causality, Initial, Variability};
 use serde::Serialize;
@@ -253,6 +253,19 @@ pub struct DefaultExperiment {
     pub step_size: Option<f64>,
 }
 
+/// Where a variable of FMI 3.0 stands: an element of an array, or a variable that is none (the only one of 1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(super) struct ArrayElement {
+    /// Value reference of the array.
+    pub reference: u32,
+    /// Place in it, from 0.
+    pub element: usize,
+    /// Elements of the array.
+    pub size: usize,
+    /// Which functions read and set it, in the order of [`super::reading_fmi3::NUMERIC`]; `None` for a string.
+    pub function: Option<usize>,
+}
+
 /// The model description.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ModelDescription {
@@ -288,9 +301,16 @@ pub struct ModelDescription {
     pub derivatives: Vec<Unknown>,
     /// Unknowns of the initialisation.
     pub initial_unknowns: Vec<Unknown>,
+    /// Of FMI 3.0 where each variable stands; its value reference here is its place in the list. Empty for FMI 2.0.
+    pub(super) elements: Vec<ArrayElement>,
 }
 
 impl ModelDescription {
+    /// Whether it is of FMI 3.0.
+    pub(super) fn is_fmi3(&self) -> bool {
+        self.fmi_version.starts_with('3')
+    }
+
     /// The variable of that name.
     pub fn variable(&self, name: &str) -> Option<&ScalarVariable> {
         self.variables.iter().find(|v| v.name == name)

@@ -33,7 +33,7 @@ impl Fmu {
                     .to_string();
                 let before = findings.0.len();
                 ran = Some(place.clone());
-                library::check_symbols(&binary, &place, &mut findings);
+                library::check_symbols(&binary, self.description.is_fmi3(), &place, &mut findings);
                 if findings.0.len() == before {
                     (trials, messages) = trials::run(self, &mut findings);
                 }
@@ -63,9 +63,13 @@ impl Fmu {
                 );
             }
         }
+        let icon = match self.description.is_fmi3() {
+            false => "model.png",
+            true => "terminalsAndIcons/icon.png",
+        };
         for (file, what) in [
             ("documentation/index.html", "documentation"),
-            ("model.png", "an icon"),
+            (icon, "an icon"),
         ] {
             if !self.entries.iter().any(|e| e == file) {
                 findings.add(

@@ -1,4 +1,4 @@
-//! An importer for FMUs of FMI 2.0 co-simulation, of whatever origin: unpack, read, check, run.
+//! An importer for FMUs of co-simulation, FMI 2.0 and 3.0, of whatever origin: unpack, read, check, run.
 //!
 //! [`Fmu::open`] unpacks into a temporary directory and reads the description; [`Fmu::check`] looks for everything
 //! that some importer would stumble over and then runs the FMU; [`Fmu::instantiate`] gives a [`Slave`] to be driven
@@ -19,6 +19,8 @@ mod growth;
 mod library;
 mod log;
 mod reading;
+mod reading_fmi3;
+mod replay;
 mod simulation;
 mod slave;
 mod status;
@@ -36,6 +38,8 @@ pub use growth::{
     Growth, GrowthOnset, GrowthPoint, SteppedSearch, SteppingSearch, onset_by_stepping,
 };
 pub use log::LogMessage;
+pub use reading_fmi3::array_element_name;
+pub use replay::{LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 pub use simulation::{Simulation, ValueTable, simulate};
 pub use slave::{FmuState, Slave};
 pub use status::Status;
@@ -45,7 +49,7 @@ use crate::location::location_of;
 use crate::xml::Element;
 use description::FILE;
 use findings::FmuFindings;
-use library::Binary;
+use library::{Binary, OwnFunctions};
 use slave::LoadedFmu;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -58,7 +62,8 @@ const fn native() -> (&'static [&'static str], &'static str) {
     } else if cfg!(all(target_os = "linux", target_arch = "x86")) {
         (&["linux32", "x86-linux"], "so")
     } else if cfg!(all(target_os = "linux", target_arch = "aarch64")) {
-        (&["aarch64-linux"], "so")
+        // an archive for importers that look for 64-bit Linux alone
+        (&["aarch64-linux", "linux64"], "so")
     } else if cfg!(all(target_os = "windows", target_arch = "x86_64")) {
         (&["win64", "x86_64-windows"], "dll")
     } else if cfg!(all(target_os = "windows", target_arch = "x86")) {
@@ -75,9 +80,9 @@ const fn native() -> (&'static [&'static str], &'static str) {
 /// What a binary says of itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Versions {
-    /// Platform of its types, `default`.
+    /// Platform of its types, `default`; FMI 3.0 knows no other.
     pub types_platform: String,
-    /// Version of the standard, `2.0`.
+    /// Version of the standard, `2.0` or one that begins with `3.`.
     pub standard: String,
 }
 
@@ -89,6 +94,8 @@ pub struct Fmu {
     description: Arc<ModelDescription>,
     /// Found while unpacking and reading.
     findings: FmuFindings,
+    /// The folder below `binaries/` to take; the first for this machine where none is named.
+    platform: Option<String>,
     loaded: Mutex<Option<Arc<LoadedFmu>>>,
 }
 
@@ -119,23 +126,42 @@ impl Fmu {
             .and_then(|text| Element::parse(&text))
             .map_err(|e| e.in_file(FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
-        if let Some(version) = root.attribute("fmiVersion").filter(|v| v.starts_with('3')) {
-            return Err(Error::input(
-                format!("{FILE}, fmiVersion"),
-                "2.0: archives of FMI 3.0 are neither read nor run here (FMPy does both)",
-                version,
-            ));
-        }
-        let (description, reading) = reading::read(&root);
-        findings.0.extend(reading.0);
+        let is_fmi3 = |version: &str| version.starts_with('3');
+        let description = if root.attribute("fmiVersion").is_some_and(is_fmi3) {
+            let (root, elements, translation) = reading_fmi3::translated(&root);
+            findings.0.extend(translation.0);
+            let (mut description, reading) = reading::read(&root);
+            findings.0.extend(reading.0);
+            description.elements = elements;
+            description
+        } else {
+            let (description, reading) = reading::read(&root);
+            findings.0.extend(reading.0);
+            description
+        };
         Ok(Self {
             path: path.to_path_buf(),
             folder: Arc::new(folder),
             entries,
             description: Arc::new(description),
             findings,
+            platform: None,
             loaded: Mutex::new(None),
         })
+    }
+
+    /// The same with the binary of one platform, a folder below `binaries/`.
+    #[must_use]
+    pub fn on(&self, platform: &str) -> Self {
+        Self {
+            path: self.path.clone(),
+            folder: Arc::clone(&self.folder),
+            entries: self.entries.clone(),
+            description: Arc::clone(&self.description),
+            findings: self.findings.clone(),
+            platform: Some(platform.to_owned()),
+            loaded: Mutex::new(None),
+        }
     }
 
     /// The file.
@@ -184,6 +210,7 @@ impl Fmu {
             .unwrap_or_default();
         folders
             .iter()
+            .filter(|f| self.platform.as_ref().is_none_or(|p| p == *f))
             .map(|f| self.folder.path().join("binaries").join(f))
             .map(|f| f.join(format!("{identifier}.{ending}")))
             .find(|file| file.is_file())
@@ -232,8 +259,11 @@ impl Fmu {
         // SAFETY: both take nothing and answer with a constant C string
         Ok(unsafe {
             Versions {
-                types_platform: log::text((functions.get_types_platform)()),
-                standard: log::text((functions.get_version)()),
+                types_platform: match &functions.own {
+                    OwnFunctions::Two(own) => log::text((own.get_types_platform)()),
+                    OwnFunctions::Three(_) => "default".to_owned(),
+                },
+                standard: log::text((functions.shared.get_version)()),
             }
         })
     }
@@ -248,8 +278,19 @@ impl Fmu {
             return Ok(Arc::clone(loaded));
         }
         let loaded = Arc::new(LoadedFmu {
-            binary: Binary::load(&self.binary()?).map_err(|e| e.in_file(&self.path))?,
-            resources: location_of(&self.folder.path().join("resources"))?,
+            binary: Binary::load(&self.binary()?, self.description.is_fmi3())
+                .map_err(|e| e.in_file(&self.path))?,
+            resources: match self.description.is_fmi3() {
+                false => location_of(&self.folder.path().join("resources"))?,
+                // a path that ends with a separator
+                true => self
+                    .folder
+                    .path()
+                    .join("resources")
+                    .join("")
+                    .display()
+                    .to_string(),
+            },
             _folder: Arc::clone(&self.folder),
             description: Arc::clone(&self.description),
         });

@@ -1,6 +1,7 @@
-//! The shared library of an FMU: the 34 functions of FMI 2.0 co-simulation with their C signatures.
+//! The shared library of an FMU: the functions of co-simulation, of FMI 2.0 and of 3.0, with their C signatures.
 
 use super::findings::FmuFindings;
+use super::reading_fmi3::NUMERIC;
 use crate::error::{Error, Result};
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_uint, c_void};
@@ -14,6 +15,8 @@ pub(super) type StatePointer = *mut c_void;
 pub(super) type ValueReference = c_uint;
 /// `fmi2Boolean`, `fmi2Status`, `fmi2StatusKind`, `fmi2Type`: all C ints.
 pub(super) type Int = c_int;
+/// `fmi3Boolean`, whatever byte a binary puts there.
+pub(super) type Truth = u8;
 /// `fmi2String`.
 pub(super) type Text = *const c_char;
 
@@ -27,6 +30,10 @@ pub(super) type LoggerPointer = unsafe extern "C" fn(
     ...
 );
 
+/// The logger of FMI 3.0.
+pub(super) type PlainLoggerPointer =
+    unsafe extern "C" fn(env: *mut c_void, status: Int, category: Text, message: Text);
+
 /// `fmi2CallbackFunctions`.
 #[repr(C)]
 pub(super) struct CallbackFunctions {
@@ -37,70 +44,173 @@ pub(super) struct CallbackFunctions {
     pub environment: *mut c_void,
 }
 
-/// Declares the table of functions and how it is filled, from one list of names and signatures.
+/// Declares a table of functions and how it is filled, from one list of names and signatures.
 macro_rules! functions {
-    ($($field:ident = $symbol:literal : fn($($argument:ty),*) -> $answer:ty;)*) => {
-        /// The functions; pointers are valid as long as the [`Library`] they came from.
+    ($table:ident, $($field:ident = $suffix:literal : fn($($argument:ty),*) -> $answer:ty;)*) => {
+        /// Functions; pointers are valid as long as the [`Library`] they came from.
         #[derive(Clone, Copy)]
         #[allow(dead_code, reason = "all must be there, also those that this importer has no use for")]
-        pub(super) struct Functions {
+        pub(super) struct $table {
             $(pub $field: unsafe extern "C" fn($($argument),*) -> $answer,)*
         }
 
-        /// Names of all functions that must be there, supported or not.
-        pub(super) const SYMBOLS: [&str; 34] = [$($symbol),*];
+        impl $table {
+            /// Names without the prefix of the version.
+            const SUFFIXES: &[&str] = &[$($suffix),*];
 
-        impl Functions {
             /// Looks all functions up.
-            fn load(library: &Library) -> Result<Self> {
+            fn load(library: &Library, is_fmi3: bool) -> Result<Self> {
                 Ok(Self {
-                    // SAFETY: the signature is that of the standard for this name
-                    $($field: *unsafe { library.get($symbol.as_bytes()) }
-                        .map_err(|e| Error::input($symbol, "this function in the binary", e.to_string()))?,)*
+                    $($field: {
+                        let symbol = spelt($suffix, is_fmi3);
+                        // SAFETY: the signature is that of the standard for this name
+                        *unsafe { library.get(symbol.as_bytes()) }
+                            .map_err(|e| Error::input(symbol, "this function in the binary", e.to_string()))?
+                    },)*
                 })
             }
         }
     };
 }
 
-functions! {
-    get_types_platform = "fmi2GetTypesPlatform": fn() -> Text;
-    get_version = "fmi2GetVersion": fn() -> Text;
-    set_debug_logging = "fmi2SetDebugLogging": fn(Component, Int, usize, *const Text) -> Int;
-    instantiate = "fmi2Instantiate": fn(Text, Int, Text, Text, *const CallbackFunctions, Int, Int) -> Component;
-    free_instance = "fmi2FreeInstance": fn(Component) -> ();
-    setup_experiment = "fmi2SetupExperiment": fn(Component, Int, f64, f64, Int, f64) -> Int;
-    enter_initialization_mode = "fmi2EnterInitializationMode": fn(Component) -> Int;
-    exit_initialization_mode = "fmi2ExitInitializationMode": fn(Component) -> Int;
-    terminate = "fmi2Terminate": fn(Component) -> Int;
-    reset = "fmi2Reset": fn(Component) -> Int;
-    get_real = "fmi2GetReal": fn(Component, *const ValueReference, usize, *mut f64) -> Int;
-    get_integer = "fmi2GetInteger": fn(Component, *const ValueReference, usize, *mut c_int) -> Int;
-    get_boolean = "fmi2GetBoolean": fn(Component, *const ValueReference, usize, *mut Int) -> Int;
-    get_string = "fmi2GetString": fn(Component, *const ValueReference, usize, *mut Text) -> Int;
-    set_real = "fmi2SetReal": fn(Component, *const ValueReference, usize, *const f64) -> Int;
-    set_integer = "fmi2SetInteger": fn(Component, *const ValueReference, usize, *const c_int) -> Int;
-    set_boolean = "fmi2SetBoolean": fn(Component, *const ValueReference, usize, *const Int) -> Int;
-    set_string = "fmi2SetString": fn(Component, *const ValueReference, usize, *const Text) -> Int;
-    get_fmu_state = "fmi2GetFMUstate": fn(Component, *mut StatePointer) -> Int;
-    set_fmu_state = "fmi2SetFMUstate": fn(Component, StatePointer) -> Int;
-    free_fmu_state = "fmi2FreeFMUstate": fn(Component, *mut StatePointer) -> Int;
-    serialized_fmu_state_size = "fmi2SerializedFMUstateSize": fn(Component, StatePointer, *mut usize) -> Int;
-    serialize_fmu_state = "fmi2SerializeFMUstate": fn(Component, StatePointer, *mut u8, usize) -> Int;
-    de_serialize_fmu_state = "fmi2DeSerializeFMUstate": fn(Component, *const u8, usize, *mut StatePointer) -> Int;
-    get_directional_derivative = "fmi2GetDirectionalDerivative":
+/// Name of a function in a version of the standard, which differ in the case of some.
+pub(super) fn spelt(suffix: &str, is_fmi3: bool) -> String {
+    if is_fmi3 {
+        let suffix = suffix.replace("FMUstate", "FMUState");
+        format!("fmi3{}", suffix.replace("DeSer", "Deser"))
+    } else {
+        format!("fmi2{suffix}")
+    }
+}
+
+// what both versions have with the same arguments
+functions! { SharedFunctions,
+    get_version = "GetVersion": fn() -> Text;
+    free_instance = "FreeInstance": fn(Component) -> ();
+    exit_initialization_mode = "ExitInitializationMode": fn(Component) -> Int;
+    terminate = "Terminate": fn(Component) -> Int;
+    reset = "Reset": fn(Component) -> Int;
+    get_fmu_state = "GetFMUstate": fn(Component, *mut StatePointer) -> Int;
+    set_fmu_state = "SetFMUstate": fn(Component, StatePointer) -> Int;
+    free_fmu_state = "FreeFMUstate": fn(Component, *mut StatePointer) -> Int;
+    serialized_fmu_state_size = "SerializedFMUstateSize": fn(Component, StatePointer, *mut usize) -> Int;
+    serialize_fmu_state = "SerializeFMUstate": fn(Component, StatePointer, *mut u8, usize) -> Int;
+    de_serialize_fmu_state = "DeSerializeFMUstate": fn(Component, *const u8, usize, *mut StatePointer) -> Int;
+}
+
+functions! { Fmi2Functions,
+    get_types_platform = "GetTypesPlatform": fn() -> Text;
+    set_debug_logging = "SetDebugLogging": fn(Component, Int, usize, *const Text) -> Int;
+    instantiate = "Instantiate": fn(Text, Int, Text, Text, *const CallbackFunctions, Int, Int) -> Component;
+    setup_experiment = "SetupExperiment": fn(Component, Int, f64, f64, Int, f64) -> Int;
+    enter_initialization_mode = "EnterInitializationMode": fn(Component) -> Int;
+    get_real = "GetReal": fn(Component, *const ValueReference, usize, *mut f64) -> Int;
+    get_integer = "GetInteger": fn(Component, *const ValueReference, usize, *mut c_int) -> Int;
+    get_boolean = "GetBoolean": fn(Component, *const ValueReference, usize, *mut Int) -> Int;
+    get_string = "GetString": fn(Component, *const ValueReference, usize, *mut Text) -> Int;
+    set_real = "SetReal": fn(Component, *const ValueReference, usize, *const f64) -> Int;
+    set_integer = "SetInteger": fn(Component, *const ValueReference, usize, *const c_int) -> Int;
+    set_boolean = "SetBoolean": fn(Component, *const ValueReference, usize, *const Int) -> Int;
+    set_string = "SetString": fn(Component, *const ValueReference, usize, *const Text) -> Int;
+    get_directional_derivative = "GetDirectionalDerivative":
         fn(Component, *const ValueReference, usize, *const ValueReference, usize, *const f64, *mut f64) -> Int;
-    set_real_input_derivatives = "fmi2SetRealInputDerivatives":
+    set_real_input_derivatives = "SetRealInputDerivatives":
         fn(Component, *const ValueReference, usize, *const c_int, *const f64) -> Int;
-    get_real_output_derivatives = "fmi2GetRealOutputDerivatives":
+    get_real_output_derivatives = "GetRealOutputDerivatives":
         fn(Component, *const ValueReference, usize, *const c_int, *mut f64) -> Int;
-    do_step = "fmi2DoStep": fn(Component, f64, f64, Int) -> Int;
-    cancel_step = "fmi2CancelStep": fn(Component) -> Int;
-    get_status = "fmi2GetStatus": fn(Component, Int, *mut Int) -> Int;
-    get_real_status = "fmi2GetRealStatus": fn(Component, Int, *mut f64) -> Int;
-    get_integer_status = "fmi2GetIntegerStatus": fn(Component, Int, *mut c_int) -> Int;
-    get_boolean_status = "fmi2GetBooleanStatus": fn(Component, Int, *mut Int) -> Int;
-    get_string_status = "fmi2GetStringStatus": fn(Component, Int, *mut Text) -> Int;
+    do_step = "DoStep": fn(Component, f64, f64, Int) -> Int;
+    cancel_step = "CancelStep": fn(Component) -> Int;
+    get_status = "GetStatus": fn(Component, Int, *mut Int) -> Int;
+    get_real_status = "GetRealStatus": fn(Component, Int, *mut f64) -> Int;
+    get_integer_status = "GetIntegerStatus": fn(Component, Int, *mut c_int) -> Int;
+    get_boolean_status = "GetBooleanStatus": fn(Component, Int, *mut Int) -> Int;
+    get_string_status = "GetStringStatus": fn(Component, Int, *mut Text) -> Int;
+}
+
+functions! { Fmi3Functions,
+    set_debug_logging = "SetDebugLogging": fn(Component, Truth, usize, *const Text) -> Int;
+    instantiate = "InstantiateCoSimulation":
+        fn(Text, Text, Text, Truth, Truth, Truth, Truth, *const ValueReference, usize, *mut c_void, PlainLoggerPointer, *const c_void)
+            -> Component;
+    enter_initialization_mode = "EnterInitializationMode": fn(Component, Truth, f64, f64, Truth, f64) -> Int;
+    get_string = "GetString": fn(Component, *const ValueReference, usize, *mut Text, usize) -> Int;
+    set_string = "SetString": fn(Component, *const ValueReference, usize, *const Text, usize) -> Int;
+    get_directional_derivative = "GetDirectionalDerivative":
+        fn(Component, *const ValueReference, usize, *const ValueReference, usize, *const f64, usize, *mut f64, usize) -> Int;
+    get_output_derivatives = "GetOutputDerivatives":
+        fn(Component, *const ValueReference, usize, *const c_int, *mut f64, usize) -> Int;
+    do_step = "DoStep": fn(Component, f64, f64, Truth, *mut Truth, *mut Truth, *mut Truth, *mut f64) -> Int;
+}
+
+/// Functions that differ between the versions.
+#[derive(Clone)]
+pub(super) enum OwnFunctions {
+    Two(Fmi2Functions),
+    Three(Box<Fmi3Functions>),
+}
+
+/// Reads the values of variables of one numeric type.
+pub(super) type Getter =
+    unsafe extern "C" fn(Component, *const ValueReference, usize, *mut c_void, usize) -> Int;
+/// Sets them.
+pub(super) type Setter =
+    unsafe extern "C" fn(Component, *const ValueReference, usize, *const c_void, usize) -> Int;
+
+/// All functions of a binary.
+#[derive(Clone)]
+pub(super) struct Functions {
+    pub shared: SharedFunctions,
+    pub own: OwnFunctions,
+    /// Of FMI 3.0, in the order of [`NUMERIC`].
+    pub getters: Vec<Getter>,
+    pub setters: Vec<Setter>,
+}
+
+impl Functions {
+    fn load(library: &Library, is_fmi3: bool) -> Result<Self> {
+        let shared = SharedFunctions::load(library, is_fmi3)?;
+        let (mut getters, mut setters) = (Vec::new(), Vec::new());
+        if !is_fmi3 {
+            let own = OwnFunctions::Two(Fmi2Functions::load(library, false)?);
+            return Ok(Self {
+                shared,
+                own,
+                getters,
+                setters,
+            });
+        }
+        for (name, _) in NUMERIC {
+            let missing = |symbol: &str, e: libloading::Error| {
+                Error::input(symbol, "this function in the binary", e.to_string())
+            };
+            let (get, set) = (format!("fmi3Get{name}"), format!("fmi3Set{name}"));
+            // SAFETY: the signature is that of the standard for this name, with a pointer to any number
+            getters.push(*unsafe { library.get(get.as_bytes()) }.map_err(|e| missing(&get, e))?);
+            // SAFETY: as above
+            setters.push(*unsafe { library.get(set.as_bytes()) }.map_err(|e| missing(&set, e))?);
+        }
+        let own = OwnFunctions::Three(Box::new(Fmi3Functions::load(library, true)?));
+        Ok(Self {
+            shared,
+            own,
+            getters,
+            setters,
+        })
+    }
+}
+
+/// Names of all functions that must be there, supported or not.
+fn symbols(is_fmi3: bool) -> Vec<String> {
+    let own = match is_fmi3 {
+        false => Fmi2Functions::SUFFIXES,
+        true => Fmi3Functions::SUFFIXES,
+    };
+    let suffixes = SharedFunctions::SUFFIXES.iter().chain(own);
+    let mut names: Vec<String> = suffixes.map(|suffix| spelt(suffix, is_fmi3)).collect();
+    for (name, _) in NUMERIC.iter().filter(|_| is_fmi3) {
+        names.extend([format!("fmi3Get{name}"), format!("fmi3Set{name}")]);
+    }
+    names
 }
 
 /// A loaded binary with its functions.
@@ -115,9 +225,9 @@ impl Binary {
     ///
     /// # Errors
     /// [`Error::Input`] with what the loader said, or naming the function that is missing.
-    pub(super) fn load(path: &Path) -> Result<Self> {
+    pub(super) fn load(path: &Path, is_fmi3: bool) -> Result<Self> {
         let library = open(path)?;
-        let functions = Functions::load(&library)?;
+        let functions = Functions::load(&library, is_fmi3)?;
         Ok(Self {
             functions,
             _library: library,
@@ -126,11 +236,11 @@ impl Binary {
 }
 
 /// Adds a finding for each function that is missing; loading problems come as one finding.
-pub(super) fn check_symbols(path: &Path, place: &str, findings: &mut FmuFindings) {
+pub(super) fn check_symbols(path: &Path, is_fmi3: bool, place: &str, findings: &mut FmuFindings) {
     match open(path) {
         Err(e) => findings.error(place, "a library that loads", e.to_string()),
         Ok(library) => {
-            for symbol in SYMBOLS {
+            for symbol in symbols(is_fmi3) {
                 // SAFETY: only asked whether it is there, never called through this type
                 if unsafe { library.get::<unsafe extern "C" fn()>(symbol.as_bytes()) }.is_err() {
                     findings.error(place, format!("the function {symbol}"), "none");

@@ -62,6 +62,17 @@ unsafe extern "C" fn collect(
     category: Text,
     message: Text,
 ) {
+    // SAFETY: as promised by the caller
+    unsafe { collect_plain(environment, status, category, message) }
+}
+
+/// The logger of FMI 3.0.
+pub(super) unsafe extern "C" fn collect_plain(
+    environment: *mut c_void,
+    status: Int,
+    category: Text,
+    message: Text,
+) {
     // SAFETY: the environment is the book that was passed at instantiation and outlives the instance
     let Some(book) = (unsafe { environment.cast::<LogBook>().as_ref() }) else {
         return;

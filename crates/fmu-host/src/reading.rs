@@ -79,6 +79,7 @@ pub(super) fn read(root: &Element) -> (ModelDescription, FmuFindings) {
         outputs,
         derivatives,
         initial_unknowns,
+        elements: Vec::new(),
     };
     (description, r.0)
 }

@@ -162,7 +162,8 @@ pub(super) fn run(
         let status = slave.do_step(from, times.step)?;
         if status == Status::Discard {
             return Err(Error::Numerical(format!(
-                "fmi2DoStep discarded the step from {from} s over {} s",
+                "{} discarded the step from {from} s over {} s",
+                slave.name_of("DoStep"),
                 times.step
             )));
         }

@@ -1,15 +1,21 @@
 //! A running instance of an FMU, driven through its C interface.
 
+mod fmi3;
+mod late_calls;
 mod states;
 mod values;
 
 pub use states::FmuState;
 
 use super::description::{ModelDescription, ScalarVariable, Value, VariableType};
-use super::library::{Binary, CallbackFunctions, Component, Functions, Int};
-use super::log::{LogBook, LogMessage, logger};
+use super::library::{
+    Binary, CallbackFunctions, Component, Fmi2Functions, Functions, Int, OwnFunctions,
+    SharedFunctions, Text, spelt,
+};
+use super::log::{LogBook, LogMessage, collect_plain, logger};
 use super::status::Status;
 use crate::error::{Error, Result};
+use late_calls::LateCalls;
 use std::cell::Cell;
 use std::ffi::{CString, c_void};
 use std::rc::Rc;
@@ -45,7 +51,7 @@ impl Drop for FmuComponent {
     fn drop(&mut self) {
         if !self.fatal.get() {
             // SAFETY: a live component of this library, freed once
-            unsafe { (self.functions().free_instance)(self.component) }
+            unsafe { (self.functions().shared.free_instance)(self.component) }
         }
     }
 }
@@ -53,6 +59,8 @@ impl Drop for FmuComponent {
 /// A running instance. A call that it answers with neither OK nor a warning returns [`Error::Numerical`] with status and log.
 pub struct Slave {
     core: Rc<FmuComponent>,
+    /// What FMI 3.0 needs to be told at other times.
+    late: LateCalls,
 }
 
 impl Slave {
@@ -75,19 +83,9 @@ impl Slave {
             step_finished: None,
             environment: std::ptr::from_ref(&*log).cast_mut().cast::<c_void>(),
         });
-        const CO_SIMULATION: Int = 1;
-        // SAFETY: C strings and callbacks live through the call, callbacks and log as long as the instance
-        let component = unsafe {
-            (loaded.binary.functions.instantiate)(
-                c_name.as_ptr(),
-                CO_SIMULATION,
-                c_guid.as_ptr(),
-                c_resources.as_ptr(),
-                &raw const *callbacks,
-                0,
-                Int::from(logging),
-            )
-        };
+        let functions = &loaded.binary.functions;
+        let texts = [c_name.as_ptr(), c_guid.as_ptr(), c_resources.as_ptr()];
+        let component = instantiated(functions, texts, &callbacks, logging);
         if component.is_null() {
             return Err(Error::Numerical(with_log(
                 format!("`{name}` was not instantiated"),
@@ -102,6 +100,7 @@ impl Slave {
                 _callbacks: callbacks,
                 log,
             }),
+            late: LateCalls::new(&loaded.description),
         })
     }
 
@@ -136,23 +135,53 @@ impl Slave {
         status
     }
 
-    fn good(&self, name: &str, call: impl FnOnce(&Functions, Component) -> Int) -> Result<()> {
-        let status = self.status(call);
+    fn answered(&self, suffix: &str, status: Status) -> Result<()> {
         if status.is_good() {
             Ok(())
         } else {
-            Err(self.failed(name, status))
+            Err(self.failed(suffix, status))
         }
     }
 
-    fn failed(&self, name: &str, status: Status) -> Error {
+    /// A function of both versions.
+    fn good(
+        &self,
+        suffix: &str,
+        call: impl FnOnce(&SharedFunctions, Component) -> Int,
+    ) -> Result<()> {
+        self.answered(suffix, self.status(|f, c| call(&f.shared, c)))
+    }
+
+    /// A function of FMI 2.0.
+    fn good_two(
+        &self,
+        suffix: &str,
+        call: impl FnOnce(&Fmi2Functions, Component) -> Int,
+    ) -> Result<()> {
+        match &self.functions().own {
+            OwnFunctions::Two(own) => self.answered(suffix, self.status(|_, c| call(own, c))),
+            OwnFunctions::Three(_) => Err(Error::input(
+                format!("fmi2{suffix}"),
+                "an FMU of FMI 2.0",
+                "one of FMI 3.0",
+            )),
+        }
+    }
+
+    /// A function as the version of the FMU spells it.
+    pub(super) fn name_of(&self, suffix: &str) -> String {
+        spelt(suffix, self.model_description().is_fmi3())
+    }
+
+    fn failed(&self, suffix: &str, status: Status) -> Error {
+        let name = self.name_of(suffix);
         Error::Numerical(with_log(
             format!("{name} answered {status:?}"),
             &self.core.log.messages(),
         ))
     }
 
-    /// `fmi2SetupExperiment`: times in s.
+    /// `fmi2SetupExperiment`: times in s. In FMI 3.0 they go along with the next call.
     ///
     /// # Errors
     /// [`Error::Numerical`] with status and log when the answer is neither OK nor a warning.
@@ -162,8 +191,12 @@ impl Slave {
         stop_s: Option<f64>,
         tolerance: Option<f64>,
     ) -> Result<()> {
+        if self.model_description().is_fmi3() {
+            self.late.experiment(start_s, stop_s, tolerance);
+            return Ok(());
+        }
         // SAFETY: plain values; so for every call below, with slices of the stated length
-        self.good("fmi2SetupExperiment", |f, c| unsafe {
+        self.good_two("SetupExperiment", |f, c| unsafe {
             (f.setup_experiment)(
                 c,
                 Int::from(tolerance.is_some()),
@@ -177,16 +210,21 @@ impl Slave {
 
     /// `fmi2EnterInitializationMode`.
     pub fn enter_initialization(&mut self) -> Result<()> {
+        let suffix = "EnterInitializationMode";
+        if let OwnFunctions::Three(own) = &self.functions().own {
+            let status = self.status(|_, c| self.late.enter_initialization(own, c));
+            self.answered(suffix, status)?;
+            self.late.begun = true;
+            return Ok(());
+        }
         // SAFETY: the component lives; plain values
-        self.good("fmi2EnterInitializationMode", |f, c| unsafe {
-            (f.enter_initialization_mode)(c)
-        })
+        self.good_two(suffix, |f, c| unsafe { (f.enter_initialization_mode)(c) })
     }
 
     /// `fmi2ExitInitializationMode`.
     pub fn exit_initialization(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
-        self.good("fmi2ExitInitializationMode", |f, c| unsafe {
+        self.good("ExitInitializationMode", |f, c| unsafe {
             (f.exit_initialization_mode)(c)
         })
     }
@@ -200,26 +238,33 @@ impl Slave {
         if status.is_good() || status == Status::Discard {
             Ok(status)
         } else {
-            Err(self.failed("fmi2DoStep", status))
+            Err(self.failed("DoStep", status))
         }
     }
 
     /// As [`Slave::do_step`], whatever the answer.
     pub(crate) fn try_step(&mut self, time_s: f64, step_s: f64) -> Status {
-        // SAFETY: the component lives; plain values
-        self.status(|f, c| unsafe { (f.do_step)(c, time_s, step_s, 1) })
+        match &self.functions().own {
+            OwnFunctions::Two(own) => {
+                // SAFETY: the component lives; plain values
+                self.status(|_, c| unsafe { (own.do_step)(c, time_s, step_s, 1) })
+            }
+            OwnFunctions::Three(own) => self.step_of_three(own, time_s, step_s),
+        }
     }
 
     /// `fmi2Terminate`.
     pub fn terminate(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
-        self.good("fmi2Terminate", |f, c| unsafe { (f.terminate)(c) })
+        self.good("Terminate", |f, c| unsafe { (f.terminate)(c) })
     }
 
     /// `fmi2Reset`.
     pub fn reset(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
-        self.good("fmi2Reset", |f, c| unsafe { (f.reset)(c) })
+        self.good("Reset", |f, c| unsafe { (f.reset)(c) })?;
+        self.late = LateCalls::new(self.model_description());
+        Ok(())
     }
 
     /// Value of the variable of that name, whatever its type.
@@ -268,6 +313,42 @@ impl Slave {
 
     fn lookup(&self, name: &str) -> Result<(VariableType, u32)> {
         find(self.model_description(), name).map(|v| (v.kind, v.value_reference))
+    }
+}
+
+/// A new component, or null; `texts` are name, fingerprint and place of the resources.
+fn instantiated(
+    functions: &Functions,
+    [name, guid, resources]: [Text; 3],
+    callbacks: &CallbackFunctions,
+    logging: bool,
+) -> Component {
+    const CO_SIMULATION: Int = 1;
+    let log = Int::from(logging);
+    match &functions.own {
+        // SAFETY: C strings and callbacks live through the call, callbacks and log as long as the instance
+        OwnFunctions::Two(own) => unsafe {
+            (own.instantiate)(name, CO_SIMULATION, guid, resources, callbacks, 0, log)
+        },
+        // SAFETY: as above
+        OwnFunctions::Three(own) => unsafe {
+            let (none, environment) = (std::ptr::null(), callbacks.environment);
+            let log = u8::from(logging);
+            (own.instantiate)(
+                name,
+                guid,
+                resources,
+                0,
+                log,
+                0,
+                0,
+                none,
+                0,
+                environment,
+                collect_plain,
+                none.cast(),
+            )
+        },
     }
 }
 

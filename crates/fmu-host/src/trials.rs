@@ -96,12 +96,16 @@ fn versions(fmu: &Fmu) -> Result<String> {
         types_platform: platform,
         standard: version,
     } = fmu.versions()?;
-    if platform == "default" && version == "2.0" {
+    let expected = match fmu.description.is_fmi3() {
+        false => version == "2.0",
+        true => version.starts_with("3."),
+    };
+    if platform == "default" && expected {
         Ok(format!("platform {platform}, version {version}"))
     } else {
         Err(Error::input(
-            "fmi2GetTypesPlatform, fmi2GetVersion",
-            "`default`, `2.0`",
+            "fmi2GetTypesPlatform, fmi2GetVersion, fmi3GetVersion",
+            "`default`, the version of the description",
             format!("`{platform}`, `{version}`"),
         ))
     }
@@ -297,7 +301,8 @@ fn changing_steps(plan: &Plan<'_>) -> Result<String> {
         }
         if slave.do_step(time, step)? == Status::Discard {
             return Err(Error::Numerical(format!(
-                "fmi2DoStep discarded the step from {time} s over {step} s"
+                "{} discarded the step from {time} s over {step} s",
+                slave.name_of("DoStep")
             )));
         }
         time += step;

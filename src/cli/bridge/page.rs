@@ -20,7 +20,6 @@ pub(super) fn leave(
     out.stage(SUMMARY)?;
     let summary = BridgeSummary::of(ran, study, results, verdict, out.targets());
     out.write_json(SUMMARY, &summary)?;
-    let page = report::page(out.staging(), &out.target(""))?;
-    out.write(REPORT, page)?;
+    report::leave(out)?;
     Ok(summary)
 }

@@ -1,4 +1,4 @@
-//! `aerodeck fmu check`: static checks and a run of any FMI 2.0 co-simulation FMU.
+//! `aerodeck fmu check`: static checks and a run of any co-simulation FMU, FMI 2.0 or 3.0.
 
 use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
@@ -7,7 +7,7 @@ use crate::fmu::importer::{CheckReport, Fmu};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Check any FMI 2.0 co-simulation FMU and step it; fails when something is wrong
+/// Check any co-simulation FMU (FMI 2.0 or 3.0) and step it; fails when something is wrong
 ///
 /// The code of the FMU runs in this process, with all your rights: check an archive that you do not trust with --no-run.
 ///

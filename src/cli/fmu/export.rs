@@ -98,6 +98,9 @@ pub(crate) struct FmuExportArgs {
     /// Export a model that grows below its onset, at reduced frequencies that were not tested.
     #[arg(long)]
     allow_unstable: bool,
+    /// Leave out the reference runs, which `fmu replay` repeats.
+    #[arg(long)]
+    no_reference: bool,
 }
 
 /// What is packed.
@@ -226,6 +229,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         label: args.label()?,
         version: args.fmi,
         listing: args.listing(),
+        reference_runs: !args.no_reference,
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
     let runtimes = args.runtimes()?;

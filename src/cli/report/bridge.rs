@@ -1,7 +1,7 @@
 //! The page of a whole bridge, from the folder that `bridge flutter` or `demo --bridge` left.
 
 use super::curves::curves_of;
-use super::folder::{SUMMARY, digest, parsed};
+use super::folder::{PagePlace, SUMMARY, digest, parsed};
 use super::parts::{card, known, of_svg, round, row};
 use super::variables::variables_of;
 use crate::cli::bridge::files::{
@@ -20,7 +20,7 @@ use std::path::Path;
 const NAMED_SHARE: f64 = 1e-4;
 
 /// The page of the results in `folder`, whose summary is `text`.
-pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
+pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String> {
     let facts: BridgeSummary = parsed(&folder.join(SUMMARY), text)?;
     let file = BridgeFile::from_toml(&facts.bridge_file, folder.to_path_buf())?;
     // what stands there from other runs is not of these results
@@ -80,7 +80,8 @@ pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
         "bridge file".to_owned(),
         digest(facts.bridge_file.as_bytes()),
     ));
-    for name in [BRIDGE_FMU, CURVES] {
+    let fmu = (place == PagePlace::Folder).then_some(BRIDGE_FMU);
+    for name in fmu.into_iter().chain([CURVES]) {
         page.hashes
             .extend(read(name).map(|bytes| (name.to_owned(), digest(&bytes))));
     }

@@ -1,5 +1,6 @@
 use super::*;
-use std::io::Read;
+use std::io::{Cursor, Read};
+use zip::CompressionMethod;
 
 fn model(kind: &str) -> TrainedModel {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/models/{kind}.json"));
@@ -28,11 +29,25 @@ fn archives_are_reproducible_and_complete() {
         names,
         [
             binary.as_str(),
+            "documentation/fmi-ls-ref.txt",
             "documentation/index.html",
             "documentation/licenses/LICENSE-APACHE.txt",
             "documentation/licenses/LICENSE-MIT.txt",
             "documentation/licenses/THIRD-PARTY.txt",
             "documentation/licenses/license.txt",
+            "extra/org.fmi-standard.fmi-ls-ref/above_in.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/above_out.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/as_exported.ssv",
+            "extra/org.fmi-standard.fmi-ls-ref/at_in.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/at_out.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/below_in.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/below_out.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml",
+            "extra/org.fmi-standard.fmi-ls-ref/replay.py",
+            "extra/org.fmi-standard.fmi-ls-ref/smoke_test.exp",
+            "extra/org.fmi-standard.fmi-ls-ref/smoke_test_in.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/smoke_test_out.csv",
+            "extra/org.fmi-standard.fmi-ls-ref/validation.exp",
             "model.png",
             "modelDescription.xml",
             "resources/model.json",
@@ -228,4 +243,30 @@ fn control_characters_stay_out_of_the_description() {
         assert_eq!(root.attribute("author"), Some("author"));
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
     }
+}
+
+#[test]
+fn a_report_enters_an_archive_and_its_manifest() {
+    let bytes = package(&model("rational"), &embedded(), GrowthPolicy::Refuse).unwrap();
+    let with = archive_file::with_report(&bytes, "<html>of the study</html>").unwrap();
+    let mut zip = zip::ZipArchive::new(Cursor::new(&with)).unwrap();
+    let mut text = |name: &str| {
+        let mut text = String::new();
+        let mut entry = zip.by_name(name).unwrap();
+        entry.read_to_string(&mut text).unwrap();
+        text
+    };
+    let folder = "extra/org.fmi-standard.fmi-ls-ref";
+    assert!(text(&format!("{folder}/report.html")).contains("of the study"));
+    let manifest = text(&format!("{folder}/fmi-ls-manifest.xml"));
+    assert!(
+        manifest.contains("source=\"report.html\" role=\"report\""),
+        "{manifest}"
+    );
+    let without = Export {
+        reference_runs: false,
+        ..GrowthPolicy::Refuse.into()
+    };
+    let bytes = package(&model("rational"), &embedded(), without).unwrap();
+    assert_eq!(archive_file::with_report(&bytes, "").unwrap(), bytes);
 }

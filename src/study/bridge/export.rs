@@ -70,6 +70,7 @@ impl BridgeStudy {
                 .transpose()?,
             verdict: None,
             listing: Listing::All,
+            reference_runs: true,
         })
     }
 

@@ -4,10 +4,11 @@ use super::super::description::{FILE, ModelDescription};
 use super::super::findings::FmuFindings;
 
 pub(super) fn head(d: &ModelDescription, f: &mut FmuFindings) {
-    if !d.fmi_version.is_empty() && d.fmi_version != "2.0" {
+    let known = d.fmi_version == "2.0" || d.fmi_version.starts_with("3.");
+    if !d.fmi_version.is_empty() && !known {
         f.error(
             format!("{FILE}, fmiVersion"),
-            "2.0 (also for 2.0.1 to 2.0.5)",
+            "2.0 (also for 2.0.1 to 2.0.5), or 3.0",
             format!("`{}`", d.fmi_version),
         );
     }

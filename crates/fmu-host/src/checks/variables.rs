@@ -33,7 +33,11 @@ pub(super) fn names(d: &ModelDescription, f: &mut FmuFindings) {
 /// Names of the convention `structured` (section 2.2.9): dotted identifiers with indices, `der(name)`, `der(name, n)`.
 fn structured(name: &str) -> bool {
     if let Some(inner) = name.strip_prefix("der(").and_then(|n| n.strip_suffix(')')) {
-        let (inner, order) = inner.split_once(',').unwrap_or((inner, "1"));
+        // a comma inside brackets stands between indices
+        let order = inner
+            .rsplit_once(',')
+            .filter(|(_, order)| !order.contains(']'));
+        let (inner, order) = order.unwrap_or((inner, "1"));
         return structured(inner.trim()) && order.trim().parse::<u32>().is_ok();
     }
     name.split('.').all(|part| {

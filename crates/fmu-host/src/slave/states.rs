@@ -16,7 +16,10 @@ impl Drop for FmuState {
         if !self.core.fatal.get() {
             // SAFETY: a state of this component, which still lives
             unsafe {
-                (self.core.functions().free_fmu_state)(self.core.component, &mut self.pointer);
+                (self.core.functions().shared.free_fmu_state)(
+                    self.core.component,
+                    &mut self.pointer,
+                );
             }
         }
     }
@@ -27,7 +30,7 @@ impl Slave {
     pub(crate) fn get_state(&self) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
         // SAFETY: the component lives, and the state is its own
-        self.good("fmi2GetFMUstate", |f, c| unsafe {
+        self.good("GetFMUstate", |f, c| unsafe {
             (f.get_fmu_state)(c, &mut pointer)
         })?;
         Ok(self.state(pointer))
@@ -47,7 +50,7 @@ impl Slave {
     pub(crate) fn set_state(&mut self, state: &FmuState) -> Result<()> {
         self.own(state)?;
         // SAFETY: the component lives, and the state is its own
-        self.good("fmi2SetFMUstate", |f, c| unsafe {
+        self.good("SetFMUstate", |f, c| unsafe {
             (f.set_fmu_state)(c, state.pointer)
         })
     }
@@ -72,12 +75,12 @@ impl Slave {
         self.own(state)?;
         let mut size = 0;
         // SAFETY: the component lives, and the state is its own
-        self.good("fmi2SerializedFMUstateSize", |f, c| unsafe {
+        self.good("SerializedFMUstateSize", |f, c| unsafe {
             (f.serialized_fmu_state_size)(c, state.pointer, &mut size)
         })?;
         let mut bytes = vec![0; size];
         // SAFETY: the component lives, and the state is its own
-        self.good("fmi2SerializeFMUstate", |f, c| unsafe {
+        self.good("SerializeFMUstate", |f, c| unsafe {
             (f.serialize_fmu_state)(c, state.pointer, bytes.as_mut_ptr(), size)
         })?;
         Ok(bytes)
@@ -87,7 +90,7 @@ impl Slave {
     pub(crate) fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
         // SAFETY: the component lives, and the state is its own
-        self.good("fmi2DeSerializeFMUstate", |f, c| unsafe {
+        self.good("DeSerializeFMUstate", |f, c| unsafe {
             (f.de_serialize_fmu_state)(c, bytes.as_ptr(), bytes.len(), &mut pointer)
         })?;
         Ok(self.state(pointer))

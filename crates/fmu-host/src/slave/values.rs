@@ -20,8 +20,12 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
+        if let Some(three) = self.three() {
+            values.copy_from_slice(&three.numbers(references)?);
+            return Ok(());
+        }
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2GetReal", |f, c| unsafe {
+        self.good_two("GetReal", |f, c| unsafe {
             (f.get_real)(
                 c,
                 references.as_ptr(),
@@ -33,9 +37,13 @@ impl Slave {
 
     /// `fmi2GetInteger`.
     pub(crate) fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
+        if let Some(three) = self.three() {
+            let numbers = three.numbers(references)?;
+            return Ok(numbers.into_iter().map(|v| v as i32).collect());
+        }
         let mut values = vec![0; references.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2GetInteger", |f, c| unsafe {
+        self.good_two("GetInteger", |f, c| unsafe {
             (f.get_integer)(
                 c,
                 references.as_ptr(),
@@ -48,9 +56,13 @@ impl Slave {
 
     /// `fmi2GetBoolean`.
     pub(crate) fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
+        if let Some(three) = self.three() {
+            let numbers = three.numbers(references)?;
+            return Ok(numbers.into_iter().map(|v| v != 0.0).collect());
+        }
         let mut values: Vec<Int> = vec![0; references.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2GetBoolean", |f, c| unsafe {
+        self.good_two("GetBoolean", |f, c| unsafe {
             (f.get_boolean)(
                 c,
                 references.as_ptr(),
@@ -63,9 +75,12 @@ impl Slave {
 
     /// `fmi2GetString`.
     pub(crate) fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
+        if let Some(three) = self.three() {
+            return three.texts(references);
+        }
         let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2GetString", |f, c| unsafe {
+        self.good_two("GetString", |f, c| unsafe {
             (f.get_string)(
                 c,
                 references.as_ptr(),
@@ -83,8 +98,11 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
         same_length(references, values.len())?;
+        if self.three().is_some() {
+            return self.set_numbers(references, values);
+        }
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2SetReal", |f, c| unsafe {
+        self.good_two("SetReal", |f, c| unsafe {
             (f.set_real)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
     }
@@ -92,8 +110,12 @@ impl Slave {
     /// `fmi2SetInteger`.
     pub(crate) fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
         same_length(references, values.len())?;
+        if self.three().is_some() {
+            let numbers: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
+            return self.set_numbers(references, &numbers);
+        }
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2SetInteger", |f, c| unsafe {
+        self.good_two("SetInteger", |f, c| unsafe {
             (f.set_integer)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
     }
@@ -101,9 +123,13 @@ impl Slave {
     /// `fmi2SetBoolean`.
     pub(crate) fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
         same_length(references, values.len())?;
+        if self.three().is_some() {
+            let numbers: Vec<f64> = values.iter().map(|v| f64::from(u8::from(*v))).collect();
+            return self.set_numbers(references, &numbers);
+        }
         let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2SetBoolean", |f, c| unsafe {
+        self.good_two("SetBoolean", |f, c| unsafe {
             (f.set_boolean)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
     }
@@ -122,8 +148,11 @@ impl Slave {
             })
             .collect::<Result<_>>()?;
         let values: Vec<Text> = owned.iter().map(|v| v.as_ptr()).collect();
+        if let Some(three) = self.three() {
+            return three.set_texts(references, &values);
+        }
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2SetString", |f, c| unsafe {
+        self.good_two("SetString", |f, c| unsafe {
             (f.set_string)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
     }
@@ -136,9 +165,12 @@ impl Slave {
         seed: &[f64],
     ) -> Result<Vec<f64>> {
         same_length(knowns, seed.len())?;
+        if let Some(three) = self.three() {
+            return three.directional_derivative(unknowns, knowns, seed);
+        }
         let mut values = vec![0.0; unknowns.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2GetDirectionalDerivative", |f, c| unsafe {
+        self.good_two("GetDirectionalDerivative", |f, c| unsafe {
             (f.get_directional_derivative)(
                 c,
                 unknowns.as_ptr(),
@@ -159,9 +191,12 @@ impl Slave {
         orders: &[i32],
     ) -> Result<Vec<f64>> {
         same_length(references, orders.len())?;
+        if let Some(three) = self.three() {
+            return three.output_derivatives(references, orders);
+        }
         let mut values = vec![0.0; references.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
-        self.good("fmi2GetRealOutputDerivatives", |f, c| unsafe {
+        self.good_two("GetRealOutputDerivatives", |f, c| unsafe {
             (f.get_real_output_derivatives)(
                 c,
                 references.as_ptr(),

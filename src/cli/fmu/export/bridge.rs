@@ -113,6 +113,7 @@ impl FmuExportArgs {
         file: &str,
     ) -> Result<Answer> {
         export.listing = self.listing();
+        export.reference_runs = !self.no_reference;
         export.verdict = Some(verdict.clone());
         let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let path = self.place(file);
@@ -156,6 +157,7 @@ impl FmuExportArgs {
         *prediction = self.prediction.unwrap_or(*prediction);
         let mut export = forces.packed(&self.label()?, self.fmi);
         export.listing = self.listing();
+        export.reference_runs = !self.no_reference;
         let bytes = package(&forces.model, &self.runtimes()?, export)?;
         let path = self.place("bridge_force.fmu");
         write_archive(&path, &bytes, self.overwrite())?;

@@ -1,0 +1,135 @@
+//! `aerodeck fmu replay`: the runs that an archive carries, repeated.
+
+use crate::cli::answer::Answer;
+use crate::cli::progress::Progress;
+use crate::error::{Error, Result};
+use crate::fmu::importer::{Fmu, LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Repeat the reference runs that an FMU carries (FMI-LS-REF) and say whether it does what its exporter meant
+///
+/// Every binary that loads on this machine is run; fails when one differs by more than rounding. Its code runs in this process, with
+/// all your rights.
+///
+/// Example: aerodeck fmu replay deck_section.fmu
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct FmuReplayArgs {
+    /// The FMU.
+    fmu: PathBuf,
+}
+
+/// What the binary of one platform did.
+#[derive(Serialize)]
+struct PlatformReplay {
+    platform: String,
+    /// Whether it loads on this machine.
+    ran: bool,
+    /// Whether every run was the same but for rounding.
+    same: bool,
+    runs: Vec<ReplayedRun>,
+    /// Why it could not be run to its end.
+    refusal: Option<String>,
+}
+
+/// Runs the command.
+pub(super) fn run(args: &FmuReplayArgs, progress: &Progress) -> Result<Answer> {
+    let stage = progress.stage("repeating the runs of the FMU");
+    let fmu = Fmu::open(&args.fmu)?;
+    if !fmu.entries().iter().any(|e| e == LS_REF_MANIFEST) {
+        let expected =
+            format!("reference runs in {LS_REF} (`fmu export` without --no-reference packs them)");
+        return Err(Error::input("archive", expected, "none").in_file(&args.fmu));
+    }
+    let mut platforms = Vec::new();
+    for platform in fmu.platforms() {
+        let on = fmu.on(&platform);
+        platforms.push(match on.binary() {
+            Err(_) => PlatformReplay {
+                platform,
+                ran: false,
+                same: false,
+                runs: Vec::new(),
+                refusal: None,
+            },
+            Ok(_) => replayed(&on, platform),
+        });
+    }
+    drop(stage);
+    // says which there are
+    if platforms.iter().all(|p| !p.ran) {
+        fmu.binary()?;
+    }
+    let same = platforms.iter().all(|p| !p.ran || p.same);
+    let file = args.fmu.display().to_string();
+    let json =
+        serde_json::json!({ "fmu": file, "as_the_exporter_meant": same, "platforms": platforms });
+    Ok(Answer::new(text(&file, &platforms), &json)?.passed_if(same))
+}
+
+fn replayed(fmu: &Fmu, platform: String) -> PlatformReplay {
+    let (runs, refusal) = match replay(fmu) {
+        Ok(runs) => (runs, None),
+        Err(e) => (Vec::new(), Some(e.to_string())),
+    };
+    PlatformReplay {
+        platform,
+        ran: true,
+        same: refusal.is_none() && runs.iter().all(|r| r.same),
+        runs,
+        refusal,
+    }
+}
+
+/// The run that is furthest off.
+fn worst(runs: &[ReplayedRun]) -> Option<&ReplayedRun> {
+    runs.iter()
+        .max_by(|a, b| a.difference.total_cmp(&b.difference))
+}
+
+fn difference(worst: Option<&ReplayedRun>) -> String {
+    match worst {
+        Some(w) if w.difference > 0.0 => format!(
+            "largest difference {:.1e} of the largest value (`{}` at {} s of the run `{}`)",
+            w.difference, w.variable, w.time_s, w.name
+        ),
+        _ => "largest difference 0, to the last bit".to_owned(),
+    }
+}
+
+fn text(file: &str, platforms: &[PlatformReplay]) -> String {
+    let mut text = String::new();
+    for p in platforms {
+        let _ = match (p.ran, &p.refusal, worst(&p.runs)) {
+            (false, ..) => writeln!(
+                text,
+                "{}: not run, it does not load on this machine",
+                p.platform
+            ),
+            (true, Some(why), _) => {
+                writeln!(
+                    text,
+                    "{file}, {}: not as the exporter meant: {why}",
+                    p.platform
+                )
+            }
+            (true, None, Some(w)) if !w.same => writeln!(
+                text,
+                "{file}, {}: not as the exporter meant: in the run `{}` `{}` is {} at {} s, and the archive says {}: they differ by \
+                 {:.1e} of its largest value, and rounding makes 1e-9 at most",
+                p.platform, w.name, w.variable, w.found, w.time_s, w.expected, w.difference
+            ),
+            (true, None, worst) => writeln!(
+                text,
+                "{file}, {}: as the exporter meant: {} runs, {} values, {}",
+                p.platform,
+                p.runs.len(),
+                p.runs.iter().map(|r| r.values).sum::<usize>(),
+                difference(worst)
+            ),
+        };
+    }
+    text
+}
