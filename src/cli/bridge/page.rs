@@ -18,7 +18,7 @@ pub(super) fn leave(
 ) -> Result<BridgeSummary> {
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
-    let summary = BridgeSummary::of(ran, study, results, verdict, out.targets());
+    let summary = BridgeSummary::of(ran, study, results, verdict, out.targets())?;
     out.write_json(SUMMARY, &summary)?;
     let page = report::page(out.staging(), &out.target(""))?;
     out.write(REPORT, page)?;
