@@ -18,6 +18,7 @@ mod heat_map;
 mod labels;
 mod legend;
 mod metrics_figure;
+mod page_head;
 mod panel;
 mod processing_figures;
 #[cfg(feature = "png")]
@@ -30,6 +31,7 @@ mod sections_page;
 mod series;
 mod study_page;
 mod style;
+mod summary_figure;
 mod transfer_figure;
 mod wind_figures;
 

@@ -47,6 +47,7 @@ pub use wind::{CoefficientsBlock, example_wind_study_text};
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
 use crate::error::{Error, Place, Result, finite, of_schema, positive};
+use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
@@ -97,6 +98,9 @@ pub struct Study {
     /// What to export.
     #[serde(default)]
     pub export: ExportBlock,
+    /// Whose report it is.
+    #[serde(default, skip_serializing_if = "ReportBlock::is_empty")]
+    pub report: ReportBlock,
     /// Directory of the file, against which paths in it are read.
     #[serde(skip)]
     pub directory: PathBuf,

@@ -1,6 +1,7 @@
 //! Results in words and tables, for people.
 
 use super::headline;
+use super::output::{Written, list};
 use super::summary::Summary;
 use super::wrapping::beside;
 use crate::error::counted;
@@ -11,25 +12,71 @@ use crate::study::{
 };
 use std::fmt::Write as _;
 
-/// The whole chain.
+/// The whole chain: the answer, and what stands beside it; everything else with `verbose`, and on the page.
 pub(crate) fn chain(
     study: &Study,
     deck: &Deck,
     summary: &Summary,
-    files: &str,
+    written: &[Written],
     verbose: bool,
 ) -> String {
     // what was assumed in reading the deck stands beside the deck
-    let mut text = headline::account(&study.name, &summary.verdict, &deck.warnings());
-    let _ = writeln!(
-        text,
-        "Answer    of the model {}, which the FMU holds; everything on one page: {}",
-        summary.model,
-        super::report::folder::REPORT
-    );
-    let s = &study.section;
+    let assumed = deck.warnings();
+    let mut text = match verbose {
+        true => headline::account(&study.name, &summary.verdict, &assumed),
+        false => headline::short(&study.name, &summary.verdict),
+    };
     let _ = writeln!(text, "Deck      {}", deck.description());
-    text.push_str(&deck_warnings(deck));
+    let rest = details(study, deck, summary);
+    if verbose {
+        text.push_str(&rest);
+    } else {
+        let kind = summary.fits.iter().find(|f| f.model == summary.model);
+        let kind = kind.map_or("", |f| &f.report.method);
+        let _ = writeln!(
+            text,
+            "Model     {} ({kind}), held by the FMU\n",
+            summary.model
+        );
+        text.push_str(&table(
+            &summary.onsets,
+            &[],
+            &summary.unstable,
+            &summary.stable,
+        ));
+        let undetermined = summary.undetermined.iter();
+        for o in undetermined {
+            let _ = writeln!(text, "{}: no onset to state", o.at.model);
+        }
+    }
+    text.push_str(&failures(&summary.failed));
+    let warnings = rest.lines().filter(|l| l.starts_with("warning: ")).count();
+    let more = match warnings {
+        0 => "fits, intervals, divergence".to_owned(),
+        some => format!("{}, fits, intervals, divergence", counted(some, "warning")),
+    };
+    text + "\n" + &ending(written, &more, verbose)
+}
+
+/// Where the page stands, files that were left, and what else there is; with `verbose` all files.
+pub(super) fn ending(written: &[Written], more: &str, verbose: bool) -> String {
+    let page = |w: &&Written| w.path.ends_with(super::report::folder::REPORT);
+    let page = written.iter().find(page).map(|w| w.path.display());
+    let mut text = page.map_or(String::new(), |page| format!("Page      {page}\n"));
+    if verbose {
+        return text + "Files\n" + &list(written);
+    }
+    let kept: Vec<Written> = written.iter().filter(|w| w.kept).cloned().collect();
+    text.push_str(&list(&kept));
+    let files = counted(written.len(), "file");
+    let _ = writeln!(text, "More      {more} and {files} with --verbose");
+    text
+}
+
+/// What a reader asks for who does not take the answer as it is.
+fn details(study: &Study, deck: &Deck, summary: &Summary) -> String {
+    let mut text = deck_warnings(deck);
+    let s = &study.section;
     let _ = writeln!(
         text,
         "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre",
@@ -38,55 +85,20 @@ pub(crate) fn chain(
         s.torsion.inertia_kg_m2_m,
         s.air_density_kg_m3
     );
-    let _ = writeln!(text, "Speeds    {}", study.speeds().explain());
-    text.push('\n');
-    for fit_summary in &summary.fits {
-        let all = fit(
-            &fit_summary.model,
-            &fit_summary.report,
-            &fit_summary.uncertainty,
-        );
-        text.push_str(&if verbose { all } else { without_remarks(&all) });
+    let _ = writeln!(text, "Speeds    {}\n", study.speeds().explain());
+    for of in &summary.fits {
+        text.push_str(&fit(&of.model, &of.report, &of.uncertainty));
     }
     text.push('\n');
-    text.push_str(&onsets(
-        &summary.onsets,
-        &summary.undetermined,
-        &summary.unstable,
-        &summary.stable,
-    ));
+    let (found, open) = (&summary.onsets, &summary.undetermined);
+    text.push_str(&onsets(found, open, &summary.unstable, &summary.stable));
     text.push_str(&growths(&summary.growth));
     text.push_str(&divergence(&summary.divergence));
     text.push_str(&deviations(&summary.deviations));
     if let Some(stepped) = &summary.stepped {
         let _ = writeln!(text, "{}", stepped.explain());
     }
-    text.push_str(&failures(&summary.failed));
-    let _ = writeln!(text, "\nFiles");
-    text.push_str(files);
     text
-}
-
-/// The account of a fit with the number of its remarks in their place.
-fn without_remarks(fit: &str) -> String {
-    let remark = |line: &&str| {
-        let text = line.trim_start();
-        text.starts_with("held: ") || text.starts_with("note: ")
-    };
-    let count = fit.lines().filter(remark).count();
-    let mut short: String = fit
-        .lines()
-        .filter(|line| !remark(line))
-        .flat_map(|line| [line, "\n"])
-        .collect();
-    if count > 0 {
-        let _ = writeln!(
-            short,
-            "          {} more with --verbose",
-            counted(count, "remark")
-        );
-    }
-    short
 }
 
 /// One fit.
@@ -108,9 +120,9 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
     let poles: Vec<String> = distinct_poles(report);
     let _ = writeln!(
         text,
-        "          residual rms {}; condition {:.0}{}",
+        "          residual rms {}; {}{}",
         residuals.join(", "),
-        report.condition,
+        condition(report.condition),
         if poles.is_empty() {
             String::new()
         } else {
@@ -142,6 +154,13 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         let _ = writeln!(text, "          note: {note}");
     }
     text
+}
+
+/// How well the data tell the coefficients apart, in words.
+pub(crate) fn condition(number: f64) -> String {
+    format!(
+        "condition number {number:.0}: errors of the data may grow so much in single coefficients, not in the forces"
+    )
 }
 
 /// What held the fit back, what that costs and what it does to the onset.
@@ -190,8 +209,30 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
     }
 }
 
-/// The onsets side by side.
+/// The onsets side by side, with what is to be said of each.
 pub(crate) fn onsets(
+    onsets: &[Onset],
+    undetermined: &[Onset],
+    unstable: &[UnstableStart],
+    stable: &[OnsetSummary],
+) -> String {
+    let mut text = table(onsets, undetermined, unstable, stable);
+    let warnings = |model: &str, all: &[String]| -> String {
+        let all = all.iter();
+        all.map(|w| format!("warning: {model}: {w}\n")).collect()
+    };
+    for o in onsets {
+        text.extend(without_interval(o));
+        text.push_str(&warnings(&o.at.model, &o.warnings));
+    }
+    for s in unstable {
+        text.push_str(&warnings(&s.at.model, &s.warnings));
+    }
+    text
+}
+
+/// A line per model and route.
+fn table(
     onsets: &[Onset],
     undetermined: &[Onset],
     unstable: &[UnstableStart],
@@ -219,22 +260,11 @@ pub(crate) fn onsets(
     for s in stable {
         without(&s.model, s.method, &s.explain());
     }
-    let warnings = |model: &str, all: &[String]| -> String {
-        let all = all.iter();
-        all.map(|w| format!("warning: {model}: {w}\n")).collect()
-    };
-    for o in onsets {
-        text.extend(without_interval(o));
-        text.push_str(&warnings(&o.at.model, &o.warnings));
-    }
-    for s in unstable {
-        text.push_str(&warnings(&s.at.model, &s.warnings));
-    }
     text
 }
 
 /// The numbers of an onset, in the columns of the table.
-fn figures(o: &Onset) -> String {
+pub(super) fn figures(o: &Onset) -> String {
     format!(
         "{:>8.3} {:>15} {:>7.4} {:>6.2}  {}",
         o.at.speed_m_s,

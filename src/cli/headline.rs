@@ -1,8 +1,9 @@
 //! What stands around the verdict of a study: the onset it is about, and how the other models compare.
 
+use crate::error::counted;
 use crate::flutter::{Onset, OnsetMethod};
 use crate::study::{FlutterStudy, SteppedOnset};
-use crate::verdict::{Severity, Verdict};
+use crate::verdict::{Doubt, Severity, Verdict};
 use std::fmt::Write as _;
 
 /// The onset of the model `name` by eigenvalues, if the data determine it.
@@ -14,6 +15,18 @@ pub(super) fn own_onset<'a>(results: &'a FlutterStudy, name: &str) -> Option<&'a
 /// [`account`] of a verdict where there is one.
 pub(super) fn stated(name: &str, verdict: Option<&Verdict>) -> String {
     verdict.map_or(String::new(), |v| account(name, v, &[]))
+}
+
+/// The verdict in words: the first line, why, every severe doubt, and how many others there are.
+pub(super) fn short(name: &str, verdict: &Verdict) -> String {
+    let severe = |d: &&Doubt| d.severity == Severity::Severe;
+    let mut said = verdict.clone();
+    said.doubts.retain(|d| severe(&d));
+    let text = account(name, &said, &[]);
+    match verdict.doubts.len() - said.doubts.len() {
+        0 => text,
+        more => format!("{text}          {} on the page\n", counted(more, "note")),
+    }
 }
 
 /// The verdict in words: the first line, why, and every doubt that is not said elsewhere.

@@ -22,7 +22,7 @@ use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
 use folder::{PagePlace, REPORT, SUMMARY, SummaryKind, digest, parsed};
-use parts::{card, known, of_svg, round, row};
+use parts::{card, first_derivatives, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
 
@@ -87,13 +87,14 @@ fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> 
     let read = |name: &str| std::fs::read(folder.join(name)).ok();
     let mut page = of_summary(&summary, &study);
     page.figures = figures(&|name| std::fs::read_to_string(folder.join(name)).ok());
+    page.derivatives = first_derivatives(&mut page.figures);
     let fmu = folder.join(FMU_FILE);
     if fmu.exists() {
         page.fmu = FMU_FILE.to_owned();
         page.variables = variables_of(&fmu)?;
     }
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
-        (page.speeds, page.curves) = curves_of(&curves)?;
+        (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
     }
     page.live = live::sliders(&study, read(MODEL_FILE))?;
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
@@ -119,6 +120,7 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         kind: "study",
         beyond: "Amplitudes beyond the tests, turbulence and the third dimension are not part of this analysis.",
         generator: summary.generator.clone(),
+        of: study.report.dated(summary.date.as_deref()),
         verdict: verdict.into(),
         card: own.map_or(vec![], card),
         whose: format!(
@@ -210,7 +212,7 @@ fn fit(fit: &FitSummary) -> PageFit {
             k(report.tested_range.min),
             k(report.tested_range.max)
         ),
-        condition: format!("{:.0}", report.condition),
+        condition: super::account::condition(report.condition),
         entries: report.entries.iter().map(entry).collect(),
         remarks: held.chain(report.notes.iter().cloned()).collect(),
     }

@@ -2,10 +2,10 @@
 
 use super::answer::Answer;
 use super::common::StudyArgs;
-use super::output::{OutputDir, Written, list};
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::report;
-use super::report::folder::{REPORT, SUMMARY};
+use super::report::folder::{REPORT, SUMMARY, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
 use super::{account, evidence, headline, measured_forces, select, stages};
@@ -14,8 +14,8 @@ use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
 use crate::plausibility::sentences;
 use crate::study::{
-    Deck, FITS, FlutterStudy, OwnModel, RecordSet, StageFailure, SteppedOnset, Study,
-    TrainedWithReport, attempt, interval_of, section_evidence, stepped_onset, study_findings,
+    Deck, FlutterStudy, OwnModel, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
+    attempt, interval_of, section_evidence, stepped_onset, study_findings,
 };
 use crate::verdict::Verdict;
 use std::path::PathBuf;
@@ -274,6 +274,7 @@ impl StudyStages<'_> {
             comparisons: headline::comparisons(&results, stepped.as_ref(), name),
             study_file,
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
+            date: Some(today()?),
             study: study.name.clone(),
             deck: deck.description(),
             warnings: [deck.warnings(), sentences(&of_study)].concat(),
@@ -302,27 +303,11 @@ impl StudyStages<'_> {
         summary.files.sort();
         self.out.write_json(SUMMARY, &summary)?;
         report::leave(&mut self.out)?;
-        let written = shown(&self.out.commit()?);
+        let written = self.out.commit()?;
         let verbose = self.progress.verbose();
         let text = account::chain(&self.study, &self.deck, &summary, &written, verbose);
         Ok(Answer::new(text, &summary)?
             .passed_if(summary.failed.is_empty())
             .with_outcome_of(&summary.verdict))
     }
-}
-
-/// The files a reader looks for; records, models and fits are named by their folder.
-fn shown(written: &[Written]) -> String {
-    let top: Vec<Written> = written
-        .iter()
-        .filter(|w| {
-            !w.path.parent().is_some_and(|p| {
-                [stages::RECORDS, stages::MODELS, FITS]
-                    .iter()
-                    .any(|folder| p.ends_with(folder))
-            })
-        })
-        .cloned()
-        .collect();
-    list(&top)
 }

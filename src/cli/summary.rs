@@ -16,6 +16,9 @@ use std::path::PathBuf;
 pub(crate) struct Summary {
     /// Program and version.
     pub generator: String,
+    /// Day of the run, unless a file of an earlier version says none.
+    #[serde(default)]
+    pub date: Option<String>,
     /// Name of the study.
     pub study: String,
     /// File of the study in this folder.

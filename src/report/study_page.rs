@@ -1,8 +1,12 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
+use super::figure::Figure;
+use super::page_head::{at_edges, stated, with_contents};
 use super::sections_page::PageSection;
 use super::style::{COLOURS, branch_width, dash, outcome_colour};
+use super::summary_figure::summary_figure;
 use crate::error::{Error, Result};
+use crate::files::report_block::ReportBlock;
 use crate::verdict::{Outcome, Severity, Verdict};
 use askama::Template;
 use serde::Serialize;
@@ -38,6 +42,8 @@ pub(crate) struct PageFit {
 pub(crate) struct PageCurve {
     pub(crate) model: usize,
     pub(crate) branch: usize,
+    /// Whether it is one of the answer.
+    pub(crate) own: bool,
     pub(crate) label: String,
     /// Hz.
     pub(crate) frequency: Vec<Option<f64>>,
@@ -107,6 +113,7 @@ pub(crate) struct StudyPage {
     /// What is no part of the analysis, a sentence.
     pub(crate) beyond: &'static str,
     pub(crate) generator: String,
+    pub(crate) of: ReportBlock,
     pub(crate) verdict: PageVerdict,
     pub(crate) card: Vec<(String, String)>,
     /// Which of the models the answer is of, and why.
@@ -116,6 +123,8 @@ pub(crate) struct StudyPage {
     pub(crate) comparisons: Vec<String>,
     /// Further tables of the answer.
     pub(crate) sections: Vec<PageSection>,
+    /// The figure of derivatives in the summary.
+    pub(crate) derivatives: Option<PageFigure>,
     pub(crate) figures: Vec<PageFigure>,
     /// Tables behind the evidence.
     pub(crate) appendix: Vec<PageSection>,
@@ -142,6 +151,9 @@ pub(crate) struct StudyPage {
 #[derive(Template)]
 #[template(path = "study_report.html")]
 struct Page<'a> {
+    edges: String,
+    stated: Vec<(&'static str, &'a str)>,
+    curves: Option<Figure>,
     uplot_css: &'static str,
     uplot_js: &'static str,
     uplot_licence: &'static str,
@@ -179,6 +191,9 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
         false => charts(of).map_err(|e| failed(e.to_string()))?,
     };
     let page = Page {
+        edges: at_edges(&of.of, &of.title, &of.generator),
+        stated: stated(&of.of),
+        curves: summary_figure(of)?,
         uplot_css: UPLOT_CSS,
         uplot_js: UPLOT_JS,
         uplot_licence: UPLOT_LICENCE,
@@ -187,7 +202,8 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
         live: of.live.as_deref().map_or(String::new(), in_script),
         of,
     };
-    page.render().map_err(|e| failed(e.to_string()))
+    let page = page.render().map_err(|e| failed(e.to_string()))?;
+    Ok(with_contents(&page))
 }
 
 /// JSON as it may stand in a script: `<` cannot end it.

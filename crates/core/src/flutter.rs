@@ -41,7 +41,7 @@ pub use bridge_motion::{
     static_deflection,
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
-pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
+pub use curves::{FlutterCurves, ModeBranch, ModePoint, mode_in_words, trace_modes};
 pub use determinant::table_tested_from;
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::{AssumedAtRest, static_part};

@@ -8,5 +8,6 @@ pub mod derivatives;
 pub mod gusts;
 pub(crate) mod header_csv;
 pub mod lab;
+pub mod report_block;
 pub mod text;
 pub mod toml_lines;

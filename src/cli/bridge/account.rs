@@ -1,17 +1,74 @@
 //! The onset card of a bridge, in words.
 
+use crate::cli::account as section_account;
 use crate::cli::headline;
+use crate::cli::wrapping::beside;
 use crate::error::counted;
-use crate::flutter::{FlutterSearch, OnsetInterval};
+use crate::flutter::{FlutterSearch, OnsetInterval, mode_in_words};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
 /// Modes with less of the kinetic energy are not named on the card.
 const NAMED_SHARE: f64 = 1e-3;
+/// The same where nobody asked for more.
+const NAMED_IN_SHORT: f64 = 0.05;
+/// What a reader may ask for beside the answer.
+pub(super) const MORE: &str = "onset cards, fewer modes";
+
+/// The answer, and what stands beside it; the whole [`card`] with `verbose`, and on the page.
+pub(super) fn account(
+    study: &BridgeStudy,
+    results: &BridgeFlutter,
+    verdict: &Verdict,
+    verbose: bool,
+) -> String {
+    if verbose {
+        return card(study, results, verdict);
+    }
+    let mut text = headline::short(&study.file.name, verdict);
+    let bridge = &study.by_model;
+    let (nodes, modes) = (bridge.nodes.len(), bridge.modes.len());
+    let _ = writeln!(
+        text,
+        "Bridge    {}, {}\n",
+        counted(nodes, "node"),
+        counted(modes, "mode")
+    );
+    let _ = writeln!(
+        text,
+        "{:<34} {:>8} {:>15} {:>7} {:>6}  tested",
+        "Flutter onset by", "V m/s", "95 % interval", "f Hz", "V*"
+    );
+    for answer in &results.answers {
+        match &answer.search {
+            FlutterSearch::Onset(o) => {
+                let figures = section_account::figures(o);
+                let _ = writeln!(text, "{:<34} {figures}", answer.forces);
+            }
+            other => text.push_str(&beside(&answer.forces, &other.explain())),
+        }
+    }
+    let motion = results.answers.iter().rev().find_map(|a| a.motion.as_ref());
+    let modes = motion.map_or(&[][..], |m| &m.modes).iter();
+    let named = modes.filter(|m| m.energy_share >= NAMED_IN_SHORT);
+    let named = named.map(|m| format!("{} ({:.0} %)", m.mode, 100.0 * m.energy_share));
+    let named: Vec<String> = named.collect();
+    if !named.is_empty() {
+        let _ = writeln!(
+            text,
+            "Modes     of the flutter, by kinetic energy: {}",
+            named.join(", ")
+        );
+    }
+    for sentence in beside_the_onset(results) {
+        let _ = writeln!(text, "{sentence}");
+    }
+    text
+}
 
 /// The card.
-pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> String {
+fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> String {
     let bridge = &study.by_model;
     let mut text = headline::account(&study.file.name, verdict, &[]);
     let _ = writeln!(
@@ -105,13 +162,13 @@ fn one(answer: &BridgeAnswer) -> String {
             };
             let _ = writeln!(
                 text,
-                "  V_F {:.3} m/s at {:.4} Hz ({}); V* = V/(fB) {:.3}, K {:.4}, {tested}; {} branch",
+                "  V_F {:.3} m/s at {:.4} Hz ({}); V* = V/(fB) {:.3}, K {:.4}, {tested}; {}",
                 o.at.speed_m_s,
                 o.at.frequency_hz,
                 o.at.method.name(),
                 o.at.reduced_velocity.v_star(),
                 o.at.reduced_frequency.full_width(),
-                o.branch
+                mode_in_words(&o.branch)
             );
             let _ = writeln!(text, "  {}", interval(&o.interval));
             if let Some(slope) = o.damping_slope_s_m {

@@ -1,10 +1,11 @@
 //! `aerodeck demo --bridge`: from wind-tunnel records to the flutter of a whole bridge.
 
+use super::super::account::ending;
 use super::super::answer::Answer;
-use super::super::output::{OutputDir, list};
+use super::super::output::OutputDir;
 use super::super::progress::Progress;
 use super::super::stages;
-use super::account::card;
+use super::account::{MORE, account};
 use super::files::BRIDGE_FMU;
 use super::flutter::computed;
 use super::page;
@@ -41,7 +42,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     }
     drop(stage);
     let verdict = Verdict::of(&study.evidence(&results, &failed));
-    let mut text = card(&study, &results, &verdict);
+    let mut text = account(&study, &results, &verdict, progress.verbose());
     let ran = BridgeRun {
         text: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),
@@ -53,7 +54,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
         serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
     let passed = ran.failed.is_empty();
     let written = out.commit()?;
-    text.push_str(&list(&written));
+    text.push_str(&ending(&written, MORE, progress.verbose()));
     Ok(Answer::new(text, &answer_json)?
         .passed_if(passed)
         .with_outcome_of(&verdict))

@@ -1,5 +1,6 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
+use super::super::account::ending;
 use super::super::answer::Answer;
 use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
@@ -68,7 +69,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
             None
         });
     let verdict = Verdict::of(&study.evidence(&results, &failed));
-    let mut text = account::card(&study, &results, &verdict);
+    let mut text = account::account(&study, &results, &verdict, progress.verbose());
     let mut comparisons = Vec::new();
     if let Some(s) = &scattered {
         let line = scatter_line(s);
@@ -86,11 +87,13 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     } else {
         page::leave(&ran, &study, &results, &verdict, &mut out)?;
     }
-    let json = serde_json::json!({
+    let mut json = serde_json::json!({
         "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": ran.failed
     });
-    Ok(out
-        .answer(text, json)?
+    let written = out.commit()?;
+    text.push_str(&ending(&written, account::MORE, progress.verbose()));
+    json["files"] = serde_json::json!(written);
+    Ok(Answer::new(text, &json)?
         .passed_if(ran.failed.is_empty())
         .with_outcome_of(&verdict))
 }

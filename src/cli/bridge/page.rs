@@ -18,7 +18,7 @@ pub(super) fn leave(
 ) -> Result<BridgeSummary> {
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
-    let summary = BridgeSummary::of(ran, study, results, verdict, out.targets());
+    let summary = BridgeSummary::of(ran, study, results, verdict, out.targets())?;
     out.write_json(SUMMARY, &summary)?;
     report::leave(out)?;
     Ok(summary)

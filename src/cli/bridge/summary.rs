@@ -1,6 +1,8 @@
 //! `summary.json` of a bridge.
 
 use super::account::beside_the_onset;
+use crate::cli::report::folder::today;
+use crate::error::Result;
 use crate::flutter::Onset;
 use crate::plausibility::Finding;
 use crate::section::Dof;
@@ -27,6 +29,9 @@ pub(super) struct BridgeRun {
 pub(crate) struct BridgeSummary {
     /// Program and version.
     pub(crate) generator: String,
+    /// Day of the run, unless a file of an earlier version says none.
+    #[serde(default)]
+    pub(crate) date: Option<String>,
     /// Name of the bridge.
     pub(crate) bridge: String,
     /// Text of the bridge file.
@@ -90,9 +95,10 @@ impl BridgeSummary {
         results: &BridgeFlutter,
         verdict: &Verdict,
         files: Vec<PathBuf>,
-    ) -> Self {
-        Self {
+    ) -> Result<Self> {
+        Ok(Self {
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
+            date: Some(today()?),
             bridge: study.file.name.clone(),
             bridge_file: ran.text.clone(),
             command: ran.command.clone(),
@@ -109,7 +115,7 @@ impl BridgeSummary {
             onsets: results.onsets().cloned().collect(),
             flutter: results.clone(),
             failed: ran.failed.clone(),
-        }
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::curves::curves_of;
 use super::folder::{PagePlace, SUMMARY, digest, parsed};
-use super::parts::{card, known, of_svg, round, row};
+use super::parts::{card, first_derivatives, known, of_svg, round, row};
 use super::variables::variables_of;
 use crate::cli::bridge::files::{
     BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
@@ -43,6 +43,7 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
         kind: "bridge file",
         beyond: "Amplitudes beyond the tests, turbulence, towers and cables in the wind are not part of this analysis.",
         generator: facts.generator.clone(),
+        of: file.report.dated(facts.date.as_deref()),
         verdict: (&facts.verdict).into(),
         card: own.map_or(vec![], card),
         whose: "The verdict is about tables read between their points, where there are some and they reach the onset; the numbers of the card \
@@ -64,9 +65,10 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
         text: facts.bridge_file.clone(),
         ..StudyPage::default()
     };
+    page.derivatives = first_derivatives(&mut page.figures);
     page.sections.retain(|s| !s.rows.is_empty());
     if let Some(curves) = text_of(CURVES) {
-        let (speeds, curves) = curves_of(&curves)?;
+        let (speeds, curves) = curves_of(&curves, "")?;
         (page.speeds, page.curves) = (
             speeds,
             chosen(curves, &shown_modes(shares, own.map(|o| o.branch.as_str()))),
@@ -106,6 +108,7 @@ fn chosen(curves: Vec<PageCurve>, shown: &[String]) -> Vec<PageCurve> {
             Some(PageCurve {
                 model,
                 branch: 0,
+                own: true,
                 label: shown[model].clone(),
                 ..curve
             })
@@ -248,7 +251,7 @@ fn modes(facts: &BridgeSummary) -> PageSection {
         vec![
             m.mode.to_string(),
             format!("{:.4}", m.frequency_hz),
-            format!("{:.4e}", m.generalised_mass),
+            mass(m.generalised_mass),
             format!("{:.3}", 100.0 * m.damping_ratio),
             m.main_motion.clone(),
         ]
@@ -256,9 +259,17 @@ fn modes(facts: &BridgeSummary) -> PageSection {
     PageSection {
         title: "Modes in still air".to_owned(),
         text: vec!["Generalised masses belong to the shapes as they were read.".to_owned()],
-        header: vec!["mode", "f Hz", "generalised mass kg", "ζ %", "main motion"],
+        header: vec!["mode", "f Hz", "generalised mass, kg", "ζ %", "main motion"],
         rows: facts.modes.iter().map(row).collect(),
         ..PageSection::default()
+    }
+}
+
+/// A mass in plain digits where it has few.
+fn mass(kg: f64) -> String {
+    match kg {
+        _ if (1e-2..1e7).contains(&kg) => round((kg * 1e4).round() / 1e4).to_string(),
+        _ => format!("{kg:.4e}").replace('e', "·10^"),
     }
 }
 

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::report::PageCurve;
 use std::collections::BTreeMap;
 
-/// Wind speeds and curves of `curves.csv`.
-pub(super) fn curves_of(text: &str) -> Result<(Vec<f64>, Vec<PageCurve>)> {
+/// Wind speeds and curves of `curves.csv`; `own` is the model of the answer.
+pub(super) fn curves_of(text: &str, own: &str) -> Result<(Vec<f64>, Vec<PageCurve>)> {
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .from_reader(text.as_bytes());
@@ -40,6 +40,7 @@ pub(super) fn curves_of(text: &str) -> Result<(Vec<f64>, Vec<PageCurve>)> {
         let curve = curves.entry(at).or_insert_with(|| PageCurve {
             model: at.0,
             branch: at.1,
+            own: model == own,
             label: format!("{model}, {branch}"),
             frequency: vec![None; speeds.len()],
             damping: vec![None; speeds.len()],

@@ -1,6 +1,7 @@
 //! What a folder of results holds, and whose results they are.
 
 use crate::error::{Error, Result};
+use crate::fmu::package::Label;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -22,6 +23,15 @@ pub(in crate::cli) fn is_of_a_study(path: &Path) -> bool {
     let text = std::fs::read_to_string(path).ok();
     let kind = text.and_then(|text| serde_json::from_str::<SummaryKind>(&text).ok());
     kind.is_some_and(|kind| kind.bridge.is_none())
+}
+
+/// The day of the run, or that of the variable `SOURCE_DATE_EPOCH`, `YYYY-MM-DD`.
+///
+/// # Errors
+/// [`Error::Input`] where the variable holds no number of seconds.
+pub(in crate::cli) fn today() -> Result<String> {
+    let now = Label::default().dated()?.generated.unwrap_or_default();
+    Ok(now.chars().take(10).collect())
 }
 
 /// Whose summary it is.

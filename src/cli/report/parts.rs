@@ -1,7 +1,7 @@
 //! Parts that the pages of a section and of a bridge share.
 
 use crate::cli::account::interval;
-use crate::flutter::{Onset, OnsetInterval};
+use crate::flutter::{Onset, OnsetInterval, mode_in_words};
 use crate::report::PageFigure;
 
 /// The ends of an interval that is known.
@@ -50,8 +50,10 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
         (
             "motion",
             format!(
-                "{} branch; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
-                onset.branch, onset.mode_ratio, onset.phase_deg
+                "{}; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
+                mode_in_words(&onset.branch),
+                onset.mode_ratio,
+                onset.phase_deg
             ),
         ),
         ("tested range", tested(onset.in_tested_range).to_owned()),
@@ -80,6 +82,14 @@ pub(super) fn row(onset: &Onset) -> Vec<String> {
         onset.branch.clone(),
         tested(onset.in_tested_range).to_owned(),
     ]
+}
+
+/// Takes the first figure of derivatives, which the summary shows.
+pub(super) fn first_derivatives(figures: &mut Vec<PageFigure>) -> Option<PageFigure> {
+    let at = figures
+        .iter()
+        .position(|f| f.title.starts_with("Derivatives"));
+    at.map(|at| figures.remove(at))
 }
 
 /// Without the digits that a product left behind.

@@ -1,6 +1,7 @@
 //! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
 
 use super::critical_point::CriticalPoint;
+use super::curves::mode_in_words;
 use super::judged::{RangePassages, StableRange};
 use super::onset::{Onset, OnsetInterval};
 use crate::units::ReducedFrequencyRange;
@@ -125,10 +126,10 @@ impl UnstableStart {
     /// The answer in words.
     pub fn explain(&self) -> String {
         format!(
-            "unstable at and below {:.3} m/s, the lowest speed that could be judged: {} branch, {:.4} Hz, K {:.4}, \
+            "unstable at and below {:.3} m/s, the lowest speed that could be judged: {}, {:.4} Hz, K {:.4}, \
              growth {:+.4} 1/s ({})",
             self.at.speed_m_s,
-            self.branch,
+            mode_in_words(&self.branch),
             self.at.frequency_hz,
             self.at.reduced_frequency.full_width(),
             self.growth_rate_per_s,
@@ -140,9 +141,9 @@ impl UnstableStart {
     fn above(&self) -> String {
         self.onset_above.as_ref().map_or_else(String::new, |o| {
             format!(
-                "; damped again above that, then onset at {:.3} m/s: {} branch, {:.4} Hz, K {:.4}",
+                "; damped again above that, then onset at {:.3} m/s: {}, {:.4} Hz, K {:.4}",
                 o.at.speed_m_s,
-                o.branch,
+                mode_in_words(&o.branch),
                 o.at.frequency_hz,
                 o.at.reduced_frequency.full_width()
             )
@@ -320,9 +321,10 @@ impl Findings {
                 verdict
             };
             format!(
-                "the model also {what} at {:.3} m/s (V* {:.2}, {branch} branch), outside the tested range: {verdict}",
+                "the model also {what} at {:.3} m/s (V* {:.2}, {}), outside the tested range: {verdict}",
                 at.speed_m_s,
-                at.reduced_velocity.v_star()
+                at.reduced_velocity.v_star(),
+                mode_in_words(branch)
             )
         };
         (

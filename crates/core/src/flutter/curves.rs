@@ -66,6 +66,19 @@ pub struct ModeBranch {
     pub points: Vec<ModePoint>,
 }
 
+/// The name of a branch as one says it: "torsion mode", "mode 17".
+///
+/// ```
+/// assert_eq!(aerodeck_core::flutter::mode_in_words("torsion"), "torsion mode");
+/// assert_eq!(aerodeck_core::flutter::mode_in_words("mode 17"), "mode 17");
+/// ```
+pub fn mode_in_words(branch: &str) -> String {
+    match branch.starts_with("mode ") {
+        true => branch.to_owned(),
+        false => format!("{branch} mode"),
+    }
+}
+
 /// All structural modes over wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FlutterCurves {

@@ -1,5 +1,6 @@
 //! A band of wind speeds in which something grows.
 
+use super::curves::mode_in_words;
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 
@@ -42,12 +43,12 @@ impl GrowthBand {
         };
         let below = if self.from_start { "at or below " } else { "" };
         format!(
-            "grows from {below}{:.3} to {:.3} m/s, by {:.4} 1/s at {:.3} m/s ({} branch, {:.4} Hz, K {:.3}{tested})",
+            "grows from {below}{:.3} to {:.3} m/s, by {:.4} 1/s at {:.3} m/s ({}, {:.4} Hz, K {:.3}{tested})",
             self.from_m_s,
             self.to_m_s,
             self.fastest_growth_per_s,
             self.fastest_at_m_s,
-            self.branch,
+            mode_in_words(&self.branch),
             self.frequency_hz,
             self.reduced_frequency.full_width(),
         )

@@ -6,7 +6,7 @@
 //! means what measured derivatives mean.
 
 use super::answer::{Findings, FlutterSearch, choose};
-use super::curves::{FlutterCurves, ModePoint, empty_branches};
+use super::curves::{FlutterCurves, ModePoint, empty_branches, mode_in_words};
 use super::determinant::StructureInWind;
 use super::following::{Follower, OnsetWatch, dimensionless, growing};
 use super::judged::{StableRange, damps_fast_motion, entry_reason};
@@ -94,12 +94,12 @@ pub fn quasi_pk_mode(
         Ok(())
     })?;
     found.ok_or_else(|| {
-        let branch = iteration.name(dof);
+        let mode = mode_in_words(&iteration.name(dof));
         Error::Numerical(match last {
-            Some(speed) => format!(
-                "p-k: the {branch} branch ends above {speed:.3} m/s, before {speed_m_s} m/s"
-            ),
-            None => format!("p-k: the {branch} branch cannot be judged up to {speed_m_s} m/s"),
+            Some(speed) => {
+                format!("p-k: the {mode} ends above {speed:.3} m/s, before {speed_m_s} m/s")
+            }
+            None => format!("p-k: the {mode} cannot be judged up to {speed_m_s} m/s"),
         })
     })
 }

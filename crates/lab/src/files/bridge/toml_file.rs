@@ -9,6 +9,7 @@ use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, non_negative, of_schema, positive};
+use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,9 @@ pub struct BridgeFile {
     /// Turbulence, as the room of buffeting reads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buffeting: Option<toml::Table>,
+    /// Whose report it is.
+    #[serde(default, skip_serializing_if = "ReportBlock::is_empty")]
+    pub report: ReportBlock,
     /// Directory of the file, against which paths in it are read.
     #[serde(skip)]
     pub directory: PathBuf,

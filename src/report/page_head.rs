@@ -1,0 +1,95 @@
+//! What stands at the edges of a printed page, and the list of what is in it.
+
+use crate::files::report_block::ReportBlock;
+use std::fmt::Write as _;
+
+/// Where the list of contents goes.
+const CONTENTS: &str = "<!-- contents -->";
+const HEADING: &str = "<h2>";
+
+/// Name and value of what is stated.
+pub(super) fn stated(of: &ReportBlock) -> Vec<(&'static str, &str)> {
+    let all = [
+        ("project", &of.project),
+        ("author", &of.author),
+        ("revision", &of.revision),
+        ("date", &of.date),
+    ];
+    let stated = all.into_iter();
+    let stated = stated.filter_map(|(name, value)| Some((name, value.as_deref()?)));
+    stated.collect()
+}
+
+/// The rule for printed pages: project and revision above, author, date, program and number of the page below.
+pub(super) fn at_edges(of: &ReportBlock, title: &str, generator: &str) -> String {
+    let text = |parts: &[Option<String>]| {
+        let parts: Vec<&str> = parts.iter().flatten().map(String::as_str).collect();
+        quoted(&parts.join(" · "))
+    };
+    let named = |name: &str, of: &Option<String>| of.as_ref().map(|of| format!("{name} {of}"));
+    let project = of.project.clone().filter(|p| p != title);
+    format!(
+        "@page {{ @top-left {{ content: {}; }} @top-right {{ content: {}; }} @bottom-left {{ content: {}; }} }}",
+        text(&[project, Some(title.to_owned())]),
+        text(&[named("revision", &of.revision), of.date.clone()]),
+        text(&[of.author.clone(), Some(generator.to_owned())]),
+    )
+}
+
+/// A string of CSS that may stand in a page: what could end the string or its element is written as a number.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        let _ = match c {
+            '"' | '\\' | '<' | '>' | '&' => write!(quoted, "\\{:x} ", u32::from(c)),
+            c if c.is_control() => write!(quoted, " "),
+            c => write!(quoted, "{c}"),
+        };
+    }
+    quoted + "\""
+}
+
+/// The page with a name for every heading and the list of them where it is wanted; texts of users hold no `<`.
+pub(super) fn with_contents(page: &str) -> String {
+    let mut parts = page.split(HEADING);
+    let mut whole = parts.next().unwrap_or_default().to_owned();
+    let mut list = String::new();
+    for (i, part) in parts.enumerate() {
+        let title = part.split("</h2>").next().unwrap_or_default();
+        let _ = write!(list, "<li><a href=\"#part-{i}\">{title}</a></li>");
+        let _ = write!(whole, "<h2 id=\"part-{i}\">{part}");
+    }
+    let list = format!("<nav><ol>{list}</ol></nav>");
+    whole.replacen(CONTENTS, &list, 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_ends_no_string_and_no_element() {
+        let of = ReportBlock {
+            project: Some("a\"; } </style>\\".to_owned()),
+            revision: Some("B".to_owned()),
+            ..ReportBlock::default()
+        };
+        let css = at_edges(&of, "deck", "aerodeck 1");
+        assert!(
+            css.contains(r#""a\22 ; } \3c /style\3e \5c  · deck""#),
+            "{css}"
+        );
+        assert!(
+            css.contains("\"revision B\"") && !css.contains("</"),
+            "{css}"
+        );
+    }
+
+    #[test]
+    fn every_heading_is_in_the_list() {
+        let page = with_contents("<!-- contents --><h2>One</h2>1<h2>Two</h2>2");
+        let expected = "<nav><ol><li><a href=\"#part-0\">One</a></li><li><a href=\"#part-1\">Two</a></li></ol></nav>\
+                        <h2 id=\"part-0\">One</h2>1<h2 id=\"part-1\">Two</h2>2";
+        assert_eq!(page, expected);
+    }
+}
