@@ -15,6 +15,7 @@ mod trained;
 
 mod bridge;
 mod calculated_onset;
+mod dampers;
 mod description;
 mod importer;
 mod manual;
