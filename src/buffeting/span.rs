@@ -133,7 +133,7 @@ impl SpanProblem<'_> {
             GustComponent::Along => 0,
             GustComponent::Vertical => 1,
         };
-        let mut forces = DMatrix::zeros(bridge.nodes.len(), bridge.modes.len());
+        let mut forces = DMatrix::zeros(bridge.nodes.len(), bridge.coordinates());
         for (group, matrix) in bridge.groups.iter().zip(&self.gust_matrices) {
             let pressure = 0.5 * bridge.air_density_kg_m3 * group.wind_factor * speed_m_s;
             let of = |dof: Dof| {

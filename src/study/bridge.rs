@@ -26,7 +26,7 @@ use super::KnownUncertainty;
 use super::speeds::{SEARCHED_AT_LEAST, reaching};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, BridgeMode, Similarity, StripGroup, similarities};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
 use crate::plausibility::{Finding, of_bridge, of_coefficients, of_modes_left_out, sentences};
@@ -96,7 +96,8 @@ impl BridgeStudy {
         let sections: Vec<SectionForceModels> =
             file.sections.iter().map(section).collect::<Result<_>>()?;
         notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));
-        let parts = groups(&file, &modes, &mut notes)?;
+        let parts = groups(&file, &modes, &mut notes).map_err(|e| file.located(e))?;
+        let dampers = file.dampers(&modes).map_err(|e| file.located(e))?;
         let bridge = |table: bool| {
             let group = |part: &SectionNodes| StripGroup {
                 name: file.sections[part.section].name.clone(),
@@ -113,7 +114,8 @@ impl BridgeStudy {
                 nodes,
                 shapes,
                 all,
-            )
+            )?
+            .with_dampers(dampers.clone())
         };
         let has_table = sections.iter().any(|s| s.table.is_some());
         let by_model = bridge(false)?;
@@ -292,19 +294,7 @@ fn ends(block: &BridgeSectionBlock, modes: &BridgeModes, section: usize) -> Resu
     let last = modes.nodes.len().saturating_sub(1);
     let place = |key: &str, name: &Option<String>, otherwise: usize| match name {
         None => Ok(otherwise),
-        Some(name) => modes
-            .nodes
-            .iter()
-            .position(|n| n.name == *name)
-            .ok_or_else(|| {
-                let (a, b) = (&modes.nodes[0].name, &modes.nodes[last].name);
-                let expected = format!("a node of the bridge, {a} to {b}");
-                Error::input(
-                    format!("section[{section}].{key}"),
-                    expected,
-                    format!("`{name}`"),
-                )
-            }),
+        Some(name) => modes.place_of(format!("section[{section}].{key}"), name),
     };
     let ends = (
         place("from", &block.from, 0)?,

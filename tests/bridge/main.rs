@@ -6,6 +6,8 @@ mod bridges;
 mod matlab;
 
 mod buffeting;
+mod damper_blocks;
+mod dampers;
 mod files;
 mod gusts;
 mod identities;

@@ -17,6 +17,7 @@ mod trained;
 
 mod bridge;
 mod calculated_onset;
+mod dampers;
 mod description;
 mod importer;
 mod manual;

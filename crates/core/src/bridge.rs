@@ -14,11 +14,14 @@
 //! ([`Bridge::of_section`]).
 
 mod banks;
+mod damped;
+mod dampers;
 mod gusts;
 mod modal;
 mod similarity;
 mod sums;
 
+pub use dampers::{DampedPoint, Dampers, MassDamper, ViscousLink};
 pub use gusts::GustChannels;
 pub use modal::ModalForces;
 pub use similarity::{Similarity, similarities};
@@ -98,6 +101,8 @@ pub struct Bridge {
     pub modes: Vec<BridgeMode>,
     /// Groups of nodes; each node is in one group at most, and without forces outside of them.
     pub groups: Vec<StripGroup>,
+    /// Dampers, see [`Bridge::with_dampers`].
+    pub dampers: Dampers,
 }
 
 impl Bridge {
@@ -119,6 +124,7 @@ impl Bridge {
             nodes,
             modes,
             groups,
+            dampers: Dampers::default(),
         };
         positive("air_density_kg_m3", air_density_kg_m3)?;
         check_nodes(&bridge.nodes)?;
@@ -201,19 +207,20 @@ impl Bridge {
         })
     }
 
-    /// Names of the modes: `mode 23`.
+    /// Names of the coordinates: `mode 23`, then those of dampers.
     pub fn mode_names(&self) -> Vec<String> {
-        self.modes
-            .iter()
-            .map(|m| format!("mode {}", m.number))
-            .collect()
+        let modes = self.modes.iter().map(|m| format!("mode {}", m.number));
+        let masses = self.dampers.masses.iter().map(|d| d.name.clone());
+        modes.chain(masses).collect()
     }
 
-    /// Displacements and rotations of the mass-normalised modes at some nodes: three rows per node, one column per mode.
+    /// Displacements and rotations of the mass-normalised modes at some nodes: three rows per node, one column per coordinate; those of
+    /// dampers move no node.
     pub fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(3 * nodes.len(), self.modes.len(), |row, m| {
-            let mode = &self.modes[m];
-            mode.shape[nodes[row / 3]][row % 3] / mode.generalised_mass.sqrt()
+        DMatrix::from_fn(3 * nodes.len(), self.coordinates(), |row, m| {
+            self.modes.get(m).map_or(0.0, |mode| {
+                mode.shape[nodes[row / 3]][row % 3] / mode.generalised_mass.sqrt()
+            })
         })
     }
 

@@ -86,7 +86,7 @@ impl TurbulenceOptions {
         let strips: Vec<Vec<usize>> = (0..bridge.nodes.len()).map(|n| vec![n]).collect();
         let all = GustChannels::new(bridge, &gusts.coefficients, &strips)?;
         let sample = |i: usize| {
-            let mut channels = vec![0.0; all.passing.len() * bridge.modes.len()];
+            let mut channels = vec![0.0; all.passing.len() * bridge.coordinates()];
             let nodes = self.u.iter().zip(&self.w);
             all.add(nodes.flat_map(|(u, w)| [u[i], w[i]]), &mut channels);
             channels

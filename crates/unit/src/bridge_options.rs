@@ -4,7 +4,7 @@ use super::bridge_gusts::BridgeGusts;
 use super::onset_bounds::OnsetBounds;
 use super::onset_start::OnsetStart;
 use crate::aeroelastic::CoupledSection;
-use crate::bridge::{Bridge, BridgeMode, GustChannels, Node, StripGroup};
+use crate::bridge::{Bridge, BridgeMode, Dampers, GustChannels, Node, StripGroup};
 use crate::error::{Error, Result, positive};
 use crate::response::Stepper;
 use crate::trained_model::Model;
@@ -47,6 +47,9 @@ pub struct BridgeOptions {
     pub nodes: Vec<Node>,
     /// Modes.
     pub modes: Vec<BridgeMode>,
+    /// Dampers.
+    #[serde(default, skip_serializing_if = "Dampers::is_empty")]
+    pub dampers: Dampers,
     /// Whether it is the structure alone, whose forces come from outside: nothing of wind is listed.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub structure_alone: bool,
@@ -104,7 +107,13 @@ impl BridgeOptions {
             nodes,
             modes,
             groups,
-        )
+        )?
+        .with_dampers(self.dampers.clone())
+    }
+
+    /// Number of coordinates: modes, then masses of dampers.
+    pub(super) fn coordinates(&self) -> usize {
+        self.modes.len() + self.dampers.masses.len()
     }
 
     /// The stepper of a bridge with these gusts, and what the gusts of the strips do to its modes.

@@ -94,7 +94,7 @@ pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
     let (of, rest) = name.split_once("].")?;
     let (kind, _) = of.split_once('[')?;
     match role {
-        Role::Filter(_) | Role::FilterRate(_) if kind == "mode" => {
+        Role::Filter(_) | Role::FilterRate(_) if matches!(kind, "mode" | "damper") => {
             Some(format!("{kind}.{rest}").into())
         }
         Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) | Role::Filter(_) => {
@@ -103,6 +103,8 @@ pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
         Role::Mode(..)
         | Role::InitialMode(_)
         | Role::ModeParameter(..)
+        | Role::Damper(..)
+        | Role::DamperParameter(_)
         | Role::NodeForce(..)
         | Role::NodeMotion(..) => Some(format!("{kind}.{rest}").into()),
         _ => None,

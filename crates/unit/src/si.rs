@@ -111,6 +111,13 @@ pub(crate) static KILOGRAM_PER_METRE: SiUnit = coherent("kg/m", exponents(1, -1,
 /// Mass moment of inertia per length, kg·m²/m.
 pub(crate) static KILOGRAM_METRE2_PER_METRE: SiUnit =
     coherent("kg.m2/m", exponents(1, 1, 0, 0), &[]);
+/// Mass, kg.
+pub(crate) static KILOGRAM: SiUnit = coherent("kg", exponents(1, 0, 0, 0), &[]);
+/// Force per speed, N·s/m.
+pub(crate) static NEWTON_SECOND_PER_METRE: SiUnit = coherent("N.s/m", exponents(1, 0, -1, 0), &[]);
+/// Moment per angular rate, N·m·s/rad.
+pub(crate) static NEWTON_METRE_SECOND_PER_RADIAN: SiUnit =
+    coherent("N.m.s/rad", exponents(1, 2, -1, -1), &[]);
 /// Frequency, Hz: one cycle is 2π rad.
 pub(crate) static HERTZ: SiUnit = SiUnit {
     name: "Hz",

@@ -8,6 +8,7 @@ mod bridge;
 mod bridge_states;
 mod computed;
 mod computed_rows;
+mod dampers;
 mod dependencies;
 mod dof_names;
 mod dual;

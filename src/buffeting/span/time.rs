@@ -253,7 +253,7 @@ impl<'a> PeriodicBridge<'a> {
         let bridge = problem.bridge;
         let frequencies = self.fourier.length() / 2 + 1;
         let width_hz = 1.0 / (self.fourier.length() as f64 * self.step_s);
-        let mut forces = DMatrix::zeros(2 * frequencies, bridge.modes.len());
+        let mut forces = DMatrix::zeros(2 * frequencies, bridge.coordinates());
         for component in GustComponent::BOTH {
             let Some(gust) = problem.turbulence.component(component) else {
                 continue;

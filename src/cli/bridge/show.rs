@@ -55,6 +55,22 @@ pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> 
             100.0 * m.damping_ratio
         );
     }
+    for d in &bridge.dampers.masses {
+        let _ = writeln!(
+            text,
+            "{}: {} kg, {} Hz, ζ {} %, {}, {} m downwind of the axis",
+            d.name,
+            d.mass_kg,
+            d.frequency_hz,
+            100.0 * d.damping_ratio,
+            d.at.motion.name(),
+            d.at.offset_m
+        );
+    }
+    for l in &bridge.dampers.links {
+        let (motion, c) = (l.at.motion.name(), l.coefficient);
+        let _ = writeln!(text, "{}: {motion}, {c} N·s/m (N·m·s/rad)", l.name);
+    }
     let similarities = study.similarities();
     text.push_str("\nSimilarity of vertical and torsional modes, (∫φ_y φ_θ)²/(∫φ_y² ∫φ_θ²); a section study assumes 1:\n");
     for s in similarities.iter().take(PAIRS) {
@@ -75,7 +91,7 @@ pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> 
         })
         .collect();
     let json = serde_json::json!({
-        "name": study.file.name, "nodes": bridge.nodes.len(), "modes": modes, "similarities": similarities,
+        "name": study.file.name, "nodes": bridge.nodes.len(), "modes": modes, "dampers": bridge.dampers, "similarities": similarities,
         "notes": study.warnings(), "findings": study.findings
     });
     out.answer(text, json)

@@ -63,7 +63,11 @@ fn rows(resources: &Resources) -> String {
     let mut page = String::new();
     // those of further modes differ by their number
     let first = |v: &&Variable| {
-        v.is_listed && !matches!(v.role, Role::Mode(1.., _) | Role::InitialMode(1..))
+        v.is_listed
+            && !matches!(
+                v.role,
+                Role::Mode(1.., _) | Role::InitialMode(1..) | Role::Damper(1.., _)
+            )
     };
     for v in resources.table.variables().iter().filter(first) {
         let unit = v.unit.map_or("", |u| u.name);

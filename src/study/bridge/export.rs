@@ -132,6 +132,7 @@ impl BridgeStudy {
             air_density_kg_m3: bridge.air_density_kg_m3,
             nodes: bridge.nodes.clone(),
             modes: bridge.modes.clone(),
+            dampers: bridge.dampers.clone(),
             structure_alone: false,
             groups: groups.collect(),
             forces: forces

@@ -111,7 +111,7 @@ impl BridgeStudy {
             fmu: package_bridge(&structure, runtimes, label, FmiVersion::Two)?,
             inputs: Vec::new(),
             outputs: Vec::new(),
-            values: mode_values(&structure.bridge),
+            values: structure_values(&structure.bridge),
         };
         for section in &forces {
             let name = section.component_name(forces.len());
@@ -148,8 +148,8 @@ impl BridgeStudy {
     }
 }
 
-/// What may be set of the modes.
-fn mode_values(bridge: &BridgeOptions) -> Vec<(String, f64)> {
+/// What may be set of modes and dampers.
+fn structure_values(bridge: &BridgeOptions) -> Vec<(String, f64)> {
     let modes = bridge.modes.iter().zip(&bridge.initial);
     let of = |(mode, initial): (&crate::bridge::BridgeMode, &f64)| {
         let named = |what: &str, value| (format!("mode[{}].{what}", mode.number), value);
@@ -159,5 +159,16 @@ fn mode_values(bridge: &BridgeOptions) -> Vec<(String, f64)> {
             named("initial_coordinate", *initial),
         ]
     };
-    modes.flat_map(of).collect()
+    let masses = bridge.dampers.masses.iter().enumerate();
+    let masses = masses.flat_map(|(d, damper)| {
+        let named = |what: &str, value| (format!("damper[{}].{what}", d + 1), value);
+        [
+            named("mass", damper.mass_kg),
+            named("frequency", damper.frequency_hz),
+            named("damping_ratio", damper.damping_ratio),
+        ]
+    });
+    let links = bridge.dampers.links.iter().enumerate();
+    let links = links.map(|(l, link)| (format!("link[{}].coefficient", l + 1), link.coefficient));
+    modes.flat_map(of).chain(masses).chain(links).collect()
 }

@@ -68,7 +68,8 @@ impl BridgeStudy {
         modes.extend(left_out.iter().map(|m| (*m).clone()));
         modes.sort_by_key(|m| m.number);
         let (nodes, groups) = (b.nodes.clone(), b.groups.clone());
-        let whole = Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)?;
+        let whole = Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)?
+            .with_dampers(b.dampers.clone())?;
         Ok(Some(ModesLeftOut {
             modes: left_out.iter().map(|m| m.number).collect(),
             as_it_is_m_s: found.critical_speed_m_s(),
@@ -134,6 +135,7 @@ impl BridgeStudy {
     pub(super) fn with_groups(&self, groups: Vec<StripGroup>) -> Result<Bridge> {
         let b = &self.by_model;
         let (nodes, modes) = (b.nodes.clone(), b.modes.clone());
-        Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)
+        Bridge::new(b.name.clone(), b.air_density_kg_m3, nodes, modes, groups)?
+            .with_dampers(b.dampers.clone())
     }
 }

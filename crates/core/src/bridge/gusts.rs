@@ -32,7 +32,7 @@ impl GustChannels {
             ));
         }
         let strip_of_node = owners(bridge, strips)?;
-        let modes = bridge.modes.len();
+        let modes = bridge.coordinates();
         let mut all = Self {
             passing: Vec::new(),
             by_gust: vec![Vec::new(); 2 * strips.len()],

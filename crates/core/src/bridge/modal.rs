@@ -26,23 +26,20 @@ pub struct ModalForces {
 }
 
 impl Bridge {
-    /// Mass, damping and stiffness of the mass-normalised modes.
+    /// Mass, damping and stiffness of the mass-normalised modes and of the dampers.
     pub fn structure(&self) -> Structure {
-        let diagonal = |value: &dyn Fn(f64, f64) -> f64| {
-            let values = self
-                .modes
-                .iter()
-                .map(|m| value(TAU * m.frequency_hz, m.damping_ratio));
-            DMatrix::from_diagonal(&DVector::from_iterator(self.modes.len(), values))
-        };
+        let n = self.coordinates();
+        let (mut damping, mut stiffness) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
+        for (i, mode) in self.modes.iter().enumerate() {
+            let omega = TAU * mode.frequency_hz;
+            damping[(i, i)] = 2.0 * mode.damping_ratio * omega;
+            stiffness[(i, i)] = omega * omega;
+        }
+        self.damp(&mut damping, &mut stiffness);
         Structure::modal(
             self.width_m(),
             self.air_density_kg_m3,
-            [
-                diagonal(&|_, _| 1.0),
-                diagonal(&|omega, zeta| 2.0 * zeta * omega),
-                diagonal(&|omega, _| omega * omega),
-            ],
+            [DMatrix::identity(n, n), damping, stiffness],
             self.mode_names(),
         )
     }
@@ -52,7 +49,7 @@ impl Bridge {
         let blown = self.groups.iter().filter(|g| g.wind_factor > 0.0);
         ModalForces {
             width_m: self.width_m(),
-            dofs: vec![Dof::Torsion; self.modes.len()],
+            dofs: vec![Dof::Torsion; self.coordinates()],
             groups: blown
                 .map(|g| (g.clone(), GroupSums::new(self, g)))
                 .collect(),

@@ -14,14 +14,16 @@ pub(super) struct GroupSums {
 }
 
 impl GroupSums {
-    /// Of the group's nodes, with each shape divided by the root of its generalised mass.
+    /// Of the group's nodes, with each shape divided by the root of its generalised mass; dampers move no node.
     pub(super) fn new(bridge: &Bridge, group: &StripGroup) -> Self {
         let dofs = group.forces.dofs().to_vec();
         let weighted = |dof: &Dof, power: f64| {
-            DMatrix::from_fn(group.nodes.len(), bridge.modes.len(), |n, m| {
-                let (node, mode) = (group.nodes[n], &bridge.modes[m]);
-                let value = mode.shape[node][motion_index(*dof)];
-                value * bridge.nodes[node].length_m.powf(power) / mode.generalised_mass.sqrt()
+            DMatrix::from_fn(group.nodes.len(), bridge.coordinates(), |n, m| {
+                let (node, mode) = (group.nodes[n], bridge.modes.get(m));
+                mode.map_or(0.0, |mode| {
+                    let value = mode.shape[node][motion_index(*dof)];
+                    value * bridge.nodes[node].length_m.powf(power) / mode.generalised_mass.sqrt()
+                })
             })
         };
         let forces: Vec<_> = dofs.iter().map(|d| weighted(d, 1.0).transpose()).collect();

@@ -2,7 +2,7 @@
 
 use super::critical_point::CriticalPoint;
 use super::determinant::{impedance, null_vector};
-use super::following::{MIN_ASSURANCE, assurance};
+use super::following::{MIN_ASSURANCE, Mode, assurance};
 use super::modal_characteristic::ModalCharacteristic;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
@@ -145,6 +145,15 @@ impl NearbyOnset {
         })
     }
 
+    /// Starts from a mode at a wind speed, m/s, where it need not be critical.
+    pub(super) fn of_mode(speed_m_s: f64, mode: &Mode) -> Self {
+        Self {
+            speed_m_s,
+            lambda: mode.lambda,
+            shape: mode.shape.clone(),
+        }
+    }
+
     /// Where the same mode of another bridge loses its damping; `None` where the mode cannot be followed that far.
     pub fn find(&self, other: &CoupledSection) -> Option<FoundOnset> {
         self.follow(other).map(|found| found.found())
@@ -249,7 +258,7 @@ pub fn static_deflection(
 ) -> Result<Vec<[f64; 3]>> {
     let s = bridge.structure();
     let pressure = 0.5 * s.air_density_kg_m3 * speed_m_s * speed_m_s;
-    let mut load = DVector::zeros(bridge.modes.len());
+    let mut load = DVector::zeros(bridge.coordinates());
     for (group, c) in bridge.groups.iter().zip(coefficients) {
         let q = pressure * group.wind_factor * group.wind_factor * group.width_m;
         let force = [c[0] * q, c[1] * q, c[2] * q * group.width_m];

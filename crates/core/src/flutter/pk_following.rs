@@ -8,6 +8,7 @@ use super::following::{
 use super::judged::{Exit, RangePassages};
 use super::onset::Onset;
 use super::quasi_pk::{pk_mode, pk_mode_at};
+use super::still_air::{coupled_modes, is_coupled};
 use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{ValueAt, eigenvalues, eigenvector, first_order, root};
@@ -189,7 +190,7 @@ impl StructureInWind<'_> {
     fn still_air(&self) -> Modes {
         let s = self.structure;
         let n = s.dofs.len();
-        if let Some(all) = self.unbalanced() {
+        if let Some(all) = self.coupled() {
             return Modes { speed: 0.0, all };
         }
         let mode = |i: usize| {
@@ -207,17 +208,20 @@ impl StructureInWind<'_> {
         }
     }
 
-    /// Modes of a section with static unbalance, `None` without or when one does not oscillate. It draws the frequencies
-    /// apart, so that they stay in the order of the degrees of freedom by themselves.
-    fn unbalanced(&self) -> Option<Vec<Mode>> {
+    /// Modes of a section with static unbalance or of a bridge with dampers, `None` without or when a section has one that does not
+    /// oscillate. Unbalance draws the frequencies apart, so that they stay in the order of the degrees of freedom by themselves.
+    fn coupled(&self) -> Option<Vec<Mode>> {
         let s = self.structure;
         let n = s.dofs.len();
-        let mut off_diagonal = s.mass.clone();
-        off_diagonal.fill_diagonal(0.0);
-        if off_diagonal.amax() == 0.0 {
+        if !is_coupled(s) {
             return None;
         }
         let inverse = s.mass.clone().try_inverse()?;
+        if s.is_modal() {
+            let modes = coupled_modes(s, &inverse).ok()?.into_iter();
+            let still = modes.map(|m| still_mode(m.branch, m.lambda, m.shape));
+            return Some(still.collect());
+        }
         let a = first_order(&inverse, &-&s.stiffness, &-&s.damping);
         let mut natural = eigenvalues(&a).ok()?;
         natural.retain(|z| z.im > 0.0);

@@ -11,7 +11,8 @@
 //! way along a ray `λ = r e^{iφ}` from infinity to zero its argument turns by `π` for each zero in the sector between the ray and its
 //! mirror image (the principle of the argument): one that does not turn has none there.
 
-use super::following::{Follower, Modes, growing};
+use super::bridge_motion::NearbyOnset;
+use super::following::{Follower, Mode, Modes, growing};
 use super::modal_characteristic::ModalCharacteristic;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
@@ -95,6 +96,22 @@ impl LeastDamping {
             Self::Unprepared => None,
         };
         prepared.map_or_else(|| smallest_damping(section, wind), Ok)
+    }
+}
+
+impl LeastDamping {
+    /// The mode of least damping at the last wind, from which its onset can be followed; `None` where modes are not followed.
+    pub fn least(&self) -> Option<NearbyOnset> {
+        let Self::Followed(modes) = self else {
+            return None;
+        };
+        let last = modes.last.as_ref()?;
+        let damping = |mode: &&Mode| damping_ratio(mode.lambda);
+        let least = last
+            .all
+            .iter()
+            .min_by(|a, b| damping(a).total_cmp(&damping(b)))?;
+        Some(NearbyOnset::of_mode(last.speed, least))
     }
 }
 

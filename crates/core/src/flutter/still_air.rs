@@ -4,20 +4,26 @@ use super::following::{EigenvalueTrend, Mode, dimensionless, oscillates};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::state_space::{eigenvalues, eigenvector};
+use crate::section::Structure;
+use crate::state_space::{eigenvalues, eigenvector, first_order};
 use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
 
 /// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
 const SAMPLES_PER_PERIOD: f64 = 5.0;
+/// Relative difference of eigenvalues that is rounding.
+const EQUAL: f64 = 1e-8;
 
 /// The modes of the mass-normalised coordinates of a bridge, by the symmetric problem of the undamped structure: modes of one
 /// frequency, of which bridges have some, keep shapes of their own. The damping is that of each mode by itself; the first step
-/// corrects it. `None` for a section and for sampled models.
+/// corrects it. Where dampers couple them, see [`coupled_modes`]. `None` for a section and for sampled models.
 pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
     let s = section.structure();
     let sampled = matches!(section.aerodynamics(), Realization::Discrete(_));
     if !s.is_modal() || sampled || s.stiffness.diagonal().min() <= 0.0 {
         return None;
+    }
+    if is_coupled(s) {
+        return coupled_modes(s, section.inverse_mass()).ok();
     }
     let n = s.dofs.len();
     let root: Vec<f64> = s.stiffness.diagonal().iter().map(|k| k.sqrt()).collect();
@@ -47,6 +53,61 @@ pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
     }
     order_by_dof(section, &mut modes);
     Some(modes)
+}
+
+/// Whether springs, dashpots or masses couple the coordinates of a structure.
+pub(super) fn is_coupled(s: &Structure) -> bool {
+    let coupled = |m: &DMatrix<f64>| (0..m.len()).any(|i| i % (m.nrows() + 1) != 0 && m[i] != 0.0);
+    coupled(&s.mass) || coupled(&s.damping) || coupled(&s.stiffness)
+}
+
+/// The modes of such a structure that oscillate, by the eigenvalues of its states. Equal eigenvalues, as of dampers that are alike,
+/// have as many shapes as there are of them: what `λ²M + λR + K` moves least. Each mode is named by the coordinate that it moves most
+/// among those that no other mode moves more.
+pub(super) fn coupled_modes(s: &Structure, inverse_mass: &DMatrix<f64>) -> Result<Vec<Mode>> {
+    let n = s.dofs.len();
+    let a = first_order(inverse_mass, &-&s.stiffness, &-&s.damping);
+    let mut all: Vec<_> = eigenvalues(&a)?.into_iter().filter(oscillates).collect();
+    all.sort_by(|x, y| x.im.total_cmp(&y.im));
+    let mass = inverse_mass.clone().try_inverse().unwrap_or_default();
+    let mut modes: Vec<Mode> = Vec::with_capacity(n);
+    for lambda in &all {
+        let equal = |other: &Complex<f64>| (other - lambda).norm() <= EQUAL * lambda.norm();
+        // places of this one and of those equal to it, before which the same have been taken
+        let count = all.iter().filter(|z| equal(z)).count();
+        let taken = modes.iter().filter(|m| equal(&m.lambda)).count();
+        let shape = if count == 1 {
+            eigenvector(&a, *lambda)?.rows(0, n).into_owned()
+        } else {
+            let of = |m: &DMatrix<f64>, factor: Complex<f64>| m.map(|x| factor * x);
+            let resistance = of(&mass, lambda * lambda)
+                + of(&s.damping, *lambda)
+                + of(&s.stiffness, Complex::from(1.0));
+            let v_t = resistance.svd(false, true).v_t.unwrap_or_default();
+            v_t.row(n - 1 - taken).adjoint()
+        };
+        modes.push(Mode {
+            branch: 0,
+            lambda: *lambda,
+            shape: shape.normalize(),
+            course: EigenvalueTrend::default(),
+        });
+    }
+    let mut free: Vec<usize> = (0..n).collect();
+    let mut named = Vec::with_capacity(modes.len());
+    while !modes.is_empty() {
+        let pairs = (0..modes.len()).flat_map(|m| free.iter().map(move |i| (m, *i)));
+        let share = |p: &(usize, usize)| modes[p.0].shape[p.1].norm();
+        let best = pairs.max_by(|p, q| share(p).total_cmp(&share(q)));
+        let (m, branch) = best.unwrap_or_default();
+        free.retain(|i| *i != branch);
+        named.push(Mode {
+            branch,
+            ..modes.swap_remove(m)
+        });
+    }
+    named.sort_by_key(|m| m.branch);
+    Ok(named)
 }
 
 /// Modes of the structure with its added mass in still air, in the order of the degrees of freedom they move most.

@@ -6,6 +6,7 @@
 
 mod abaqus;
 mod axes;
+mod dampers;
 mod field;
 mod matlab;
 mod modal_data;
@@ -19,6 +20,7 @@ mod wawi;
 mod wind_block;
 
 pub use axes::{Direction, WindAxes};
+pub use dampers::DamperBlock;
 pub use field::FieldTable;
 pub use modal_data::{BridgeModes, RawMode};
 pub use single_file::write_modes;

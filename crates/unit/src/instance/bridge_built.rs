@@ -5,9 +5,10 @@ use crate::bridge::{Bridge, GustChannels};
 use crate::bridge_gusts::GustRecord;
 use crate::bridge_options::BridgeOptions;
 use crate::error::{Error, Result};
+use crate::flutter::NearbyOnset;
 use crate::resources::Resources;
 use crate::response::{Inputs, SectionState, Stepper};
-use crate::variables::{ModeParameter, Role, SectionParameter};
+use nalgebra::DMatrix;
 
 /// Pieces of a field of turbulence at most in one step.
 const MAX_PIECES: f64 = 1e4;
@@ -19,6 +20,8 @@ const LAST_PIECE: f64 = 1e-9;
 pub(super) struct Built {
     pub bridge: Bridge,
     pub stepper: Stepper,
+    /// Strokes of the dampers by unit coordinates.
+    pub strokes: DMatrix<f64>,
     gusts: Option<GustChannels>,
     turbulence: Option<GustRecord>,
     damping: PresentDamping,
@@ -36,17 +39,9 @@ impl Built {
     ) -> Result<Self> {
         let mut bridge = options.bridge()?;
         let mut as_exported = true;
-        for (variable, value) in resources.table.variables().iter().zip(values) {
-            let parameter = match variable.role {
-                Role::Section(SectionParameter::AirDensity) => &mut bridge.air_density_kg_m3,
-                Role::ModeParameter(m, ModeParameter::Frequency) => {
-                    &mut bridge.modes[m].frequency_hz
-                }
-                Role::ModeParameter(m, ModeParameter::DampingRatio) => {
-                    &mut bridge.modes[m].damping_ratio
-                }
-                _ => continue,
-            };
+        let all = resources.table.variables().iter().zip(values);
+        let tuned = all.filter(|(variable, _)| variable.role.is_tuned());
+        for (parameter, (_, value)) in bridge.tunable().zip(tuned) {
             as_exported &= parameter.to_bits() == value.to_bits();
             *parameter = *value;
         }
@@ -60,6 +55,7 @@ impl Built {
             _ => None,
         };
         Ok(Self {
+            strokes: bridge.strokes(),
             bridge,
             stepper,
             gusts,
@@ -73,6 +69,11 @@ impl Built {
     /// Smallest damping ratio of all modes at a wind speed, m/s.
     pub(super) fn damping_at(&mut self, wind: f64) -> Result<f64> {
         self.damping.at(&mut self.stepper, wind)
+    }
+
+    /// The mode that has it where it was asked for last; `None` where modes are not followed.
+    pub(super) fn least_damped(&self) -> Option<NearbyOnset> {
+        self.damping.least()
     }
 
     /// Nothing moves.
@@ -94,7 +95,7 @@ impl Built {
         let Some(channels) = &self.gusts else {
             return;
         };
-        let count = channels.passing.len() * self.bridge.modes.len();
+        let count = channels.passing.len() * self.bridge.coordinates();
         for list in [&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2] {
             list.clear();
             list.resize(count, 0.0);

@@ -1,7 +1,7 @@
 //! The onset of a bridge whose parameters have changed, followed from that of a search: hundreds of eigenvalue problems less.
 //!
-//! What is followed is one motion, and another may have become critical before it. So an onset counts only where all eigenvalues say the
-//! same: nothing grows just below it, and below that no mode has lost much of the damping that it had below the onset of the
+//! What is followed is one motion, and another may have become critical before it, which is followed in its stead. An onset counts only
+//! where all eigenvalues say the same: nothing grows just below it, and below that no mode has lost much of the damping that it had below the onset of the
 //! search. Everything else is searched for.
 
 use super::bridge_built::Built;
@@ -21,6 +21,8 @@ const LEFT: f64 = 0.5;
 /// Speed below the onset, as a part of it, at which nothing may grow: far more than the onset is uncertain by, far less than
 /// another mode needs to lose its damping.
 const JUST_BELOW: f64 = 1.0 - 1e-5;
+/// Motions that take the place of another at most.
+const OTHERS: usize = 3;
 
 /// An onset that was searched for.
 #[derive(Debug, Clone)]
@@ -52,22 +54,31 @@ impl SearchedOnset {
         Ok(Self {
             motion: NearbyOnset::of(bridge, &at)?,
             damping_below: start.damping_below,
-            parameters: parameters(bridge),
+            parameters: parameters(&mut bridge.clone()),
         })
     }
 
     /// The onset of a bridge up to `limit`, m/s; `None` where it has to be searched for.
     pub(super) fn followed(&self, built: &mut Built, limit: f64) -> Option<FoundOnset> {
-        let now = parameters(&built.bridge);
+        let now = parameters(&mut built.bridge);
         let near = |(now, then): (&f64, &f64)| (now - then).abs() <= NEAR * then.abs();
         if now.len() != self.parameters.len() || !now.iter().zip(&self.parameters).all(near) {
             return None;
         }
         let at_once = self.motion.follow(built.stepper.section());
-        let next = at_once.or_else(|| self.in_steps(&built.bridge, &now))?;
+        let mut next = at_once.or_else(|| self.in_steps(&built.bridge, &now))?;
+        if !next.resembles(&self.motion) {
+            return None;
+        }
+        // another motion may have become critical before it, and a third before that
+        for _ in 0..OTHERS {
+            if built.damping_at(JUST_BELOW * next.found().speed_m_s).ok()? > 0.0 {
+                break;
+            }
+            next = built.least_damped()?.follow(built.stepper.section())?;
+        }
         let found = next.found();
-        let within = found.speed_m_s > 0.0 && found.speed_m_s <= limit;
-        if !within || !next.resembles(&self.motion) {
+        if !(found.speed_m_s > 0.0 && found.speed_m_s <= limit) {
             return None;
         }
         let mut damping = |part: f64| built.damping_at(part * found.speed_m_s).ok();
@@ -86,11 +97,9 @@ impl SearchedOnset {
         let mut motion = self.motion.clone();
         for step in 1..=STEPS {
             let part = step as f64 / STEPS as f64;
-            let mut values = self.parameters.iter().zip(now);
-            between.air_density_kg_m3 = values.next().map(|(a, b)| a + part * (b - a))?;
-            for mode in &mut between.modes {
-                let mut next = || values.next().map(|(a, b)| a + part * (b - a));
-                (mode.frequency_hz, mode.damping_ratio) = (next()?, next()?);
+            let values = self.parameters.iter().zip(now);
+            for (parameter, (a, b)) in between.tunable().zip(values) {
+                *parameter = a + part * (b - a);
             }
             let forces = between.forces().realize().ok()?;
             let section = CoupledSection::new(between.structure(), forces).ok()?;
@@ -101,10 +110,6 @@ impl SearchedOnset {
 }
 
 /// What may be tuned.
-fn parameters(bridge: &Bridge) -> Vec<f64> {
-    let modes = bridge.modes.iter();
-    let modes = modes.flat_map(|m| [m.frequency_hz, m.damping_ratio]);
-    std::iter::once(bridge.air_density_kg_m3)
-        .chain(modes)
-        .collect()
+fn parameters(bridge: &mut Bridge) -> Vec<f64> {
+    bridge.tunable().map(|parameter| *parameter).collect()
 }

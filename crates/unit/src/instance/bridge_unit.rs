@@ -64,13 +64,18 @@ impl BridgeUnit {
             places: CoupledPlaces::of_bridge(table, options)?,
             responses: (0..)
                 .zip(table.variables())
-                .filter(|(_, v)| matches!(v.role, Role::NodeMotion(..) | Role::Mode(..)))
+                .filter(|(_, v)| {
+                    matches!(
+                        v.role,
+                        Role::NodeMotion(..) | Role::Mode(..) | Role::Damper(..)
+                    )
+                })
                 .map(|(place, v)| (place, v.role))
                 .collect(),
             shapes: built.bridge.shapes_at(&options.named),
             roots: masses.collect(),
             tested: options.tested_range,
-            inputs: Inputs::steady(0.0, options.modes.len()),
+            inputs: Inputs::steady(0.0, options.coordinates()),
             built,
             stale: false,
             release_pending: true,
@@ -122,9 +127,12 @@ impl BridgeUnit {
     fn pick_modal(&self, modal: &Outputs, role: Role) -> f64 {
         match role {
             Role::NodeMotion(node, response, dof) => {
-                let row = self.shapes.row(3 * node + crate::bridge::motion_index(dof));
+                let row = 3 * node + crate::bridge::motion_index(dof);
+                self.at_row(row, modal.lists()[response as usize])
+            }
+            Role::Damper(d, response) => {
                 let list = modal.lists()[response as usize];
-                row.iter().zip(list).map(|(phi, x)| phi * x).sum()
+                product(&self.built.strokes, d, list)
             }
             Role::Mode(m, ModeOutput::Coordinate) => modal.displacement[m] / self.roots[m],
             Role::Mode(m, ModeOutput::Rate) => modal.rate[m] / self.roots[m],
@@ -135,8 +143,7 @@ impl BridgeUnit {
 
     /// Displacement in a row of the shapes by mass-normalised coordinates.
     pub(super) fn at_row(&self, row: usize, modes: &[f64]) -> f64 {
-        let shape = self.shapes.row(row);
-        shape.iter().zip(modes).map(|(phi, x)| phi * x).sum()
+        product(&self.shapes, row, modes)
     }
 
     /// The row of the shapes that is the greatest rotation of a named node.
@@ -150,6 +157,16 @@ impl BridgeUnit {
         }
         most
     }
+}
+
+/// A row of a matrix times as many numbers as there are.
+fn product(matrix: &DMatrix<f64>, row: usize, numbers: &[f64]) -> f64 {
+    matrix
+        .row(row)
+        .iter()
+        .zip(numbers)
+        .map(|(phi, x)| phi * x)
+        .sum()
 }
 
 impl CoupledUnit for BridgeUnit {
@@ -178,7 +195,13 @@ impl CoupledUnit for BridgeUnit {
 
     fn release(&self, values: &[f64]) -> Result<SectionState> {
         let initial = self.places.initial.iter().zip(&self.roots);
-        let displacement: Vec<f64> = initial.map(|(place, root)| values[*place] * root).collect();
+        let mut displacement: Vec<f64> =
+            initial.map(|(place, root)| values[*place] * root).collect();
+        // masses of dampers go with the girder
+        for (d, damper) in self.built.bridge.dampers.masses.iter().enumerate() {
+            let stroke = product(&self.built.strokes, d, &displacement[..self.roots.len()]);
+            displacement.push(-stroke * damper.mass_kg.sqrt());
+        }
         let still = vec![0.0; displacement.len()];
         let mut state = self.built.stepper.released(&displacement, &still)?;
         blow_until_release(&mut state, &self.inputs.gust_m_s);

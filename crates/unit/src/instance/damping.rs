@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::Realization;
 use crate::error::Result;
-use crate::flutter::{LeastDamping, smallest_damping};
+use crate::flutter::{LeastDamping, NearbyOnset, smallest_damping};
 use crate::response::{Inputs, Stepper};
 use crate::state_space::{RepeatedEigenvalues, damping_ratio};
 use nalgebra::{Complex, DMatrix};
@@ -55,6 +55,16 @@ impl PresentDamping {
         };
         self.last = Some(KnownDamping { wind_m_s, ratio });
         Ok(ratio)
+    }
+}
+
+impl PresentDamping {
+    /// The mode that had it last, see [`LeastDamping::least`].
+    pub(super) fn least(&self) -> Option<NearbyOnset> {
+        match &self.way {
+            Some(Way::Continuous(least)) => least.least(),
+            _ => None,
+        }
     }
 }
 

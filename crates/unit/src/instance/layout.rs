@@ -58,15 +58,18 @@ impl Source {
             | Role::Prediction
             | Role::MotionDerivatives
             | Role::ModeParameter(..)
+            | Role::DamperParameter(_)
             | Role::TurbulenceFactor => Self::Section,
             Role::InitialDisplacement(_) | Role::InitialRate(_) | Role::InitialMode(_) => {
                 Self::Release
             }
             Role::OnsetSearchLimit => Self::Limit,
             Role::Constant => Self::Constant,
-            Role::Response(..) | Role::Force(..) | Role::NodeMotion(..) | Role::Mode(..) => {
-                Self::Response
-            }
+            Role::Response(..)
+            | Role::Force(..)
+            | Role::NodeMotion(..)
+            | Role::Mode(..)
+            | Role::Damper(..) => Self::Response,
             Role::Filter(_) => Self::State,
             Role::FilterRate(_) => Self::Rate,
             Role::Computed(number) => match number.causality {

@@ -10,7 +10,7 @@ mod unknown;
 
 use super::Instance;
 use crate::aerodynamics::{GustForce, RationalAdmittance};
-use crate::bridge::Bridge;
+use crate::bridge::{Bridge, DampedPoint, Dampers, MassDamper, ViscousLink};
 use crate::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::bridge_options::{BridgeOptions, GroupOptions};
 use crate::force_options::ForceOptions;
@@ -26,15 +26,18 @@ enum Kind {
     Section(&'static str),
     Forces(&'static str),
     Bridge,
+    /// With dampers.
+    Damped,
 }
 
-const KINDS: [Kind; 6] = [
+const KINDS: [Kind; 7] = [
     Kind::Section("continuous_laguerre"),
     Kind::Section("rational"),
     Kind::Section("discrete_laguerre"),
     Kind::Forces("rational"),
     Kind::Forces("discrete_laguerre"),
     Kind::Bridge,
+    Kind::Damped,
 ];
 
 fn fixture(name: &str) -> Vec<u8> {
@@ -54,6 +57,7 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         air_density_kg_m3: bridge.air_density_kg_m3,
         nodes: bridge.nodes,
         modes: bridge.modes,
+        dampers: Dampers::default(),
         structure_alone: false,
         groups: vec![GroupOptions {
             name: "girder".into(),
@@ -69,6 +73,32 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         gusts: None,
         onset_interval: None,
         onset: None,
+    }
+}
+
+/// A mass of a twentieth of the section off its axis, and a dashpot against rotation.
+fn dampers(model: &TrainedModel) -> Dampers {
+    let at = |motion, offset_m| DampedPoint {
+        node: 0,
+        motion,
+        offset_m,
+    };
+    let mass = MassDamper {
+        name: "mass".into(),
+        at: at(Dof::Vertical, 0.1),
+        mass_kg: 0.05 * model.section.vertical.mass_kg_m,
+        frequency_hz: 2.5,
+        damping_ratio: 0.08,
+    };
+    let link = ViscousLink {
+        name: "dashpot".into(),
+        at: at(Dof::Torsion, 0.0),
+        to: None,
+        coefficient: 0.02,
+    };
+    Dampers {
+        masses: vec![mass],
+        links: vec![link],
     }
 }
 
@@ -99,10 +129,13 @@ fn resources_in(kind: Kind, gusts: bool) -> Resources {
             let options = ForceOptions::single(0.5).to_json().unwrap();
             of_files(name, Some(&options))
         }
-        Kind::Bridge => {
+        Kind::Bridge | Kind::Damped => {
             let json = fixture("rational");
             let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
             let mut options = bridge_of(&model);
+            if matches!(kind, Kind::Damped) {
+                options.dampers = dampers(&model);
+            }
             options.gusts = gusts.then(|| BridgeGusts {
                 coefficients: vec![[[0.3, -5.0], [0.1, 0.2], [0.05, 1.2]]],
                 admittance: force.admittance,

@@ -7,7 +7,7 @@ use super::section::{
     air_density, capitalized, gust_inputs, onset_bounds, search_limit, wind_speed,
 };
 use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, StartValue, Variable};
-use super::{bridge_states, computed_rows, dependencies};
+use super::{bridge_states, computed_rows, dampers, dependencies};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::response::Stepper;
@@ -32,6 +32,7 @@ pub(super) fn variables(
     table.extend(options.gusts.iter().flat_map(|g| gusts(options, &g.strips)));
     table.extend(named.flat_map(|n| motions(options, n)));
     table.extend((0..options.modes.len()).flat_map(|m| mode(options, m)));
+    table.extend(dampers::strokes(&options.dampers));
     table.extend(parameters(options, turbulence));
     table.push(search_limit(model));
     table.extend((0..options.modes.len()).map(|m| initial(options, m)));
@@ -63,6 +64,8 @@ fn is_of_structure(role: Role) -> bool {
             | Role::NodeMotion(..)
             | Role::Mode(_, ModeOutput::Coordinate | ModeOutput::Rate)
             | Role::ModeParameter(..)
+            | Role::Damper(..)
+            | Role::DamperParameter(_)
             | Role::InitialMode(_)
             | Role::Filter(_)
             | Role::FilterRate(_)
@@ -125,6 +128,7 @@ fn parameters(options: &BridgeOptions, turbulence: bool) -> Vec<Variable> {
     std::iter::once(density)
         .chain(turbulence.then_some(factor))
         .chain(modes)
+        .chain(dampers::parameters(&options.dampers))
         .collect()
 }
 
@@ -223,6 +227,7 @@ fn fill_dependencies(table: &mut [Variable]) {
             r,
             Role::Section(_)
                 | Role::ModeParameter(..)
+                | Role::DamperParameter(_)
                 | Role::WindSpeed
                 | Role::NodeForce(..)
                 | Role::Gust(..)
@@ -233,10 +238,12 @@ fn fill_dependencies(table: &mut [Variable]) {
     let dependent = |on: &[usize]| dependencies::dependent(on.iter().copied());
     for variable in table.iter_mut() {
         (variable.direct_inputs, variable.initial_dependencies) = match variable.role {
-            Role::NodeMotion(_, Response::Acceleration, _) | Role::Mode(_, ModeOutput::Force) => {
-                (inputs.clone(), dependent(&all))
+            Role::NodeMotion(_, Response::Acceleration, _)
+            | Role::Mode(_, ModeOutput::Force)
+            | Role::Damper(_, Response::Acceleration) => (inputs.clone(), dependent(&all)),
+            Role::NodeMotion(..) | Role::Mode(..) | Role::Damper(..) => {
+                (Vec::new(), dependent(&release))
             }
-            Role::NodeMotion(..) | Role::Mode(..) => (Vec::new(), dependent(&release)),
             _ => continue,
         };
     }

@@ -9,6 +9,7 @@ use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::bridge_options::BridgeOptions;
 use crate::error::{Error, Result};
 use crate::response::Stepper;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// States at most: what depends on what is listed for each, which of more is megabytes of text.
@@ -27,7 +28,7 @@ pub(super) fn add(
     };
     let states = States {
         first: table.len(),
-        modes: options.modes.len(),
+        modes: options.coordinates(),
         filters: air.a.nrows(),
         lags: stepper.gust_states(),
     };
@@ -111,16 +112,20 @@ impl States {
         match output {
             Role::Mode(m, ModeOutput::Coordinate) => vec![self.state(m)],
             Role::Mode(m, ModeOutput::Rate) => vec![self.rate(m)],
-            Role::NodeMotion(_, Response::Displacement, _) => self.coordinates(),
-            Role::NodeMotion(_, Response::Rate, _) => self.rates(),
-            Role::NodeMotion(..) | Role::Mode(..) => self.all(),
+            Role::NodeMotion(_, Response::Displacement, _)
+            | Role::Damper(_, Response::Displacement) => self.coordinates(),
+            Role::NodeMotion(_, Response::Rate, _) | Role::Damper(_, Response::Rate) => {
+                self.rates()
+            }
+            Role::NodeMotion(..) | Role::Mode(..) | Role::Damper(..) => self.all(),
             _ => Vec::new(),
         }
     }
 
     fn modes_depend(&self, table: &mut [Variable], known: &StateDependencies) {
         for m in 0..self.modes {
-            table[self.state(m)].initial_dependencies = dependent([known.release[m]]);
+            let released = known.released(m).iter().copied();
+            table[self.state(m)].initial_dependencies = dependent(released);
             let rate = self.rate(m);
             table[rate].direct_inputs = vec![rate];
             let acceleration = &mut table[self.rate(self.modes + m)];
@@ -145,7 +150,10 @@ impl States {
             let mut direct: Vec<usize> = states.map(|entry| self.state(entry)).collect();
             direct.extend(known.wind);
             direct.sort_unstable();
-            let settled: Vec<usize> = drivers(air, i).iter().map(|m| known.release[*m]).collect();
+            let drivers = drivers(air, i);
+            let settled = drivers.iter().flat_map(|m| known.released(*m)).copied();
+            let settled: BTreeSet<usize> = settled.collect();
+            let settled: Vec<usize> = settled.into_iter().collect();
             table[self.state(entry)].initial_dependencies = dependent(settled.iter().copied());
             let rate = &mut table[self.rate(entry)];
             rate.direct_inputs = direct;
@@ -200,6 +208,16 @@ impl StateDependencies {
     }
 }
 
+impl StateDependencies {
+    /// On which coordinates at release that of a mode, or of a damper, depends.
+    fn released(&self, coordinate: usize) -> &[usize] {
+        match self.release.get(coordinate) {
+            Some(own) => std::slice::from_ref(own),
+            None => &self.release,
+        }
+    }
+}
+
 /// The modes that drive a filter, by itself or through others.
 fn drivers(air: &ContinuousRealization, filter: usize) -> Vec<usize> {
     let mut chain = vec![filter];
@@ -224,31 +242,44 @@ fn with(places: &[usize], further: Option<usize>) -> Vec<usize> {
 
 /// Mass-normalised coordinate of a mode, its rate or its second rate.
 fn normalised(options: &BridgeOptions, m: usize, order: usize) -> Variable {
-    let mode = &options.modes[m];
+    let mode = options.modes.get(m);
+    let damper = m.checked_sub(options.modes.len());
     let (name, text) = [
         ("coordinate", "Coordinate"),
         ("rate", "Rate of the coordinate"),
         ("acceleration", "Second rate of the coordinate"),
     ][order];
-    let n = options.modes.len();
+    let n = options.coordinates();
     let role = match order {
         2 => Role::FilterRate(n + m),
         _ => Role::Filter(order * n + m),
     };
-    let text = format!(
-        "{text} of mode {} times the root of its generalised mass, in SI units",
-        mode.number
-    );
+    let (whose, of_mass) = match (mode, damper) {
+        (Some(mode), _) => (
+            format!("mode[{}]", mode.number),
+            format!(
+                "mode {} times the root of its generalised mass",
+                mode.number
+            ),
+        ),
+        (None, damper) => {
+            let number = damper.unwrap_or(0) + 1;
+            (
+                format!("damper[{number}]"),
+                format!("damper {number}, its displacement, times the root of its mass"),
+            )
+        }
+    };
+    let text = format!("{text} of {of_mass}, in SI units");
     let released = options.modes.iter().zip(&options.initial);
     let sizes = released.map(|(mode, start)| (start * mode.generalised_mass.sqrt()).abs());
     let size = sizes.fold(0.0, f64::max);
     let size = if size > 0.0 { size } else { 1.0 };
-    let omega = TAU * mode.frequency_hz;
-    real(
-        format!("mode[{}].normalised_{name}", mode.number),
-        role,
-        INNER,
-        text,
-    )
-    .nominal(size * omega.powi(order as i32))
+    let masses = damper.and_then(|d| options.dampers.masses.get(d));
+    let hertz = mode
+        .map(|m| m.frequency_hz)
+        .or(masses.map(|d| d.frequency_hz));
+    let omega = TAU * hertz.unwrap_or(1.0);
+    real(format!("{whose}.normalised_{name}"), role, INNER, text)
+        .nominal(size * omega.powi(order as i32))
 }

@@ -154,7 +154,10 @@ pub(super) fn fill_dependencies(table: &mut [Variable]) {
     let parameters = places(&|r| {
         matches!(
             r,
-            Role::Section(_) | Role::ModeParameter(..) | Role::OnsetSearchLimit
+            Role::Section(_)
+                | Role::ModeParameter(..)
+                | Role::DamperParameter(_)
+                | Role::OnsetSearchLimit
         )
     });
     let modes = places(&|r| matches!(r, Role::InitialMode(_)));

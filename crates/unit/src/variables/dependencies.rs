@@ -32,6 +32,8 @@ macro_rules! of_other_units {
             | Role::Mode(..)
             | Role::InitialMode(_)
             | Role::ModeParameter(..)
+            | Role::Damper(..)
+            | Role::DamperParameter(_)
             | Role::TurbulenceFactor
     };
 }

@@ -105,8 +105,24 @@ pub enum Role {
     InitialMode(usize),
     /// A property of a mode of a bridge.
     ModeParameter(usize, ModeParameter),
+    /// Stroke of a mass damper, or a rate of it.
+    Damper(usize, Response),
+    /// A property of the dampers, in the order of [`Bridge::tunable`](crate::bridge::Bridge::tunable).
+    DamperParameter(usize),
     /// Factor on the turbulence that a bridge has in its archive.
     TurbulenceFactor,
+}
+
+impl Role {
+    /// Whether it is one of the numbers of [`Bridge::tunable`](crate::bridge::Bridge::tunable), which stand in that order in the table.
+    pub(crate) fn is_tuned(self) -> bool {
+        matches!(
+            self,
+            Self::Section(SectionParameter::AirDensity)
+                | Self::ModeParameter(..)
+                | Self::DamperParameter(_)
+        )
+    }
 }
 
 /// A number of a mode.

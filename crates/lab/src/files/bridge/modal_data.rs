@@ -135,6 +135,17 @@ impl BridgeModes {
         }
     }
 
+    /// Place of a node by its name; `key` is the place in the bridge file that states it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that no node has.
+    pub fn place_of(&self, key: String, name: &str) -> Result<usize> {
+        let (a, b) = (&self.nodes[0].name, &self.nodes[self.nodes.len() - 1].name);
+        let expected = || format!("a node of the bridge, {a} to {b}");
+        let place = self.nodes.iter().position(|n| n.name == *name);
+        place.ok_or_else(|| Error::input(key, expected(), format!("`{name}`")))
+    }
+
     /// What is odd about them.
     pub fn findings(&self) -> Vec<Finding> {
         let mut findings = of_modes(&Girder {

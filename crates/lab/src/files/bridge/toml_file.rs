@@ -1,5 +1,6 @@
 //! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
 
+use super::dampers::{self, DamperBlock};
 use super::matlab::SpanBlock;
 use super::modal_data::BridgeModes;
 use super::wind_block::WindBlock;
@@ -7,7 +8,7 @@ use super::{WindAxes, abaqus, embedded, matlab, opensees, single_file, tables, w
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
-use crate::bridge::BridgeMode;
+use crate::bridge::{BridgeMode, Dampers};
 use crate::error::{Error, Result, non_negative, of_schema, positive};
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
@@ -33,6 +34,9 @@ pub struct BridgeFile {
     /// Sections along the span.
     #[serde(rename = "section")]
     pub sections: Vec<BridgeSectionBlock>,
+    /// Dampers.
+    #[serde(default, rename = "damper", skip_serializing_if = "Vec::is_empty")]
+    pub dampers: Vec<DamperBlock>,
     /// Wind along the span.
     #[serde(default)]
     pub wind: WindBlock,
@@ -48,6 +52,12 @@ pub struct BridgeFile {
     /// Directory of the file, against which paths in it are read.
     #[serde(skip)]
     pub directory: PathBuf,
+    /// The file itself, where it is one, and its text: of what is found wrong with the modes at hand.
+    #[serde(skip)]
+    pub path: Option<PathBuf>,
+    /// See `path`.
+    #[serde(skip)]
+    pub text: String,
 }
 
 /// Where the modes are.
@@ -248,7 +258,11 @@ impl BridgeFile {
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        toml_lines::read(path, Self::from_toml)
+        let file = toml_lines::read(path, Self::from_toml)?;
+        Ok(Self {
+            path: Some(path.to_owned()),
+            ..file
+        })
     }
 
     /// Reads and checks the text of a file; paths in it are read against `directory`.
@@ -258,6 +272,7 @@ impl BridgeFile {
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a bridge file", text, |file: &mut Self| {
             file.directory = directory;
+            text.clone_into(&mut file.text);
             file.validate()
         })
     }
@@ -274,6 +289,9 @@ impl BridgeFile {
         }
         for (i, section) in self.sections.iter().enumerate() {
             section.validate(&format!("section[{i}]"))?;
+        }
+        for (i, damper) in self.dampers.iter().enumerate() {
+            damper.validate(&format!("damper[{i}]"))?;
         }
         self.wind.validate()?;
         match (self.modes.format, &self.modes.axes, &self.modes.span) {
@@ -300,6 +318,23 @@ impl BridgeFile {
             DampingRatios::Each(all) => all
                 .iter()
                 .try_for_each(|r| non_negative("modes.damping_ratio", *r).map(|_| ())),
+        }
+    }
+
+    /// The dampers at nodes of these modes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the key for a node that is none.
+    pub fn dampers(&self, modes: &BridgeModes) -> Result<Dampers> {
+        dampers::dampers(&self.dampers, modes)
+    }
+
+    /// The same error with the file, and the line of the key that it names.
+    pub fn located(&self, error: Error) -> Error {
+        let error = toml_lines::with_line(&self.text, error);
+        match &self.path {
+            Some(path) => error.in_file(path),
+            None => error,
         }
     }
 

@@ -20,6 +20,7 @@ fn derivatives_while_initialising_are_differences() {
         Kind::Section("continuous_laguerre"),
         Kind::Section("rational"),
         Kind::Bridge,
+        Kind::Damped,
     ] {
         let mut unit = driven(kind, true);
         unit.set_up_experiment(0.0, None).unwrap();
