@@ -30,6 +30,7 @@ mod progress;
 mod quasi_steady;
 mod report;
 mod routes;
+mod schemas;
 mod select;
 mod simulate;
 mod ssp;
@@ -82,6 +83,9 @@ struct Cli {
     /// Print the result as JSON on standard output, for machines.
     #[arg(long, global = true)]
     json: bool,
+    /// Print the JSON Schema of what `--json` prints, and do nothing else.
+    #[arg(long, global = true)]
+    json_schema: bool,
     /// No progress bars.
     #[arg(long, short, global = true)]
     quiet: bool,
@@ -156,6 +160,12 @@ pub fn main() -> ExitCode {
     let code = apology::guarded(|| {
         if let Err(error) = readable_arguments() {
             return report(&error, std::env::args_os().any(|a| a == "--json"));
+        }
+        let arguments: Vec<String> = std::env::args().skip(1).collect();
+        match schemas::asked(&arguments) {
+            Ok(None) => (),
+            Ok(Some(schema)) => return print(&schema, false),
+            Err(error) => return report(&error, false),
         }
         let matches = groups::in_groups(Cli::command()).try_get_matches();
         let cli = match matches.and_then(|m| Cli::from_arg_matches(&m)) {

@@ -7,11 +7,13 @@
 mod bridges;
 mod first_order;
 mod flat_plate;
+mod laguerre_functions;
 mod models;
 mod table;
 mod user_case;
 
 pub use first_order::{FirstOrderExample, FirstOrderResults, SampledTransfer};
+pub use laguerre_functions::{LaguerreFunctions, Lines};
 pub use table::validation_table;
 pub(crate) use user_case::UserCase;
 

@@ -16,6 +16,7 @@ mod geometry;
 mod growth_figure;
 mod heat_map;
 mod labels;
+mod laguerre_figures;
 mod legend;
 mod metrics_figure;
 mod page_head;
@@ -46,6 +47,7 @@ pub use first_order_figures::{ThesisFigure, first_order_figures};
 pub use flutter_figures::vf_vg_figure;
 pub use growth_figure::{GrowthPanel, growth_figure};
 pub(crate) use heat_map::{HeatMap, heat_map_figure};
+pub use laguerre_figures::laguerre_figures;
 pub(crate) use metrics_figure::{MetricPanel, metrics_figure};
 pub(crate) use processing_figures::processing_figure;
 #[cfg(feature = "png")]

@@ -11,6 +11,7 @@ use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeF
 use crate::selection::{Selection, SelectionPlan, metric_grid, select};
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
+pub(super) use account::parameter_maps;
 use account::{account, figures};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -70,7 +70,13 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
         {
             evidence::write_response(&own.model, &onset.at, &mut out)?;
         }
-        let page = thesis_page(&results, PRINTED_M_S, &out, progress)?;
+        let page = thesis_page(
+            &results,
+            PRINTED_M_S,
+            &records.select(Some(&[1]))?,
+            &out,
+            progress,
+        )?;
         let mut left = OutputDir::new(folder)?;
         left.write("thesis.html", sections_page(&page)?)?;
         text.push_str(&list(&left.commit()?));

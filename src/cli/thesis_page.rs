@@ -5,11 +5,18 @@ use super::evidence::{RESPONSE, ROOTS};
 use super::laboratory::svg;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::select::parameter_maps;
 use super::stages::FIGURE;
 use crate::error::Result;
-use crate::reference::FirstOrderExample;
-use crate::report::{PageSection, SectionsPage, first_order_figures};
+use crate::identification::{Grid, GridAxis, TimeWeights};
+use crate::reference::{FirstOrderExample, LaguerreFunctions};
+use crate::report::{
+    PageSection, SectionsPage, ThesisFigure, first_order_figures, laguerre_figures,
+};
+use crate::section::Dof;
+use crate::selection::metric_grid;
 use crate::study::FlutterStudy;
+use crate::wind_tunnel::RecordSource;
 
 /// Decimals of the numbers printed in section 2.5: bounds of α by (2.36) and (2.37), the end of the third impulse response.
 const PRINTED_FIRST_ORDER: [&str; 3] = ["0.8283", "0.889", "0.0096"];
@@ -18,13 +25,19 @@ const PRINTED_FIRST_ORDER: [&str; 3] = ["0.8283", "0.889", "0.0096"];
 pub(super) fn thesis_page(
     results: &FlutterStudy,
     printed_m_s: f64,
+    records: &[&dyn RecordSource],
     out: &OutputDir,
     progress: &Progress,
 ) -> Result<SectionsPage> {
-    let mut sections = vec![first_order(progress)?];
+    let mut sections = vec![
+        functions()?,
+        first_order(progress)?,
+        parameters(records, progress)?,
+    ];
     sections.extend(thesis_comparisons(progress)?);
     sections.push(onsets(results, printed_m_s, out));
     sections.push(errata());
+    sections.push(not_computed());
     let own = results
         .onsets
         .iter()
@@ -40,6 +53,114 @@ pub(super) fn thesis_page(
         answer: format!("Onset of the coupled section: printed {printed_m_s} m/s, here {own}"),
         sections,
     })
+}
+
+/// What each figure of the functions and of the first-order system shows.
+const CAPTIONS: [(&str, &str); 12] = [
+    ("2.1", "Laguerre functions of order 0 to 4, p = 0.2"),
+    (
+        "2.2",
+        "the function of second order for several decay rates p",
+    ),
+    (
+        "2.3",
+        "discrete Laguerre functions of order 0 to 4, α = 0.4",
+    ),
+    ("2.4", "the discrete function of second order for several α"),
+    (
+        "2.5",
+        "gain of the filters over the frequency, the same for every order",
+    ),
+    ("2.6", "training input of six frequencies"),
+    (
+        "2.7",
+        "output predicted at a frequency that was not trained",
+    ),
+    ("2.8", "transfer function of system and model"),
+    ("2.9", "impulse response of system and model"),
+    ("2.10", "transfer functions for several α"),
+    (
+        "2.11",
+        "transfer functions for several numbers of filters L",
+    ),
+    ("3.10", "the filters of the bridge decks, L = 3, α = 0.6"),
+];
+
+fn captioned(figures: Vec<ThesisFigure>) -> Vec<(String, String)> {
+    let caption = |number: &str| {
+        let known = CAPTIONS.iter().find(|(n, _)| *n == number);
+        known.map_or("", |(_, text)| text)
+    };
+    let one = |f: ThesisFigure| {
+        let text = format!("Figure {}: {}", f.number, caption(f.number));
+        (text, f.figure.svg().to_owned())
+    };
+    figures.into_iter().map(one).collect()
+}
+
+fn functions() -> Result<PageSection> {
+    let functions = LaguerreFunctions::of_the_thesis()?;
+    Ok(PageSection {
+        title: "2.3 and 3.4 Laguerre functions".to_owned(),
+        text: vec![format!(
+            "The filters of the decks stay below 0.01 from sample {} on; the thesis reads about 40 from its Figure 3.10.",
+            functions.memory
+        )],
+        figures: captioned(laguerre_figures(&functions)?),
+        ..PageSection::default()
+    })
+}
+
+/// Section 3.5.3: the metrics of the forces at the thesis's frequency over α and L.
+fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<PageSection> {
+    const FREQUENCY_HZ: f64 = 1.09;
+    const FILTERS: usize = 8;
+    let stage = progress.stage("parameters of the discrete model");
+    let alphas: Vec<f64> = (0..20).map(|i| 0.2 + 0.04 * f64::from(i)).collect();
+    let axis = GridAxis::Discrete(alphas.clone(), TimeWeights::None);
+    let grid = Grid::new(records, axis, FILTERS, &|_| {})?;
+    let mut figures = Vec::new();
+    for metrics in metric_grid(&grid, records, FREQUENCY_HZ)? {
+        let number = match metrics.motion {
+            Dof::Vertical => "3.18",
+            _ => "3.19",
+        };
+        let caption = format!(
+            "Figure {number}: metrics of the {} force over α and L, {} motion at {:.2} Hz",
+            metrics.force.name(),
+            metrics.motion.name(),
+            metrics.frequency_hz
+        );
+        let figure = parameter_maps(&alphas, FILTERS, &metrics)?;
+        figures.push((caption, figure.svg().to_owned()));
+    }
+    drop(stage);
+    Ok(PageSection {
+        title: "3.5.3 Parameters, on rebuilt records".to_owned(),
+        figures,
+        ..PageSection::default()
+    })
+}
+
+/// Figures that are not here, and why.
+fn not_computed() -> PageSection {
+    let rows = [
+        (
+            "1.1, 1.2, 3.6 to 3.9, 4.1",
+            "drawings of axes, models and methods; this program's are in its manual",
+        ),
+        ("3.1 to 3.5", "the bridge, the girder and the rig"),
+        (
+            "3.11",
+            "where the recordings are cut: the laboratory's recordings are not published, and rebuilt records state their segments in their header",
+        ),
+    ];
+    PageSection {
+        title: "Figures that are not computed".to_owned(),
+        header: vec!["figure", "why"],
+        rows: rows.map(|(a, b)| vec![a.to_owned(), b.to_owned()]).to_vec(),
+        ..PageSection::default()
+    }
 }
 
 fn first_order(progress: &Progress) -> Result<PageSection> {
@@ -70,10 +191,7 @@ fn first_order(progress: &Progress) -> Result<PageSection> {
         rows: rows
             .map(|((what, printed), here)| vec![(*what).to_owned(), printed.to_owned(), here])
             .collect(),
-        figures: figures
-            .into_iter()
-            .map(|f| (format!("Figure {}", f.number), f.figure.svg().to_owned()))
-            .collect(),
+        figures: captioned(figures),
     })
 }
 

@@ -26,6 +26,7 @@ mod process;
 mod replay;
 mod report;
 mod required_speeds;
+mod schemas;
 mod select;
 mod templates;
 mod verdicts;

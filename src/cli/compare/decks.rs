@@ -84,9 +84,26 @@ pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSectio
         "records of several girders",
     )?;
     let drawn = figures(&options, &results)?.into_iter();
-    let drawn = drawn.map(|(stem, figure)| (format!("Figures 3.10 to 3.13: {stem}"), figure));
+    let drawn = drawn.map(|(stem, figure)| (caption(&stem), figure));
     let title = "3.5.4 Several girders, on rebuilt records";
     Ok(common::section(title, &results.statements, drawn.collect()))
+}
+
+/// What a figure of the page shows.
+fn caption(stem: &str) -> String {
+    let motion = match stem.contains("torsion") {
+        true => "torsional",
+        false => "vertical",
+    };
+    let printed = match (motion, stem.ends_with("_held_out")) {
+        ("torsional", false) => "Figure 3.20",
+        _ => "Not printed, beside Figure 3.20",
+    };
+    let speed = match stem.ends_with("_held_out") {
+        true => "at the speed that the models were not trained at",
+        false => "at the speed of the training",
+    };
+    format!("{printed}: metrics of several girders over the frequency of {motion} motion, {speed}")
 }
 
 fn account(results: &DecksComparison) -> String {

@@ -6,7 +6,8 @@ use crate::cli::figures;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
-    BandCheck, History, ModelsComparison, compare_models, inside, score_table,
+    BandCheck, CompareOptions, History, ModelsComparison, Score, compare_models, inside,
+    score_table,
 };
 use crate::error::{Result, counted};
 use crate::files::text::csv_cell;
@@ -40,27 +41,27 @@ pub(crate) fn run(args: &CompareModelsArgs, progress: &Progress) -> Result<Answe
     figures::write("models_transfer", &mut out, || transfer_functions(&results))?;
     figures::write("models_derivatives", &mut out, || derivatives(&results))?;
     for &motion in &options.dofs {
-        let chosen: Vec<_> = results
-            .scores
-            .iter()
-            .filter(|s| s.case.motion == motion)
-            .collect();
-        let title = format!(
-            "{} at {:.2} m/s: metrics of the predicted forces, {} motion",
-            results.deck,
-            results.speed_m_s,
-            motion.name()
-        );
         let stem = format!("models_metrics_{}", motion.name());
-        figures::write(&stem, &mut out, || {
-            metrics_of(&title, &options.dofs, &chosen, &|s| s.case.model.clone())
-        })?;
+        figures::write(&stem, &mut out, || metrics(&options, &results, motion))?;
     }
     for (stem, figure) in histories(&results)? {
         figures::write(&stem, &mut out, || Ok(figure))?;
     }
     let text = account(&results);
     out.answer(text, serde_json::json!({ "comparison": results }))
+}
+
+/// Metrics over the frequency of a motion (Figures 3.12, 3.13, 3.27, 3.28).
+fn metrics(options: &CompareOptions, results: &ModelsComparison, motion: Dof) -> Result<Figure> {
+    let chosen = results.scores.iter().filter(|s| s.case.motion == motion);
+    let title = format!(
+        "{} at {:.2} m/s: metrics of the predicted forces, {} motion",
+        results.deck,
+        results.speed_m_s,
+        motion.name()
+    );
+    let label = |s: &Score| s.case.model.clone();
+    metrics_of(&title, &options.dofs, &chosen.collect::<Vec<_>>(), &label)
 }
 
 /// Magnitude and phase with the bands (Figures 3.21 and 3.22).
@@ -170,14 +171,31 @@ pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSectio
     let options = common.options(vec![deck], None);
     let results = compared(compare_models, &options, progress, "records of one girder")?;
     let (first, second) = (transfer_functions(&results)?, derivatives(&results)?);
-    let mut figures = vec![
-        ("Transfer functions (Figures 3.18 to 3.22)".into(), first),
-        ("Derivatives (Figures 3.23 to 3.26)".into(), second),
-    ];
-    for (stem, figure) in histories(&results)? {
-        let caption = format!("Forces (Figures 3.14 to 3.17, 3.29 to 3.32): {stem}");
-        figures.push((caption, figure));
+    let mut figures = Vec::new();
+    for (dof, caption) in [
+        (
+            Dof::Vertical,
+            "Figures 3.12 (the Laguerre model alone) and 3.28: metrics over the frequency of vertical motion",
+        ),
+        (
+            Dof::Torsion,
+            "Figures 3.13 (the Laguerre model alone) and 3.27: metrics over the frequency of torsional motion",
+        ),
+    ] {
+        figures.push((caption.to_owned(), metrics(&options, &results, dof)?));
     }
+    for (stem, figure) in histories(&results)? {
+        figures.push((history_caption(&stem), figure));
+    }
+    figures.push((
+        "Figures 3.21 and 3.22: magnitude and phase of the transfer functions, with ±15 % and ±5°"
+            .to_owned(),
+        first,
+    ));
+    figures.push((
+        "Figures 3.23 to 3.26: aerodynamic derivatives over the reduced velocity".to_owned(),
+        second,
+    ));
     let title = "3.5.2, 3.5.5, 3.5.6 Models of one girder, on rebuilt records";
     let mut section = common::section(title, &results.statements, figures);
     section.text.push(
@@ -186,6 +204,18 @@ pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSectio
             .to_owned(),
     );
     Ok(section)
+}
+
+/// What a figure of forces over time shows.
+fn history_caption(stem: &str) -> String {
+    let (printed, motion) = match stem {
+        "models_history_vertical_0.5_hz" => ("3.17 and 3.29", "vertical motion at 0.5 Hz"),
+        "models_history_torsion_0.5_hz" => ("3.16 and 3.30", "torsional motion at 0.5 Hz"),
+        "models_history_vertical_2.0_hz" => ("3.14 and 3.31", "vertical motion at 2.0 Hz"),
+        "models_history_torsion_2.0_hz" => ("3.15 and 3.32", "torsional motion at 2.0 Hz"),
+        other => return other.to_owned(),
+    };
+    format!("Figures {printed}: lift and moment due to {motion}, measured and by the models")
 }
 
 fn account(results: &ModelsComparison) -> String {

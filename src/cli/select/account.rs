@@ -74,27 +74,52 @@ pub(crate) fn figures(
         logarithmic,
         ..map(selection, title.to_owned(), values)
     });
-    type Pick = fn(&CellMetrics) -> f64;
-    let kinds: [(&str, Pick); 3] = [
-        ("Phase", |m| m.phase),
-        ("Peak", |m| m.peak),
-        ("Warped magnitude", |m| m.magnitude_warped),
-    ];
-    let mut metric_maps = Vec::new();
-    for grid in metrics {
-        for (name, pick) in kinds {
-            let (force, hertz) = (grid.force.name(), grid.frequency_hz);
-            let title = format!("{name} metric: {force} force and motion, {hertz:.2} Hz");
-            let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
-            metric_maps.push(map(selection, title, values));
-        }
-    }
+    let maps = metrics.iter().flat_map(metric_values);
+    let metric_maps: Vec<HeatMap> = maps
+        .map(|(title, values)| map(selection, title, values))
+        .collect();
     let draw = |what: &str, maps: &[HeatMap], columns| {
         heat_map_figure(&format!("{}: {what}", study.name), maps, columns)
     };
     let errors = draw("selection", &errors, 2)?;
     let metrics = draw("metrics of the forces", &metric_maps, 3)?;
     Ok(vec![("selection", errors), ("selection_metrics", metrics)])
+}
+
+/// The three metrics of every cell, each with its title.
+fn metric_values(grid: &MetricGrid) -> [(String, Vec<Option<f64>>); 3] {
+    type Pick = fn(&CellMetrics) -> f64;
+    let kinds: [(&str, Pick); 3] = [
+        ("Phase", |m| m.phase),
+        ("Peak", |m| m.peak),
+        ("Warped magnitude", |m| m.magnitude_warped),
+    ];
+    kinds.map(|(name, pick)| {
+        let (force, hertz) = (grid.force.name(), grid.frequency_hz);
+        let title = format!("{name} metric: {force} force and motion, {hertz:.2} Hz");
+        let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
+        (title, values)
+    })
+}
+
+/// Maps of the metrics of one force over the parameters of a discrete model.
+pub(crate) fn parameter_maps(
+    alphas: &[f64],
+    filters: usize,
+    metrics: &MetricGrid,
+) -> Result<Figure> {
+    let maps = metric_values(metrics).map(|(title, values)| HeatMap {
+        title,
+        x_label: "Decay factor α (–)".to_owned(),
+        x: alphas.to_vec(),
+        y_label: "Filters L".to_owned(),
+        rows: filters,
+        values,
+        logarithmic: false,
+        refused: Vec::new(),
+        chosen: None,
+    });
+    heat_map_figure("Parameters of the discrete model", &maps, 3)
 }
 
 /// A map of one value of every cell.
