@@ -1,6 +1,7 @@
 //! `modelDescription.xml` of FMI 3.0, made from the same variable table: strips, modes and nodes are arrays, and the time has a variable.
 
 use super::description::{described, experiment, log_categories, number, units};
+use super::force_options::MAX_STRIPS;
 use super::groups::{Groups, array_of};
 use super::identity::MODEL_IDENTIFIER;
 use super::package::label::Label;
@@ -32,6 +33,8 @@ pub fn model_description(resources: &Resources, label: &Label) -> Result<String>
             .with("variability", "continuous")
             .with("unit", "s"),
     );
+    variables.extend(listed.names());
+    variables.extend(listed.strips());
     let second = Element::new("Unit")
         .with("name", "s")
         .containing([Element::new("BaseUnit").with("s", 1)]);
@@ -60,7 +63,7 @@ fn interfaces(table: &VariableTable) -> Vec<Element> {
             .with("canSerializeFMUState", true)
             .with("providesDirectionalDerivatives", true)
             .with("providesAdjointDerivatives", true)
-            .with("providesPerElementDependencies", false)
+            .with("providesPerElementDependencies", true)
     };
     let co_simulation = both("CoSimulation")
         .with("canHandleVariableCommunicationStepSize", true)
@@ -100,7 +103,11 @@ impl GroupedVariables<'_> {
         let array = array_of(v.role, &v.name);
         let description = match places.len() {
             1 => v.description.clone(),
-            count => format!("{} (the first of {count})", v.description),
+            count => format!(
+                "{} (the first of {count}{})",
+                v.description,
+                self.named(&v.name)
+            ),
         };
         let element = Element::new(kind)
             .with("name", array.as_deref().unwrap_or(&v.name))
@@ -133,8 +140,60 @@ impl GroupedVariables<'_> {
                 element.containing([Element::new("Start").with("value", start)])
             }
         };
-        let dimension = array.map(|_| Element::new("Dimension").with("start", places.len()));
+        let dimension = array.map(|_| match self.groups.strips_reference() {
+            Some(strips) => Element::new("Dimension").with("valueReference", strips),
+            None => Element::new("Dimension").with("start", places.len()),
+        });
         Ok(element.containing(dimension))
+    }
+
+    /// Where the names of the elements of an array stand, in words.
+    fn named(&self, name: &str) -> String {
+        let mut all = self.groups.names();
+        let of = all.find(|(_, names)| name.starts_with(&format!("{}[", names.kind)));
+        of.map_or_else(String::new, |(_, names)| {
+            format!(", named in {}_name", names.kind)
+        })
+    }
+
+    /// The names of the elements of arrays, as constants.
+    fn names(&self) -> impl Iterator<Item = Element> {
+        self.groups.names().map(|(reference, names)| {
+            let kind = names.kind;
+            let starts = names
+                .of
+                .iter()
+                .map(|name| Element::new("Start").with("value", name.to_string_lossy()));
+            Element::new("String")
+                .with("name", format!("{kind}_name"))
+                .with("valueReference", reference)
+                .with(
+                    "description",
+                    format!("Names of the {kind}s, in the order of every array of them"),
+                )
+                .with("causality", "local")
+                .with("variability", "constant")
+                .with("initial", "exact")
+                .containing([Element::new("Dimension").with("start", names.of.len())])
+                .containing(starts)
+        })
+    }
+
+    /// The number of strips, which importers choose in the configuration mode.
+    fn strips(&self) -> Option<Element> {
+        let (reference, strips) = self.groups.strips_reference().zip(self.groups.strips())?;
+        let text = "Number of strips, to be chosen in the configuration mode: those beyond the exported ones are like the last";
+        Some(
+            Element::new("UInt64")
+                .with("name", "strips")
+                .with("valueReference", reference)
+                .with("description", text)
+                .with("causality", "structuralParameter")
+                .with("variability", "fixed")
+                .with("start", strips)
+                .with("min", 1)
+                .with("max", MAX_STRIPS),
+        )
     }
 
     /// Outputs, rates of the states and unknowns of the initialisation with their dependencies, by value reference.

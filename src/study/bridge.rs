@@ -26,7 +26,7 @@ use super::KnownUncertainty;
 use super::speeds::{SEARCHED_AT_LEAST, reaching};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, BridgeMode, Similarity, StripGroup, similarities};
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
 use crate::plausibility::{Finding, of_bridge, of_coefficients, of_modes_left_out, sentences};
@@ -98,6 +98,13 @@ impl BridgeStudy {
         notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));
         let parts = groups(&file, &modes, &mut notes).map_err(|e| file.located(e))?;
         let dampers = file.dampers(&modes).map_err(|e| file.located(e))?;
+        if !dampers.is_empty() {
+            notes.push(format!(
+                "the structure has {} and {}",
+                counted(dampers.masses.len(), "tuned mass damper"),
+                counted(dampers.links.len(), "viscous link")
+            ));
+        }
         let bridge = |table: bool| {
             let group = |part: &SectionNodes| StripGroup {
                 name: file.sections[part.section].name.clone(),

@@ -7,6 +7,7 @@ import fmpy
 import numpy as np
 import pytest
 from exported import FOLDER, MODELS
+from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from lxml import etree
 from section import OUTPUTS
@@ -81,6 +82,36 @@ def test_terminals_name_variables(unit, terminals):
         members = [(m.get("memberName"), m.get("variableName")) for m in terminal]
         assert len({member for member, _ in members}) == len(members) > 0
         assert names.issuperset(name for _, name in members)
+
+
+def test_strips_are_chosen(tmp_path):
+    """Five strips of an archive of three; FMPy's own loop knows no configuration mode."""
+    fmu = str(FOLDER / "fmi3_force_rational.fmu")
+    description = fmpy.read_model_description(fmu)
+    vr = {v.name: v.valueReference for v in description.modelVariables}
+    unit = FMU3Slave(
+        guid=description.guid,
+        unzipDirectory=fmpy.extract(fmu, str(tmp_path)),
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="strips",
+    )
+    unit.instantiate()
+    unit.enterConfigurationMode()
+    assert list(unit.getUInt64([vr["strips"]])) == [3]
+    unit.setUInt64([vr["strips"]], [5])
+    unit.exitConfigurationMode()
+    unit.setFloat64([vr["wind_speed"]], [20.0])
+    unit.enterInitializationMode()
+    unit.exitInitializationMode()
+    unit.setFloat64([vr["rotation"]], [0.001 * i for i in range(5)])
+    for step in range(10):
+        unit.doStep(0.01 * step, 0.01)
+    lift = list(unit.getFloat64([vr["lift"]], nValues=5))
+    assert lift[0] == 0.0 and lift[1] != 0.0
+    for i, value in enumerate(lift):
+        assert value == pytest.approx(i * lift[1], rel=1e-12)
+    unit.terminate()
+    unit.freeInstance()
 
 
 def test_strips_are_arrays():

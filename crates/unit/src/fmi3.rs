@@ -1,13 +1,13 @@
 //! The FMI 3.0 shell around the same instance. The contract is that of [`super::fmi2`]; a status has the same numbers.
 //!
-//! There are no clocks, no structural parameters and no events of our own: functions for them answer with an error and leave
-//! the run alone.
+//! There are no clocks and no events of our own: functions for them answer with an error and leave the run alone.
 
 mod absent;
 mod life;
 mod model_exchange;
 mod states;
 mod stepping;
+mod structure;
 #[cfg(test)]
 mod tests;
 mod values;
@@ -17,6 +17,7 @@ pub use life::*;
 pub use model_exchange::*;
 pub use states::*;
 pub use stepping::*;
+pub use structure::*;
 pub use values::*;
 
 /// Truth value of C: any byte but zero is true.

@@ -4,6 +4,7 @@ use super::refusal::{CallResult, Refusal};
 use super::variables::{Role, VariableTable};
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ffi::CString;
 
 /// Places in the table of each listed variable; the value reference is the place in this list, and the one behind the last is
 /// the time.
@@ -14,6 +15,37 @@ pub struct Groups {
     references: Vec<Option<usize>>,
     /// Whether references are other numbers than places.
     are_other: bool,
+    /// Arrays of the names of nodes and modes, behind the time.
+    names: Vec<ElementNames>,
+    /// The number of strips, where an importer may choose it.
+    strips: Option<usize>,
+}
+
+/// Which element of an array is which: the names of nodes or modes, itself an array.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ElementNames {
+    /// What is named: `node`, `mode`.
+    pub kind: &'static str,
+    /// The names, in the order of all arrays of this kind.
+    pub of: Vec<CString>,
+}
+
+impl ElementNames {
+    /// Of an array of this kind; `None` for others.
+    fn new(kind: &'static str, groups: &[Vec<u32>], table: &VariableTable) -> Option<Self> {
+        let name = |place: u32| {
+            let of = table.variables()[place as usize].name.as_str();
+            let number = of
+                .strip_prefix(kind)?
+                .strip_prefix('[')?
+                .split_once("].")?
+                .0;
+            CString::new(number).ok()
+        };
+        let array = groups.iter().find(|places| name(places[0]).is_some())?;
+        let of = array.iter().filter_map(|place| name(*place)).collect();
+        Some(Self { kind, of })
+    }
 }
 
 impl Groups {
@@ -41,7 +73,16 @@ impl Groups {
                 references[*place as usize] = Some(reference);
             }
         }
+        let kinds = ["node", "mode"].into_iter();
+        let names = kinds.filter_map(|kind| ElementNames::new(kind, &groups, table));
+        // strips that are counted, not those of nodes
+        let counted = |places: &&Vec<u32>| {
+            let v = &table.variables()[places[0] as usize];
+            matches!(v.role, Role::Strip(..)) && v.name.starts_with("strip[")
+        };
         Self {
+            names: names.collect(),
+            strips: groups.iter().find(counted).map(Vec::len),
             are_other: groups.len() < references.len(),
             references,
             groups,
@@ -56,6 +97,41 @@ impl Groups {
     /// Value reference of the time, s.
     pub fn time(&self) -> u32 {
         u32::try_from(self.groups.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Arrays of names, with their value references: those behind the time.
+    pub fn names(&self) -> impl Iterator<Item = (u32, &ElementNames)> {
+        (self.time() + 1..).zip(&self.names)
+    }
+
+    /// The array of names with this value reference.
+    pub(crate) fn names_at(&self, reference: u32) -> Option<&ElementNames> {
+        let mut all = self.names();
+        all.find(|(r, _)| *r == reference).map(|(_, names)| names)
+    }
+
+    /// Number of strips, where it may be chosen.
+    pub fn strips(&self) -> Option<usize> {
+        self.strips
+    }
+
+    /// Value reference of that number: the one behind all others.
+    pub fn strips_reference(&self) -> Option<u32> {
+        let last = self.names().last().map_or(self.time(), |(r, _)| r);
+        self.strips.map(|_| last + 1)
+    }
+
+    /// Whether a reference is that of the time, of names or of the number of strips.
+    pub(crate) fn is_known(&self, reference: u32) -> bool {
+        let last = self.time() as usize + self.names.len() + usize::from(self.strips.is_some());
+        (self.time() as usize..=last).contains(&(reference as usize))
+    }
+
+    /// Value reference of a listed variable, and which of its numbers a place in the table is.
+    pub(crate) fn element_of(&self, place: usize) -> Option<(u32, usize)> {
+        let reference = self.reference_of(place)?;
+        let element = self.groups[reference].binary_search(&u32::try_from(place).ok()?);
+        Some((u32::try_from(reference).ok()?, element.ok()?))
     }
 
     /// Value reference of the variable to which a place in the table belongs, if it is listed.

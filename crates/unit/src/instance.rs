@@ -23,6 +23,7 @@ mod force_unit;
 mod integration;
 mod layout;
 mod memory;
+mod resizing;
 mod saving;
 mod section;
 mod section_places;

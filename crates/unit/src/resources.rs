@@ -38,6 +38,8 @@ pub struct Resources {
     pub model: TrainedModel,
     /// What makes it a unit of forces alone; `None` for the coupled section.
     pub force: Option<ForceOptions>,
+    /// The same as exported, where an importer has chosen another number of strips.
+    pub(crate) exported_force: Option<ForceOptions>,
     /// Forces of gusts; `None` where it takes no gusts.
     pub gusts: Option<GustForce>,
     /// What makes it a whole bridge; `None` for a section.
@@ -122,12 +124,42 @@ impl Resources {
         Ok(Self {
             model,
             force,
+            exported_force: None,
             gusts,
             bridge: None,
             exported: None,
             turbulence: None,
             table,
             guid,
+        })
+    }
+
+    /// The same forces on another number of strips, or on those of the export; those beyond them are like the last.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for what has no strips to count, and for too many.
+    pub(crate) fn with_strips(&self, strips: Option<usize>) -> Result<Self> {
+        let exported = self.exported_force.as_ref().or(self.force.as_ref());
+        let exported = exported.filter(|force| force.nodes.is_empty() && force.named_strips);
+        let exported =
+            exported.ok_or_else(|| Error::input("strips", "a unit of strips", "none"))?;
+        let mut force = exported.clone();
+        let last = force.strips[force.strips.len() - 1].clone();
+        force
+            .strips
+            .resize(strips.unwrap_or(force.strips.len()), last);
+        force.validate()?;
+        let table = VariableTable::new(&self.model, Some(&force), self.gusts.as_ref(), None)?;
+        Ok(Self {
+            model: self.model.clone(),
+            exported_force: (force != *exported).then(|| exported.clone()),
+            force: Some(force),
+            gusts: self.gusts.clone(),
+            bridge: None,
+            exported: None,
+            turbulence: None,
+            table,
+            guid: self.guid,
         })
     }
 
@@ -151,6 +183,7 @@ impl Resources {
         Ok(Self {
             model,
             force: None,
+            exported_force: None,
             gusts: None,
             bridge: Some(options),
             exported: Some(exported),

@@ -207,7 +207,8 @@ impl NearbyOnset {
 
 fn shares(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<ModeShare> {
     let total = shape.norm_squared();
-    let largest = shape[shape.icamax()];
+    let of_modes = shape.rows(0, bridge.modes.len());
+    let largest = of_modes[of_modes.icamax()];
     let share = |(mode, z): (&crate::bridge::BridgeMode, &Complex<f64>)| ModeShare {
         mode: mode.number,
         frequency_hz: mode.frequency_hz,

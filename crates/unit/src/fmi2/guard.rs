@@ -23,23 +23,28 @@ pub(crate) struct Component {
     pub groups: Groups,
     /// Texts of the variables, by value reference; those of other types are empty.
     pub texts: Vec<CString>,
+    /// Number of strips that is being chosen, in the configuration mode of FMI 3.0.
+    pub configuration: Option<usize>,
     poisoned: bool,
 }
 
 impl Component {
     pub(crate) fn new(instance: Instance, logger: Logger) -> Self {
-        let variables = instance.table().variables().iter();
-        let texts = variables.map(|v| match &v.value {
-            StartValue::String(text) => c_text(text),
-            _ => CString::default(),
-        });
         Self {
-            texts: texts.collect(),
+            texts: texts(&instance),
             groups: Groups::default(),
             instance,
             logger,
+            configuration: None,
             poisoned: false,
         }
+    }
+
+    /// Goes on with another instance, of FMI 3.0.
+    pub(crate) fn replace(&mut self, instance: Instance) {
+        self.groups = Groups::new(instance.table());
+        self.texts = texts(&instance);
+        self.instance = instance;
     }
 
     /// Writes a refusal to the log and takes its consequence.
@@ -75,6 +80,16 @@ impl Component {
                 .log(fmi2Status::fmi2Warning, Category::Warning, &notice);
         }
     }
+}
+
+/// See [`Component::texts`].
+fn texts(instance: &Instance) -> Vec<CString> {
+    let variables = instance.table().variables().iter();
+    let texts = variables.map(|v| match &v.value {
+        StartValue::String(text) => c_text(text),
+        _ => CString::default(),
+    });
+    texts.collect()
 }
 
 /// What a panic says.

@@ -1,4 +1,4 @@
-//! Functions for what there is not: clocks, structural parameters, event mode of co-simulation, dependencies at run time.
+//! Functions for what there is not: clocks, event mode of co-simulation.
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
@@ -6,7 +6,6 @@ use crate::fmi2::guard::not_offered;
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 
 const NO_CLOCKS: &str = "there are no clocks";
-const NO_STRUCTURE: &str = "there are no structural parameters";
 
 macro_rules! absent {
     ($($name:ident, $short:literal, $why:expr, ($($argument:ident: $type:ty),*);)*) => {$(
@@ -23,17 +22,10 @@ macro_rules! absent {
 type References = *const fmi2ValueReference;
 
 absent! {
-    fmi3EnterConfigurationMode, "EnterConfigurationMode", NO_STRUCTURE, ();
-    fmi3ExitConfigurationMode, "ExitConfigurationMode", NO_STRUCTURE, ();
     fmi3EnterStepMode, "EnterStepMode", "co-simulation has no event mode here", ();
     fmi3EvaluateDiscreteStates, "EvaluateDiscreteStates", "there are no discrete states", ();
     fmi3ActivateModelPartition, "ActivateModelPartition", "scheduled execution is not offered",
         (clock: fmi2ValueReference, time: f64);
-    fmi3GetNumberOfVariableDependencies, "GetNumberOfVariableDependencies",
-        "dependencies are those of the description", (vr: fmi2ValueReference, count: *mut usize);
-    fmi3GetVariableDependencies, "GetVariableDependencies", "dependencies are those of the description",
-        (dependent: fmi2ValueReference, elements: *mut usize, independents: *mut fmi2ValueReference,
-         independent_elements: *mut usize, kinds: *mut i32, count: usize);
     fmi3GetIntervalDecimal, "GetIntervalDecimal", NO_CLOCKS,
         (vr: References, nvr: usize, intervals: *mut f64, qualifiers: *mut i32);
     fmi3GetIntervalFraction, "GetIntervalFraction", NO_CLOCKS,

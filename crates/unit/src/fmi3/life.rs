@@ -42,9 +42,8 @@ unsafe fn made(
     };
     match shielded(|| instantiate(name, kind, token, path)) {
         Ok(Ok(instance)) => {
-            let groups = Groups::new(instance.table());
             let mut component = Component::new(instance, logger);
-            component.groups = groups;
+            component.groups = Groups::new(component.instance.table());
             Box::into_raw(Box::new(component)).cast()
         }
         Ok(Err(refusal)) => refuse(&refusal.message),
@@ -149,6 +148,9 @@ pub unsafe extern "C" fn fmi3EnterInitializationMode(
     // SAFETY: by the contract of the interface
     unsafe {
         guarded(c, Call::EnterInitializationMode, |component| {
+            if component.configuration.is_some() {
+                return Err(Refusal::error("the configuration mode was not left"));
+            }
             component.instance.set_up_experiment(startTime, stop)?;
             component.instance.enter_initialization();
             Ok(())
@@ -174,7 +176,19 @@ pub unsafe extern "C" fn fmi3Terminate(c: fmi2Component) -> fmi2Status {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3Reset(c: fmi2Component) -> fmi2Status {
     // SAFETY: by the contract of the interface
-    unsafe { fmi2Reset(c) }
+    unsafe {
+        let as_exported = guarded(c, Call::Reset, |component| {
+            component.configuration = None;
+            if component.instance.is_resized() {
+                component.replace(component.instance.resized(None)?);
+            }
+            Ok(())
+        });
+        match as_exported {
+            fmi2Status::fmi2OK => fmi2Reset(c),
+            refused => refused,
+        }
+    }
 }
 
 /// The places of an array of references.

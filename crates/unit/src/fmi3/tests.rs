@@ -9,6 +9,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 
+mod structure;
 mod unknown;
 
 type Messages = Mutex<Vec<String>>;

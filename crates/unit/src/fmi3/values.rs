@@ -135,12 +135,19 @@ pub unsafe extern "C" fn fmi3GetString(
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
         guarded(c, Call::GetString.by("GetString"), |component| {
-            let places = places(component, vr, nvr, "valueReferences")?;
-            check_count("values", places.len(), nValues)?;
-            for (place, value) in places.iter().zip(array_mut(values, nValues, "values")?) {
-                let place = component.instance.text_place(*place)?;
-                *value = component.texts[place].as_ptr();
+            let mut found = Vec::new();
+            for reference in array(vr, nvr, "valueReferences")? {
+                if let Some(names) = component.groups.names_at(*reference) {
+                    found.extend(names.of.iter().map(|name| name.as_ptr()));
+                    continue;
+                }
+                for place in component.groups.places(&[*reference])?.iter() {
+                    let place = component.instance.text_place(*place)?;
+                    found.push(component.texts[place].as_ptr());
+                }
             }
+            check_count("values", found.len(), nValues)?;
+            array_mut(values, nValues, "values")?.copy_from_slice(&found);
             Ok(())
         })
     }
@@ -240,7 +247,6 @@ none_of_type! {
     fmi3GetUInt16, fmi3SetUInt16, "GetUInt16", "SetUInt16", u16;
     fmi3GetUInt32, fmi3SetUInt32, "GetUInt32", "SetUInt32", u32;
     fmi3GetInt64, fmi3SetInt64, "GetInt64", "SetInt64", i64;
-    fmi3GetUInt64, fmi3SetUInt64, "GetUInt64", "SetUInt64", u64;
 }
 
 /// There are no binary variables.

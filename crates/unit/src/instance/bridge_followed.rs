@@ -1,8 +1,8 @@
 //! The onset of a bridge whose parameters have changed, followed from that of a search: hundreds of eigenvalue problems less.
 //!
 //! What is followed is one motion, and another may have become critical before it, which is followed in its stead. An onset counts only
-//! where all eigenvalues say the same: nothing grows just below it, and below that no mode has lost much of the damping that it had below the onset of the
-//! search. Everything else is searched for.
+//! where all eigenvalues say the same: nothing grows just below it nor at close speeds down to the last at which no mode has lost much of
+//! the damping that it had below the onset of the search. Everything else is searched for.
 
 use super::bridge_built::Built;
 use crate::aeroelastic::CoupledSection;
@@ -21,6 +21,10 @@ const LEFT: f64 = 0.5;
 /// Speed below the onset, as a part of it, at which nothing may grow: far more than the onset is uncertain by, far less than
 /// another mode needs to lose its damping.
 const JUST_BELOW: f64 = 1.0 - 1e-5;
+/// Speeds below that one at which nothing may grow either, as a motion does that is damped again before the onset, and how far they
+/// are apart, as a part of the onset: down to those of [`COMPARED_AT`].
+const LOOKED_AT: usize = 9;
+const APART: f64 = 0.015;
 /// Motions that take the place of another at most.
 const OTHERS: usize = 3;
 
@@ -71,24 +75,26 @@ impl SearchedOnset {
             return None;
         }
         // another motion may have become critical before it, and a third before that
-        for _ in 0..OTHERS {
-            if built.damping_at(JUST_BELOW * next.found().speed_m_s).ok()? > 0.0 {
-                break;
+        for _ in 0..=OTHERS {
+            let found = next.found();
+            if !(found.speed_m_s > 0.0 && found.speed_m_s <= limit) {
+                return None;
+            }
+            if !grows_below(built, found.speed_m_s)? {
+                return self.is_damped(built, found.speed_m_s).then_some(found);
             }
             next = built.least_damped()?.follow(built.stepper.section())?;
         }
-        let found = next.found();
-        if !(found.speed_m_s > 0.0 && found.speed_m_s <= limit) {
-            return None;
-        }
-        let mut damping = |part: f64| built.damping_at(part * found.speed_m_s).ok();
-        let positive = self.damping_below.iter().all(|before| *before > 0.0);
-        let mut left =
-            |(part, before): (&f64, &f64)| damping(*part).is_some_and(|d| d > LEFT * before);
-        let stable = positive
-            && COMPARED_AT.iter().zip(&self.damping_below).all(&mut left)
-            && damping(JUST_BELOW).is_some_and(|d| d > 0.0);
-        stable.then_some(found)
+        None
+    }
+
+    /// Whether well below an onset the damping that there was is left.
+    fn is_damped(&self, built: &mut Built, onset_m_s: f64) -> bool {
+        let mut parts = COMPARED_AT.iter().zip(&self.damping_below);
+        parts.all(|(part, before)| {
+            let damping = built.damping_at(part * onset_m_s);
+            *before > 0.0 && damping.is_ok_and(|d| d > LEFT * before)
+        })
     }
 
     /// The motion followed through bridges between that of the search and the one with the parameters `now`.
@@ -107,6 +113,22 @@ impl SearchedOnset {
         }
         Some(motion)
     }
+}
+
+/// Whether something grows just below an onset or at the speeds below that; `None` where that is not known, as where all damping dips
+/// between two of them.
+fn grows_below(built: &mut Built, onset_m_s: f64) -> Option<bool> {
+    let mut seen: Vec<f64> = Vec::with_capacity(LOOKED_AT + 1);
+    for i in 0..=LOOKED_AT {
+        let part = JUST_BELOW - APART * i as f64;
+        let damping = built.damping_at(part * onset_m_s).ok()?;
+        if damping <= 0.0 {
+            return Some(true);
+        }
+        seen.push(damping);
+    }
+    let dips = |d: &[f64]| d[1] < LEFT * d[0].min(d[2]);
+    (!seen.windows(3).any(dips)).then_some(false)
 }
 
 /// What may be tuned.

@@ -2,7 +2,7 @@
 
 use super::memory::Memory;
 use crate::error::{Error, Result};
-use crate::lifecycle::{StateSet, gettable_in, settable_in};
+use crate::lifecycle::{State, StateSet, gettable_in, settable_in};
 use crate::response::wind_at_rest;
 use crate::variables::{Causality, Role, StartValue, Variable, VariableTable};
 
@@ -222,6 +222,11 @@ impl VariablePlaces {
     }
 
     /// Where the value at `place` comes from.
+    /// Whether a variable may be set in a state.
+    pub(super) fn is_settable(&self, place: usize, state: State) -> bool {
+        self.access[place].settable.contains(state)
+    }
+
     pub(super) fn source(&self, place: usize) -> Source {
         self.access[place].source
     }

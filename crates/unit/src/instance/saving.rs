@@ -46,6 +46,13 @@ impl Instance {
                 snapshot.guid
             )));
         }
+        let numbers = [&self.memory, &snapshot.memory].map(|m| m.values.len());
+        if numbers[0] != numbers[1] {
+            return Err(Refusal::error(format!(
+                "saved state: expected one of as many strips, {} numbers, found {}",
+                numbers[0], numbers[1]
+            )));
+        }
         let of = snapshot.memory.state.interface();
         match of.filter(|of| *of != self.interface) {
             None => Ok(()),

@@ -148,7 +148,7 @@ impl Instance {
     }
 
     /// Returns whether the value has changed.
-    fn store(&mut self, place: usize, value: f64) -> bool {
+    pub(super) fn store(&mut self, place: usize, value: f64) -> bool {
         if self.memory.values[place].to_bits() == value.to_bits() {
             return false;
         }
