@@ -5,6 +5,9 @@ model with all of them.
     python3 fmu_build/build.py --pack model.json x.fmu  the same, then x.fmu for all platforms and, for importers on ARM
                                                         Linux, x_arm_linux.fmu
 
+What was built from the same sources by the same tools is not built, checked or run again: a digest of them stands in
+target/runtimes/built_from.json. `--again` builds all the same.
+
 A program that carries all runtimes: AERODECK_RUNTIME=$PWD/target/runtimes cargo install --path .
 
 Rust alone builds for this machine. The Python packages ziglang and cargo-zigbuild, which this script installs into
@@ -13,6 +16,8 @@ that libraries run on systems ten years old. Of Rust, each platform needs its st
 what is missing is said and skipped. Libraries for other processors and systems are run where qemu or wine is there."""
 
 import argparse
+import hashlib
+import json
 import os
 import pathlib
 import re
@@ -36,6 +41,7 @@ TARGETS = {
     "x86_64-apple-darwin": ("libaerodeck_unit.dylib", "dylib", ["darwin64"]),
     "aarch64-apple-darwin": ("libaerodeck_unit.dylib", "dylib", ["aarch64-darwin"]),
 }
+RECORD = "built_from.json"
 LIVE = "wasm32-unknown-unknown"  # no platform of FMI: the module that answers the sliders of reports
 # linkers that export less than zig's, where they are there
 LINKERS = {"x86_64-pc-windows-gnu": "x86_64-w64-mingw32-gcc"}
@@ -129,6 +135,33 @@ def universal(libraries):
     return bytes(out)
 
 
+def digest(targets):
+    """Of all that the runtimes are made from: sources, locked dependencies, compiler, this script, and what is to be built."""
+    found = hashlib.sha256(text_of("rustc", "-vV").encode())
+    found.update(repr((sorted(targets), TOOLS)).encode())
+    crates = [p for name in ("core", "unit", "live") for p in (ROOT / "crates" / name).rglob("*") if p.is_file()]
+    scripts = [p for p in pathlib.Path(__file__).parent.iterdir() if p.suffix in (".py", ".c")]
+    for file in sorted([ROOT / "Cargo.toml", ROOT / "Cargo.lock", *crates, *scripts]):
+        found.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes())
+    return found.hexdigest()
+
+
+def is_built(out, wanted):
+    """Whether the runtimes of that digest are there, as they were left."""
+    try:
+        left = json.loads((out / RECORD).read_text(encoding="utf-8"))
+        sums = {name: hashlib.sha256((out / name).read_bytes()).hexdigest() for name in left["files"]}
+    except (OSError, ValueError, KeyError):
+        return False
+    return left["digest"] == wanted and left["files"] == sums
+
+
+def leave_record(out, wanted):
+    names = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file() and p.name != RECORD)
+    files = {name: hashlib.sha256((out / name).read_bytes()).hexdigest() for name in names}
+    (out / RECORD).write_text(json.dumps({"digest": wanted, "files": files}, indent=1) + "\n", encoding="utf-8")
+
+
 def place(built, out):
     """Lays the libraries out as in an archive; returns their files."""
     files = []
@@ -151,46 +184,60 @@ def place(built, out):
     return files
 
 
-def pack(model, fmu, out):
+def pack(model, fmu, out, program):
     """The archives."""
     environment = dict(os.environ, AERODECK_RUNTIME_DIR=str(out))
-    aerodeck = ["cargo", "run", "--release", "--locked", "--quiet", "--", "fmu"]
+    aerodeck = [program] if program else ["cargo", "run", "--release", "--locked", "--quiet", "--"]
     archives = [(fmu, [])]
     if (out / "aarch64-linux").is_dir():
         archives.append((fmu.with_name(f"{fmu.stem}_arm_linux.fmu"), ["--platforms", "arm-linux"]))
     for archive, options in archives:
-        run(*aerodeck, "export", model, "--out", archive, "--force", *options, env=environment)
+        run(*aerodeck, "fmu", "export", model, "--out", archive, "--force", *options, env=environment)
         if shutil.which("fmpy"):
             run("fmpy", "validate", archive)
-    run(*aerodeck, "check", fmu)
+    run(*aerodeck, "fmu", "replay", fmu)
+
+
+def runtimes(out, targets, python, program):
+    """Builds, checks and runs what can be built; the digest says of what."""
+    built = {target: build(target, python is not None) for target in targets if target != LIVE}
+    files = place(built, out)
+    if LIVE in targets:
+        build_live(out)
+    if python:
+        run(python, pathlib.Path(__file__).with_name("check_library.py"), *files)
+        run_library.compare(python, ROOT, {file.parent.name: file for file in files}, program)
+    else:
+        print("not checked: lief is not there")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / "runtimes", help="folder for the runtimes")
     parser.add_argument("--pack", nargs=2, metavar=("MODEL", "FMU"), type=pathlib.Path, help="pack this model")
+    parser.add_argument("--aerodeck", type=pathlib.Path, help="the program that packs [default: built from this source by cargo]")
+    parser.add_argument("--again", action="store_true", help="build what was built before")
     arguments = parser.parse_args()
-    out, python = arguments.out.resolve(), tools()
-    built, here, there = {}, host(), installed_targets()
-    for target in TARGETS:
+    out, program = arguments.out.resolve(), arguments.aerodeck and arguments.aerodeck.resolve()
+    here, there = host(), installed_targets()
+    for target in [*TARGETS, LIVE]:
         if target not in there:
             print(f"skipped {target}: rustup target add {target}")
-        elif python is None and target != here and not shutil.which(LINKERS.get(target, "")):
+    targets = [target for target in [*TARGETS, LIVE] if target in there]
+    if not arguments.again and is_built(out, digest(targets)):
+        print(f"{out}: built before from these sources")
+    else:
+        python = tools()
+        alone = [target for target in targets if target in (here, LIVE) or shutil.which(LINKERS.get(target, ""))]
+        for target in set(targets) - set(alone) if python is None else ():
             print(f"skipped {target}: ziglang and cargo-zigbuild are not there")
-        else:
-            built[target] = build(target, python is not None)
-    files = place(built, out)
-    if LIVE in there:
-        build_live(out)
-    else:
-        print(f"skipped the sliders of reports: rustup target add {LIVE}")
-    if python:
-        run(python, pathlib.Path(__file__).with_name("check_library.py"), *files)
-        run_library.compare(python, ROOT, {file.parent.name: file for file in files})
-    else:
-        print("not checked: lief is not there")
+        targets = targets if python else alone
+        runtimes(out, targets, python, program)
+        # what could not be checked is built again
+        if python:
+            leave_record(out, digest(targets))
     if arguments.pack:
-        pack(*(p.resolve() for p in arguments.pack), out)
+        pack(*(p.resolve() for p in arguments.pack), out, program)
 
 
 if __name__ == "__main__":

@@ -28,10 +28,12 @@ BESIDE = {
 
 def functions():
     """Names of the C interface, from its sources."""
-    sources = (ROOT / "crates" / "unit" / "src" / "fmi2").glob("exports_*.rs")
-    text = "".join(source.read_text(encoding="utf-8") for source in sources)
-    # some are made by a macro, which is given their names
-    return set(re.findall(r"\bfmi2[A-Z]\w+(?=\()", re.sub(r"//.*", "", text)))
+    unit = ROOT / "crates" / "unit" / "src"
+    read = lambda sources: "".join(re.sub(r"//.*", "", source.read_text(encoding="utf-8")) for source in sources)
+    # some are made by macros, which are given their names
+    two = re.findall(r"\bfmi2[A-Z]\w+(?=\()", read((unit / "fmi2").glob("exports_*.rs")))
+    three = re.findall(r"\bfmi3[A-Z]\w+", read((unit / "fmi3").glob("*.rs")))
+    return {*two, *three}
 
 
 def paths():

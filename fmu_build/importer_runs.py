@@ -25,7 +25,7 @@ class Unit:
 
         self.fmu = str(fmu)
         self.description = read_model_description(self.fmu)
-        reals = [v for v in self.description.modelVariables if v.type == "Real"]
+        reals = [v for v in self.description.modelVariables if v.type in ("Real", "Float64")]
         self.references = {v.name: v.valueReference for v in reals}
         self.inputs = {v.name: float(v.start) for v in reals if v.causality == "input"}
         self.outputs = [v.name for v in reals if v.causality == "output"]
@@ -39,19 +39,18 @@ class Unit:
 def fmpy_calls(unit):
     """The functions one by one; what the others are compared with."""
     import fmpy
-    from fmpy.fmi2 import FMU2Slave
 
-    folder = fmpy.extract(unit.fmu)
-    model = unit.description.coSimulation.modelIdentifier
-    slave = FMU2Slave(guid=unit.description.guid, unzipDirectory=folder, modelIdentifier=model, instanceName="unit")
-    slave.instantiate()
-    slave.setupExperiment(startTime=0.0)
-    slave.setReal([unit.references[name] for name in unit.values], list(unit.values.values()))
+    is_fmi2 = unit.description.fmiVersion == "2.0"
+    slave = fmpy.instantiate_fmu(fmpy.extract(unit.fmu), unit.description, "CoSimulation")
+    put, get = (slave.setReal, slave.getReal) if is_fmi2 else (slave.setFloat64, slave.getFloat64)
+    if is_fmi2:
+        slave.setupExperiment(startTime=0.0)
+    put([unit.references[name] for name in unit.values], list(unit.values.values()))
     slave.enterInitializationMode()
     slave.exitInitializationMode()
     for n in range(STEPS):
         slave.doStep(n * STEP, STEP)
-    values = slave.getReal([unit.references[name] for name in unit.outputs])
+    values = get([unit.references[name] for name in unit.outputs])
     slave.terminate()
     slave.freeInstance()
     return dict(zip(unit.outputs, values, strict=True))
@@ -86,6 +85,12 @@ def aerodeck(unit):
     report = json.loads(done.stdout)
     failed = [trial["detail"] for trial in report["trials"] if not trial["passed"]]
     return failed + [str(finding) for finding in report["findings"]]
+
+
+def aerodeck_replay(unit):
+    done = subprocess.run([os.environ["AERODECK"], "fmu", "replay", unit.fmu, "--json"], capture_output=True, text=True)
+    platforms = json.loads(done.stdout)["platforms"]
+    return [platform["refusal"] or "differs" for platform in platforms if platform["ran"] and not platform["same"]]
 
 
 def ecos(unit):
@@ -231,6 +236,36 @@ def fmi_sim(unit):
     return {name: float(row[name]) for name in unit.outputs if name in row}
 
 
+def fmusim(unit):
+    written = pathlib.Path("fmusim.csv").resolve()
+    initial = [part for name, value in unit.values.items() for part in ("--start-value", name, repr(value))]
+    steps = ["--output-interval", str(STEP), "--stop-time", str(STEPS * STEP), "--output-file", written]
+    done = subprocess.run(["fmusim", "--interface-type", "cs", *initial, *steps, unit.fmu], capture_output=True, text=True)
+    assert done.returncode == 0, (done.stdout + done.stderr).splitlines()[-1]
+    head, *_, last = written.read_text(encoding="utf-8").splitlines()
+    row = dict(zip((name.strip('"') for name in head.split(",")), last.split(","), strict=True))
+    return {name: float(row[name]) for name in unit.outputs if name in row}
+
+
+def complaints(*command):
+    """Lines of a checker that name a defect."""
+    done = subprocess.run(command, capture_output=True, text=True)
+    lines = [line for line in (done.stdout + done.stderr).splitlines() if re.search(r"\b(?:ERROR|FATAL|error:|fails)", line)]
+    return lines + ([f"ended with {done.returncode}"] if done.returncode else [])
+
+
+def fmucheck(unit):
+    return complaints("fmuCheck.linux64", "-k", "cs", unit.fmu)
+
+
+def vdmcheck2(unit):
+    return complaints("VDMCheck2.sh", unit.fmu)
+
+
+def vdmcheck3(unit):
+    return complaints("VDMCheck3.sh", unit.fmu)
+
+
 def openturns(unit):
     """The example: reliability of the first order on the onset speed of the FMU."""
     if "onset_speed" not in unit.references:
@@ -245,7 +280,8 @@ def openturns(unit):
 RUNS = {
     run.__name__: run
     for run in (
-        fmpy_calls, fmpy, fmpy_validate, aerodeck, fmutool, ecos, libcosim, pathsim, precice, fmi_sim, openturns,
+        fmpy_calls, fmpy, fmpy_validate, aerodeck, aerodeck_replay, fmutool, ecos, libcosim, pathsim, precice, fmi_sim, openturns, fmusim,
+        fmucheck, vdmcheck2, vdmcheck3,
     )
 }  # fmt: skip
 

@@ -5,7 +5,8 @@ took what:
     python3 fmu_build/importers.py --write     the same, and writes the table into docs/hosts.md
 
 The importers come from the Python package index into `target/importers-env`, at the versions stated here; what cannot be
-installed is named and skipped. fmi-sim is used where it is installed (`cargo install fmi-sim`, which needs libclang); Ecos
+installed is named and skipped; its row in the manual stays as it was. fmi-sim is used where it is installed (`cargo install fmi-sim`,
+which needs libclang), and so are fmusim, fmuCheck and VDMCheck, which no package registry has, where they are on the path; Ecos
 needs the library libtbb (Debian: apt install libtbb12). All runs end with the values that FMPy gives when the functions
 are called one by one; the table states the largest relative difference."""
 
@@ -19,6 +20,7 @@ import sys
 import venv
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "hosts.md"
 RUNS = pathlib.Path(__file__).with_name("importer_runs.py")
 MODELS = ROOT / "tests" / "data" / "models"
 SECONDS = 120
@@ -30,6 +32,7 @@ IMPORTERS = [
     ("FMPy, `validate`", "fmpy_validate", "fmpy==0.3.32", []),
     ("FMPy, `simulate_fmu`", "fmpy", "fmpy==0.3.32", []),
     ("`aerodeck fmu check`", "aerodeck", "", []),
+    ("`aerodeck fmu replay`", "aerodeck_replay", "", []),
     ("FMU manipulation toolbox, `-check`", "fmutool", "fmu-manipulation-toolbox==2.0", []),
     ("libcosim, Open Simulation Platform", "libcosim", "libcosimpy==0.0.6", []),
     ("Ecos", "ecos", "ecospy==0.7.2", []),
@@ -38,7 +41,17 @@ IMPORTERS = [
     ("preCICE's FMI runner, implicit", "precice", "fmiprecice==0.2.1", ["--no-deps"]),
     ("fmi-sim", "fmi_sim", "", []),
     ("OpenTURNS, FORM on `onset_speed`", "openturns", "openturns==1.27.post1", []),
+    ("fmusim of the Reference FMUs", "fmusim", "", []),
+    ("FMU Compliance Checker, `fmuCheck`", "fmucheck", "", []),
+    ("VDMCheck2", "vdmcheck2", "", []),
+    ("VDMCheck3", "vdmcheck3", "", []),
 ]
+# what must be on the path, and what is said where it never was
+PROGRAMS = {
+    "fmi_sim": "fmi-sim", "fmusim": "fmusim", "fmucheck": "fmuCheck.linux64", "vdmcheck2": "VDMCheck2.sh",
+    "vdmcheck3": "VDMCheck3.sh",
+}  # fmt: skip
+NOWHERE = "in no package registry"
 # name in words, model, options of the export
 UNITS = [
     ("continuous Laguerre", "continuous_laguerre", []),
@@ -47,9 +60,20 @@ UNITS = [
     ("forces alone", "rational", ["--kind", "force"]),
     ("three strips", "continuous_laguerre", ["--kind", "force", "--strips", "3"]),
     ("real variables alone", "continuous_laguerre", ["--reals-only"]),
+    ("FMI 3.0", "continuous_laguerre", ["--fmi", "3"]),
 ]
-# runs of importers that read every output as a real number, and the units that hold others
-REALS_ONLY = {"pathsim": {"continuous Laguerre", "rational functions", "discrete Laguerre"}}
+# what is left out, and why: importers that read every output as a real number, or know one version of the standard
+FMI3 = UNITS[-1][0]
+LEFT_OUT = {
+    **{("pathsim", unit): "`--reals-only`" for unit in ("continuous Laguerre", "rational functions", "discrete Laguerre")},
+    ("pathsim", FMI3): "reads truth values as real numbers",
+    ("libcosim", FMI3): "FMI 2.0 alone",
+    ("openturns", FMI3): "the example is for FMI 2.0",
+    ("fmi_sim", FMI3): "reads no units",
+    ("fmucheck", FMI3): "FMI 2.0 alone",
+    ("vdmcheck2", FMI3): "FMI 2.0 alone",
+    **{("vdmcheck3", unit): "FMI 3.0 alone" for unit, _, _ in UNITS[:-1]},
+}
 
 
 def environment(folder):
@@ -106,21 +130,32 @@ def verdict(found, expected):
     return ("same bits" if off == 0.0 else f"same to {off:.0e}"), False
 
 
+def not_here(words, importer, kept):
+    """The row of an importer that cannot be run here: as it was in the manual, or what is known of it."""
+    old = next((row for row in kept if row.startswith(f"| {words} ") and NOWHERE not in row), None)
+    cells = old.strip("| ").split(" | ") if old else [words]
+    new = [unit for unit, _, _ in UNITS[len(cells) - 1 :]]
+    return "| " + " | ".join([*cells, *(LEFT_OUT.get((importer, unit), "–" if old else NOWHERE) for unit in new)]) + " |"
+
+
 def table(python, missing, files):
     """(lines, reasons of what was skipped, failures)"""
     heads = ["importer", *(words for words, _, _ in UNITS)]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     skipped, failures = [], []
+    kept = PAGE.read_text(encoding="utf-8").split(BEGIN)[1].split(END)[0].splitlines()
     expected = [run(python, "fmpy_calls", fmu) for fmu in files]
     for words, importer, package, _ in IMPORTERS:
-        if package in missing or importer == "fmi_sim" and not shutil.which("fmi-sim"):
-            skipped.append(f"{words}: {missing.get(package, 'fmi-sim is not on the path')}")
+        program = PROGRAMS.get(importer)
+        if package in missing or program and not shutil.which(program):
+            skipped.append(f"{words}: {missing.get(package, f'{program} is not on the path')}")
+            lines.append(not_here(words, importer, kept))
             continue
         version = package.partition("==")[2]
         cells = [f"{words} ({version})" if version else words]
         for fmu, (reference, _), (unit, _, _) in zip(files, expected, UNITS, strict=True):
-            if unit in REALS_ONLY.get(importer, ()):
-                cells.append("`--reals-only`")
+            if (importer, unit) in LEFT_OUT:
+                cells.append(LEFT_OUT[importer, unit])
                 continue
             found, why = run(python, importer, fmu)
             cell, failed = (f"**{why}**", True) if why else verdict(found, reference)
@@ -133,11 +168,10 @@ def table(python, missing, files):
 
 
 def into_manual(lines):
-    page = ROOT / "docs" / "hosts.md"
-    text = page.read_text(encoding="utf-8")
+    text = PAGE.read_text(encoding="utf-8")
     head, rest = text.split(BEGIN)
     _, tail = rest.split(END)
-    page.write_text("\n".join([head + BEGIN, *lines, END + tail]), encoding="utf-8")
+    PAGE.write_text("\n".join([head + BEGIN, *lines, END + tail]), encoding="utf-8")
 
 
 def main():

@@ -25,11 +25,17 @@ TOLERANCE = 1e-9
 
 
 def runner(name):
-    """What to put in front of a program of this platform; None where it cannot run."""
+    """(what to put in front of a program of this platform, or None; why it cannot run)"""
     _, here, foreign = LOADERS[name]
     if (platform.system(), platform.machine()) == here:
-        return []
-    return foreign if foreign and shutil.which(foreign[0]) else None
+        return [], ""
+    if foreign is None:
+        return None, "macOS is not here"
+    if not shutil.which(foreign[0]):
+        return None, f"{foreign[0]} is not here"
+    if "-L" in foreign and not pathlib.Path(foreign[-1]).is_dir():
+        return None, f"{foreign[-1]}, the C library for {foreign[0]}, is not here"
+    return foreign, ""
 
 
 def values(python, name, library, folder):
@@ -40,10 +46,14 @@ def values(python, name, library, folder):
     subprocess.run([*map(str, compiler), *(["-ldl"] if "linux" in target else [])], check=True)
     description = (folder / "modelDescription.xml").read_text(encoding="utf-8")
     guid = re.search(r'guid="([^"]+)"', description).group(1)
-    program = runner(name)
+    program, _ = runner(name)
     location = (folder / "resources").as_uri()
     if "wine" in program:
         location = location.replace("file:///", "file:///Z:/")
+    # without arguments the loader complains: where it does not, it is the runner that does not work
+    probe = subprocess.run([*program, str(loader)], capture_output=True, text=True, timeout=120)
+    if "cannot load" not in probe.stderr:
+        raise OSError((probe.stderr.strip().splitlines() or [f"it ended with {probe.returncode}"])[-1])
     # inputs and outputs of a section of two degrees of freedom come first
     run = [str(part) for part in [*program, loader, library, location, guid, "11"]]
     done = subprocess.run(run, capture_output=True, text=True, timeout=120, env={**os.environ, "WINEDEBUG": "-all"})
@@ -52,22 +62,31 @@ def values(python, name, library, folder):
     return [struct.unpack(">d", bytes.fromhex(line.strip()))[0] for line in done.stdout.split()]
 
 
-def compare(python, root, libraries):
-    """Runs each library and prints how far it is from the first; ends the program when one is wrong."""
+def compare(python, root, libraries, program=None):
+    """Runs each library and prints how far it is from the first, or why it was not run; ends the program when one is wrong."""
     first = None
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
         fmu = folder / "unit.fmu"
         model = root / "tests" / "data" / "models" / "continuous_laguerre.json"
-        export = ["cargo", "run", "--release", "--locked", "--quiet", "--", "fmu", "export", model, "--out", fmu]
+        aerodeck = [program] if program else ["cargo", "run", "--release", "--locked", "--quiet", "--"]
+        export = [*aerodeck, "fmu", "export", model, "--out", fmu]
         subprocess.run([*map(str, export), "--allow-unstable"], cwd=root, check=True)
         with zipfile.ZipFile(fmu) as archive:
             archive.extractall(folder)
         for name, library in libraries.items():
-            if runner(name) is None:
-                print(f"  {name}: not run, {LOADERS[name][2][0] if LOADERS[name][2] else 'macOS'} is not here")
+            foreign, why = runner(name)
+            if foreign is None:
+                print(f"  {name}: not run, {why}")
                 continue
-            found = values(python, name, library, folder)
+            try:
+                found = values(python, name, library, folder)
+            except (OSError, subprocess.SubprocessError) as error:
+                # of its own machine a library must run
+                if not foreign:
+                    raise
+                print(f"  {name}: not run, {foreign[0]} does not run it here: {error}")
+                continue
             first = first or found
             size = max(map(abs, first))
             off = max(abs(a - b) for a, b in zip(found, first, strict=True)) / size

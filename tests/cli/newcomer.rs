@@ -96,8 +96,19 @@ fn the_demo_does_the_whole_chain() {
         }
     }
 
-    // a second run says what it replaces; an edited study is left alone
+    // so does what it takes to judge it: its report, and runs at both ends of the interval
+    let fmu = out.join("deck_section.fmu");
+    let of_runs = |name: &str| entry(&fmu, &format!("extra/org.fmi-standard.fmi-ls-ref/{name}"));
+    assert!(of_runs("report.html").contains("Laguerre"));
+    assert!(of_runs("fmi-ls-manifest.xml").contains("role=\"report\""));
+    assert!(of_runs("uncertainty.exp").contains("onset_high"));
+    let replay = ["fmu", "replay", "aerodeck-out/deck_section.fmu"];
+    assert!(succeeds(folder.path(), &replay).contains("as the exporter meant: 6 runs"));
+    let archive = fs::read(&fmu).unwrap();
+
+    // a second run says what it replaces, with the same archive; an edited study is left alone
     assert!(succeeds(folder.path(), &["demo"]).contains("replaced"));
+    assert!(archive == fs::read(&fmu).unwrap());
     let study = out.join("study.toml");
     let edited = fs::read_to_string(&study).unwrap() + "\n# mine\n";
     fs::write(&study, &edited).unwrap();
@@ -390,6 +401,7 @@ fn every_command_explains_itself_with_an_example() {
         "simulate",
         "fmu export",
         "fmu check",
+        "fmu replay",
         "validate",
         "thesis",
         "compare decks",

@@ -23,8 +23,8 @@ pub(super) const NUMERIC: [(&str, &str); 11] = [
     ("UInt64", "Integer"),
     ("Boolean", "Boolean"),
 ];
-/// Most elements of one array that are read one by one.
-const MAX_ELEMENTS: usize = 100_000;
+/// Most elements of all arrays, which are read one by one.
+const MAX_ELEMENTS: usize = 1_000_000;
 
 /// Names of capabilities that are spelt otherwise.
 const CAPABILITIES: [(&str, &str); 3] = [
@@ -169,11 +169,11 @@ impl VariableIndex {
             _ => None,
         };
         let size = dimensions.try_fold(1_usize, |product, d| product.checked_mul(of(d)?));
-        let size = size.filter(|size| *size <= MAX_ELEMENTS);
+        let size = size.filter(|size| self.placed.saturating_add(*size) <= MAX_ELEMENTS);
         if size.is_none() {
             self.findings.error(
                 format!("{FILE}, line {}, {}", v.line, v.name),
-                format!("dimensions that are known, of at most {MAX_ELEMENTS} elements"),
+                format!("dimensions that are known, at most {MAX_ELEMENTS} elements in all"),
                 "others",
             );
         }

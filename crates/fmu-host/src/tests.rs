@@ -143,14 +143,12 @@ fn control_characters_are_found() {
 
 #[test]
 fn another_version_of_the_standard_is_named() {
-    let text = DESCRIPTION
-        .replace("\"2.0\"", "\"3.0\"")
-        .replace("guid", "instantiationToken");
-    let file = archive_of(&[("modelDescription.xml", text.as_bytes())]);
-    let message = refusal(file.path());
-    assert!(
-        message.contains("fmiVersion: expected 2.0: archives of FMI 3.0"),
-        "{message}"
+    let found = found_in(&DESCRIPTION.replace("\"2.0\"", "\"1.0\""));
+    assert_eq!(
+        found,
+        [
+            "error: modelDescription.xml, fmiVersion: expected 2.0 (also for 2.0.1 to 2.0.5), or 3.0, found `1.0`"
+        ]
     );
 }
 
@@ -193,4 +191,126 @@ fn archives_that_grow_are_refused() {
         message.contains("modelDescription.xml") && message.contains("expected"),
         "{message}"
     );
+}
+
+const DESCRIPTION_3: &str = r#"<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="t">
+  <CoSimulation modelIdentifier="m" canGetAndSetFMUState="true" providesDirectionalDerivatives="true"/>
+  <UnitDefinitions><Unit name="m"><BaseUnit m="1"/></Unit></UnitDefinitions>
+  <TypeDefinitions><Float64Type name="Length" unit="m" min="0"/><ClockType name="tick"/></TypeDefinitions>
+  <ModelVariables>
+    <UInt64 name="n" valueReference="7" causality="structuralParameter" variability="fixed" start="3"/>
+    <Float64 name="der(x)" valueReference="5" derivative="4" initial="calculated"><Dimension valueReference="7"/></Float64>
+    <Float64 name="x" valueReference="4" causality="output" initial="exact" declaredType="Length" start="1 2 3"><Dimension valueReference="7"/></Float64>
+    <Float32 name="u[1]" valueReference="3" causality="input" start="0.5"><Dimension start="2"/></Float32>
+    <Clock name="tick" valueReference="9" causality="input" intervalVariability="triggered"/>
+    <String name="s" valueReference="8" causality="parameter" variability="fixed"><Start value="hello"/></String>
+  </ModelVariables>
+  <ModelStructure>
+    <Output valueReference="4" dependencies="3 9" dependenciesKind="dependent dependent"/>
+    <ContinuousStateDerivative valueReference="5" dependencies=""/>
+    <InitialUnknown valueReference="5"/>
+  </ModelStructure>
+</fmiModelDescription>"#;
+
+/// Errors of the description alone; there is no binary.
+fn found_in(description: &str) -> Vec<String> {
+    let file = archive_of(&[("modelDescription.xml", description.as_bytes())]);
+    let report = Fmu::open(file.path()).unwrap().check_without_running();
+    let errors = report
+        .findings
+        .iter()
+        .filter(|f| f.severity == FmuSeverity::Error);
+    let errors = errors.filter(|f| !f.expected.contains("binary for this machine"));
+    errors.map(ToString::to_string).collect()
+}
+
+#[test]
+fn a_description_of_fmi3_is_read_element_by_element() {
+    let file = archive_of(&[("modelDescription.xml", DESCRIPTION_3.as_bytes())]);
+    let fmu = Fmu::open(file.path()).unwrap();
+    let d = fmu.model_description();
+    let names: Vec<&str> = d.variables.iter().map(|v| v.name.as_str()).collect();
+    let arrays = [
+        "der(x[1])",
+        "der(x[2])",
+        "der(x[3])",
+        "x[1]",
+        "x[2]",
+        "x[3]",
+        "u[1,1]",
+        "u[1,2]",
+    ];
+    assert_eq!(names, [&["n"][..], &arrays, &["s"]].concat());
+    assert_eq!(d.variable("x[2]").unwrap().start, Some(Value::Real(2.0)));
+    assert_eq!(d.variable("u[1,2]").unwrap().start, Some(Value::Real(0.5)));
+    assert_eq!(
+        d.variable("s").unwrap().start,
+        Some(Value::String("hello".into()))
+    );
+    assert_eq!(d.variable("der(x[3])").unwrap().derivative, Some(7));
+    assert!(
+        d.co_simulation
+            .as_ref()
+            .unwrap()
+            .provides_directional_derivative
+    );
+    // clocks have no place
+    assert_eq!(d.outputs[0].dependencies, Some(vec![8]));
+    assert_eq!(found_in(DESCRIPTION_3), Vec::<String>::new());
+}
+
+#[test]
+fn defects_of_fmi3_are_found() {
+    for (sound, defect, said) in [
+        (
+            r#"valueReference="8""#,
+            r#"valueReference="4""#,
+            "a value reference of its own",
+        ),
+        (r#" start="1 2 3""#, "", "a start value"),
+        (
+            r#"dependencies="3 9""#,
+            r#"dependencies="3 77""#,
+            "dependencies in 1",
+        ),
+        (
+            r#"<Output valueReference="4" dependencies="3 9" dependenciesKind="dependent dependent"/>"#,
+            "",
+            "<Outputs>",
+        ),
+        (
+            r#"<InitialUnknown valueReference="5"/>"#,
+            "",
+            "<InitialUnknowns>",
+        ),
+        (
+            r#"causality="input" start="0.5""#,
+            r#"causality="input" initial="exact" start="0.5""#,
+            "no `initial`",
+        ),
+        (
+            r#"<Unit name="m">"#,
+            r#"<Unit name="km">"#,
+            "a unit of <UnitDefinitions>",
+        ),
+        (
+            r#"start="1 2 3""#,
+            r#"start="1 -2 3""#,
+            "a start value in 0",
+        ),
+        (
+            r#"<Dimension valueReference="7"/>"#,
+            r#"<Dimension valueReference="70"/>"#,
+            "dimensions that are known",
+        ),
+        (r#"fmiVersion="3.0""#, r#"fmiVersion="3""#, "or 3.0"),
+        (r#"modelName="m""#, r#"modelName="""#, "a name"),
+    ] {
+        assert!(DESCRIPTION_3.contains(sound), "{sound}");
+        let found = found_in(&DESCRIPTION_3.replacen(sound, defect, 2));
+        assert!(
+            found.iter().any(|f| f.contains(said)),
+            "{sound} → {defect}: {found:#?}"
+        );
+    }
 }

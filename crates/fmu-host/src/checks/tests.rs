@@ -109,8 +109,8 @@ const DEFECTS: [(&str, &str, &[&str]); 41] = [
     // heads and lists
     (
         r#"fmiVersion="2.0""#,
-        r#"fmiVersion="3.0""#,
-        &["fmiVersion", "`3.0`"],
+        r#"fmiVersion="1.0""#,
+        &["fmiVersion", "`1.0`"],
     ),
     (r#" modelName="Sdof""#, "", &["the attribute `modelName`"]),
     (
