@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 /// Points that would take longer are left out.
-const LONGEST_S: f64 = 20.0;
+const LONGEST_S: f64 = 60.0;
 /// What is quick is done again until it has taken so long.
 const AT_LEAST_S: f64 = 0.1;
 /// Only points of the upper two decades tell the exponent: below, what does not grow counts for too much.
@@ -140,7 +140,12 @@ impl Measured<'_> {
         let most = peaks.iter().copied().fold(0.0, f64::max);
         let grown = most > 2.0 * peaks.first().copied().unwrap_or(most);
         match curve.kind {
-            Kind::Streamed if grown => findings.push("memory grows".to_owned()),
+            Kind::Streamed if grown => {
+                findings.push(format!(
+                    "memory grows by {:.1} bytes each",
+                    self.bytes_each()
+                ));
+            }
             Kind::Streamed => findings.push(format!("memory at most {most:.0} MiB")),
             Kind::Threads if self.points.iter().any(|p| p.answer != self.last().answer) => {
                 findings.push("other bits for another number of threads".to_owned());
@@ -158,6 +163,15 @@ impl Measured<'_> {
             findings.push(format!("{range} left out"));
         }
         findings
+    }
+
+    /// Growth of the peak between the two largest sizes, over that of the size.
+    fn bytes_each(&self) -> f64 {
+        let [.., before, last] = &self.points[..] else {
+            return f64::NAN;
+        };
+        let mib = |p: &Point| p.peak_mib.unwrap_or(f64::NAN);
+        (mib(last) - mib(before)) * 1024.0 * 1024.0 / (last.size - before.size) as f64
     }
 
     /// What goes into so many seconds, by the steeper of the two exponents.

@@ -26,13 +26,18 @@ pub(super) fn wanted(figures: bool, images: bool) -> Result<()> {
     Ok(())
 }
 
+/// Whether figures are drawn: what only they show need not be computed otherwise.
+pub(super) fn wanted() -> bool {
+    WANTED.load(Ordering::Relaxed)
+}
+
 /// Draws and writes `stem.svg`, and `stem.png` where images are wanted.
 pub(super) fn write(
     stem: &str,
     out: &mut OutputDir,
     draw: impl FnOnce() -> Result<Figure>,
 ) -> Result<()> {
-    if !WANTED.load(Ordering::Relaxed) {
+    if !wanted() {
         return Ok(());
     }
     let figure = draw()?;

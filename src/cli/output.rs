@@ -6,6 +6,7 @@ use super::lock::{FolderLock, LOCK_FILE};
 use super::wrapping::COLUMNS;
 use crate::error::{Error, Result};
 use crate::wind_tunnel::{Record, write_record};
+use rayon::prelude::*;
 use std::fs;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -119,12 +120,18 @@ impl OutputDir {
         self.write(name, text + "\n")
     }
 
-    /// Writes a record as the file `name`; where it stands for now.
-    pub(crate) fn write_record(&mut self, name: &Path, record: &Record) -> Result<PathBuf> {
-        let path = self.stage(name)?;
-        let file = fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
-        write_record(record, &mut BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
-        Ok(path)
+    /// Writes records as the files of these names, on all cores.
+    pub(crate) fn write_records<'r>(
+        &mut self,
+        records: impl Iterator<Item = (PathBuf, &'r Record)>,
+    ) -> Result<()> {
+        let staged = records.map(|(name, record)| Ok((self.stage(name)?, record)));
+        let staged = staged.collect::<Result<Vec<_>>>()?;
+        let write = |(path, record): &(PathBuf, &Record)| {
+            let file = fs::File::create(path).map_err(|e| Error::io(path, e))?;
+            write_record(*record, &mut BufWriter::new(file)).map_err(|e| e.in_file(path))
+        };
+        staged.par_iter().try_for_each(write)
     }
 
     /// The folder in which the files stand until they are put in place.

@@ -221,9 +221,9 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
                 format!("`{}` a second time", record.header.name),
             ));
         }
-        out.write_record(&name, record)?;
         names.push(name);
     }
+    out.write_records(names.iter().cloned().zip(&processed.records))?;
     Ok(names)
 }
 

@@ -19,7 +19,7 @@ use crate::study::{
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use crate::wind_tunnel::Record;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Folder of the records in the output directory.
 pub(crate) const RECORDS: &str = "records";
@@ -34,27 +34,24 @@ pub(crate) const MAX_CURVES: usize = 7;
 /// Stem of the figure of frequencies and damping ratios.
 pub(crate) const FIGURE: &str = "flutter";
 
-/// Writes the records of the virtual tunnel; gives the paths at which they stand for now.
+/// The records of the virtual tunnel, written as well.
 pub(crate) fn tunnel(
     study: &Study,
     deck: &Deck,
     out: &mut OutputDir,
     progress: &Progress,
-) -> Result<Vec<(PathBuf, Record)>> {
+) -> Result<Vec<Record>> {
     let stage = progress.stage("virtual wind tunnel");
     let records = deck.virtual_records(study)?;
-    let mut paths = Vec::with_capacity(records.len());
-    for record in records {
-        let name = Path::new(RECORDS).join(format!("{}.csv", file_name(&record.header.name)));
-        paths.push((out.write_record(&name, &record)?, record));
-    }
+    let name = |r: &Record| Path::new(RECORDS).join(format!("{}.csv", file_name(&r.header.name)));
+    out.write_records(records.iter().map(|r| (name(r), r)))?;
     // the header of a record names it; a line alone is the whole notice
     let licence = deck.licence();
     if licence.contains('\n') {
         out.write(Path::new(RECORDS).join("LICENSE"), licence)?;
     }
     drop(stage);
-    Ok(paths)
+    Ok(records)
 }
 
 /// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.

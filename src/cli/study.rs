@@ -8,7 +8,7 @@ use super::report;
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
-use super::{account, evidence, headline, measured_forces, select, stages};
+use super::{account, evidence, figures, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
@@ -108,7 +108,7 @@ impl StudyStages<'_> {
     fn records(&mut self) -> Result<Option<RecordSet>> {
         let records = if self.study.deck.records.is_empty() {
             stages::tunnel(&self.study, &self.deck, &mut self.out, self.progress)
-                .and_then(RecordSet::staged)
+                .map(RecordSet::in_memory)
         } else {
             RecordSet::measured(&self.study)
         };
@@ -234,7 +234,9 @@ impl StudyStages<'_> {
         results: &FlutterStudy,
         records: Option<&RecordSet>,
     ) -> Result<()> {
-        let Some(own) = own else { return Ok(()) };
+        let Some(own) = own.filter(|_| figures::wanted()) else {
+            return Ok(());
+        };
         let Some(onset) = headline::own_onset(results, &own.model.name) else {
             return Ok(());
         };

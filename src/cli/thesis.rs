@@ -33,7 +33,7 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
     let deck = Deck::load(&study)?;
     let mut out = OutputDir::new(aside.path())?;
-    let records = RecordSet::staged(stages::tunnel(&study, &deck, &mut out, progress)?)?;
+    let records = RecordSet::in_memory(stages::tunnel(&study, &deck, &mut out, progress)?);
     let mut failed = Vec::new();
     let trained = stages::train(
         &study,

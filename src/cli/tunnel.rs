@@ -26,7 +26,7 @@ pub(crate) fn run(args: &TunnelArgs, progress: &Progress) -> Result<Answer> {
     let mut out = OutputDir::new(&args.study.directory())?;
     let records = stages::tunnel(&study, &deck, &mut out, progress)?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
-    for (_, record) in &records {
+    for record in &records {
         let h = &record.header;
         let samples = record.motion.first().map_or(0, Vec::len);
         let _ = writeln!(
@@ -38,6 +38,6 @@ pub(crate) fn run(args: &TunnelArgs, progress: &Progress) -> Result<Answer> {
             h.sampling_hz,
         );
     }
-    let headers: Vec<_> = records.iter().map(|(_, r)| r.header.clone()).collect();
+    let headers: Vec<_> = records.iter().map(|r| r.header.clone()).collect();
     out.answer(text, serde_json::json!({ "records": headers }))
 }

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::files::derivatives::{
     ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
 };
-use crate::identification::sample_model;
+use crate::identification::{KeptRecord, sample_model};
 use crate::plausibility::{Finding, WIDEST_MODEL_M, of_table};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, group_of, near_groups};
@@ -286,9 +286,9 @@ fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
         .collect()
 }
 
-/// Records on disk, in groups of one mean speed.
+/// Records, in groups of one mean speed.
 pub struct RecordSet {
-    records: Vec<RecordFile>,
+    records: Vec<Box<dyn RecordSource>>,
     /// Mean speeds of the groups, m/s, rising.
     groups_m_s: Vec<Vec<f64>>,
 }
@@ -300,9 +300,9 @@ impl RecordSet {
         Self::open(paths.collect())
     }
 
-    /// Records just written, still in memory.
-    pub(crate) fn staged(written: Vec<(PathBuf, Record)>) -> Result<Self> {
-        Self::open(written.into_iter().map(|(path, _)| path).collect())
+    /// Records in memory.
+    pub(crate) fn in_memory(records: Vec<Record>) -> Self {
+        Self::of(records.into_iter().map(|r| Box::new(r) as _).collect())
     }
 
     /// All records of a folder, as `tunnel` writes them; none when no model of the study needs any.
@@ -339,30 +339,31 @@ impl RecordSet {
     }
 
     fn open(paths: Vec<PathBuf>) -> Result<Self> {
-        let records = paths
-            .iter()
-            .map(RecordFile::open)
-            .collect::<Result<Vec<_>>>()?;
+        let open = |path| Ok(Box::new(KeptRecord::new(RecordFile::open(path)?)) as _);
+        paths.iter().map(open).collect::<Result<_>>().map(Self::of)
+    }
+
+    fn of(records: Vec<Box<dyn RecordSource>>) -> Self {
         let speeds = records.iter().map(|r| r.header().mean_speed_m_s);
         let groups_m_s = near_groups(speeds, SAME_SPEED);
-        Ok(Self {
+        Self {
             records,
             groups_m_s,
-        })
+        }
     }
 
     /// The records of the chosen groups (from 1; all when `None`).
     pub(crate) fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
         let chosen = chosen(groups, self.groups_m_s.len())?;
-        let inside = |record: &&RecordFile| {
+        let inside = |record: &&dyn RecordSource| {
             let speed = record.header().mean_speed_m_s;
             chosen.contains(&group_of(&self.groups_m_s, speed))
         };
         Ok(self
             .records
             .iter()
+            .map(AsRef::as_ref)
             .filter(inside)
-            .map(|r| r as &dyn RecordSource)
             .collect())
     }
 }

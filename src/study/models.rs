@@ -36,8 +36,11 @@ pub fn train_one(
     records: &RecordSet,
     progress: OnProgress<'_>,
 ) -> Result<TrainedWithReport> {
-    let (fitted, estimate) = fit(study, block, deck, records, progress)?;
-    let Fitted { model, mut report } = fitted;
+    let ModelOfData {
+        fitted: Fitted { model, mut report },
+        estimate,
+        forms,
+    } = fit(study, block, deck, records, progress)?;
     let onset = |model: &Model, tested| onset_of(study, &block.name, model, tested);
     // a search that fails takes no trained model with it
     let search = onset(&model, report.tested_range).unwrap_or_else(|e| {
@@ -64,10 +67,7 @@ pub fn train_one(
             None => Ok(estimate),
         })
         .and_then(|estimate| model_uncertainty(study, estimate, &mut report, &search))
-        .and_then(|known| {
-            let forms = other_forms(study, block, deck, records);
-            with_forms(study, known, forms, &mut report)
-        })
+        .and_then(|known| with_forms(study, known, forms, &mut report))
         .map(Box::new)
         .map_err(|e| e.to_string());
     let trained = TrainedModel {
@@ -93,28 +93,55 @@ pub fn train_one(
     })
 }
 
-/// Fits to the table, to records, or to records in discrete time, as the block of the model says; and how far the data
-/// leave the coefficients open.
+/// What the data of a model say.
+struct ModelOfData {
+    fitted: Fitted,
+    /// How far they leave the coefficients open.
+    estimate: Result<CoefficientUncertainty>,
+    /// Other forms for the same data; none for a model in discrete time, whose bias is known.
+    forms: Result<Option<FormEnsemble>>,
+}
+
+/// Fits to the table, to records, or to records in discrete time, as the block of the model says, and fits of other forms to that
+/// table, or to the derivatives that the records show.
 fn fit(
     study: &Study,
     block: &ModelBlock,
     deck: &Deck,
     records: &RecordSet,
     progress: OnProgress<'_>,
-) -> Result<(Fitted, Result<CoefficientUncertainty>)> {
+) -> Result<ModelOfData> {
     let own = block.speed_groups.as_deref();
     let groups = own.or(study.deck.speed_groups.as_deref());
+    let dofs = study.section.dofs();
     if let Some(fit) = &block.table {
-        let (samples, dofs) = (deck.samples(study, groups)?, study.section.dofs());
+        let samples = deck.samples(study, groups)?;
         let fitted = fit_table(&samples, &dofs, fit)?;
-        let estimate = table_uncertainty(&samples, &dofs, fit, &fitted.report);
-        return Ok((fitted, estimate));
+        return Ok(ModelOfData {
+            estimate: table_uncertainty(&samples, &dofs, fit, &fitted.report),
+            forms: FormEnsemble::beside(&samples, &dofs, fit, &fitted).map(Some),
+            fitted,
+        });
     }
     let chosen = records.select(groups)?;
     if let Some(fit) = &block.records {
-        let fitted = fit_records(&chosen, fit, progress)?;
-        let estimate = record_uncertainty(&chosen, fit, &fitted.report, progress);
-        return Ok((fitted, estimate));
+        let others = || -> Result<Option<FormEnsemble>> {
+            let found = identify_derivatives(&chosen, &DerivativeOptions::default())?;
+            let table = found.table(&block.name, TableHeader::default())?;
+            FormEnsemble::new(&table.samples(&dofs), &dofs).map(Some)
+        };
+        let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
+            let fitted = fit_records(&chosen, fit, progress)?;
+            let estimate = record_uncertainty(&chosen, fit, &fitted.report, progress);
+            Ok((fitted, estimate))
+        };
+        let (own, forms) = rayon::join(own, others);
+        let (fitted, estimate) = own?;
+        return Ok(ModelOfData {
+            fitted,
+            estimate,
+            forms,
+        });
     }
     let Some(fit) = &block.discrete else {
         let place = format!("model {}", block.name);
@@ -122,30 +149,11 @@ fn fit(
         return Err(Error::input(place, expected, "none"));
     };
     let fitted = fit_discrete(&chosen, fit, progress)?;
-    let estimate = discrete_uncertainty(&chosen, fit, &fitted.model, progress);
-    Ok((fitted, estimate))
-}
-
-/// Other forms for the data of a model: fits to its table, or to the derivatives that its records show. None for a model in
-/// discrete time, whose bias is known.
-fn other_forms(
-    study: &Study,
-    block: &ModelBlock,
-    deck: &Deck,
-    records: &RecordSet,
-) -> Result<Option<FormEnsemble>> {
-    let own = block.speed_groups.as_deref();
-    let groups = own.or(study.deck.speed_groups.as_deref());
-    let dofs = study.section.dofs();
-    if block.table.is_some() {
-        return FormEnsemble::new(&deck.samples(study, groups)?, &dofs).map(Some);
-    }
-    if block.records.is_none() {
-        return Ok(None);
-    }
-    let found = identify_derivatives(&records.select(groups)?, &DerivativeOptions::default())?;
-    let table = found.table(&block.name, TableHeader::default())?;
-    FormEnsemble::new(&table.samples(&dofs), &dofs).map(Some)
+    Ok(ModelOfData {
+        estimate: discrete_uncertainty(&chosen, fit, &fitted.model, progress),
+        forms: Ok(None),
+        fitted,
+    })
 }
 
 /// Adds their onsets. An ensemble that cannot be made is noted, and the interval holds the scatter alone.

@@ -52,12 +52,17 @@ fn calculated_onsets_are_those_of_the_search() {
             let model = of_deck(deck, &fit, LIMIT);
             let tested = Some(model.tested_range);
             let json = model.to_json().unwrap();
-            let mut instance = Instance::new(
-                Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap(),
-            )
-            .unwrap();
-            let grows = instance.take_notices().iter().any(|n| n.contains("grows"));
-            instance.enter_initialization();
+            let made = || {
+                let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default());
+                let mut instance = Instance::new(resources.unwrap()).unwrap();
+                instance.enter_initialization();
+                instance
+            };
+            let mut as_exported = made();
+            as_exported.exit_initialization().unwrap();
+            let notices = as_exported.take_notices();
+            let grows = notices.iter().any(|n| n.contains("grows"));
+            let mut instance = made();
             for (mass, twist_hz) in [(15.0, 5.0), (8.0, 5.0), (40.0, 4.0), (15.0, 2.5)] {
                 let places = ["mass", "torsion_frequency"].map(|n| reference(&instance, n));
                 instance.set_reals(&places, &[mass, twist_hz]).unwrap();

@@ -85,7 +85,7 @@ impl Instance {
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now
         unit.prepared(&resources, &mut memory)?;
-        let mut instance = Self {
+        Ok(Self {
             memory: fresh.clone(),
             fresh,
             unit,
@@ -95,9 +95,7 @@ impl Instance {
             notices: Vec::new(),
             layout,
             resources,
-        };
-        instance.watch();
-        Ok(instance)
+        })
     }
 
     /// Where the instance stands.

@@ -76,7 +76,7 @@ fn trained(
     out: &mut OutputDir,
     progress: &Progress,
 ) -> Result<(TrainedModel, KnownUncertainty)> {
-    let records = RecordSet::staged(stages::tunnel(study, deck, out, progress)?)?;
+    let records = RecordSet::in_memory(stages::tunnel(study, deck, out, progress)?);
     let mut failed = Vec::new();
     let models = stages::train(study, deck, Some(&records), out, &mut failed, progress)?;
     // the model of the section alone is not what is exported here

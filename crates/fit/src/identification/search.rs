@@ -3,7 +3,8 @@
 //!
 //! One pole: a logarithmic grid, then golden sections. Several: Levenberg–Marquardt on variables that make every point
 //! legal — the logarithmic gaps between lower bound, poles and upper bound are shares of what the least ratio of
-//! neighbours leaves, and the shares are a softmax of free numbers — from the best points of a grid.
+//! neighbours leaves, and the shares are a softmax of free numbers — from the best points of a grid. Points that do not wait for
+//! one another are evaluated on all cores.
 
 use super::form::PoleSearch;
 use super::report::{SearchPoint, SearchReport};
@@ -13,6 +14,7 @@ use crate::state_space::golden_section;
 use crate::units::ReducedFrequencyRange;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use rayon::prelude::*;
 
 /// Widest bracket left by golden sections, in `ln p`: the root of the rounding error of the objective.
 const GOLDEN_TOLERANCE: f64 = 1e-8;
@@ -150,7 +152,7 @@ pub(crate) fn search_poles(
     options: &PoleSearch,
     bounds: Bounds,
     entry: Option<(Dof, Dof)>,
-    residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
+    residuals: PoleResiduals<'_>,
 ) -> Result<SearchReport> {
     let mut search = Search {
         residuals,
@@ -160,9 +162,7 @@ pub(crate) fn search_poles(
         Some(start) => vec![start.clone()],
         None => bounds.grid(count, options.grid_points),
     };
-    for poles in &starts {
-        search.evaluate(poles)?;
-    }
+    search.evaluate_all(starts)?;
     let chosen = if count == 1 {
         search.golden(&bounds, options.grid_points)?
     } else {
@@ -178,19 +178,30 @@ pub(crate) fn search_poles(
     })
 }
 
+/// Weighted residuals with the best coefficients for these poles.
+pub(crate) type PoleResiduals<'a> = &'a (dyn Fn(&[f64]) -> Result<DVector<f64>> + Sync);
+
 struct Search<'a> {
-    residuals: &'a dyn Fn(&[f64]) -> Result<DVector<f64>>,
+    residuals: PoleResiduals<'a>,
     points: Vec<SearchPoint>,
 }
 
 impl Search<'_> {
+    fn evaluate_all(&mut self, sets: Vec<Vec<f64>>) -> Result<()> {
+        let point = |poles: Vec<f64>| {
+            let objective = (self.residuals)(&poles)?.norm();
+            Ok(SearchPoint { poles, objective })
+        };
+        // the first error of their order, whichever came first in time
+        let found: Vec<Result<SearchPoint>> = sets.into_par_iter().map(point).collect();
+        let found: Result<Vec<SearchPoint>> = found.into_iter().collect();
+        self.points.extend(found?);
+        Ok(())
+    }
+
     fn evaluate(&mut self, poles: &[f64]) -> Result<f64> {
-        let objective = (self.residuals)(poles)?.norm();
-        self.points.push(SearchPoint {
-            poles: poles.to_vec(),
-            objective,
-        });
-        Ok(objective)
+        self.evaluate_all(vec![poles.to_vec()])?;
+        Ok(self.points[self.points.len() - 1].objective)
     }
 
     fn best(&self) -> Result<SearchPoint> {
@@ -215,19 +226,21 @@ impl Search<'_> {
     fn levenberg_marquardt(&mut self, bounds: &Bounds) -> Result<SearchPoint> {
         let mut starts = self.points.clone();
         starts.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-        for start in starts.iter().take(STARTS) {
+        starts.truncate(STARTS);
+        let end = |start: &SearchPoint| {
             let free = DVector::from_vec(bounds.free(&start.poles));
             let found = descend(free, &|free| (self.residuals)(&bounds.poles(free)).ok());
-            if found.iter().all(|x| x.is_finite()) {
-                self.evaluate(&bounds.poles(found.as_slice()))?;
-            }
-        }
+            let finite = found.iter().all(|x| x.is_finite());
+            finite.then(|| bounds.poles(found.as_slice()))
+        };
+        let ends: Vec<Vec<f64>> = starts.par_iter().filter_map(end).collect();
+        self.evaluate_all(ends)?;
         self.best()
     }
 }
 
 /// Residuals at a point; `None` where there are none.
-pub(crate) type Residuals<'a> = &'a dyn Fn(&[f64]) -> Option<DVector<f64>>;
+pub(crate) type Residuals<'a> = &'a (dyn Fn(&[f64]) -> Option<DVector<f64>> + Sync);
 
 /// The point that a descent from `start` ends at; whatever the reason it stopped for, the caller judges it by its
 /// residuals.
@@ -262,15 +275,19 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Descent<'_> {
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let columns: Option<Vec<_>> = (0..self.at.len())
-            .map(|c| {
-                let mut x = self.at.clone();
-                x[c] += DIFFERENCE_STEP;
-                let ahead = (self.residuals)(x.as_slice())?;
-                x[c] -= 2.0 * DIFFERENCE_STEP;
-                Some((ahead - (self.residuals)(x.as_slice())?) / (2.0 * DIFFERENCE_STEP))
-            })
-            .collect();
+        let (at, residuals) = (&self.at, self.residuals);
+        let column = |c: usize| {
+            let moved_to = |place: f64| {
+                let mut x = at.clone();
+                x[c] = place;
+                residuals(x.as_slice())
+            };
+            let ahead = at[c] + DIFFERENCE_STEP;
+            let behind = ahead - 2.0 * DIFFERENCE_STEP;
+            let (ahead, behind) = rayon::join(|| moved_to(ahead), || moved_to(behind));
+            Some((ahead? - behind?) / (2.0 * DIFFERENCE_STEP))
+        };
+        let columns: Option<Vec<_>> = (0..at.len()).into_par_iter().map(column).collect();
         Some(DMatrix::from_columns(&columns?))
     }
 }

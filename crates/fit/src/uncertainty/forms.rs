@@ -112,6 +112,30 @@ impl FormEnsemble {
     /// # Errors
     /// [`Error::Input`] for samples without the forces of heave and rotation; [`Error::Numerical`] when no form can be fitted.
     pub fn new(samples: &[TransferSample], dofs: &[Dof]) -> Result<Self> {
+        Self::of(samples, dofs, &|fit| fit_table(samples, dofs, fit))
+    }
+
+    /// The same beside a fit to these samples, which is not done again where it is one of the forms.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn beside(
+        samples: &[TransferSample],
+        dofs: &[Dof],
+        own: &FrequencyFit,
+        fitted: &Fitted,
+    ) -> Result<Self> {
+        Self::of(samples, dofs, &|fit| match fit == own {
+            true => Ok(fitted.clone()),
+            false => fit_table(samples, dofs, fit),
+        })
+    }
+
+    fn of(
+        samples: &[TransferSample],
+        dofs: &[Dof],
+        fitted: &(dyn Fn(&FrequencyFit) -> Result<Fitted> + Sync),
+    ) -> Result<Self> {
         let tested = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
             .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
         let table = table_of(samples, dofs)?;
@@ -119,9 +143,10 @@ impl FormEnsemble {
             .iter()
             .map(|by| InterpolatedTable::by(*by, &table, dofs, Extrapolation::Refuse));
         let read = read.collect::<Result<_>>()?;
+        let numbers = samples.len() as f64;
         let fitted: Vec<FittedForm> = fitted_forms(tested)
             .into_par_iter()
-            .filter_map(|(name, fit)| FittedForm::new(name, samples, dofs, &fit).ok())
+            .filter_map(|(name, fit)| FittedForm::new(name, &fit, fitted(&fit).ok()?, numbers).ok())
             .collect();
         Ok(Self {
             fits: admissible(fitted)?,
@@ -296,19 +321,14 @@ struct FittedForm {
 }
 
 impl FittedForm {
-    fn new(
-        name: String,
-        samples: &[TransferSample],
-        dofs: &[Dof],
-        fit: &FrequencyFit,
-    ) -> Result<Self> {
-        let fitted = fit_table(samples, dofs, fit)?;
+    /// Of a fit to so many numbers.
+    fn new(name: String, fit: &FrequencyFit, fitted: Fitted, numbers: f64) -> Result<Self> {
         let searched = match fit.poles.fixed {
             Some(_) => 0.0,
             None => fit.form.filters() as f64,
         };
         let entries = &fitted.report.entries;
-        let numbers = samples.len() as f64 / entries.len() as f64;
+        let numbers = numbers / entries.len() as f64;
         let mut variances = Vec::with_capacity(entries.len());
         for entry in entries {
             let shared = searched / entries.len() as f64;

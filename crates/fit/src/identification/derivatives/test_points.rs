@@ -2,7 +2,7 @@
 
 use super::result::DerivativeOptions;
 use crate::error::{Error, Result, positive};
-use crate::identification::time::signals::{SignalWriter, Signals};
+use crate::identification::time::signals::Signals;
 use crate::section::Dof;
 use crate::signal::{
     HarmonicFit, Plateau, fit_harmonics, largest_about_mean, plateau, refine_frequency,
@@ -110,22 +110,24 @@ pub(super) fn collect(
         groups: Vec::new(),
         warnings: Vec::new(),
     };
-    for record in records {
+    let each = records.par_iter().map(|record| {
         let header = record.header();
         check(header, first)?;
-        let signals = Arc::new(read(*record)?);
+        let signals = Arc::new(Signals::of(*record)?);
         let segments = (0..header.segments.len()).into_par_iter();
         let stretches = segments.map(|i| stretch(header, &signals, i, options));
-        for (i, stretch) in stretches
-            .collect::<Result<Vec<_>>>()?
-            .into_iter()
-            .enumerate()
-        {
+        stretches.collect::<Result<Vec<_>>>()
+    });
+    // the first record that is wrong is named, whichever was read first
+    let each: Vec<Result<Vec<Option<TestRun>>>> = each.collect();
+    for (record, stretches) in records.iter().zip(each) {
+        let header = record.header();
+        for (stretch, segment) in stretches?.into_iter().zip(&header.segments) {
             match stretch {
                 Some(stretch) => insert(&mut points.groups, stretch, options),
                 None => points.warnings.push(format!(
                     "record {}: no whole period of steady motion at {:.3} Hz",
-                    header.name, header.segments[i].frequency_hz
+                    header.name, segment.frequency_hz
                 )),
             }
         }
@@ -158,25 +160,6 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
         return Err(Error::input(place("width_m"), expected, found));
     }
     Ok(())
-}
-
-/// All channels of a record, motions and then forces.
-fn read(record: &dyn RecordSource) -> Result<Signals> {
-    let header = record.header();
-    let mut signals = SignalWriter::new(header.dofs.len());
-    record.for_each_block(&mut |block| {
-        let channels: Vec<&Vec<f64>> = block.motion.iter().chain(block.force).collect();
-        for (c, channel) in channels.iter().enumerate() {
-            if let Some(k) = channel.iter().position(|v| !v.is_finite()) {
-                let at = signals.rows() + k;
-                let place = format!("record {}, channel {}, sample {at}", header.name, c + 1);
-                let found = channel[k].to_string();
-                return Err(Error::input(place, "a finite number", found));
-            }
-        }
-        signals.extend(channels[0].len(), |c, k| channels[c][k])
-    })?;
-    signals.finish()
 }
 
 /// The steady part of one segment; `None` when it has no whole period.

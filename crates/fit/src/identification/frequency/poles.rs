@@ -9,7 +9,7 @@ use crate::identification::frequency_options::FrequencyFit;
 use crate::identification::own::{EntryForm, search_for, searched_together};
 use crate::identification::report::SearchReport;
 use crate::identification::samples::{EntrySamples, shares};
-use crate::identification::search::{Bounds, search_poles};
+use crate::identification::search::{Bounds, PoleResiduals, search_poles};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DVector;
 
@@ -103,7 +103,7 @@ fn search_group(
     of: &EntryForm,
     options: &PoleSearch,
     tested: ReducedFrequencyRange,
-    residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
+    residuals: PoleResiduals<'_>,
 ) -> Result<SearchReport> {
     let form = &of.form;
     let bounds = Bounds::resolve(options, tested, form.free_poles())?;

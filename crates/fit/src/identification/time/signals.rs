@@ -2,6 +2,7 @@
 //! with them. Whatever its length, a record then takes the memory of one block for each thread that reads it.
 
 use crate::error::{Error, Result};
+use crate::wind_tunnel::RecordSource;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -41,8 +42,15 @@ impl SignalBlock {
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let numbers = self.channels.iter().flatten();
-        numbers.flat_map(|x| x.to_le_bytes()).collect()
+        let bytes_each = size_of::<f64>() * self.rows();
+        let mut bytes = vec![0; bytes_each * self.channels.len()];
+        for (part, channel) in bytes.chunks_mut(bytes_each.max(1)).zip(&self.channels) {
+            let (places, _) = part.as_chunks_mut();
+            for (place, x) in places.iter_mut().zip(channel) {
+                *place = x.to_le_bytes();
+            }
+        }
+        bytes
     }
 }
 
@@ -122,6 +130,28 @@ impl SignalWriter {
 }
 
 impl Signals {
+    /// All channels of a record in its own units, motions and then forces.
+    ///
+    /// # Errors
+    /// Those of the record; [`Error::Input`] naming a sample that is not finite.
+    pub(crate) fn of(record: &dyn RecordSource) -> Result<Self> {
+        let header = record.header();
+        let mut signals = SignalWriter::new(header.dofs.len());
+        record.for_each_block(&mut |block| {
+            let channels: Vec<&Vec<f64>> = block.motion.iter().chain(block.force).collect();
+            for (c, channel) in channels.iter().enumerate() {
+                if let Some(k) = channel.iter().position(|v| !v.is_finite()) {
+                    let at = signals.rows() + k;
+                    let place = format!("record {}, channel {}, sample {at}", header.name, c + 1);
+                    let found = channel[k].to_string();
+                    return Err(Error::input(place, "a finite number", found));
+                }
+            }
+            signals.extend(channels[0].len(), |c, k| channels[c][k])
+        })?;
+        signals.finish()
+    }
+
     /// Number of samples.
     pub(crate) fn len(&self) -> usize {
         self.rows

@@ -132,10 +132,10 @@ pub struct Tally {
 impl Tally {
     /// Answers of parts that follow one another.
     pub(super) fn joined(parts: Vec<Self>) -> Self {
-        let mut all = Self {
-            onsets: Vec::with_capacity(parts.iter().map(|t| t.onsets.len()).sum()),
-            ..Self::default()
-        };
+        let onsets: usize = parts.iter().map(|t| t.onsets.len()).sum();
+        let mut parts = parts.into_iter();
+        let mut all = parts.next().unwrap_or_default();
+        all.onsets.reserve_exact(onsets - all.onsets.len());
         for part in parts {
             all.add(part);
         }

@@ -69,21 +69,35 @@ pub fn tally(
     let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
     let count = samples.len();
     let done = AtomicUsize::new(0);
-    let tallies: Vec<Tally> = (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
+    // a number for each sample, and nothing twice: those of a chunk stand in its places until all are closed up
+    let mut onsets = vec![0.0; count];
+    let tallies: Vec<(Tally, usize)> = onsets
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .map(|(chunk, places)| {
             let from = samples.start + chunk * CHUNK;
-            let range = from..samples.end.min(from + CHUNK);
-            let length = range.len();
             // who wants no more need not wait for what has not begun
             progress(done.load(Ordering::Relaxed), count);
-            let tally = finder.tally(&sampler, range);
-            let before = done.fetch_add(length, Ordering::Relaxed);
-            progress(before + length, count);
-            tally
+            let mut tally = finder.tally(&sampler, from..from + places.len());
+            let found = std::mem::take(&mut tally.onsets);
+            places[..found.len()].copy_from_slice(&found);
+            let before = done.fetch_add(places.len(), Ordering::Relaxed);
+            progress(before + places.len(), count);
+            (tally, found.len())
         })
         .collect();
-    Ok(Tally::joined(tallies))
+    let mut kept = 0;
+    for (chunk, (_, found)) in tallies.iter().enumerate() {
+        let from = chunk * CHUNK;
+        onsets.copy_within(from..from + found, kept);
+        kept += found;
+    }
+    onsets.truncate(kept);
+    let rest = tallies.into_iter().map(|(tally, _)| tally).collect();
+    Ok(Tally {
+        onsets,
+        ..Tally::joined(rest)
+    })
 }
 
 /// What the answers of all samples of a plan amount to, in the order of their numbers.
