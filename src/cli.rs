@@ -201,7 +201,7 @@ pub fn answer(arguments: &[String]) -> Result<(serde_json::Value, u8)> {
 
 impl Cli {
     fn answer(&self) -> Result<Answer> {
-        figures::wanted(!self.no_figures, self.png)?;
+        figures::want(!self.no_figures, self.png)?;
         let progress = progress::Progress::new(!self.quiet && !self.json, self.verbose);
         run(&self.command, &progress)
     }

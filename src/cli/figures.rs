@@ -13,7 +13,7 @@ static IMAGES: AtomicBool = AtomicBool::new(false);
 ///
 /// # Errors
 /// [`Error::Input`] for images where the program was built without the renderer.
-pub(super) fn wanted(figures: bool, images: bool) -> Result<()> {
+pub(super) fn want(figures: bool, images: bool) -> Result<()> {
     if images && cfg!(not(feature = "png")) {
         return Err(Error::input(
             "--png",
