@@ -73,6 +73,14 @@ pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
     out.write(REPORT, page)
 }
 
+/// The page of the results that stand in `folder`.
+///
+/// # Errors
+/// Those of reading them.
+pub(super) fn page_of(folder: &Path) -> Result<String> {
+    page(folder, folder, PagePlace::Folder)
+}
+
 /// The page of the results in `folder`; the study stands there or else in `study_folder`.
 ///
 /// # Errors

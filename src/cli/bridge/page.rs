@@ -32,7 +32,7 @@ pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
     if summary["bridge_file"] != text {
         return Ok(());
     }
-    let page = report::page(folder, folder)?;
+    let page = report::page_of(folder)?;
     let mut out = OutputDir::new(folder)?;
     out.write(REPORT, page)?;
     out.commit().map(drop)
