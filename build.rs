@@ -2,7 +2,8 @@
 //!
 //! This script calls cargo once more, on the crate of the unit, in the profile `fmu` and a target directory of its own, and copies
 //! the library to `OUT_DIR`, from where it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain.
-//! Ready-made runtimes, also for other platforms, can be embedded instead.
+//! Ready-made runtimes, also for other platforms, can be embedded instead. Where Rust has the target for WebAssembly, the module that
+//! answers the sliders of a report is built in the same way; without it reports have no sliders.
 
 use std::env;
 use std::fs;
@@ -12,6 +13,9 @@ use std::process::{Command, ExitCode};
 /// Environment variable that names a ready-made runtime to embed instead of building one, such as one for an older C
 /// library; or a folder of them, laid out as `binaries/` of an FMU, which are embedded all.
 const READY_MADE: &str = "AERODECK_RUNTIME";
+
+/// Target of the module that answers the sliders of a report, and its folder among the runtimes.
+const WASM: (&str, &str) = ("wasm32-unknown-unknown", "wasm32");
 
 /// Name of the libraries in their folders.
 const LIBRARY: &str = "aerodeck_section";
@@ -44,9 +48,14 @@ fn embed_runtimes() -> Result<(), String> {
             runtimes = ready_made(Path::new(&ready), here)?;
         }
         if runtimes.iter().all(|(platform, _)| platform != here) {
-            let library = build_runtime(&source, &out)?;
+            let library = build(&source, &out, &Part::runtime()?)?;
             watch(&library)?;
             runtimes.push((here.to_owned(), library));
+        }
+        if env::var_os(READY_MADE).is_none() && has_wasm()? {
+            let module = build(&source, &out, &Part::live())?;
+            watch(&module)?;
+            runtimes.push((WASM.1.to_owned(), module));
         }
     }
     let mut list = String::from("&[");
@@ -123,21 +132,60 @@ fn extension() -> &'static str {
     }
 }
 
-/// Builds the shared library and says where it is.
-fn build_runtime(source: &Path, out: &Path) -> Result<PathBuf, String> {
+/// Whether Rust can build for WebAssembly here.
+fn has_wasm() -> Result<bool, String> {
+    let output = Command::new(variable("RUSTC")?)
+        .args(["--print", "target-libdir", "--target", WASM.0])
+        .output();
+    let folder = output.map(|o| String::from_utf8_lossy(&o.stdout).trim().to_owned());
+    Ok(folder.is_ok_and(|folder| Path::new(&folder).is_dir()))
+}
+
+/// A library that is built beside the program.
+struct Part {
+    package: &'static str,
+    features: &'static [&'static str],
+    profile: &'static str,
+    triple: String,
+    file: String,
+}
+
+impl Part {
+    fn runtime() -> Result<Self, String> {
+        let prefix = if extension() == "dll" { "" } else { "lib" };
+        Ok(Self {
+            package: "aerodeck-unit",
+            features: &["--features", "runtime"],
+            profile: "fmu",
+            triple: variable("TARGET")?,
+            file: format!("{prefix}aerodeck_unit.{}", extension()),
+        })
+    }
+
+    fn live() -> Self {
+        Self {
+            package: "aerodeck-live",
+            features: &[],
+            profile: "live",
+            triple: WASM.0.to_owned(),
+            file: "aerodeck_live.wasm".to_owned(),
+        }
+    }
+}
+
+/// Builds a library and says where it is.
+fn build(source: &Path, out: &Path, part: &Part) -> Result<PathBuf, String> {
     let target_dir = runtime_target_dir(out);
-    let triple = variable("TARGET")?;
     let mut said = String::new();
     // what the outer build has fetched and locked is enough; the rest is for lock files that do not travel along
     for network in [&["--offline", "--locked"][..], &["--locked"], &[]] {
-        let output = nested_cargo(source, &target_dir, &triple)?
+        let output = nested_cargo(source, &target_dir, part)?
             .args(network)
             .output()
             .map_err(|e| format!("cargo cannot be started to build the FMU runtime: {e}"))?;
         if output.status.success() {
-            let prefix = if extension() == "dll" { "" } else { "lib" };
-            let library = format!("{prefix}aerodeck_unit.{}", extension());
-            return Ok(target_dir.join(triple).join("fmu").join(library));
+            let folder = target_dir.join(&part.triple).join(part.profile);
+            return Ok(folder.join(&part.file));
         }
         said = String::from_utf8_lossy(&output.stderr).into_owned();
         if said.contains("could not compile") {
@@ -145,8 +193,10 @@ fn build_runtime(source: &Path, out: &Path) -> Result<PathBuf, String> {
         }
     }
     Err(format!(
-        "the FMU runtime (crates/unit, profile `fmu`, target {triple}) could not be built in {}; \
-         cargo said:\n{said}",
+        "{} (profile `{}`, target {}), which this program carries, could not be built in {}; cargo said:\n{said}",
+        part.package,
+        part.profile,
+        part.triple,
         target_dir.display()
     ))
 }
@@ -161,13 +211,14 @@ fn runtime_target_dir(out: &Path) -> PathBuf {
         .join("fmu-runtime")
 }
 
-fn nested_cargo(source: &Path, target_dir: &Path, triple: &str) -> Result<Command, String> {
+fn nested_cargo(source: &Path, target_dir: &Path, part: &Part) -> Result<Command, String> {
     let mut cargo = Command::new(variable("CARGO")?);
     cargo
-        .args(["rustc", "--package", "aerodeck-unit", "--lib"])
-        .args(["--crate-type", "cdylib", "--features", "runtime"])
-        .args(["--profile", "fmu"])
-        .args(["--target", triple])
+        .args(["rustc", "--package", part.package, "--lib"])
+        .args(["--crate-type", "cdylib"])
+        .args(part.features)
+        .args(["--profile", part.profile])
+        .args(["--target", &part.triple])
         .arg("--manifest-path")
         .arg(source.join("Cargo.toml"))
         .arg("--target-dir")

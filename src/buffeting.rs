@@ -24,7 +24,7 @@ pub use span::{
     Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, SpanSpectra,
     TurbulenceField, span_record, turbulence_field,
 };
-pub(crate) use span::{SpanFrequency, span_ensemble};
+pub(crate) use span::{ModalCovariance, SpanFrequency, peak_factor, span_ensemble};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub(crate) use stability::unstable_roots;
 pub(crate) use synthesis::synthesise;

@@ -5,6 +5,7 @@ mod answer;
 mod apology;
 mod bridge;
 mod buffeting;
+mod buffeting_page;
 mod campaign;
 mod common;
 mod compare;
@@ -89,7 +90,7 @@ struct Cli {
     /// No progress bars.
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// All remarks on fits in the account of `study` and `demo`; the report has them in any case.
+    /// The whole account of `study`, `demo` and `bridge flutter`; the report has all of it in any case.
     #[arg(long, short, global = true)]
     verbose: bool,
     /// Neither draw nor write figures.

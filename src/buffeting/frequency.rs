@@ -10,6 +10,8 @@ use serde::Serialize;
 
 /// Relative error of the variances.
 const TOLERANCE: f64 = 1e-8;
+/// Of those of the accelerations, which end at the highest frequency below.
+const ACCELERATION_TOLERANCE: f64 = 1e-5;
 /// The integration over the frequency ends at this many times the highest natural one, that over its inverse begins there.
 const REACH: f64 = 20.0;
 
@@ -22,6 +24,8 @@ pub struct BuffetingResponse {
     pub rms: Vec<f64>,
     /// Root mean square of the rates: m/s, rad/s.
     pub rate_rms: Vec<f64>,
+    /// Root mean square of the accelerations: m/s², rad/s².
+    pub acceleration_rms: Vec<f64>,
     /// The part of `rms` that each component of the turbulence causes alone, `u` then `w`.
     pub rms_by_gust: [Vec<f64>; 2],
     /// Mean frequency of upward crossings of the mean, Hz: rate over displacement over 2π.
@@ -97,6 +101,7 @@ pub(crate) fn buffeting_response(
         .iter()
         .zip(&rms)
         .map(|(rate, rms)| rate / rms / std::f64::consts::TAU);
+    let accelerations = accelerations(problem, speed_m_s, &peaks)?;
     let part_in_tested_range = tested
         .map(|range| tested_part(problem, speed_m_s, &peaks, range, &rms))
         .transpose()?;
@@ -106,12 +111,26 @@ pub(crate) fn buffeting_response(
         rms_by_gust: [roots(&by_u), roots(&by_w)],
         rms,
         rate_rms,
+        acceleration_rms: roots(&accelerations),
         part_in_tested_range,
     })
 }
 
 fn roots(variances: &[f64]) -> Vec<f64> {
     variances.iter().map(|v| v.sqrt()).collect()
+}
+
+/// Variances of the accelerations, by themselves, so that those of the displacements do not hang on them.
+fn accelerations(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) -> Result<Vec<f64>> {
+    let last = REACH * problem.natural_range_hz().1;
+    let breaks = [&[0.0], peaks, &[last]].concat();
+    let densities = |f: f64| -> Result<Vec<f64>> {
+        let [by_u, by_w] = spectra_by_gust(problem, f, speed)?;
+        let fourth = (std::f64::consts::TAU * f).powi(4);
+        Ok(added(&by_u, &by_w).map(|sum| fourth * sum).collect())
+    };
+    let (inner, _) = integrate(each(densities), &breaks, ACCELERATION_TOLERANCE)?;
+    Ok(inner)
 }
 
 /// Variances of the displacements by `u`, by `w`, and of the rates (3n): up to the last break over the frequency, beyond it

@@ -5,12 +5,14 @@
 //! matrix. Exponential coherence along a line is that of a Markov chain: products with `C` and samples of the turbulence cost one
 //! pass along the span instead of a factorisation.
 
+mod covariance;
 mod field;
 mod frequency;
 mod time;
 
+pub(crate) use covariance::ModalCovariance;
 pub use field::{TurbulenceField, turbulence_field};
-pub(crate) use frequency::SpanFrequency;
+pub(crate) use frequency::{SpanFrequency, peak_factor};
 pub use frequency::{SpanResponse, SpanSpectra};
 pub(crate) use time::span_ensemble;
 pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_record};

@@ -3,11 +3,14 @@
 mod account;
 mod args;
 mod buffeting;
+mod buffeting_page;
 mod convert;
 pub(super) mod demo;
 pub(in crate::cli) mod files;
 mod flutter;
+mod inputs;
 mod page;
+mod response;
 mod show;
 pub(in crate::cli) mod summary;
 

@@ -3,9 +3,9 @@
 use super::answer::Answer;
 use super::progress::Progress;
 use super::wind::WindArgs;
-use super::{figures, headline};
+use super::{buffeting_page, figures, headline};
 use crate::error::{Result, counted};
-use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_page};
 use crate::study::{BuffetingStudy, WindStudy, buffeting_study};
 use std::fmt::Write as _;
 
@@ -41,6 +41,10 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
             buffeting_spectra_figure(&title, &results.dofs, spectra)
         })?;
     }
+    out.write(
+        "buffeting.html",
+        sections_page(&buffeting_page::page(&study, &results)?)?,
+    )?;
     // a requirement is judged where it is stated, also beside a response to turbulence
     let required = study.speeds.required();
     let verdict = required.map(|_| study.verdict()).transpose()?;

@@ -12,7 +12,7 @@ use crate::files::text::csv_cell;
 use crate::flutter::{CriticalPoint, FlutterCurves};
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, root_locus_figure,
-    time_history_figure,
+    scaled_history_figure,
 };
 use crate::section::Dof;
 use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};
@@ -230,6 +230,6 @@ pub(super) fn write_response(
     let panels = motion_panels(model.model.dofs(), &runs);
     let title = format!("{}: released below, at and above the onset", model.name);
     figures::write(RESPONSE, out, || {
-        time_history_figure(&title, &panels, "Time t (s)")
+        scaled_history_figure(&title, &panels, "Time t (s)", 2)
     })
 }

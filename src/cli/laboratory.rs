@@ -2,6 +2,7 @@
 
 use super::output::OutputDir;
 use crate::error::counted;
+use crate::files::report_block::ReportBlock;
 use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
@@ -41,6 +42,8 @@ pub(super) fn laboratory_page(
             counted(estimates.len(), "value"),
             counted(notes.len(), "remark")
         ),
+        of: ReportBlock::default(),
+        key: String::new(),
         sections: vec![
             PageSection {
                 text: notes.to_vec(),
@@ -126,7 +129,7 @@ pub(super) fn line(run: &RunReport) -> String {
         |a| format!("still air {:+.2} samples", a.offset_samples),
     );
     format!(
-        "{}: {} at {:.2} m/s, {}, {still_air}, {inertia}, {:.0} dB, {} replaced",
+        "{}: {} at {:.2} m/s, {}, {still_air}, {inertia}, signal {:.0} dB above the noise, {} replaced",
         run.run,
         run.dof.name(),
         run.dimensionless.speed_m_s,

@@ -5,6 +5,7 @@ mod curves;
 pub(in crate::cli) mod folder;
 mod live;
 mod parts;
+mod printed;
 mod variables;
 
 use super::answer::Answer;
@@ -18,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetMethod};
 use crate::fmu::package::with_report;
 use crate::identification::EntryReport;
-use crate::report::{PageFigure, PageFit, StudyPage, study_page};
+use crate::report::{PageFigure, PageFit, StudyPage, study_page, summary_figure};
 use crate::study::Study;
 use curves::curves_of;
 use folder::{PagePlace, REPORT, SUMMARY, SummaryKind, digest, parsed};
@@ -34,12 +35,21 @@ use variables::variables_of;
 pub(crate) struct ReportArgs {
     /// The folder of results.
     folder: PathBuf,
+    /// Print the page to report.pdf too, where a browser of the Chromium family is installed (AERODECK_BROWSER names another).
+    #[arg(long)]
+    pdf: bool,
 }
 
 /// Runs the command.
 pub(super) fn run(args: &ReportArgs) -> Result<Answer> {
     let page = page(&args.folder, &args.folder, PagePlace::Folder)?;
     let mut out = OutputDir::new(&args.folder)?;
+    if args.pdf {
+        let at = out.stage(REPORT)?;
+        std::fs::write(&at, &page).map_err(|e| Error::io(&at, e))?;
+        let pdf = out.stage("report.pdf")?;
+        printed::print(&at, &pdf)?;
+    }
     out.write(REPORT, page)?;
     let written = out.commit()?;
     Answer::new(list(&written), &serde_json::json!({ "files": written }))
@@ -61,6 +71,14 @@ pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
     }
     let page = page(out.staging(), &folder, PagePlace::Folder)?;
     out.write(REPORT, page)
+}
+
+/// The page of the results that stand in `folder`.
+///
+/// # Errors
+/// Those of reading them.
+pub(super) fn page_of(folder: &Path) -> Result<String> {
+    page(folder, folder, PagePlace::Folder)
 }
 
 /// The page of the results in `folder`; the study stands there or else in `study_folder`.
@@ -96,6 +114,7 @@ fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> 
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
     }
+    page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
     page.live = live::sliders(&study, read(MODEL_FILE))?;
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
@@ -228,7 +247,7 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
         (
             FIGURE,
             "Frequency and damping over wind speed",
-            "A colour and dash per model, a width per branch; pale outside the tested range. Squares: onset of the FMU, stepped \
+            "A colour and dash per model, a width per mode; pale outside the tested range. Squares: onset of the FMU, stepped \
              through its C interface. The lowest panel magnifies the damping around zero, with the intervals of the onsets as bars.",
         ),
         (

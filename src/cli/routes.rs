@@ -1,7 +1,7 @@
 //! The table of all routes and the onset cards, in words.
 
 use super::account::interval;
-use crate::flutter::{FlutterSearch, Onset, OnsetInterval, SanityLines, mode_in_words};
+use crate::flutter::{FlutterSearch, ModeBranch, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
@@ -181,7 +181,12 @@ fn found(o: &Onset, route: &Route) -> String {
         "  mode |y|/(B|θ|) {:.4}, phase of y to θ {:.1}°; damping slope dζ/dV {slope}",
         o.mode_ratio, o.phase_deg
     );
-    let _ = writeln!(text, "  {}: {}", mode_in_words(&o.branch), kind(route));
+    let _ = writeln!(
+        text,
+        "  {}: {}",
+        ModeBranch::in_words(&o.branch),
+        kind(route)
+    );
     for p in route.mode.iter().flat_map(|m| &m.participation) {
         let name = match p.dof {
             crate::section::Dof::Vertical => "H1*",

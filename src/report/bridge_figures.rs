@@ -6,10 +6,11 @@ use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::root_locus::RootLocus;
-use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash};
+use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash, outcome_colour};
 use crate::bridge::Bridge;
 use crate::error::Result;
-use crate::flutter::{BridgeMotion, CriticalPoint, FlutterCurves, ModeBranch, ModePoint};
+use crate::flutter::{BridgeMotion, CriticalPoint, FlutterCurves, ModeBranch, ModePoint, Onset};
+use crate::verdict::Verdict;
 
 /// The motions of a shape, as the legends name them; rotations count with half the width.
 const MOTIONS: [&str; 3] = [
@@ -38,13 +39,16 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     let half_width = 0.5 * bridge.width_m();
     let scale = [1.0, 1.0, half_width];
     let mut panels = Vec::with_capacity(bridge.modes.len());
-    for mode in &bridge.modes {
+    let columns = bridge.modes.len().min(3);
+    for (m, mode) in bridge.modes.iter().enumerate() {
         let values = mode
             .shape
             .iter()
             .flat_map(|s| (0..3).map(|i| (s[i] * scale[i]).abs()));
         let greatest = values.fold(f64::MIN_POSITIVE, f64::max);
-        let mut panel = Panel::new(Axis::new("").tight(), Axis::new(""));
+        let lowest = m + columns >= bridge.modes.len();
+        let along = if lowest { "x (m)" } else { "" };
+        let mut panel = Panel::new(Axis::new(along).tight(), Axis::new(""));
         panel.title = Some(format!("mode {}: {:.4} Hz", mode.number, mode.frequency_hz));
         panel.y.range = Some((-1.1, 1.1));
         panel.level = Some(0.0);
@@ -61,7 +65,7 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
         name: "modes of the bridge",
         title: Some(title.to_owned()),
         panels,
-        columns: bridge.modes.len().min(3),
+        columns,
         axes: (300.0, 110.0),
         legend: vec![motion_legend()],
     }
@@ -80,88 +84,150 @@ impl Drawn<'_> {
     }
 }
 
-/// The modes with their inks and what the legend says of them: those of `shown`, by name of the branch, in colour and on top, the
-/// others grey.
-fn drawn<'a>(curves: &'a FlutterCurves, shown: &[String]) -> (Vec<Drawn<'a>>, Vec<Entry>) {
-    let place = |name: &str| shown.iter().take(COLOURED).position(|s| s == name);
-    let others = Ink::stroke(PALE_GREY, None, 1.0);
-    let ink = |i: usize| Ink::line(COLOURS[i], dash(i));
-    let branches = curves.branches.iter().filter(|b| !b.points.is_empty());
-    let mut all: Vec<_> = branches.map(|b| (place(&b.name), b)).collect();
-    all.sort_by_key(|(place, _)| *place);
-    let legend = all
-        .iter()
-        .filter_map(|(place, b)| Some(Entry::new(&b.name, ink((*place)?))));
-    let legend = legend.collect();
-    let all = all.into_iter().map(|(place, branch)| Drawn {
-        branch,
-        ink: place.map_or(others, ink),
-    });
-    (all.collect(), legend)
+/// The curves of a bridge and what is drawn of them.
+pub(crate) struct BridgeCurves<'a> {
+    pub(crate) curves: &'a FlutterCurves,
+    /// Names of the branches in colour and on top, each with a dash of its own.
+    pub(crate) shown: &'a [String],
+    /// Names of the branches in grey; of the others nothing is drawn.
+    pub(crate) others: &'a [String],
+    pub(crate) onset: Option<&'a Onset>,
+    pub(crate) verdict: &'a Verdict,
 }
 
-/// Frequencies and damping ratios of all modes over wind speed: those of `shown`, by name of the branch, in colour, the others
-/// grey; the onset is marked.
+impl BridgeCurves<'_> {
+    /// The modes with their inks and what the legend says of them; the line of the mode that flutters is the widest.
+    fn drawn(&self) -> (Vec<Drawn<'_>>, Vec<Entry>) {
+        let flutters = |name: &str| self.onset.is_some_and(|o| o.branch == name);
+        let place = |name: &str| self.shown.iter().take(COLOURED).position(|s| s == name);
+        let ink = |i: usize, name: &str| {
+            let width = if flutters(name) { 3.2 } else { 1.6 };
+            Ink::stroke(COLOURS[i], dash(i), width)
+        };
+        let branches = self.curves.branches.iter();
+        let wanted = |b: &&ModeBranch| {
+            !b.points.is_empty() && (place(&b.name).is_some() || self.others.contains(&b.name))
+        };
+        let mut all: Vec<_> = branches
+            .filter(wanted)
+            .map(|b| (place(&b.name), b))
+            .collect();
+        all.sort_by_key(|(place, _)| *place);
+        let entry = |(place, b): &(Option<usize>, &ModeBranch)| {
+            let flutters = if flutters(&b.name) { " (flutters)" } else { "" };
+            let words = format!("{}{flutters}", b.name);
+            Some(Entry::new(words, ink((*place)?, &b.name)))
+        };
+        let mut legend: Vec<Entry> = all.iter().filter_map(entry).collect();
+        if all.iter().any(|(place, _)| place.is_none()) {
+            let others = Ink::stroke(PALE_GREY, None, 1.0);
+            legend.push(Entry::new("other modes that take part", others));
+        }
+        let all = all.into_iter().map(|(place, branch)| Drawn {
+            branch,
+            ink: place.map_or(Ink::stroke(PALE_GREY, None, 1.0), |i| ink(i, &branch.name)),
+        });
+        (all.collect(), legend)
+    }
+}
+
+/// Speeds around the onset in the lowest panel, over the onset.
+const CLOSE: (f64, f64) = (0.8, 1.15);
+
+/// Frequencies and damping ratios of the modes over wind speed, and the damping around the onset; onset and required speed are
+/// marked.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub(crate) fn bridge_curves_figure(
-    curves: &FlutterCurves,
-    shown: &[String],
-    onset: Option<&CriticalPoint>,
-    title: &str,
-) -> Result<Figure> {
+pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result<Figure> {
     let speed = || Axis::new("Wind speed V (m/s)").tight();
     let mut frequency = Panel::new(speed(), Axis::new("Frequency f (Hz)").zero_based());
     let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
-    damping.level = Some(0.0);
     damping.y.within = Some((-5.0, 15.0));
-    let (modes, legend) = drawn(curves, shown);
+    let (modes, legend) = of.drawn();
+    let mut close = None;
+    if let Some(onset) = of.onset {
+        let at = onset.at.speed_m_s;
+        let window = [CLOSE.0 * at, CLOSE.1 * at];
+        let mut panel = Panel::new(speed(), Axis::new("ζ (%) at the onset"));
+        panel.x.range = Some((window[0], window[1]));
+        panel.y.range = Some(of_crossing(&modes, &onset.branch, window));
+        close = Some(panel);
+    }
     for mode in modes {
         let name = &mode.branch.name;
         frequency.add(name, mode.line(|p| (p.speed_m_s, p.frequency_hz)), mode.ink);
-        let percent = mode.line(|p| (p.speed_m_s, 100.0 * p.damping_ratio));
-        damping.add(name, percent, mode.ink);
+        for panel in std::iter::once(&mut damping).chain(&mut close) {
+            let percent = mode.line(|p| (p.speed_m_s, 100.0 * p.damping_ratio));
+            panel.add(name, percent, mode.ink);
+        }
     }
-    let mut stated = vec![other_modes()];
-    if let Some(at) = onset {
-        let ink = Ink::dots(GREY, Shape::Circle);
-        frequency.add("onset", vec![(at.speed_m_s, at.frequency_hz)], ink);
-        damping.add("onset", vec![(at.speed_m_s, 0.0)], ink);
-        let words = format!("onset {:.3} m/s, {:.4} Hz", at.speed_m_s, at.frequency_hz);
+    let mut stated = Vec::new();
+    let highest = frequency.series.iter().flat_map(|s| &s.points);
+    let highest = highest.map(|p| p.1).fold(0.0, f64::max);
+    if let (Some(at), Some(outcome)) = (of.verdict.against, &of.verdict.outcome) {
+        let at = at.speed_m_s;
+        let ink = Ink::stroke(outcome_colour(outcome), None, 1.6);
+        frequency.add("required", vec![(at, 0.0), (at, highest)], ink);
+        for panel in std::iter::once(&mut damping).chain(&mut close) {
+            panel.add("required", vec![(at, -5.0), (at, 15.0)], ink);
+        }
+        let words = format!("required {at} m/s: {}", outcome.words());
         stated.push(Entry::new(words, ink));
+    }
+    if let Some(CriticalPoint {
+        speed_m_s,
+        frequency_hz,
+        ..
+    }) = of.onset.map(|o| &o.at)
+    {
+        let ink = Ink::dots(GREY, Shape::Circle);
+        frequency.add("onset", vec![(*speed_m_s, *frequency_hz)], ink);
+        for panel in std::iter::once(&mut damping).chain(&mut close) {
+            panel.add("onset", vec![(*speed_m_s, 0.0)], ink);
+        }
+        let words = format!("onset {speed_m_s:.3} m/s, {frequency_hz:.4} Hz");
+        stated.push(Entry::new(words, ink));
+    }
+    let mut panels = vec![frequency, damping];
+    panels.extend(close);
+    for panel in panels.iter_mut().skip(1) {
+        panel.level = Some(0.0);
     }
     Drawing {
         name: "V-f and V-ζ diagram of the bridge",
         title: Some(title.to_owned()),
-        panels: vec![frequency, damping],
+        panels,
         columns: 1,
-        axes: (640.0, 250.0),
+        axes: (640.0, 220.0),
         legend: vec![legend, stated],
     }
     .draw()
 }
 
-fn other_modes() -> Entry {
-    Entry::new("other modes", Ink::line(PALE_GREY, None))
+/// Damping ratios, per cent, of the mode that flutters in a window of speeds, with the zero line.
+fn of_crossing(modes: &[Drawn<'_>], flutters: &str, window: [f64; 2]) -> (f64, f64) {
+    let own = modes.iter().filter(|m| m.branch.name == flutters);
+    let points = own.flat_map(|m| &m.branch.points);
+    let inside = points.filter(|p| (window[0]..=window[1]).contains(&p.speed_m_s));
+    let (low, high) = inside
+        .map(|p| 100.0 * p.damping_ratio)
+        .fold((-0.1, 0.1), |(low, high), z| (z.min(low), z.max(high)));
+    (low - 0.1 * (high - low), high + 0.1 * (high - low))
 }
 
-/// The eigenvalues of all modes as the wind rises, coloured as the curves over wind speed are: growth rate (1/s) against frequency
+/// The eigenvalues of the modes as the wind rises, coloured as the curves over wind speed are: growth rate (1/s) against frequency
 /// (Hz). Right of the zero line motions grow.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub(crate) fn bridge_roots_figure(
-    curves: &FlutterCurves,
-    shown: &[String],
-    title: &str,
-) -> Result<Figure> {
+pub(crate) fn bridge_roots_figure(of: &BridgeCurves<'_>, title: &str) -> Result<Figure> {
     let mut roots = RootLocus::new();
-    let (modes, legend) = drawn(curves, shown);
+    let (modes, legend) = of.drawn();
     for mode in modes {
         roots.add(mode.branch, mode.ink);
     }
-    roots.draw(title, vec![legend, vec![other_modes()]])
+    roots.draw(title, vec![legend])
 }
 
 /// The motion at flutter along the girder: real and imaginary part, a quarter of a period apart.
@@ -175,10 +241,10 @@ pub(crate) fn flutter_motion_figure(
 ) -> Result<Figure> {
     let scale = [1.0, 1.0, half_width_m];
     let panels = (0..2).map(|part| {
-        let label = ["now", "a quarter of a period later"][part];
+        let label = ["t = 0", "t = T/4"][part];
         let mut panel = Panel::new(
             Axis::new(if part == 1 {
-                "Along the girder (m)"
+                "Along the girder x (m)"
             } else {
                 ""
             })

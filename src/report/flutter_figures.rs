@@ -10,7 +10,7 @@ use super::style::{
     GREY, Ink, Marker, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale,
 };
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod, mode_in_words};
+use crate::flutter::{FlutterCurves, ModeBranch, ModePoint, Onset, OnsetMethod};
 use crate::verdict::{Outcome, Verdict};
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
@@ -96,7 +96,7 @@ impl VfVg {
             .push(Entry::new(&model.model, Ink::line(colour, dash(i))));
         for branch in &model.branches {
             let width = branch_width(index_of(&self.branches, &branch.name));
-            let name = format!("{}, {}", model.model, mode_in_words(&branch.name));
+            let name = format!("{}, {}", model.model, ModeBranch::in_words(&branch.name));
             for (outside, run) in runs(&branch.points) {
                 self.untested |= outside;
                 let shade = if outside { pale(colour) } else { colour };
@@ -191,7 +191,7 @@ impl VfVg {
         let mut add = |text: &str, ink| self.kinds.push(Entry::new(text, ink));
         for (i, name) in self.branches.iter().enumerate() {
             let ink = Ink::stroke(GREY, None, branch_width(i));
-            add(&mode_in_words(name), ink);
+            add(&ModeBranch::in_words(name), ink);
         }
         if onsets.iter().any(|o| !o.spurious_speeds_m_s.is_empty()) {
             let ink = Ink::dots(GREY, Shape::Cross);
@@ -323,7 +323,7 @@ fn statement(onset: &Onset) -> String {
         significant(onset.at.speed_m_s),
         significant(onset.at.frequency_hz),
         significant(onset.at.reduced_velocity.v_star()),
-        mode_in_words(&onset.branch),
+        ModeBranch::in_words(&onset.branch),
         onset.at.method.name(),
     )
 }

@@ -60,7 +60,7 @@ pub(super) fn with_contents(page: &str) -> String {
         let _ = write!(whole, "<h2 id=\"part-{i}\">{part}");
     }
     let list = format!("<nav><ol>{list}</ol></nav>");
-    whole.replacen(CONTENTS, &list, 1)
+    whole.replace(CONTENTS, &list)
 }
 
 #[cfg(test)]

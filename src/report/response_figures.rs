@@ -25,6 +25,22 @@ pub struct TimePanel {
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
 pub fn time_history_figure(title: &str, panels: &[TimePanel], t_label: &str) -> Result<Figure> {
+    scaled_history_figure(title, panels, t_label, usize::MAX)
+}
+
+/// Room above the histories that give the scale.
+const ROOM: f64 = 1.4;
+
+/// The same with ordinates that show the first `scale` histories of each panel whole; those that grow leave it.
+///
+/// # Errors
+/// As [`time_history_figure`].
+pub(crate) fn scaled_history_figure(
+    title: &str,
+    panels: &[TimePanel],
+    t_label: &str,
+    scale: usize,
+) -> Result<Figure> {
     const PLACE: &str = "time history";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     // few distinct lines may lie exactly on each other: later ones are dashed, so that the first shows through
@@ -34,6 +50,11 @@ pub fn time_history_figure(title: &str, panels: &[TimePanel], t_label: &str) -> 
         let time = Axis::new(if i + 1 == panels.len() { t_label } else { "" });
         let mut drawing = Panel::new(time.tight(), Axis::new(&panel.y_label));
         drawing.level = Some(0.0);
+        if scale < panel.series.len() {
+            let first = panel.series.iter().take(scale).flat_map(|s| &s.points);
+            let greatest = first.map(|p| ROOM * p.1.abs()).fold(0.0, f64::max);
+            drawing.y.within = Some((-greatest, greatest));
+        }
         for series in &panel.series {
             let ink = ink(index_of(&labels, &series.label))?;
             drawing.add(&series.label, series.points.clone(), ink);

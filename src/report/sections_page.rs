@@ -1,7 +1,19 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
+use super::page_head::{at_edges, stated, with_contents};
 use crate::error::{Error, Result};
+use crate::files::report_block::ReportBlock;
 use askama::Template;
+
+/// The sections of a page of this `key`, as another page takes them up; `None` for other pages.
+pub(crate) fn sections_of(page: &str, key: &str) -> Option<String> {
+    let (_, own) = page.split_once(&format!("<!-- sections of {key} -->"))?;
+    let (own, _) = own.split_once("<!-- end of sections -->")?;
+    let mut parts = own.split("<h2 id=\"");
+    let first = parts.next().unwrap_or_default().to_owned();
+    let rest = parts.filter_map(|part| Some(part.split_once("\">")?.1));
+    Some(rest.fold(first, |whole, part| whole + "<h2>" + part))
+}
 
 /// A page that loads nothing from elsewhere.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -10,6 +22,9 @@ pub(crate) struct SectionsPage {
     pub(crate) subtitle: String,
     /// The answer, in one line.
     pub(crate) answer: String,
+    pub(crate) of: ReportBlock,
+    /// Fingerprint of what the page is of, where another page takes it up.
+    pub(crate) key: String,
     pub(crate) sections: Vec<PageSection>,
 }
 
@@ -29,12 +44,20 @@ pub(crate) struct PageSection {
 struct SectionsTemplate<'a> {
     page: &'a SectionsPage,
     generator: &'static str,
+    edges: String,
+    stated: Vec<(&'static str, &'a str)>,
 }
 
 /// The page as HTML text; the same content always gives the same bytes.
 pub(crate) fn sections_page(page: &SectionsPage) -> Result<String> {
     let generator = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));
-    SectionsTemplate { page, generator }
-        .render()
-        .map_err(|e| Error::Numerical(format!("report: {e}")))
+    let template = SectionsTemplate {
+        edges: at_edges(&page.of, &page.title, generator),
+        stated: stated(&page.of),
+        page,
+        generator,
+    };
+    let text = template.render();
+    let text = text.map_err(|e| Error::Numerical(format!("report: {e}")))?;
+    Ok(with_contents(&text))
 }

@@ -1,10 +1,8 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
-use super::figure::Figure;
 use super::page_head::{at_edges, stated, with_contents};
 use super::sections_page::PageSection;
 use super::style::{COLOURS, branch_width, dash, outcome_colour};
-use super::summary_figure::summary_figure;
 use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
 use crate::verdict::{Outcome, Severity, Verdict};
@@ -123,9 +121,13 @@ pub(crate) struct StudyPage {
     pub(crate) comparisons: Vec<String>,
     /// Further tables of the answer.
     pub(crate) sections: Vec<PageSection>,
+    /// Frequency and damping of the answer, as SVG; empty without curves.
+    pub(crate) summary: String,
     /// The figure of derivatives in the summary.
     pub(crate) derivatives: Option<PageFigure>,
     pub(crate) figures: Vec<PageFigure>,
+    /// Sections of other pages, as HTML.
+    pub(crate) taken_up: String,
     /// Tables behind the evidence.
     pub(crate) appendix: Vec<PageSection>,
     pub(crate) fits: Vec<PageFit>,
@@ -153,7 +155,6 @@ pub(crate) struct StudyPage {
 struct Page<'a> {
     edges: String,
     stated: Vec<(&'static str, &'a str)>,
-    curves: Option<Figure>,
     uplot_css: &'static str,
     uplot_js: &'static str,
     uplot_licence: &'static str,
@@ -193,7 +194,6 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
     let page = Page {
         edges: at_edges(&of.of, &of.title, &of.generator),
         stated: stated(&of.of),
-        curves: summary_figure(of)?,
         uplot_css: UPLOT_CSS,
         uplot_js: UPLOT_JS,
         uplot_licence: UPLOT_LICENCE,

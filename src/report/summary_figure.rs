@@ -8,7 +8,7 @@ use super::panel::Panel;
 use super::study_page::{PageCurve, StudyPage};
 use super::style::{BLACK, COLOURS, Ink, PALE_GREY, dash};
 use crate::error::Result;
-use crate::flutter::mode_in_words;
+use crate::flutter::ModeBranch;
 
 /// Damping ratios that are shown, per cent.
 const WINDOW: (f64, f64) = (-2.0, 5.0);
@@ -17,7 +17,7 @@ const WINDOW: (f64, f64) = (-2.0, 5.0);
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub(super) fn summary_figure(of: &StudyPage) -> Result<Option<Figure>> {
+pub(crate) fn summary_figure(of: &StudyPage) -> Result<Option<Figure>> {
     let speed = || Axis::new("Wind speed V (m/s)").tight();
     let mut frequency = Panel::new(speed(), Axis::new("Frequency f (Hz)").zero_based());
     let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
@@ -51,7 +51,7 @@ pub(super) fn summary_figure(of: &StudyPage) -> Result<Option<Figure>> {
 }
 
 fn mode_of(curve: &PageCurve) -> String {
-    mode_in_words(curve.label.rsplit(", ").next().unwrap_or_default())
+    ModeBranch::in_words(curve.label.rsplit(", ").next().unwrap_or_default())
 }
 
 /// Draws what stands at a speed into both panels.

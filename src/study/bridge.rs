@@ -2,6 +2,7 @@
 
 mod answers;
 mod buffeting;
+mod envelope;
 mod evidence;
 mod export;
 mod forces;
@@ -16,6 +17,7 @@ pub use answers::{
     BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
 };
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
+pub use envelope::{SectionForceResponse, SpanEnvelope};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForceModels;
 pub(crate) use forces::block_table;

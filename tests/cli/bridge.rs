@@ -24,7 +24,14 @@ fn flutter_prints_its_card_and_writes_its_figures() {
     let folder = folder();
     let text = succeeds(
         folder.path(),
-        &["bridge", "flutter", "bridge.toml", "--samples", "20"],
+        &[
+            "bridge",
+            "flutter",
+            "bridge.toml",
+            "--samples",
+            "20",
+            "--verbose",
+        ],
     );
     for part in [
         "Onset card: tables between their points",
@@ -113,7 +120,7 @@ fn the_report_of_a_bridge_stands_alone() {
         assert!(page.contains(word), "`{word}` is not in the report");
     }
     let answer = page.find("class=\"answer\"").unwrap();
-    assert!(answer < page.find("What was asked").unwrap());
+    assert!(answer < page.find("What was asked</h2>").unwrap());
     fs::remove_file(at.join("r/report.html")).unwrap();
     // a unit of other results says nothing of these
     fs::write(at.join("r/bridge.fmu"), "another").unwrap();

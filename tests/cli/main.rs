@@ -22,6 +22,7 @@ mod implausible;
 mod names;
 mod newcomer;
 mod onsets;
+mod printed;
 mod process;
 mod replay;
 mod report;

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 #[test]
 fn the_demo_does_the_whole_chain() {
     let folder = TempDir::new().unwrap();
-    let text = succeeds(folder.path(), &["demo"]);
+    let text = succeeds(folder.path(), &["demo", "--verbose"]);
     for word in [
         "LN21-5200",
         "residual",
@@ -107,7 +107,7 @@ fn the_demo_does_the_whole_chain() {
     let archive = fs::read(&fmu).unwrap();
 
     // a second run says what it replaces, with the same archive; an edited study is left alone
-    assert!(succeeds(folder.path(), &["demo"]).contains("replaced"));
+    assert!(succeeds(folder.path(), &["demo", "--verbose"]).contains("replaced"));
     assert!(archive == fs::read(&fmu).unwrap());
     let study = out.join("study.toml");
     let edited = fs::read_to_string(&study).unwrap() + "\n# mine\n";

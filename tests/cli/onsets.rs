@@ -60,7 +60,7 @@ fn the_thesis_formulation_is_told_its_bias() {
         .replace("source = \"LN21-5200\"", "source = \"flat plate\"")
         .replace("speed_groups = [1]", "speed_groups = [2]");
     fs::write(at.join("study.toml"), study).unwrap();
-    let text = flowing(&succeeds(at, &["study", "study.toml"]));
+    let text = flowing(&succeeds(at, &["study", "study.toml", "--verbose"]));
     let said = "thesis: 4.5 % below flat plate (exact)";
     assert!(
         text.contains(said)
@@ -95,7 +95,7 @@ fn spurious_onsets_are_named_and_not_taken() {
         );
     fs::write(at.join("study.toml"), study).unwrap();
     // the model that grows where it should not is not exported
-    let (code, text, _) = aerodeck(at, &["study", "study.toml"]);
+    let (code, text, _) = aerodeck(at, &["study", "study.toml", "--verbose"]);
     assert_eq!(code, 1, "{text}");
     assert!(text.contains("--allow-unstable"), "{text}");
     let summary: Value =

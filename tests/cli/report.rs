@@ -49,7 +49,7 @@ fn the_report_of_the_demo_stands_alone() {
     let known = interval["degrees_of_freedom"].as_f64().unwrap();
     assert!((said - known).abs() <= 0.05, "{said} {known}");
     let answer = page.find("class=\"answer\"").unwrap();
-    assert!(answer < page.find("What was asked").unwrap());
+    assert!(answer < page.find("What was asked</h2>").unwrap());
     fs::remove_file(at.join("d/report.html")).unwrap();
     succeeds(at, &["report", "d"]);
     assert!(

@@ -165,13 +165,13 @@ fn vf_vg_of_the_iabse_deck() {
             "Damping ratio ζ (%)",
             names[0],
             names[1],
-            "vertical branch",
-            "torsion branch",
+            "vertical mode",
+            "torsion mode",
             "required 80.00 m/s: NOT MET",
             "onset outside the tested range",
             "probably spurious crossing",
             "77.48 m/s",
-            "Onset flat plate (Theodorsen): V = 77.48 m/s, f = 0.1940 Hz, V/(fB) = 12.88, torsion branch (determinant)",
+            "Onset flat plate (Theodorsen): V = 77.48 m/s, f = 0.1940 Hz, V/(fB) = 12.88, torsion mode (determinant)",
         ],
     );
 }
@@ -186,7 +186,7 @@ fn vf_vg_of_table_4_1() {
         &draw(),
         &draw(),
         "vf_vg_table_4_1",
-        &["flat plate, Jones", "vertical branch", "torsion branch"],
+        &["flat plate, Jones", "vertical mode", "torsion mode"],
     );
 }
 
@@ -204,13 +204,13 @@ fn what_cannot_be_drawn_is_refused() {
         .to_string();
     assert_eq!(
         message,
-        "V-f and V-g diagram, Jones, torsion branch: expected finite numbers, found (0.5, NaN) at point 3"
+        "V-f and V-g diagram, Jones, torsion mode: expected finite numbers, found (0.5, NaN) at point 3"
     );
     curves[0].branches[1].points.clear();
     let message = vf_vg_figure(&curves, &[], "", None)
         .unwrap_err()
         .to_string();
-    assert!(message.ends_with("torsion branch: expected points, found none"));
+    assert!(message.ends_with("torsion mode: expected points, found none"));
     let figure = vf_vg_figure(
         &[jones_curves("Jones", &SectionModel::table_4_1(), 30.0)],
         &[],

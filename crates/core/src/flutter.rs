@@ -21,6 +21,7 @@ mod instability;
 mod judged;
 mod missed;
 mod modal_characteristic;
+mod mode_words;
 mod onset;
 mod pk;
 mod pk_following;
@@ -41,7 +42,7 @@ pub use bridge_motion::{
     static_deflection,
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
-pub use curves::{FlutterCurves, ModeBranch, ModePoint, mode_in_words, trace_modes};
+pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::table_tested_from;
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::{AssumedAtRest, static_part};
@@ -51,6 +52,7 @@ pub use growth_band::GrowthBand;
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
 pub use judged::{JudgedSpeeds, damps_fast_motion};
+pub(crate) use mode_words::the_mode;
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};

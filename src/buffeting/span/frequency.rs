@@ -2,7 +2,7 @@
 
 use super::{SpanProblem, unstable};
 use crate::aerodynamics::Transfer;
-use crate::bridge::ModalForces;
+use crate::bridge::{Bridge, ModalForces};
 use crate::buffeting::quadrature::integrate;
 use crate::buffeting::spectrum::GustComponent;
 use crate::buffeting::stability::{Turning, turning};
@@ -43,15 +43,17 @@ pub struct SpanResponse {
 impl SpanResponse {
     /// Expected greatest departure from the mean in `duration_s`, over the root mean square (Davenport 1964).
     pub(crate) fn peak_factors(&self, duration_s: f64) -> Vec<[f64; 3]> {
-        let factor = |hertz: f64| {
-            let root = (2.0 * (hertz * duration_s).max(1.0).ln()).sqrt();
-            root + 0.577_215_664_901_532_9 / root
-        };
-        self.crossing_frequency_hz
-            .iter()
-            .map(|f| f.map(factor))
+        let each = self.crossing_frequency_hz.iter();
+        each.map(|f| f.map(|hertz| peak_factor(hertz, duration_s)))
             .collect()
     }
+}
+
+/// Expected greatest departure from the mean in `duration_s` of what crosses it upwards `hertz` times a second, over the root mean
+/// square (Davenport 1964).
+pub(crate) fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
+    let root = (2.0 * (hertz * duration_s).max(1.0).ln()).sqrt();
+    root + 0.577_215_664_901_532_9 / root
 }
 
 /// One-sided spectra of the displacements of named nodes.
@@ -182,21 +184,50 @@ impl<'a> SpanFrequency<'a> {
     fn spectra_at(&self, frequency_hz: f64, shapes: &DMatrix<f64>) -> Result<Vec<f64>> {
         // the limit at zero: what is static has no phase
         let frequency = frequency_hz.max(1e-9);
-        let (problem, speed) = (self.problem, self.speed_m_s);
-        let z = impedance(&self.structure, &self.forces, speed, TAU * frequency)?;
-        // rows of Φ H: (Zᵀ)⁻¹ Φᵀ
         let sides = shapes.transpose().map(Complex::from);
-        let rows = solve_complex(&z.transpose(), &sides).ok_or_else(|| {
+        let parts = self.parts_of_rows(frequency, &sides)?;
+        let mut total = vec![0.0; shapes.nrows()];
+        for gust in self.gusts_at(frequency) {
+            // motion of each row by a gust of the size of the turbulence at each node
+            let motion = gust.forces * &parts;
+            for (row, sum) in total.iter_mut().enumerate() {
+                let (re, im) = (motion.column(2 * row), motion.column(2 * row + 1));
+                let unit = re.iter().zip(im.iter());
+                let each = unit.map(|(re, im)| Complex::new(*re, *im));
+                let sized = each.zip(&gust.sizes).map(|(z, size)| z * size);
+                *sum += coherent_power(sized, &gust.gaps);
+            }
+        }
+        Ok(total)
+    }
+
+    /// Rows of Φ H, (Zᵀ)⁻¹ Φᵀ, at a frequency, real and imaginary parts beside each other, since the forces of long gusts are real.
+    pub(super) fn parts_of_rows(
+        &self,
+        frequency: f64,
+        sides: &DMatrix<Complex<f64>>,
+    ) -> Result<DMatrix<f64>> {
+        let speed = self.speed_m_s;
+        let z = impedance(&self.structure, &self.forces, speed, TAU * frequency)?;
+        let rows = solve_complex(&z.transpose(), sides).ok_or_else(|| {
             Error::Numerical(format!(
                 "buffeting: the impedance is singular at {frequency} Hz and {speed} m/s"
             ))
         })?;
-        // real and imaginary parts beside each other, since the forces of long gusts are real
-        let parts = DMatrix::from_fn(rows.nrows(), 2 * rows.ncols(), |m, column| {
-            let z = rows[(m, column / 2)];
-            if column % 2 == 0 { z.re } else { z.im }
-        });
-        let mut total = vec![0.0; shapes.nrows()];
+        Ok(DMatrix::from_fn(
+            rows.nrows(),
+            2 * rows.ncols(),
+            |m, column| {
+                let z = rows[(m, column / 2)];
+                if column % 2 == 0 { z.re } else { z.im }
+            },
+        ))
+    }
+
+    /// The components of the turbulence at a frequency.
+    pub(super) fn gusts_at(&self, frequency: f64) -> Vec<GustAlongSpan<'_>> {
+        let (problem, speed) = (self.problem, self.speed_m_s);
+        let mut gusts = Vec::with_capacity(self.gust_forces.len());
         for (component, forces) in &self.gust_forces {
             let Some(gust) = problem.turbulence.component(*component) else {
                 continue;
@@ -210,17 +241,34 @@ impl<'a> SpanFrequency<'a> {
                 let size = problem.admittance(gust, group, frequency, speed) * density.sqrt();
                 group.nodes.iter().for_each(|n| sizes[*n] = size);
             }
-            // motion of each row by a gust of the size of the turbulence at each node
-            let motion = forces * &parts;
-            for (row, sum) in total.iter_mut().enumerate() {
-                let (re, im) = (motion.column(2 * row), motion.column(2 * row + 1));
-                let unit = re.iter().zip(im.iter());
-                let each = unit.map(|(re, im)| Complex::new(*re, *im));
-                *sum += coherent_power(each.zip(&sizes).map(|(z, size)| z * size), &gaps);
-            }
+            gusts.push(GustAlongSpan {
+                forces,
+                sizes,
+                gaps,
+            });
         }
-        Ok(total)
+        gusts
     }
+
+    /// Frequencies between which everything is smooth, Hz.
+    pub(super) fn resolved_hz(&self) -> Vec<f64> {
+        resolved(&self.resonances_hz)
+    }
+
+    /// The bridge.
+    pub(crate) fn bridge(&self) -> &Bridge {
+        self.problem.bridge
+    }
+}
+
+/// A component of the turbulence at one frequency.
+pub(super) struct GustAlongSpan<'a> {
+    /// Forces of long gusts, nodes×modes.
+    pub(super) forces: &'a DMatrix<f64>,
+    /// Square root of the density at each node, with the admittance.
+    pub(super) sizes: Vec<Complex<f64>>,
+    /// Coherence of neighbouring nodes.
+    pub(super) gaps: Vec<f64>,
 }
 
 /// Where motions grow, in words, and whether tables know of it.

@@ -1,17 +1,16 @@
 //! The onset card of a bridge, in words.
 
+use super::files::NAMED_SHARE;
 use crate::cli::account as section_account;
 use crate::cli::headline;
 use crate::cli::wrapping::beside;
 use crate::error::counted;
-use crate::flutter::{FlutterSearch, OnsetInterval, mode_in_words};
+use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
-/// Modes with less of the kinetic energy are not named on the card.
-const NAMED_SHARE: f64 = 1e-3;
-/// The same where nobody asked for more.
+/// Modes with less of the kinetic energy are not named where nobody asked for more.
 const NAMED_IN_SHORT: f64 = 0.05;
 /// What a reader may ask for beside the answer.
 pub(super) const MORE: &str = "onset cards, fewer modes";
@@ -128,7 +127,22 @@ pub(super) fn beside_the_onset(results: &BridgeFlutter) -> Vec<String> {
         format!("Divergence of the tables: {speed}")
     });
     let all = std::iter::once(divergence).chain(of_tables);
-    all.chain(rotation).collect()
+    all.chain(rotation)
+        .chain(table_against_model(results))
+        .collect()
+}
+
+/// How far the answer by the models is from that by the tables.
+fn table_against_model(results: &BridgeFlutter) -> Option<String> {
+    let [table, model] = &results.answers[..] else {
+        return None;
+    };
+    let speed = |a: &BridgeAnswer| a.search.critical_speed_m_s();
+    let (table, model) = (speed(table)?, speed(model)?);
+    let change = 100.0 * (model / table - 1.0);
+    Some(format!(
+        "Table against model: {table:.3} and {model:.3} m/s ({change:+.2} %)"
+    ))
 }
 
 fn interval(of: &OnsetInterval) -> String {
@@ -168,7 +182,7 @@ fn one(answer: &BridgeAnswer) -> String {
                 o.at.method.name(),
                 o.at.reduced_velocity.v_star(),
                 o.at.reduced_frequency.full_width(),
-                mode_in_words(&o.branch)
+                ModeBranch::in_words(&o.branch)
             );
             let _ = writeln!(text, "  {}", interval(&o.interval));
             if let Some(slope) = o.damping_slope_s_m {

@@ -4,10 +4,13 @@ use super::super::answer::Answer;
 use super::super::headline;
 use super::super::progress::Progress;
 use super::args::BridgeArgs;
+use super::files::BUFFETING_PAGE;
+use super::{buffeting_page, page};
 use crate::buffeting::TurbulenceField;
-use crate::error::{Result, counted};
+use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
+use crate::report::sections_page;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
@@ -21,9 +24,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct BridgeBuffetingArgs {
     #[command(flatten)]
     bridge: BridgeArgs,
-    /// Mean wind speed of the bridge, m/s.
-    #[arg(long)]
-    speed: f64,
+    /// Mean wind speeds of the bridge, m/s (30,40,50); left out, those of [buffeting].
+    #[arg(long, value_delimiter = ',')]
+    speed: Vec<f64>,
     /// Write the turbulence of the first record as turbulence.csv: time, then u and w of every node.
     #[arg(long)]
     field: bool,
@@ -41,37 +44,75 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     if let Some(path) = &args.turbulence {
         return by_file(args, &study, &block, path);
     }
+    let speeds = args.speeds(&block)?;
     let mut out = args.bridge.out()?;
     let stage = progress.steps("records of turbulence");
-    let results = study.buffeting(&block, args.speed, &|done, all| {
-        stage.at(done as u64, all as u64)
-    });
-    drop(stage);
-    let results = results?;
-    out.write_json("bridge_buffeting.json", &results)?;
-    out.write("bridge_spectra.csv", spectra_csv(&results))?;
-    if args.field {
-        out.write(
-            "turbulence.csv",
-            field_csv(&study.first_field(&block, args.speed)?),
-        )?;
+    let mut all = Vec::with_capacity(speeds.len());
+    for (i, speed) in speeds.iter().enumerate() {
+        all.push(study.buffeting(&block, *speed, &|done, of| {
+            stage.at((i * of + done) as u64, (speeds.len() * of) as u64);
+        })?);
     }
-    let text = format!(
-        "{} at {} m/s\n{}\n{}",
-        study.file.name,
-        args.speed,
-        forces(&results),
-        table(&results)
-    );
+    drop(stage);
+    match &all[..] {
+        [one] => out.write_json("bridge_buffeting.json", one)?,
+        all => out.write_json("bridge_buffeting.json", &all)?,
+    }
+    let mut text = String::new();
+    for (results, speed) in all.iter().zip(&speeds) {
+        let name = match all.len() {
+            1 => "bridge_spectra.csv".to_owned(),
+            _ => format!("bridge_spectra_{speed}.csv"),
+        };
+        out.write(name, spectra_csv(results))?;
+        let _ = writeln!(
+            text,
+            "{} at {speed} m/s\n{}\n{}",
+            study.file.name,
+            forces(results),
+            table(results)
+        );
+    }
+    if args.field {
+        let field = study.first_field(&block, speeds[0])?;
+        out.write("turbulence.csv", field_csv(&field))?;
+    }
+    let file = args.bridge.text()?;
+    let page = buffeting_page::page(&study, &file, &all)?;
+    out.write(BUFFETING_PAGE, sections_page(&page)?)?;
     let verdict = required(&study)?;
+    let results = match &all[..] {
+        [one] => serde_json::json!(one),
+        all => serde_json::json!(all),
+    };
     let json = serde_json::json!({
         "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
     });
+    let folder = out.target("");
     let answer = out.answer(
         headline::stated(&study.file.name, verdict.as_ref()) + &text,
         json,
     )?;
+    page::renew(&folder, &file)?;
     Ok(answer.with_outcome_of(verdict.as_ref()))
+}
+
+impl BridgeBuffetingArgs {
+    /// The speeds of the command, or else those of the file.
+    fn speeds(&self, block: &BuffetingBlock) -> Result<Vec<f64>> {
+        let stated = match self.speed.is_empty() {
+            true => &block.speeds_m_s,
+            false => &self.speed,
+        };
+        match stated.is_empty() {
+            true => Err(Error::input(
+                "--speed",
+                "a wind speed, there or as `speeds_m_s` in [buffeting]",
+                "none",
+            )),
+            false => Ok(stated.clone()),
+        }
+    }
 }
 
 /// The verdict on what the file requires: judged where it is stated, also beside a response to turbulence.
@@ -87,13 +128,14 @@ fn by_file(
     block: &BuffetingBlock,
     path: &Path,
 ) -> Result<Answer> {
+    let speed = args.speeds(block)?[0];
     let found = study
-        .buffeting_by(block, args.speed, &read_field(path)?)
+        .buffeting_by(block, speed, &read_field(path)?)
         .map_err(|e| e.in_file(path))?;
     let mut text = format!(
         "{} at {} m/s in the turbulence of {}\n{:<8} {:<14} {:>12} {:>8}\n",
         study.file.name,
-        args.speed,
+        speed,
         path.display(),
         "node",
         "motion",
@@ -121,7 +163,7 @@ const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
 
 fn table(results: &BridgeBuffeting) -> String {
     let mut text = format!(
-        "{:<8} {:<14} {:>12} {:>11} {:>8} {:>12} {:>11} {:>8}\n",
+        "{:<8} {:<14} {:>12} {:>11} {:>8} {:>12} {:>11} {:>8} {:>12}\n",
         "node",
         "motion",
         "RMS, freq.",
@@ -129,9 +171,11 @@ fn table(results: &BridgeBuffeting) -> String {
         "expected",
         "RMS, time",
         "std. error",
-        "peak f."
+        "peak f.",
+        "accel., /s²"
     );
     for (n, name) in results.nodes.iter().enumerate() {
+        let at = results.frequency.nodes[n];
         for (i, motion) in MOTIONS.into_iter().enumerate() {
             let _ = write!(
                 text,
@@ -141,13 +185,15 @@ fn table(results: &BridgeBuffeting) -> String {
                 results.expected_peak_factor[n][i]
             );
             let _ = match &results.time {
-                Some(time) => writeln!(
+                Some(time) => write!(
                     text,
                     " {:>12.5e} {:>11.2e} {:>8.3}",
                     time.rms[n][i], time.standard_error[n][i], time.peak_factor[n][i]
                 ),
-                None => writeln!(text, " {:>12} {:>11} {:>8}", "-", "-", "-"),
+                None => write!(text, " {:>12} {:>11} {:>8}", "-", "-", "-"),
             };
+            let acceleration = results.envelope.acceleration_rms[at][i];
+            let _ = writeln!(text, " {acceleration:>12.4e}");
         }
     }
     text

@@ -48,6 +48,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
         command: "aerodeck demo --bridge --out results".to_owned(),
         comparisons: Vec::new(),
         failed,
+        inputs: Vec::new(),
     };
     let summary = page::leave(&ran, &study, &results, &verdict, &mut out)?;
     let answer_json =

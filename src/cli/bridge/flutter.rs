@@ -9,14 +9,16 @@ use super::super::progress::Progress;
 use super::super::report::folder::{SUMMARY, is_of_a_study};
 use super::args::BridgeArgs;
 use super::files::{
-    CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE, shown_modes,
+    CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, RESPONSE_FIGURE, ROOTS_FIGURE,
+    shown_modes, taking_part,
 };
-use super::{account, page, summary};
+use super::{account, inputs, page, response, summary};
 use crate::error::Result;
 use crate::files::text::csv_cell;
 use crate::flutter::BridgeMotion;
 use crate::report::{
-    bridge_curves_figure, bridge_roots_figure, derivatives_figure, flutter_motion_figure,
+    BridgeCurves, bridge_curves_figure, bridge_roots_figure, derivatives_figure,
+    flutter_motion_figure, scaled_history_figure,
 };
 use crate::study::bridge::{
     BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
@@ -76,12 +78,17 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
         let _ = writeln!(text, "{line}");
         comparisons.push(line);
     }
+    let inputs = inputs::leave(&args.bridge.bridge, &study.file, &mut out)?;
     let ran = summary::BridgeRun {
+        inputs,
         text: args.bridge.text()?,
         command: args.command(scattered.is_some()),
         comparisons,
         failed,
     };
+    for failed in &ran.failed {
+        let _ = writeln!(text, "failed: {failed}");
+    }
     if is_of_a_study(&out.target(SUMMARY)) {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
@@ -164,32 +171,55 @@ pub(super) fn computed(
     drop(stage);
     let results = results?;
     let mut failed = results.failed.clone();
-    if let Err(e) = staged(study, &results, out) {
+    let verdict = Verdict::of(&study.evidence(&results, &failed));
+    if let Err(e) = staged(study, &results, &verdict, out) {
         failed.push(format!("figures: {e}"));
     }
     Ok((results, failed))
 }
 
 /// Stages figures and tables.
-fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> Result<()> {
+fn staged(
+    study: &BridgeStudy,
+    results: &BridgeFlutter,
+    verdict: &Verdict,
+    out: &mut OutputDir,
+) -> Result<()> {
     let answer = results.answers.last();
     let motion = answer.and_then(|a| a.motion.as_ref());
     let onset = answer.and_then(|a| a.search.onset());
     let shares = motion.map_or(&[][..], |m| &m.modes);
     let shown = shown_modes(shares, onset.map(|o| o.branch.as_str()));
-    let onset = onset.map(|o| &o.at);
+    let others = match motion {
+        Some(_) => taking_part(shares),
+        None => results
+            .curves
+            .branches
+            .iter()
+            .map(|b| b.name.clone())
+            .collect(),
+    };
+    let drawn = BridgeCurves {
+        curves: &results.curves,
+        shown: &shown,
+        others: &others,
+        onset,
+        verdict,
+    };
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
     if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
-        figures::write(FLUTTER_FIGURE, out, || {
-            bridge_curves_figure(&results.curves, &shown, onset, &title)
-        })?;
+        figures::write(FLUTTER_FIGURE, out, || bridge_curves_figure(&drawn, &title))?;
         let title = format!("{}: eigenvalues as the wind rises", study.file.name);
-        figures::write(ROOTS_FIGURE, out, || {
-            bridge_roots_figure(&results.curves, &shown, &title)
-        })?;
+        figures::write(ROOTS_FIGURE, out, || bridge_roots_figure(&drawn, &title))?;
         let curves = std::slice::from_ref(&results.curves);
         out.write(CURVES, curves_csv(&study.file.name, curves))?;
+    }
+    if let Some(panels) = response::panels(results) {
+        let title = format!("{}: the mode that flutters", study.file.name);
+        figures::write(RESPONSE_FIGURE, out, || {
+            scaled_history_figure(&title, &panels, "Time t (s)", 2)
+        })?;
     }
     for number in 0..study.sections.len() {
         write_derivatives(study, number, out)?;

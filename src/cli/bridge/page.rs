@@ -7,6 +7,7 @@ use super::summary::{BridgeRun, BridgeSummary};
 use crate::error::Result;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
 use crate::verdict::Verdict;
+use std::path::Path;
 
 /// Leaves both.
 pub(super) fn leave(
@@ -22,4 +23,17 @@ pub(super) fn leave(
     out.write_json(SUMMARY, &summary)?;
     report::leave(out)?;
     Ok(summary)
+}
+
+/// Writes the report of `folder` again where it is of the bridge file with this text: it takes up what was computed since.
+pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
+    let summary = std::fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
+    let summary = serde_json::from_str::<serde_json::Value>(&summary).unwrap_or_default();
+    if summary["bridge_file"] != text {
+        return Ok(());
+    }
+    let page = report::page_of(folder)?;
+    let mut out = OutputDir::new(folder)?;
+    out.write(REPORT, page)?;
+    out.commit().map(drop)
 }

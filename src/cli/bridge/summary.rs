@@ -22,6 +22,17 @@ pub(super) struct BridgeRun {
     pub(super) comparisons: Vec<String>,
     /// Parts that failed, in words.
     pub(super) failed: Vec<String>,
+    /// What was read.
+    pub(super) inputs: Vec<InputFile>,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InputFile {
+    /// Where it stands in the folder of results, or else where it was read.
+    pub(crate) name: String,
+    /// Its fingerprint.
+    pub(crate) sha1: String,
 }
 
 /// What `summary.json` holds.
@@ -54,6 +65,9 @@ pub(crate) struct BridgeSummary {
     pub(crate) modes: Vec<ModeFacts>,
     /// Files written.
     pub(crate) files: Vec<PathBuf>,
+    /// Files that were read, with copies in the folder as far as they lie below the bridge file.
+    #[serde(default)]
+    pub(crate) inputs: Vec<InputFile>,
     /// What was assumed or looks wrong, in words.
     pub(crate) warnings: Vec<String>,
     /// What is odd about modes, sections and tables.
@@ -110,6 +124,7 @@ impl BridgeSummary {
             sections: sections(study),
             modes: modes(study),
             files,
+            inputs: ran.inputs.clone(),
             warnings: study.warnings(),
             findings: study.findings.clone(),
             onsets: results.onsets().cloned().collect(),

@@ -5,19 +5,18 @@ use super::folder::{PagePlace, SUMMARY, digest, parsed};
 use super::parts::{card, first_derivatives, known, of_svg, round, row};
 use super::variables::variables_of;
 use crate::cli::bridge::files::{
-    BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
-    shown_modes,
+    BRIDGE_FMU, BUFFETING_PAGE, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE,
+    NAMED_SHARE, RESPONSE_FIGURE, ROOTS_FIGURE, shown_modes,
 };
 use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
 use crate::flutter::ModeShare;
-use crate::report::{PageCurve, PageFigure, PageSection, StudyPage, study_page};
+use crate::report::{
+    PageCurve, PageFigure, PageSection, StudyPage, sections_of, study_page, summary_figure,
+};
 use crate::study::bridge::LeftOut;
 use std::path::Path;
-
-/// Modes with less of the kinetic energy are not in the table of those that take part.
-const NAMED_SHARE: f64 = 1e-4;
 
 /// The page of the results in `folder`, whose summary is `text`.
 pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String> {
@@ -66,6 +65,9 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
         ..StudyPage::default()
     };
     page.derivatives = first_derivatives(&mut page.figures);
+    let turbulent = std::fs::read_to_string(folder.join(BUFFETING_PAGE)).unwrap_or_default();
+    let key = digest(facts.bridge_file.as_bytes());
+    page.taken_up = sections_of(&turbulent, &key).unwrap_or_default();
     page.sections.retain(|s| !s.rows.is_empty());
     if let Some(curves) = text_of(CURVES) {
         let (speeds, curves) = curves_of(&curves, "")?;
@@ -74,6 +76,7 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
             chosen(curves, &shown_modes(shares, own.map(|o| o.branch.as_str()))),
         );
     }
+    page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
     if read(BRIDGE_FMU).is_some() {
         page.fmu = BRIDGE_FMU.to_owned();
         page.variables = variables_of(&folder.join(BRIDGE_FMU))?;
@@ -82,6 +85,12 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
         "bridge file".to_owned(),
         digest(facts.bridge_file.as_bytes()),
     ));
+    page.hashes.extend(
+        facts
+            .inputs
+            .iter()
+            .map(|i| (i.name.clone(), i.sha1.clone())),
+    );
     let fmu = (place == PagePlace::Folder).then_some(BRIDGE_FMU);
     for name in fmu.into_iter().chain([CURVES]) {
         page.hashes
@@ -268,8 +277,11 @@ fn modes(facts: &BridgeSummary) -> PageSection {
 /// A mass in plain digits where it has few.
 fn mass(kg: f64) -> String {
     match kg {
-        _ if (1e-2..1e7).contains(&kg) => round((kg * 1e4).round() / 1e4).to_string(),
-        _ => format!("{kg:.4e}").replace('e', "·10^"),
+        _ if (1e-2..1e12).contains(&kg) => {
+            let unit = 10f64.powf(kg.log10().floor() - 4.0);
+            round((kg / unit).round() * unit).to_string()
+        }
+        _ => format!("{kg:.4e}"),
     }
 }
 
@@ -287,17 +299,24 @@ fn figures(read: &dyn Fn(&str) -> Option<String>, sections: &[SectionFacts]) -> 
         (
             FLUTTER_FIGURE,
             "Frequency and damping over wind speed",
-            "In colour the modes with the largest shares of the kinetic energy at the onset, pale the others.",
+            "In colour the modes with the largest shares of the kinetic energy at the onset, the one that flutters with the widest line; grey \
+             the others that take part. The lowest panel magnifies the damping where it is lost.",
         ),
         (
             ROOTS_FIGURE,
             "Root locus",
-            "Eigenvalues of all modes as the wind rises; right of the upright line motions grow.",
+            "Eigenvalues of the same modes as the wind rises; right of the upright line motions grow.",
         ),
         (
             MOTION_FIGURE,
             "Motion at flutter",
-            "Displacements along the girder at two moments a quarter of a period apart; rotations count with half the width.",
+            "Displacements along the girder at two moments a quarter of a period T apart; rotations count with half the width.",
+        ),
+        (
+            RESPONSE_FIGURE,
+            "Motion below, at and above the onset",
+            "The mode that flutters, released with a rotation of 1° where the girder turns most. The scale is that of the motions that \
+             do not grow.",
         ),
     ];
     let of_bridge = of_bridge

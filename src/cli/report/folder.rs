@@ -49,6 +49,6 @@ pub(super) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> 
 }
 
 /// A fingerprint of the bytes of a file.
-pub(super) fn digest(bytes: &[u8]) -> String {
+pub(in crate::cli) fn digest(bytes: &[u8]) -> String {
     sha1_smol::Sha1::from(bytes).digest().to_string()
 }

@@ -1,7 +1,7 @@
 //! Parts that the pages of a section and of a bridge share.
 
 use crate::cli::account::interval;
-use crate::flutter::{Onset, OnsetInterval, mode_in_words};
+use crate::flutter::{ModeBranch, Onset, OnsetInterval};
 use crate::report::PageFigure;
 
 /// The ends of an interval that is known.
@@ -51,7 +51,7 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
             "motion",
             format!(
                 "{}; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
-                mode_in_words(&onset.branch),
+                ModeBranch::in_words(&onset.branch),
                 onset.mode_ratio,
                 onset.phase_deg
             ),

@@ -1,6 +1,7 @@
 //! The block `[buffeting]` of a bridge file, computed in both domains.
 
 use super::BridgeStudy;
+use super::envelope::{SpanEnvelope, envelope};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, motion_index};
@@ -12,6 +13,7 @@ use crate::error::{Error, Result, positive};
 use crate::files::bridge::FieldTable;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// What the block states.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,6 +34,12 @@ pub struct BuffetingBlock {
     /// Records in the time domain.
     #[serde(default)]
     pub time: SpanPlan,
+    /// Mean wind speeds of the bridge, m/s, where the command names none.
+    #[serde(default)]
+    pub speeds_m_s: Vec<f64>,
+    /// File of the section forces of the modes: `mode,element,…`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section_forces: Option<PathBuf>,
 }
 
 /// Both domains at one wind speed.
@@ -43,6 +51,8 @@ pub struct BridgeBuffeting {
     pub frequency: SpanResponse,
     /// The models that are stepped in time, where tables are the answer.
     pub models: Option<ModelsBesideTables>,
+    /// Mean and turbulent motion along the span, accelerations, section forces.
+    pub envelope: SpanEnvelope,
     /// Expected peak factors in the length of a record, from the frequency domain.
     pub expected_peak_factor: Vec<[f64; 3]>,
     /// Spectra of the nodes; too many numbers for the JSON of a command.
@@ -182,12 +192,19 @@ impl BridgeStudy {
             let beside = self.by_table.is_some();
             let beside = beside.then(|| self.beside_tables(&models, &frequency));
             let spectra = domain.spectra(&nodes)?;
-            Ok((frequency, beside.transpose()?, spectra))
+            let envelope = envelope(
+                self,
+                &domain,
+                speed_m_s,
+                block.time.duration_s,
+                block.section_forces.as_deref(),
+            )?;
+            Ok((frequency, beside.transpose()?, spectra, envelope))
         };
         let (of_frequencies, time) = rayon::join(of_frequencies, || {
             span_ensemble(&models, &nodes, speed_m_s, &block.time, progress)
         });
-        let (frequency, beside, spectra) = of_frequencies?;
+        let (frequency, beside, spectra, envelope) = of_frequencies?;
         let (time, no_time) = match time {
             Ok(time) => (Some(time), None),
             // the tables know of no growth at this speed
@@ -199,6 +216,7 @@ impl BridgeStudy {
         Ok(BridgeBuffeting {
             nodes: self.names_of(&nodes),
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
+            envelope,
             spectra,
             models: beside,
             frequency,

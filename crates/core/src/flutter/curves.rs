@@ -1,6 +1,7 @@
 //! Frequencies, damping ratios and shapes of the tracked modes over wind speed (V-f and V-g curves).
 
 use super::following::{Follower, Mode};
+use super::mode_words::mode_in_words;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
@@ -66,16 +67,17 @@ pub struct ModeBranch {
     pub points: Vec<ModePoint>,
 }
 
-/// The name of a branch as one says it: "torsion mode", "mode 17".
-///
-/// ```
-/// assert_eq!(aerodeck_core::flutter::mode_in_words("torsion"), "torsion mode");
-/// assert_eq!(aerodeck_core::flutter::mode_in_words("mode 17"), "mode 17");
-/// ```
-pub fn mode_in_words(branch: &str) -> String {
-    match branch.starts_with("mode ") {
-        true => branch.to_owned(),
-        false => format!("{branch} mode"),
+impl ModeBranch {
+    /// The name of a branch as one says it: "torsion mode", "mode 17".
+    ///
+    /// ```
+    /// use aerodeck_core::flutter::ModeBranch;
+    ///
+    /// assert_eq!(ModeBranch::in_words("torsion"), "torsion mode");
+    /// assert_eq!(ModeBranch::in_words("mode 17"), "mode 17");
+    /// ```
+    pub fn in_words(name: &str) -> String {
+        mode_in_words(name)
     }
 }
 

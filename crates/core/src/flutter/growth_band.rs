@@ -1,6 +1,6 @@
 //! A band of wind speeds in which something grows.
 
-use super::curves::mode_in_words;
+use super::mode_words::mode_in_words;
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! How far a search can be believed: the speeds at which every mode was inside what was tested.
 
-use super::curves::mode_in_words;
+use super::mode_words::the_mode;
 use crate::aerodynamics::TransferMatrix;
 use crate::error::Result;
 use crate::section::Dof;
@@ -199,13 +199,13 @@ impl RangePassages {
         let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let first = first.filter(|(speed, ..)| *speed < highest);
         let from = last.map(|(speed, branch)| {
-            let mode = mode_in_words(branch);
-            format!("the {mode} can be judged from {speed:.3} m/s on")
+            let mode = the_mode(branch);
+            format!("{mode} can be judged from {speed:.3} m/s on")
         });
         let to = first.map(|(speed, branch, exit)| {
-            let mode = mode_in_words(branch);
+            let mode = the_mode(branch);
             format!(
-                "the {mode} can be judged up to {speed:.3} m/s, {}; above that these data say nothing",
+                "{mode} can be judged up to {speed:.3} m/s, {}; above that these data say nothing",
                 exit.explain()
             )
         });

@@ -6,10 +6,11 @@
 //! means what measured derivatives mean.
 
 use super::answer::{Findings, FlutterSearch, choose};
-use super::curves::{FlutterCurves, ModePoint, empty_branches, mode_in_words};
+use super::curves::{FlutterCurves, ModePoint, empty_branches};
 use super::determinant::StructureInWind;
 use super::following::{Follower, OnsetWatch, dimensionless, growing};
 use super::judged::{StableRange, damps_fast_motion, entry_reason};
+use super::mode_words::the_mode;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
@@ -94,12 +95,12 @@ pub fn quasi_pk_mode(
         Ok(())
     })?;
     found.ok_or_else(|| {
-        let mode = mode_in_words(&iteration.name(dof));
+        let mode = the_mode(&iteration.name(dof));
         Error::Numerical(match last {
             Some(speed) => {
-                format!("p-k: the {mode} ends above {speed:.3} m/s, before {speed_m_s} m/s")
+                format!("p-k: {mode} ends above {speed:.3} m/s, before {speed_m_s} m/s")
             }
-            None => format!("p-k: the {mode} cannot be judged up to {speed_m_s} m/s"),
+            None => format!("p-k: {mode} cannot be judged up to {speed_m_s} m/s"),
         })
     })
 }

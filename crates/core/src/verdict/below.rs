@@ -3,7 +3,7 @@
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{FlutterReading, ForceBasis};
 use super::words::speed;
-use crate::flutter::{FastMotion, mode_in_words};
+use crate::flutter::{FastMotion, the_mode};
 
 /// What to say of wind slower than `from_m_s`, where the fastest motion has a reduced frequency above the tests. There the forces
 /// come close to those in still air; that they feed no motion is known only of forces that damp each of them.
@@ -26,9 +26,9 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         FastMotion::Open => (Severity::Severe, "a motion may gain energy there"),
     };
     let text = format!(
-        "Below {} the {} lies at K above {k:.2}, where nothing was tested; by {} {what}",
+        "Below {} {} lies at K above {k:.2}, where nothing was tested; by {} {what}",
         speed(from_m_s),
-        mode_in_words(&tested.branch),
+        the_mode(&tested.branch),
         first.forces
     );
     Doubt::new(severity, kind, text).settled_by(format!("tests at K above {k:.2}"))

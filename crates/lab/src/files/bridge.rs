@@ -11,6 +11,7 @@ mod field;
 mod matlab;
 mod modal_data;
 mod opensees;
+mod section_forces;
 mod single_file;
 mod table;
 mod tables;
@@ -23,6 +24,7 @@ pub use axes::{Direction, WindAxes};
 pub use dampers::DamperBlock;
 pub use field::FieldTable;
 pub use modal_data::{BridgeModes, RawMode};
+pub use section_forces::{ElementForces, ModalSectionForces, read_section_forces};
 pub use single_file::write_modes;
 pub use toml_file::{
     BridgeFile, BridgeSectionBlock, DampingRatios, ModesBlock, ModesFormat, SearchBlock,

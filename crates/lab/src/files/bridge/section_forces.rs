@@ -1,0 +1,96 @@
+//! Section forces of modes: what a unit of each modal coordinate does to elements of the structure.
+
+use crate::error::{Error, Result};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Section forces per unit of the modal coordinates, as shapes and generalised masses are scaled.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModalSectionForces {
+    /// Names of the forces, as the columns say them (`my_nm`).
+    pub names: Vec<String>,
+    /// Elements in the order of the file; for each force one number a mode, by the number of the mode.
+    pub elements: Vec<ElementForces>,
+}
+
+/// Those of one element.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementForces {
+    /// Its name.
+    pub element: String,
+    /// By the number of the mode, one number a force.
+    pub by_mode: BTreeMap<usize, Vec<f64>>,
+}
+
+/// Reads `mode,element,…`, with a column per force.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read; [`Error::Input`] with the line of what is wrong in it.
+pub fn read_section_forces(path: &Path) -> Result<ModalSectionForces> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    parsed(&text).map_err(|e| e.in_file(path))
+}
+
+fn parsed(text: &str) -> Result<ModalSectionForces> {
+    let wrong = |line: usize, expected: &str, found: &str| {
+        Error::input(format!("line {line}"), expected, format!("`{found}`"))
+    };
+    let lines = text.lines().enumerate();
+    let mut lines = lines.filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
+    let (_, header) = lines.next().unwrap_or_default();
+    let cells = |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().into()).collect() };
+    let header = cells(header);
+    if header.len() < 3 || header[..2] != ["mode", "element"] {
+        let expected = "columns mode, element and one a force";
+        return Err(wrong(1, expected, &header.join(",")));
+    }
+    let mut all = ModalSectionForces {
+        names: header[2..].to_vec(),
+        elements: Vec::new(),
+    };
+    for (i, line) in lines {
+        let row = cells(line);
+        if row.len() != header.len() {
+            return Err(wrong(i + 1, "as many cells as columns", line));
+        }
+        let mode = row[0].parse::<usize>();
+        let mode = mode.map_err(|_| wrong(i + 1, "the number of a mode", &row[0]))?;
+        let number = |cell: &String| {
+            let value = cell.parse::<f64>().ok().filter(|x| x.is_finite());
+            value.ok_or_else(|| wrong(i + 1, "a number", cell))
+        };
+        let forces = row[2..].iter().map(number).collect::<Result<Vec<f64>>>()?;
+        let known = all.elements.iter().position(|e| e.element == row[1]);
+        let at = known.unwrap_or_else(|| {
+            all.elements.push(ElementForces {
+                element: row[1].clone(),
+                by_mode: BTreeMap::new(),
+            });
+            all.elements.len() - 1
+        });
+        if all.elements[at].by_mode.insert(mode, forces).is_some() {
+            return Err(wrong(i + 1, "a mode and an element once", line));
+        }
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_are_read_and_what_is_wrong_has_a_line() {
+        let all = parsed("mode,element,my_nm\n1,mid,2.5\n2,mid,-1\n").unwrap();
+        assert_eq!(all.names, ["my_nm"]);
+        assert_eq!(all.elements[0].by_mode[&2], [-1.0]);
+        for wrong in [
+            "mode,element\n",
+            "mode,element,n\n1,a,x\n",
+            "mode,element,n\n1,a,1\n1,a,1\n",
+        ] {
+            let said = parsed(wrong).unwrap_err().to_string();
+            assert!(said.contains("line"), "{said}");
+        }
+    }
+}

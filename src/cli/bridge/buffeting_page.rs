@@ -1,0 +1,105 @@
+//! The page of a response to turbulence; the report of the bridge takes it up.
+
+use crate::cli::report::folder::{digest, today};
+use crate::error::Result;
+use crate::report::{PageSection, SectionsPage, envelope_figure, span_spectra_figure};
+use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
+
+/// Motions with their unit and the factor to it.
+const MOTIONS: [(&str, f64); 3] = [
+    ("vertical,\u{a0}m", 1.0),
+    ("lateral,\u{a0}m", 1.0),
+    ("rotation,\u{a0}°", 180.0 / std::f64::consts::PI),
+];
+
+/// A section a wind speed; `text` is that of the bridge file.
+pub(super) fn page(
+    study: &BridgeStudy,
+    text: &str,
+    all: &[BridgeBuffeting],
+) -> Result<SectionsPage> {
+    let speeds: Vec<String> = all
+        .iter()
+        .map(|b| b.frequency.speed_m_s.to_string())
+        .collect();
+    let sections = all.iter().map(section);
+    Ok(SectionsPage {
+        title: study.file.name.clone(),
+        subtitle: "Response of the whole bridge to turbulence".to_owned(),
+        answer: format!("Response to turbulence at {} m/s", speeds.join(", ")),
+        of: study.file.report.dated(Some(&today()?)),
+        key: digest(text.as_bytes()),
+        sections: sections.collect::<Result<_>>()?,
+    })
+}
+
+fn section(of: &BridgeBuffeting) -> Result<PageSection> {
+    let speed = of.frequency.speed_m_s;
+    let mut rows = Vec::new();
+    for (n, name) in of.nodes.iter().enumerate() {
+        let at = of.frequency.nodes[n];
+        for (i, (motion, factor)) in MOTIONS.into_iter().enumerate() {
+            let rms = of.frequency.rms[n][i];
+            let (mean, g) = (of.envelope.mean[at][i], of.expected_peak_factor[n][i]);
+            let number = |x: f64| format!("{:.4}", factor * x);
+            let time = of
+                .time
+                .as_ref()
+                .map_or("–".to_owned(), |t| number(t.rms[n][i]));
+            rows.push(vec![
+                name.clone(),
+                motion.to_owned(),
+                number(mean),
+                number(rms),
+                time,
+                format!("{g:.2}"),
+                number(mean - g * rms),
+                number(mean + g * rms),
+                number(of.envelope.acceleration_rms[at][i]),
+            ]);
+        }
+    }
+    let figures = [
+        (
+            "Mean, and mean ± expected peak, along the girder.".to_owned(),
+            envelope_figure(of, &format!("Along the span at {speed} m/s"))?,
+        ),
+        (
+            "Spectra of the displacements times the frequency.".to_owned(),
+            span_spectra_figure(of, &format!("Spectra at {speed} m/s"))?,
+        ),
+    ];
+    let forces = of.envelope.section_forces.iter().map(|f| {
+        let peak = f.peak_factor * f.rms;
+        format!(
+            "{} of {}: RMS {:.4e}, expected peak ±{peak:.4e} about its mean",
+            f.force, f.element, f.rms
+        )
+    });
+    let mut text = vec![
+        "Mean by the static coefficients; RMS and peak factor g in the frequency domain, with the RMS of the records beside it; the last \
+         column is the RMS of the acceleration, per s²."
+            .to_owned(),
+    ];
+    text.extend(forces);
+    Ok(PageSection {
+        title: format!("Buffeting at {speed} m/s"),
+        text,
+        header: vec![
+            "node",
+            "motion",
+            "mean",
+            "RMS",
+            "RMS, records",
+            "g",
+            "mean − peak",
+            "mean + peak",
+            "acceleration",
+        ],
+        rows,
+        figures: figures
+            .into_iter()
+            .map(|(caption, figure)| (caption, figure.svg().to_owned()))
+            .collect(),
+    })
+}

@@ -1,0 +1,99 @@
+//! Response of a bridge to turbulence: along the span, and as spectra.
+
+use super::axis::Axis;
+use super::drawing::Drawing;
+use super::figure::Figure;
+use super::legend::{Entry, entries};
+use super::panel::Panel;
+use super::style::{Ink, colour, dash};
+use crate::error::Result;
+use crate::study::bridge::BridgeBuffeting;
+
+/// Motions as panels name them, with the factor to the unit.
+const MOTIONS: [(&str, f64); 3] = [
+    ("vertical y (m)", 1.0),
+    ("lateral x (m)", 1.0),
+    ("rotation θ (°)", 180.0 / std::f64::consts::PI),
+];
+
+/// Mean, and mean ± peak, of every motion along the girder.
+///
+/// # Errors
+/// [`crate::Error::Input`] for numbers that are not finite.
+pub(crate) fn envelope_figure(of: &BridgeBuffeting, title: &str) -> Result<Figure> {
+    let envelope = &of.envelope;
+    let inks = [
+        Ink::line(colour("envelope", 0)?, None),
+        Ink::line(colour("envelope", 1)?, dash(1)),
+    ];
+    let panel = |(i, (name, factor)): (usize, (&str, f64))| {
+        let along = if i == 2 { "Along the girder x (m)" } else { "" };
+        let mut panel = Panel::new(Axis::new(along).tight(), Axis::new(name));
+        panel.level = Some(0.0);
+        for (sign, ink) in [(0.0, inks[0]), (1.0, inks[1]), (-1.0, inks[1])] {
+            let value = |n: usize| {
+                let peak = envelope.peak_factor[n][i] * envelope.rms[n][i];
+                factor * (envelope.mean[n][i] + sign * peak)
+            };
+            let places = envelope.along_m.iter().enumerate();
+            panel.add(name, places.map(|(n, x)| (*x, value(n))).collect(), ink);
+        }
+        panel
+    };
+    Drawing {
+        name: "envelope along the span",
+        title: Some(title.to_owned()),
+        panels: MOTIONS.into_iter().enumerate().map(panel).collect(),
+        columns: 1,
+        axes: (640.0, 130.0),
+        legend: vec![vec![
+            Entry::new("mean", inks[0]),
+            Entry::new("mean ± expected peak", inks[1]),
+        ]],
+    }
+    .draw()
+}
+
+/// One-sided spectra of the displacements of the named nodes, logarithmic, as `f S`.
+///
+/// # Errors
+/// [`crate::Error::Input`] for more nodes than colours and numbers that are not finite.
+pub(crate) fn span_spectra_figure(of: &BridgeBuffeting, title: &str) -> Result<Figure> {
+    let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour("spectra", i)?, dash(i))) };
+    let labels: Vec<String> = of.nodes.iter().map(|n| format!("node {n}")).collect();
+    let mut panels = Vec::with_capacity(3);
+    let names = ["f S_y (m²)", "f S_x (m²)", "f S_θ (deg²)"];
+    for (i, name) in names.into_iter().enumerate() {
+        let logarithmic = |label: &str| Axis {
+            logarithmic: true,
+            ..Axis::new(label)
+        };
+        let hertz = if i == 2 { "Frequency f (Hz)" } else { "" };
+        let mut panel = Panel::new(logarithmic(hertz), logarithmic(name));
+        let square = MOTIONS[i].1 * MOTIONS[i].1;
+        for (n, label) in labels.iter().enumerate() {
+            let both = of
+                .spectra
+                .frequencies_hz
+                .iter()
+                .zip(&of.spectra.densities[n][i]);
+            // zero has no place on a logarithmic scale
+            let above = both.filter(|(f, s)| **f > 0.0 && **s > 0.0);
+            let points: Vec<(f64, f64)> = above.map(|(f, s)| (*f, square * f * s)).collect();
+            if !points.is_empty() {
+                panel.add(label, points, ink(n)?);
+            }
+        }
+        panels.push(panel);
+    }
+    panels.retain(|p| !p.series.is_empty());
+    Drawing {
+        name: "spectra of the bridge",
+        title: Some(title.to_owned()),
+        panels,
+        columns: 1,
+        axes: (640.0, 150.0),
+        legend: vec![entries(&labels, ink)?],
+    }
+    .draw()
+}

@@ -1,0 +1,176 @@
+//! What a client gets: whose the report is, the page on paper, and the response to turbulence in it.
+
+use crate::bridge::folder;
+use crate::browser;
+use crate::command::{aerodeck, refused, succeeds};
+use aerodeck::files::bridge::BridgeFile;
+use aerodeck::study::bridge::BridgeStudy;
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::fs;
+use tempfile::TempDir;
+
+const BUFFETING: &str = r#"
+[section.static]
+drag = 0.08
+lift = -0.15
+moment = 0.03
+drag_slope = 0.0
+lift_slope = 4.5
+moment_slope = 1.2
+
+[buffeting]
+along = { spectrum = { shape = { kind = "kaimal" }, length_m = 150.0, intensity = 0.12 } }
+vertical = { spectrum = { shape = { kind = "kaimal" }, length_m = 15.0, intensity = 0.06 } }
+time = { records = 2, duration_s = 60.0, step_s = 0.1, seed = 1 }
+speeds_m_s = [20.0, 30.0]
+section_forces = "forces.csv"
+"#;
+
+/// Project, author, revision and date stand at the edges of every printed page; without a date that of the run does.
+#[test]
+fn a_report_says_whose_it_is() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let block = "[report]\nproject = \"Strait \\\"crossing\\\"\"\nauthor = \"A. <Engineer>\"\nrevision = \"B\"\n";
+    let study =
+        aerodeck::study::demo_study_text().replacen("[section]", &format!("{block}\n[section]"), 1);
+    fs::write(at.join("s.toml"), &study).unwrap();
+    succeeds(at, &["study", "s.toml", "--out", "r", "--no-figures"]);
+    let page = fs::read_to_string(at.join("r/report.html")).unwrap();
+    for part in [
+        r#"@top-left { content: "Strait \22 crossing\22  · Langenuen LN21-5200"; }"#,
+        r#"@top-right { content: "revision B · 2023-11-14"; }"#,
+        r#"@bottom-left { content: "A. \3c Engineer\3e  · aerodeck "#,
+        "counter(pages)",
+        "<strong>A. &#60;Engineer&#62;</strong>",
+        "<nav>",
+    ] {
+        assert!(page.contains(part), "`{part}` is not in the page");
+    }
+    let dated = study.replace("revision = \"B\"", "date = \"1 May\"");
+    fs::write(at.join("s.toml"), dated).unwrap();
+    succeeds(at, &["study", "s.toml", "--out", "d", "--no-figures"]);
+    let page = fs::read_to_string(at.join("d/report.html")).unwrap();
+    assert!(page.contains(r#"@top-right { content: "1 May"; }"#));
+    // a page of its own is printed where a browser is, and said how else where none is
+    if browser::document(&at.join("d/report.html"), "1280,1000").is_some() {
+        succeeds(at, &["report", "d", "--pdf"]);
+        let printed = fs::read(at.join("d/report.pdf")).unwrap();
+        assert!(printed.starts_with(b"%PDF"));
+    }
+    let output = Command::new(env!("CARGO_BIN_EXE_aerodeck"))
+        .current_dir(at)
+        .args(["report", "d", "--pdf"])
+        .env("PATH", "")
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("open report.html in any browser"), "{said}");
+}
+
+/// What a reader has to look at is short; all of it is said when asked for.
+#[test]
+fn an_account_is_short() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    for deck in ["LN21-5500", "flat plate"] {
+        succeeds(
+            at,
+            &["new", "--deck", "LN21-5200", "--out", "s.toml", "--force"],
+        );
+        let set = format!("deck.source=\"{deck}\"");
+        let run = [
+            "study",
+            "s.toml",
+            "--out",
+            "r",
+            "--no-figures",
+            "--force",
+            "--set",
+            &set,
+        ];
+        let (_, said, _) = aerodeck(at, &run);
+        assert!(said.lines().count() <= 25, "{deck}\n{said}");
+        assert!(
+            !said.contains("condition") && !said.contains("branch"),
+            "{said}"
+        );
+        let (_, all, _) = aerodeck(at, &[&run[..], &["--verbose"]].concat());
+        assert!(
+            all.lines().count() > 40 && all.contains("condition number"),
+            "{all}"
+        );
+    }
+}
+
+/// Several winds in one call; the report of the same bridge takes them up; section forces and the envelope follow from the modes.
+#[test]
+fn the_report_of_a_bridge_has_its_response_to_turbulence() {
+    let folder = folder();
+    let at = folder.path();
+    let path = at.join("bridge.toml");
+    let text = fs::read_to_string(&path).unwrap() + BUFFETING;
+    fs::write(&path, &text).unwrap();
+    let study = BridgeStudy::new(BridgeFile::read(&path).unwrap()).unwrap();
+    let bridge = &study.by_model;
+    let middle = bridge.nodes.len() / 2;
+    let mut forces = "mode,element,vertical_m,double_m\n".to_owned();
+    for m in &bridge.modes {
+        let shape = m.shape[middle][0];
+        let _ = writeln!(forces, "{},middle,{shape},{}", m.number, 2.0 * shape);
+    }
+    refused(at, &["bridge", "buffeting", "bridge.toml"], &["forces.csv"]);
+    fs::write(at.join("forces.csv"), forces).unwrap();
+    succeeds(at, &["bridge", "flutter", "bridge.toml", "--out", "r"]);
+    let said = succeeds(
+        at,
+        &["bridge", "buffeting", "bridge.toml", "--out", "r", "--json"],
+    );
+    let said: Value = serde_json::from_str(&said).unwrap();
+    let all = said["buffeting"].as_array().unwrap();
+    assert_eq!(all.len(), 2);
+    for of in all {
+        let envelope = &of["envelope"];
+        let number = |v: &Value| v.as_f64().unwrap();
+        for (n, node) in of["frequency"]["nodes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .enumerate()
+        {
+            let node = usize::try_from(node.as_u64().unwrap()).unwrap();
+            for i in 0..3 {
+                let (a, b) = (&envelope["rms"][node][i], &of["frequency"]["rms"][n][i]);
+                assert!((number(a) / number(b) - 1.0).abs() < 1e-3, "{a} {b}");
+            }
+        }
+        let rms = number(&envelope["rms"][middle][0]);
+        let force = |i: usize| number(&envelope["section_forces"][i]["rms"]);
+        assert!((force(0) / rms - 1.0).abs() < 1e-12 && (force(1) / rms - 2.0).abs() < 1e-12);
+    }
+    let report = fs::read_to_string(at.join("r/report.html")).unwrap();
+    for part in [
+        ">Buffeting at 20 m/s</h2>",
+        ">Buffeting at 30 m/s</h2>",
+        "mean ± expected peak",
+        "double_m of middle",
+    ] {
+        assert!(report.contains(part), "`{part}` is not in the report");
+    }
+    assert!(report.contains("<code>inputs/bridge.toml</code>"));
+    assert_eq!(
+        fs::read_to_string(at.join("r/inputs/bridge.toml")).unwrap(),
+        text
+    );
+    // what was computed for another bridge is not taken up
+    fs::write(
+        &path,
+        text.replace("name = \"Langenuen", "name = \"Another"),
+    )
+    .unwrap();
+    succeeds(at, &["bridge", "flutter", "bridge.toml", "--out", "r"]);
+    let report = fs::read_to_string(at.join("r/report.html")).unwrap();
+    assert!(!report.contains("Buffeting at"));
+}
