@@ -119,7 +119,8 @@ fn fit(
         let fitted = fit_table(&samples, &dofs, fit)?;
         return Ok(ModelOfData {
             estimate: table_uncertainty(&samples, &dofs, fit, &fitted.report),
-            forms: FormEnsemble::beside(&samples, &dofs, fit, &fitted).map(Some),
+            forms: FormEnsemble::new(&samples, &dofs, &|f| (f == fit).then(|| fitted.clone()))
+                .map(Some),
             fitted,
         });
     }
@@ -128,7 +129,7 @@ fn fit(
         let others = || -> Result<Option<FormEnsemble>> {
             let found = identify_derivatives(&chosen, &DerivativeOptions::default())?;
             let table = found.table(&block.name, TableHeader::default())?;
-            FormEnsemble::new(&table.samples(&dofs), &dofs).map(Some)
+            FormEnsemble::new(&table.samples(&dofs), &dofs, &|_| None).map(Some)
         };
         let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
             let fitted = fit_records(&chosen, fit, progress)?;

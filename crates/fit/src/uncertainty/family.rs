@@ -151,7 +151,8 @@ impl DeckOutcome {
         let Fitted { model, report } = fit_table(samples, dofs, &fit)?;
         let section = CoupledSection::with_model(&deck.structure, &model)?;
         let found = find_onset("", &section, &search, Some(report.tested_range))?;
-        let spread = FormEnsemble::new(samples, dofs)?.spread(&deck.structure, &search)?;
+        let spread =
+            FormEnsemble::new(samples, dofs, &|_| None)?.spread(&deck.structure, &search)?;
         match found {
             FlutterSearch::Onset(onset) => {
                 let estimate = table_uncertainty(samples, dofs, &fit, &report)?;

@@ -107,34 +107,15 @@ pub struct AdmissibleForm {
 }
 
 impl FormEnsemble {
-    /// Fits all forms to samples of a transfer matrix and keeps the admissible ones.
+    /// Fits all forms to samples of a transfer matrix and keeps the admissible ones; `known` are fits to these samples that need
+    /// not be done again.
     ///
     /// # Errors
     /// [`Error::Input`] for samples without the forces of heave and rotation; [`Error::Numerical`] when no form can be fitted.
-    pub fn new(samples: &[TransferSample], dofs: &[Dof]) -> Result<Self> {
-        Self::of(samples, dofs, &|fit| fit_table(samples, dofs, fit))
-    }
-
-    /// The same beside a fit to these samples, which is not done again where it is one of the forms.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn beside(
+    pub fn new(
         samples: &[TransferSample],
         dofs: &[Dof],
-        own: &FrequencyFit,
-        fitted: &Fitted,
-    ) -> Result<Self> {
-        Self::of(samples, dofs, &|fit| match fit == own {
-            true => Ok(fitted.clone()),
-            false => fit_table(samples, dofs, fit),
-        })
-    }
-
-    fn of(
-        samples: &[TransferSample],
-        dofs: &[Dof],
-        fitted: &(dyn Fn(&FrequencyFit) -> Result<Fitted> + Sync),
+        known: &(dyn Fn(&FrequencyFit) -> Option<Fitted> + Sync),
     ) -> Result<Self> {
         let tested = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
             .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
@@ -146,7 +127,10 @@ impl FormEnsemble {
         let numbers = samples.len() as f64;
         let fitted: Vec<FittedForm> = fitted_forms(tested)
             .into_par_iter()
-            .filter_map(|(name, fit)| FittedForm::new(name, &fit, fitted(&fit).ok()?, numbers).ok())
+            .filter_map(|(name, fit)| {
+                let fitted = known(&fit).or_else(|| fit_table(samples, dofs, &fit).ok())?;
+                FittedForm::new(name, &fit, fitted, numbers).ok()
+            })
             .collect();
         Ok(Self {
             fits: admissible(fitted)?,
