@@ -87,28 +87,27 @@ fn the_demo_does_the_whole_chain() {
                 let found = start_of(xml, name);
                 // the same root, searched up to another speed
                 let same = found.map(|found| (found / expected - 1.0).abs() < 1e-8);
-                assert_eq!(
-                    same,
-                    known.then_some(true),
-                    "{model}: {found:?} of {expected}"
-                );
+                let wanted = known.then_some(true);
+                assert_eq!(same, wanted, "{model}: {found:?} of {expected}");
             }
         }
     }
 
-    // so does what it takes to judge it: its report, and runs at both ends of the interval
+    // its report, and runs at both ends of the interval
     let fmu = out.join("deck_section.fmu");
     let of_runs = |name: &str| entry(&fmu, &format!("extra/org.fmi-standard.fmi-ls-ref/{name}"));
     assert!(of_runs("report.html").contains("Laguerre"));
     assert!(of_runs("fmi-ls-manifest.xml").contains("role=\"report\""));
     assert!(of_runs("uncertainty.exp").contains("onset_high"));
-    let replay = ["fmu", "replay", "aerodeck-out/deck_section.fmu"];
-    assert!(succeeds(folder.path(), &replay).contains("as the exporter meant: 6 runs"));
+    let said = succeeds(
+        folder.path(),
+        &["fmu", "replay", "aerodeck-out/deck_section.fmu"],
+    );
+    assert!(said.contains("as the exporter meant: 6 runs"));
     let archive = fs::read(&fmu).unwrap();
-
     // a second run says what it replaces, with the same archive; an edited study is left alone
     assert!(succeeds(folder.path(), &["demo", "--verbose"]).contains("replaced"));
-    assert!(archive == fs::read(&fmu).unwrap());
+    assert!(archive == fs::read(fmu).unwrap());
     let study = out.join("study.toml");
     let edited = fs::read_to_string(&study).unwrap() + "\n# mine\n";
     fs::write(&study, &edited).unwrap();
