@@ -92,8 +92,6 @@ fn the_demo_does_the_whole_chain() {
             }
         }
     }
-
-    // its report, and runs at both ends of the interval
     let fmu = out.join("deck_section.fmu");
     let of_runs = |name: &str| entry(&fmu, &format!("extra/org.fmi-standard.fmi-ls-ref/{name}"));
     assert!(of_runs("report.html").contains("Laguerre"));
