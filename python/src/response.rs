@@ -177,7 +177,13 @@ pub fn simulate(
 #[pyclass(frozen, module = "aerodeck")]
 pub struct Stepper(Mutex<Stepping>);
 
+/// Time, values, phase, last wind speed.
+type Snapshot = (f64, Vec<f64>, f64, Option<f64>);
+
 struct Stepping {
+    /// What it was made of, for `pickle`.
+    section: Py<Section>,
+    model: Py<Model>,
     stepper: response::Stepper,
     state: SectionState,
     outputs: Outputs,
@@ -204,6 +210,8 @@ impl Stepper {
             .outputs(&state, &Inputs::steady(0.0, n), &mut outputs)
             .map_err(raised)?;
         Ok(Self(Mutex::new(Stepping {
+            section: section.clone().unbind(),
+            model: model.clone().unbind(),
             stepper,
             state,
             outputs,
@@ -263,8 +271,27 @@ impl Stepper {
         Ok(PyArray1::from_slice(py, &own.outputs.displacement))
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        let (py, own) = (slf.py(), slf.get().lock());
+        let (section, model) = (own.section.clone_ref(py), own.model.clone_ref(py));
+        drop(own);
+        let parts = (section, model, slf.get().snapshot()).into_pyobject(py)?;
+        Ok((slf.get_type().getattr("_from_parts")?, parts))
+    }
+
+    #[staticmethod]
+    fn _from_parts(
+        section: &Bound<'_, Section>,
+        model: &Bound<'_, Model>,
+        snapshot: Snapshot,
+    ) -> PyResult<Self> {
+        let stepper = Self::new(section, model, None, None)?;
+        stepper.restore(snapshot)?;
+        Ok(stepper)
+    }
+
     /// The whole state, to come back to with `restore`: (time, values, phase, last wind speed).
-    fn snapshot(&self) -> (f64, Vec<f64>, f64, Option<f64>) {
+    fn snapshot(&self) -> Snapshot {
         let own = self.lock();
         let state = &own.state;
         (
@@ -276,7 +303,7 @@ impl Stepper {
     }
 
     /// Go back to a `snapshot`; the same steps then give the same bits. Outputs are those of the next step.
-    fn restore(&self, snapshot: (f64, Vec<f64>, f64, Option<f64>)) -> PyResult<()> {
+    fn restore(&self, snapshot: Snapshot) -> PyResult<()> {
         let mut own = self.lock();
         let expected = own.state.values.len();
         if snapshot.1.len() != expected {

@@ -132,6 +132,12 @@ def test_results_are_pickled(section, model, again):
     assert again(found).to_dict() == found.to_dict()
     motion = aerodeck.simulate(section, model, 30.0, stop_time_s=1.0)
     np.testing.assert_array_equal(again(motion).force, motion.force)
+    stepper = aerodeck.Stepper(section, model)
+    for _ in range(20):
+        stepper.step(0.01, 30.0)
+    other = again(stepper)
+    assert other.time_s == stepper.time_s
+    np.testing.assert_array_equal(other.step(0.01, 31.0), stepper.step(0.01, 31.0))
 
 
 def test_a_study_runs_as_the_program_runs_it(tmp_path):

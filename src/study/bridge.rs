@@ -79,7 +79,7 @@ impl BridgeStudy {
     /// Reads modes and sections and fits models to tables.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Input`] with file and place; [`Error::Numerical`] when a fit has no answer.
+    /// [`crate::Error::Io`] and [`crate::Error::Input`] with file and place; [`crate::Error::Numerical`] when a fit has no answer.
     pub fn new(file: BridgeFile) -> Result<Self> {
         Self::with_trained(file, |_| None)
     }

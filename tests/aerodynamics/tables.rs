@@ -78,7 +78,8 @@ fn a_wide_table_without_speeds_goes_through_the_chain() {
         at,
         "source = \"paper.csv\"\nconvention = { notation = \"scanlan\" }\nmissing = \"quasi_steady\"",
     );
-    let said = flowing(&succeeds(at, &["study", "study.toml", "--out", "."]));
+    let line = ["study", "study.toml", "--out", ".", "--verbose"];
+    let said = flowing(&succeeds(at, &line));
     for part in [
         "H4* = K H2*, A4* = K A2* taken, quasi-steady, as stated",
         "the width 1 m",

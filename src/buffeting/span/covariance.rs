@@ -12,7 +12,7 @@ const GAUSS: f64 = 0.577_350_269_189_625_8;
 /// Intervals that are summed together.
 const TOGETHER: usize = 32;
 
-/// Covariances of the mass-normalised modal coordinates, of their rates and of their accelerations (modes×modes).
+/// Covariances of the mass-normalised modal coordinates and of those of dampers, of their rates and of their accelerations.
 #[derive(Debug, Clone)]
 pub(crate) struct ModalCovariance {
     orders: [DMatrix<f64>; 3],
@@ -25,7 +25,7 @@ impl ModalCovariance {
     /// # Errors
     /// Those of the spectra.
     pub(crate) fn of(domain: &SpanFrequency<'_>) -> Result<Self> {
-        let count = domain.bridge().modes.len();
+        let count = domain.bridge().coordinates();
         let unit = DMatrix::<Complex<f64>>::identity(count, count);
         let zero =
             || -> [DMatrix<f64>; 3] { std::array::from_fn(|_| DMatrix::zeros(count, count)) };

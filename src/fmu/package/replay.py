@@ -6,7 +6,10 @@ import fmpy
 folder = Path(fmpy.extract(sys.argv[1]))
 description, reference = fmpy.read_model_description(folder), folder / "extra/org.fmi-standard.fmi-ls-ref"
 variables, is_fmi2 = {v.name: v for v in description.modelVariables}, description.fmiVersion == "2.0"
-size = lambda v: math.prod(int(d.start) for d in v.dimensions) if v.dimensions else 1
+by_reference = {v.valueReference: v for v in description.modelVariables}
+# a dimension is a number, or that of a structural parameter
+length = lambda d: int(d.start if d.start is not None else by_reference[d.valueReference].start)
+size = lambda v: 1 if is_fmi2 else math.prod(map(length, v.dimensions))
 # array and place in it of a column like heave[2], which FMI 2.0 knows as a variable
 split = lambda column: (column, 0) if column in variables else (column[: column.rindex("[")], int(column[column.rindex("[") + 1 : -1]) - 1)
 

@@ -1,11 +1,12 @@
 //! Keeps the documentation true: every key of every file format has its line, every link leads somewhere, every page is in the
 //! table of contents, every formula can be shown, and the tutorial runs.
-#[path = "../examples/book_formulas.rs"]
+#[path = "../../examples/book_formulas.rs"]
 mod book_formulas;
-#[path = "common/command.rs"]
+#[path = "../common/command.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod command;
-#[path = "common/python.rs"]
+mod examples;
+#[path = "../common/python.rs"]
 mod python;
 
 use aerodeck::study::Study;
@@ -305,53 +306,6 @@ fn the_book_is_whole() {
         }
     }
     assert!(formulas > 15, "{formulas}");
-}
-
-#[test]
-fn the_tutorial_runs() {
-    let python = python::interpreter().unwrap_or_else(|why| panic!("{why}"));
-    let folder = TempDir::new().unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_aerodeck")).parent().unwrap();
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
-    folders.insert(0, program.to_path_buf());
-    let path = std::env::join_paths(folders).unwrap();
-    let text = page("docs/tutorial.md");
-    let mut ran = 0;
-    for part in text.split("```").skip(1).step_by(2) {
-        let (language, code) = part.split_once('\n').unwrap();
-        let mut command = match language {
-            "sh" => {
-                let mut shell = Command::new("sh");
-                shell.args(["-e", "-c", code]);
-                shell
-            }
-            "python" => {
-                let mut interpreter = Command::new(&python);
-                interpreter.args(["-c", code]);
-                interpreter
-            }
-            _ => continue,
-        };
-        let output = command
-            .current_dir(folder.path())
-            .env("PATH", &path)
-            .output()
-            .unwrap();
-        assert!(
-            output.status.success(),
-            "{code}\n{}{}",
-            String::from_utf8_lossy(&output.stdout),
-            String::from_utf8_lossy(&output.stderr)
-        );
-        ran += 1;
-    }
-    assert!(ran >= 6, "{ran} blocks of code");
-    let report = fs::read_to_string(folder.path().join("lab/report.html")).unwrap();
-    assert!(
-        report.contains("Flutter onset 3"),
-        "no answer in the report"
-    );
 }
 
 /// Each row of the glossary names a file that holds its type.
