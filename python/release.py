@@ -8,6 +8,7 @@ The tools are installed into target/release-env. `AERODECK_RUNTIME=$PWD/target/r
 """
 
 import argparse
+import os
 import pathlib
 import subprocess
 import sys
@@ -27,11 +28,15 @@ def main():
     venv.create(environment, with_pip=True)
     python = environment / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
 
+    # maturin asks the first Python of the path for zig
+    path = os.pathsep.join([str(python.parent), os.environ.get("PATH", "")])
+
     def run(*command):
         print("+", *command, flush=True)
-        subprocess.run([python, "-m", *map(str, command)], cwd=ROOT, check=True)
+        subprocess.run([python, "-m", *map(str, command)], cwd=ROOT, check=True, env=os.environ | {"PATH": path})
 
     run("pip", "install", "--quiet", "--only-binary=:all:", *TOOLS)
+    out.mkdir(parents=True, exist_ok=True)
     for old in [*out.glob("*.whl"), *out.glob("*.tar.gz")]:
         old.unlink()
     manifest = ["--manifest-path", ROOT / "python" / "Cargo.toml", "--out", out]
