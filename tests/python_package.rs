@@ -108,7 +108,14 @@ fn source_distribution(interpreter: &Path, root: &Path, folder: &Path) {
     for file in ["Cargo.lock", "build.rs", "LICENSE-MIT", "python/Cargo.toml"] {
         assert!(unpacked.join(file).exists(), "{file} is not in the sources");
     }
-    for part in ["src", "templates", "data", "fmu_build", "python/src"] {
+    for part in [
+        "src",
+        "templates",
+        "data",
+        "fmu_build",
+        "python/src",
+        "docs/schema",
+    ] {
         every_file_of(&root.join(part), &unpacked.join(part));
     }
     every_file_of(&root.join("python/aerodeck"), &unpacked.join("aerodeck"));
