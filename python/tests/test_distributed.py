@@ -18,16 +18,6 @@ SCATTER = {
 
 
 @pytest.fixture(scope="module")
-def section():
-    return aerodeck.Section.table_4_1()
-
-
-@pytest.fixture(scope="module")
-def model():
-    return aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"))
-
-
-@pytest.fixture(scope="module")
 def client():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

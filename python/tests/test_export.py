@@ -10,16 +10,6 @@ import pytest
 fmpy = pytest.importorskip("fmpy")
 
 
-@pytest.fixture(scope="module")
-def section():
-    return aerodeck.Section.table_4_1()
-
-
-@pytest.fixture(scope="module")
-def model():
-    return aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"))
-
-
 def described(path):
     return fmpy.read_model_description(str(path))
 

@@ -18,21 +18,6 @@ model = [{ name = "by 5 filters", table = { form = { kind = "laguerre", filters 
 """
 
 
-@pytest.fixture(scope="module")
-def table():
-    return aerodeck.Derivatives.deck("LN21-5200")
-
-
-@pytest.fixture(scope="module")
-def section():
-    return aerodeck.Section.table_4_1()
-
-
-@pytest.fixture(scope="module")
-def model(table):
-    return aerodeck.fit_laguerre(table)
-
-
 @pytest.mark.parametrize("deck", aerodeck.Derivatives.decks())
 @pytest.mark.parametrize("notation, argument", [("scanlan", None), ("polimi", "v_star"), ("starossek", "k_semi")])
 def test_a_table_goes_through_a_frame(deck, notation, argument):

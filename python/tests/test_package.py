@@ -18,21 +18,6 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture(scope="module")
-def table():
-    return aerodeck.Derivatives.deck("LN21-5200")
-
-
-@pytest.fixture(scope="module")
-def section():
-    return aerodeck.Section.table_4_1()
-
-
-@pytest.fixture(scope="module")
-def model(table):
-    return aerodeck.fit_laguerre(table)
-
-
 def test_onset_is_that_of_the_library_with_an_interval_around_it(section, model):
     onset = aerodeck.flutter(section, model)
     # by five filters, as the command line has it

@@ -27,7 +27,9 @@ pub(crate) fn chain(
         false => headline::short(&study.name, &summary.verdict),
     };
     let _ = writeln!(text, "Deck      {}", deck.description());
-    let rest = details(study, deck, summary);
+    // nobody signs for what was taken for granted without having read it
+    text.push_str(&deck_warnings(deck));
+    let rest = details(study, summary);
     if verbose {
         text.push_str(&rest);
     } else {
@@ -44,13 +46,19 @@ pub(crate) fn chain(
             &summary.unstable,
             &summary.stable,
         ));
-        let undetermined = summary.undetermined.iter();
-        for o in undetermined {
-            let _ = writeln!(text, "{}: no onset to state", o.at.model);
+        for o in &summary.undetermined {
+            let (model, method) = (&o.at.model, o.at.method.name());
+            let _ = writeln!(text, "{model}, {method}: not determined by these data");
+        }
+        // of the answer itself; those of the others with all of it
+        let own = summary.onsets.iter().find(|o| o.at.model == summary.model);
+        for warning in own.map_or(&[][..], |o| &o.warnings) {
+            let _ = writeln!(text, "warning: {}: {warning}", summary.model);
         }
     }
     text.push_str(&failures(&summary.failed));
-    let warnings = rest.lines().filter(|l| l.starts_with("warning: ")).count();
+    let others = rest.lines().filter(|l| l.starts_with("warning: "));
+    let warnings = others.filter(|l| !text.contains(l)).count();
     let more = match warnings {
         0 => "fits, intervals, divergence".to_owned(),
         some => format!("{}, fits, intervals, divergence", counted(some, "warning")),
@@ -74,8 +82,8 @@ pub(super) fn ending(written: &[Written], more: &str, verbose: bool) -> String {
 }
 
 /// What a reader asks for who does not take the answer as it is.
-fn details(study: &Study, deck: &Deck, summary: &Summary) -> String {
-    let mut text = deck_warnings(deck);
+fn details(study: &Study, summary: &Summary) -> String {
+    let mut text = String::new();
     let s = &study.section;
     let _ = writeln!(
         text,

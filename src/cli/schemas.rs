@@ -3,57 +3,33 @@
 use super::answer::Answer;
 use crate::error::{Error, Result};
 
+macro_rules! schemas {
+    ($($name:literal in $file:literal,)*) => {
+        [$(($name, include_str!(concat!("../../docs/schema/", $file, ".json")))),*]
+    };
+}
+
 /// Commands, without the name of the program, and their schemas; `tests/cli/schemas.rs` makes these files of outputs.
-const SCHEMAS: [(&str, &str); 18] = [
-    (
-        "bridge buffeting",
-        include_str!("../../docs/schema/bridge-buffeting.json"),
-    ),
-    (
-        "bridge flutter",
-        include_str!("../../docs/schema/bridge-flutter.json"),
-    ),
-    (
-        "buffeting",
-        include_str!("../../docs/schema/buffeting.json"),
-    ),
-    (
-        "campaign check",
-        include_str!("../../docs/schema/campaign-check.json"),
-    ),
-    (
-        "compare signals",
-        include_str!("../../docs/schema/compare-signals.json"),
-    ),
-    ("coverage", include_str!("../../docs/schema/coverage.json")),
-    (
-        "derivatives show",
-        include_str!("../../docs/schema/derivatives-show.json"),
-    ),
-    ("flutter", include_str!("../../docs/schema/flutter.json")),
-    (
-        "fmu check",
-        include_str!("../../docs/schema/fmu-check.json"),
-    ),
-    (
-        "fmu export",
-        include_str!("../../docs/schema/fmu-export.json"),
-    ),
-    (
-        "monte-carlo",
-        include_str!("../../docs/schema/monte-carlo.json"),
-    ),
-    ("process", include_str!("../../docs/schema/process.json")),
-    (
-        "quasi-steady",
-        include_str!("../../docs/schema/quasi-steady.json"),
-    ),
-    ("select", include_str!("../../docs/schema/select.json")),
-    ("simulate", include_str!("../../docs/schema/simulate.json")),
-    ("study", include_str!("../../docs/schema/study.json")),
-    ("train", include_str!("../../docs/schema/train.json")),
-    ("validate", include_str!("../../docs/schema/validate.json")),
-];
+const SCHEMAS: [(&str, &str); 18] = schemas! {
+    "bridge buffeting" in "bridge-buffeting",
+    "bridge flutter" in "bridge-flutter",
+    "buffeting" in "buffeting",
+    "campaign check" in "campaign-check",
+    "compare signals" in "compare-signals",
+    "coverage" in "coverage",
+    "derivatives show" in "derivatives-show",
+    "flutter" in "flutter",
+    "fmu check" in "fmu-check",
+    "fmu export" in "fmu-export",
+    "monte-carlo" in "monte-carlo",
+    "process" in "process",
+    "quasi-steady" in "quasi-steady",
+    "select" in "select",
+    "simulate" in "simulate",
+    "study" in "study",
+    "train" in "train",
+    "validate" in "validate",
+};
 
 /// The schema that a command line asks for by `--json-schema`; none where it does not.
 ///
