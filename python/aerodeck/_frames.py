@@ -5,8 +5,6 @@ import numpy as np
 from ._errors import InputError
 
 ARGUMENTS = ("v_hat", "v_star", "k_full", "k_semi")
-# by which each notation is usually plotted: what `to_numpy` returns where no argument is stated
-USUAL = {"scanlan": "v_hat", "classical": "v_hat", "polimi": "v_star", "starossek": "k_semi"}
 MOTION_UNITS = {"vertical": "m", "lateral": "m", "torsion": "rad"}
 
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from concurrent.futures import ProcessPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 
 import aerodeck
@@ -375,6 +376,7 @@ def test_readme_runs(tmp_path, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)
     assert len(blocks) >= 5
     for block in blocks:
-        for package in re.findall(r"(dask|frame)", block)[:1]:
-            pytest.importorskip({"dask": "dask.distributed", "frame": "pandas"}[package])
+        needs = {"dask": "dask", "frame": "pandas"}
+        if any(word in block and find_spec(package) is None for word, package in needs.items()):
+            continue
         exec(compile(block, "README.md", "exec"), {})
