@@ -1,16 +1,17 @@
-//! Builds the FMU runtime, the shared library that every exported FMU holds, and hands it to `src/fmu/package`.
+//! Hands the FMU runtime, the shared library that every exported FMU holds, to `src/fmu/package`, which embeds it: an installed
+//! `aerodeck` exports FMUs without source tree or Rust toolchain.
 //!
-//! This script calls cargo once more, on the crate of the unit, in the profile `fmu` and a target directory of its own, and copies
-//! the library to `OUT_DIR`, from where it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain.
-//! Ready-made runtimes, also for other platforms, can be embedded instead. Where Rust has the target for WebAssembly, the module that
-//! answers the sliders of a report is built in the same way; without it reports have no sliders.
+//! `aerodeck-runtime` is a dependency like others and shares all of their builds. Ready-made runtimes, also for other platforms, can be
+//! embedded besides. Where Rust has the target for WebAssembly, cargo is called once more for the module that answers the sliders of a
+//! report; without it reports have no sliders.
 
 use std::env;
-use std::fs;
+use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Environment variable that names a ready-made runtime to embed instead of building one, such as one for an older C
+/// Environment variable that names a ready-made runtime to embed instead of that of this build, such as one for an older C
 /// library; or a folder of them, laid out as `binaries/` of an FMU, which are embedded all.
 const READY_MADE: &str = "AERODECK_RUNTIME";
 
@@ -40,34 +41,68 @@ fn embed_runtimes() -> Result<(), String> {
     let here = platform()?;
     println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={here}");
     let mut runtimes = Vec::new();
-    if env::var_os("CARGO_CFG_MIRI").is_some() {
+    if env::var_os("CARGO_CFG_MIRI").is_none() {
         // an interpreter of Rust code has no use for a shared library, and cannot build one
-    } else {
         if let Some(ready) = env::var_os(READY_MADE) {
             println!("cargo::rerun-if-changed={}", Path::new(&ready).display());
             runtimes = ready_made(Path::new(&ready), here)?;
         }
         if runtimes.iter().all(|(platform, _)| platform != here) {
-            let library = build(&source, &out, &Part::runtime()?)?;
-            watch(&library)?;
-            runtimes.push((here.to_owned(), library));
+            runtimes.push((here.to_owned(), own(&out)?));
         }
         if env::var_os(READY_MADE).is_none() && has_wasm()? {
-            let module = build(&source, &out, &Part::live())?;
+            let module = build_live(&source, &out)?;
             watch(&module)?;
-            runtimes.push((WASM.1.to_owned(), module));
+            let copy = out.join("live.wasm");
+            fs::copy(&module, &copy).map_err(|e| format!("{}: {e}", module.display()))?;
+            runtimes.push((WASM.1.to_owned(), copy));
         }
     }
     let mut list = String::from("&[");
     for (platform, library) in runtimes {
-        let copy = out.join(format!("{platform}.runtime"));
-        fs::copy(&library, copy).map_err(|e| format!("{}: {e}", library.display()))?;
-        list += &format!(
-            "(\"{platform}\", include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{platform}.runtime\"))), "
-        );
+        list += &format!("({platform:?}, include_bytes!({library:?})), ");
     }
-    let file = out.join("runtimes.rs");
-    fs::write(&file, list + "]").map_err(|e| format!("{}: {e}", file.display()))
+    write(&out.join("runtimes.rs"), &(list + "]"))?;
+    write(&out.join("built_in.rs"), &format!("&{:?}", built_in()))
+}
+
+fn write(file: &Path, text: &str) -> Result<(), String> {
+    fs::write(file, text).map_err(|e| format!("{}: {e}", file.display()))
+}
+
+/// The runtime of this build: cargo makes it beside the library, before it compiles what embeds it.
+fn own(out: &Path) -> Result<PathBuf, String> {
+    let (prefix, suffix) = match variable("CARGO_CFG_TARGET_OS")?.as_str() {
+        "windows" => ("", "dll"),
+        "macos" => ("lib", "dylib"),
+        _ => ("lib", "so"),
+    };
+    // OUT_DIR is <target>[/<triple>]/<profile>/build/<package>/out
+    let build = out.ancestors().find(|a| a.ends_with("build"));
+    let deps = build.and_then(Path::parent).unwrap_or(out).join("deps");
+    let library = deps.join(format!("{prefix}{LIBRARY}.{suffix}"));
+    // what is only checked has no library, but needs a file to look at
+    let absent = fs::create_dir_all(&deps).and_then(|()| File::create_new(&library));
+    match absent {
+        Err(e) if e.kind() != ErrorKind::AlreadyExists => {
+            Err(format!("{}: {e}", library.display()))
+        }
+        _ => Ok(library),
+    }
+}
+
+/// Folders of this machine, one in the other, that places of panics may begin with.
+fn built_in() -> Vec<String> {
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| {
+        let user = env::var_os("HOME").or_else(|| env::var_os("USERPROFILE"))?;
+        Some(Path::new(&user).join(".cargo"))
+    });
+    let sources = home.map(|home| home.join("registry").join("src"));
+    let registries = sources.and_then(|sources| fs::read_dir(sources).ok());
+    let registries = registries.into_iter().flatten().flatten();
+    let folders = registries.map(|registry| registry.path());
+    let folders = folders.chain(env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from));
+    folders.map(|folder| folder.display().to_string()).collect()
 }
 
 /// Platform and library of the runtimes in a folder; of a single library, which is for this platform.
@@ -124,14 +159,6 @@ fn platform() -> Result<&'static str, String> {
     }
 }
 
-fn extension() -> &'static str {
-    match env::var("CARGO_CFG_TARGET_OS").as_deref() {
-        Ok("windows") => "dll",
-        Ok("macos") => "dylib",
-        _ => "so",
-    }
-}
-
 /// Whether Rust can build for WebAssembly here.
 fn has_wasm() -> Result<bool, String> {
     let output = Command::new(variable("RUSTC")?)
@@ -141,51 +168,27 @@ fn has_wasm() -> Result<bool, String> {
     Ok(folder.is_ok_and(|folder| Path::new(&folder).is_dir()))
 }
 
-/// A library that is built beside the program.
-struct Part {
-    package: &'static str,
-    features: &'static [&'static str],
-    profile: &'static str,
-    triple: String,
-    file: String,
-}
-
-impl Part {
-    fn runtime() -> Result<Self, String> {
-        let prefix = if extension() == "dll" { "" } else { "lib" };
-        Ok(Self {
-            package: "aerodeck-unit",
-            features: &["--features", "runtime"],
-            profile: "fmu",
-            triple: variable("TARGET")?,
-            file: format!("{prefix}aerodeck_unit.{}", extension()),
-        })
-    }
-
-    fn live() -> Self {
-        Self {
-            package: "aerodeck-live",
-            features: &[],
-            profile: "live",
-            triple: WASM.0.to_owned(),
-            file: "aerodeck_live.wasm".to_owned(),
-        }
-    }
-}
-
-/// Builds a library and says where it is.
-fn build(source: &Path, out: &Path, part: &Part) -> Result<PathBuf, String> {
-    let target_dir = runtime_target_dir(out);
+/// Builds the module for WebAssembly, in a target directory that the calling cargo has not locked, and says where it is.
+fn build_live(source: &Path, out: &Path) -> Result<PathBuf, String> {
+    let target_dir = out.join("live");
     let mut said = String::new();
     // what the outer build has fetched and locked is enough; the rest is for lock files that do not travel along
     for network in [&["--offline", "--locked"][..], &["--locked"], &[]] {
-        let output = nested_cargo(source, &target_dir, part)?
+        let output = Command::new(variable("CARGO")?)
+            .args(["rustc", "--package", "aerodeck-live", "--lib"])
+            .args(["--crate-type", "cdylib", "--profile", "live"])
+            .args(["--target", WASM.0, "--target-dir"])
+            .arg(&target_dir)
             .args(network)
+            .current_dir(source)
+            .env("CARGO_BUILD_BUILD_DIR", &target_dir)
+            .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            .env_remove("RUSTC_WORKSPACE_WRAPPER")
+            .env_remove("RUSTFLAGS")
             .output()
-            .map_err(|e| format!("cargo cannot be started to build the FMU runtime: {e}"))?;
+            .map_err(|e| format!("cargo cannot be started to build aerodeck-live: {e}"))?;
         if output.status.success() {
-            let folder = target_dir.join(&part.triple).join(part.profile);
-            return Ok(folder.join(&part.file));
+            return Ok(target_dir.join(WASM.0).join("live/aerodeck_live.wasm"));
         }
         said = String::from_utf8_lossy(&output.stderr).into_owned();
         if said.contains("could not compile") {
@@ -193,77 +196,9 @@ fn build(source: &Path, out: &Path, part: &Part) -> Result<PathBuf, String> {
         }
     }
     Err(format!(
-        "{} (profile `{}`, target {}), which this program carries, could not be built in {}; cargo said:\n{said}",
-        part.package,
-        part.profile,
-        part.triple,
+        "aerodeck-live could not be built in {}; cargo said:\n{said}",
         target_dir.display()
     ))
-}
-
-/// A target directory that the calling cargo has not locked, shared by its profiles: `<target>/fmu-runtime`.
-fn runtime_target_dir(out: &Path) -> PathBuf {
-    // OUT_DIR is <target>[/<triple>]/<profile>/build/<package>/out
-    out.ancestors()
-        .find(|a| a.file_name().is_some_and(|n| n == "build"))
-        .and_then(|build| build.parent()?.parent())
-        .unwrap_or(out)
-        .join("fmu-runtime")
-}
-
-fn nested_cargo(source: &Path, target_dir: &Path, part: &Part) -> Result<Command, String> {
-    let mut cargo = Command::new(variable("CARGO")?);
-    cargo
-        .args(["rustc", "--package", part.package, "--lib"])
-        .args(["--crate-type", "cdylib"])
-        .args(part.features)
-        .args(["--profile", part.profile])
-        .args(["--target", &part.triple])
-        .arg("--manifest-path")
-        .arg(source.join("Cargo.toml"))
-        .arg("--target-dir")
-        .arg(target_dir)
-        .current_dir(source)
-        .env("CARGO_BUILD_BUILD_DIR", target_dir)
-        .env("CARGO_ENCODED_RUSTFLAGS", flags(source))
-        .env_remove("RUSTC_WORKSPACE_WRAPPER")
-        .env_remove("RUSTFLAGS");
-    // what cargo tells a build script is about the outer build
-    for (name, _) in env::vars_os() {
-        let name = name.to_string_lossy().into_owned();
-        if [
-            "CARGO_FEATURE_",
-            "CARGO_CFG_",
-            "CARGO_PKG_",
-            "CARGO_MANIFEST_",
-        ]
-        .iter()
-        .any(|p| name.starts_with(p))
-        {
-            cargo.env_remove(name);
-        }
-    }
-    Ok(cargo)
-}
-
-/// Compiler flags of the runtime. They replace those of the outer build, which may be for this machine's processor
-/// only or instrumented, and take the paths of this machine out of panic messages.
-fn flags(source: &Path) -> String {
-    let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| {
-        let user = env::var_os("HOME").or_else(|| env::var_os("USERPROFILE"))?;
-        Some(Path::new(&user).join(".cargo"))
-    });
-    let remap = |from: &Path, to: &str| format!("--remap-path-prefix={}={to}", from.display());
-    let mut flags = vec![remap(source, "aerodeck")];
-    if let Some(home) = home {
-        flags.push(remap(&home, "cargo"));
-        // the last match wins: crates lose the name of the registry they came from
-        let registries = fs::read_dir(home.join("registry").join("src"));
-        for registry in registries.into_iter().flatten().flatten() {
-            flags.push(remap(&registry.path(), "crates"));
-        }
-    }
-    flags.join("\u{1f}")
 }
 
 fn variable(name: &str) -> Result<String, String> {

@@ -35,11 +35,11 @@ OLD_GLIBC = "2.17"
 TOOLS = ["ziglang==0.17.1", "cargo-zigbuild==0.24.0", "lief==1.0.0"]
 # Rust target: file that cargo makes, ending, folders below binaries/
 TARGETS = {
-    "x86_64-unknown-linux-gnu": ("libaerodeck_unit.so", "so", ["linux64"]),
-    "aarch64-unknown-linux-gnu": ("libaerodeck_unit.so", "so", ["aarch64-linux"]),
-    "x86_64-pc-windows-gnu": ("aerodeck_unit.dll", "dll", ["win64"]),
-    "x86_64-apple-darwin": ("libaerodeck_unit.dylib", "dylib", ["darwin64"]),
-    "aarch64-apple-darwin": ("libaerodeck_unit.dylib", "dylib", ["aarch64-darwin"]),
+    "x86_64-unknown-linux-gnu": ("libaerodeck_section.so", "so", ["linux64"]),
+    "aarch64-unknown-linux-gnu": ("libaerodeck_section.so", "so", ["aarch64-linux"]),
+    "x86_64-pc-windows-gnu": ("aerodeck_section.dll", "dll", ["win64"]),
+    "x86_64-apple-darwin": ("libaerodeck_section.dylib", "dylib", ["darwin64"]),
+    "aarch64-apple-darwin": ("libaerodeck_section.dylib", "dylib", ["aarch64-darwin"]),
 }
 RECORD = "built_from.json"
 LIVE = "wasm32-unknown-unknown"  # no platform of FMI: the module that answers the sliders of reports
@@ -83,7 +83,7 @@ def tools():
 
 
 def flags(target):
-    """As build.rs: no trace of this machine in panic messages; nor in the name that a dylib calls itself."""
+    """No trace of this machine in panic messages; nor in the name that a dylib calls itself."""
     home = pathlib.Path(os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo"))
     pairs = [(ROOT, "aerodeck"), (home, "cargo")]
     sources = home / "registry" / "src"
@@ -104,9 +104,9 @@ def build(target, zig):
     environment = dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(target))
     if shutil.which(linker):
         environment[f"CARGO_TARGET_{target.upper().replace('-', '_')}_LINKER"] = linker
-    run(*tool, "--locked", "--package", "aerodeck-unit", "--lib", "--crate-type", "cdylib", "--features", "runtime",
-        "--profile", "fmu", "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
-    return target_dir / target / "fmu" / file
+    run(*tool, "--locked", "--package", "aerodeck-runtime", "--lib", "--crate-type", "cdylib",
+        "--release", "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
+    return target_dir / target / "release" / file
 
 
 def build_live(out):
@@ -139,7 +139,7 @@ def digest(targets):
     """Of all that the runtimes are made from: sources, locked dependencies, compiler, this script, and what is to be built."""
     found = hashlib.sha256(text_of("rustc", "-vV").encode())
     found.update(repr((sorted(targets), TOOLS)).encode())
-    crates = [p for name in ("core", "unit", "live") for p in (ROOT / "crates" / name).rglob("*") if p.is_file()]
+    crates = [p for name in ("core", "unit", "runtime", "live") for p in (ROOT / "crates" / name).rglob("*") if p.is_file()]
     scripts = [p for p in pathlib.Path(__file__).parent.iterdir() if p.suffix in (".py", ".c")]
     for file in sorted([ROOT / "Cargo.toml", ROOT / "Cargo.lock", *crates, *scripts]):
         found.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes())

@@ -27,7 +27,7 @@ def cargo(*arguments):
 def linked():
     """(name, version) of every crate of the runtime but build scripts, procedural macros and aerodeck."""
     tree = cargo(
-        "tree", "--package", "aerodeck-unit", "--edges", "normal,no-proc-macro", "--target", TARGET,
+        "tree", "--package", "aerodeck-runtime", "--edges", "normal,no-proc-macro", "--target", TARGET,
         "--prefix", "none", "--format", "{p}", "--no-dedupe",
     )
     crates = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}

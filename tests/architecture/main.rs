@@ -23,6 +23,7 @@ const SOURCES: &[&str] = &[
     "crates/fmu-host/src",
     "crates/lab/src",
     "crates/live/src",
+    "crates/runtime/src",
     "crates/unit/src",
 ];
 

@@ -15,6 +15,7 @@ pub mod plausibility;
 pub mod response;
 pub mod section;
 pub mod state_space;
+pub mod threads;
 pub mod trained_model;
 pub mod units;
 pub mod verdict;

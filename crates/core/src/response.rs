@@ -7,6 +7,7 @@
 //! the present dynamic pressure.
 
 mod gusts;
+mod lanes;
 mod linked;
 mod matrix_polynomial;
 mod packed;

@@ -20,6 +20,7 @@ pub use harmonics::plateau;
 pub use harmonics::{HarmonicFit, fit_harmonics, fit_sine, refine_frequency};
 pub(crate) use resample::delayed;
 pub use resample::resampled;
+pub use rustfft::num_complex::Complex64;
 pub use samples::mean_and_deviation;
 pub use samples::random_stream;
 pub use samples::{clipped_stretches, extremes, largest_about_mean, mean, robust_deviation};

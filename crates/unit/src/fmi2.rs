@@ -26,13 +26,3 @@ pub use exports_model_exchange::*;
 pub use exports_state::*;
 pub use exports_stepping::*;
 pub use exports_variables::*;
-
-// glibc 2.35 gave `hypot` a new version of its symbol for the same numbers; the runtime asks for the first one, so that a
-// native build runs wherever the standard library does
-#[cfg(all(
-    feature = "runtime",
-    target_os = "linux",
-    target_arch = "x86_64",
-    target_env = "gnu"
-))]
-std::arch::global_asm!(".symver hypot, hypot@GLIBC_2.2.5");

@@ -2,7 +2,7 @@
 //! version-neutral life cycle ([`instance`], [`lifecycle`]), what is read at instantiation ([`resources`]), and the C interfaces of
 //! FMI 2.0 and 3.0 ([`fmi2`], [`fmi3`]).
 //!
-//! With the feature `runtime` this crate is the shared library of an FMU.
+//! `aerodeck-runtime` makes the shared library of an FMU of it.
 #![deny(unsafe_code)]
 #![cfg_attr(not(test), deny(clippy::undocumented_unsafe_blocks))]
 

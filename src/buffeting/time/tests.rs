@@ -8,8 +8,8 @@ use crate::buffeting::{
 };
 use crate::files::coefficients::embedded;
 use crate::section::{SectionModel, Structure, Translation};
+use crate::signal::Fourier;
 use nalgebra::{Complex, DVector};
-use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 fn turbulence(admittance: Admittance) -> Turbulence {
@@ -59,15 +59,11 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
     let (stepped, _) = mean_squares(problem, &section, speed, &grid, 5).unwrap();
     let sample = synthesise(problem, speed, grid.step_s, grid.samples, 5).unwrap();
     let n = problem.structure.dofs.len();
-    let forward = FftPlanner::new().plan_fft_forward(grid.samples);
+    let forward = Fourier::new(grid.samples);
     let spectra: Vec<Vec<Complex<f64>>> = sample
         .forces
         .iter()
-        .map(|force| {
-            let mut x: Vec<Complex<f64>> = force.iter().map(|f| (*f).into()).collect();
-            forward.process(&mut x);
-            x
-        })
+        .map(|force| forward.spectrum(force.iter().copied()))
         .collect();
     let mut expected = vec![0.0; n];
     let coefficient = |i: usize, k: usize| spectra[i][k];

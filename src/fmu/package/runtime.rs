@@ -5,6 +5,7 @@ use crate::fmu::identity::MODEL_IDENTIFIER;
 use crate::fmu::standard::FmiVersion;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// Environment variable that names a folder of runtimes for further platforms, laid out as in an FMU:
 /// `linux64/aerodeck_section.so`, `win64/aerodeck_section.dll`, `darwin64/aerodeck_section.dylib`,
@@ -37,6 +38,35 @@ const ARM_LINUX: &str = "arm-linux";
 /// The runtimes that were given to the build of this program, or made by it: platform and library.
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/runtimes.rs"));
 
+/// Folders of the machine that built this program, which places of panics begin with.
+const BUILT_IN: &[&str] = include!(concat!(env!("OUT_DIR"), "/built_in.rs"));
+/// What they begin with in an FMU, as long as the folder by slashes behind it.
+const CRATES: &[u8] = b"crates";
+
+/// The embedded runtimes as they travel: without a word of where they were built.
+static RUNTIMES: LazyLock<Vec<(&str, Vec<u8>)>> = LazyLock::new(|| {
+    let runtimes = EMBEDDED.iter().filter(|(platform, _)| *platform != LIVE);
+    runtimes.map(|(p, bytes)| (*p, anonymous(bytes))).collect()
+});
+
+fn anonymous(library: &[u8]) -> Vec<u8> {
+    let mut library = library.to_vec();
+    let folders = BUILT_IN.iter().map(|folder| folder.as_bytes());
+    for folder in folders.filter(|folder| folder.len() > CRATES.len()) {
+        let mut at = 0;
+        while let Some(next) = library[at..].iter().position(|b| *b == folder[0]) {
+            at += next;
+            if library[at..].starts_with(folder) {
+                let place = &mut library[at..at + folder.len()];
+                place.fill(b'/');
+                place[..CRATES.len()].copy_from_slice(CRATES);
+            }
+            at += 1;
+        }
+    }
+    library
+}
+
 /// A runtime binary for one platform.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Runtime {
@@ -57,7 +87,7 @@ impl Runtime {
     /// [`Error::Input`] when the program was built without (under an interpreter of Rust code).
     pub fn embedded() -> Result<Self> {
         let here = env!("AERODECK_RUNTIME_PLATFORM");
-        let own = EMBEDDED.iter().find(|(platform, _)| *platform == here);
+        let own = RUNTIMES.iter().find(|(platform, _)| *platform == here);
         Self::new(here, Cow::Borrowed(own.map_or(&[], |(_, bytes)| bytes)))
     }
 
@@ -72,8 +102,8 @@ impl Runtime {
             Some(folder) => Self::in_folder(Path::new(&folder))?,
             None => Vec::new(),
         };
-        for (platform, bytes) in EMBEDDED {
-            if *platform != LIVE && all.iter().all(|r| r.platform != *platform) {
+        for (platform, bytes) in RUNTIMES.iter() {
+            if all.iter().all(|r| r.platform != *platform) {
                 all.push(Self::new(platform, Cow::Borrowed(bytes))?);
             }
         }

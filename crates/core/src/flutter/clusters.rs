@@ -3,10 +3,9 @@
 
 use super::following::{MIN_ASSURANCE, Mode, assurance};
 use super::modal_characteristic::AtSpeed;
+use crate::threads;
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 
 type Complex64 = Complex<f64>;
 type Shape = DVector<Complex64>;
@@ -50,15 +49,14 @@ fn each_alone(
     predicted: &[Complex64],
     before: &[Mode],
 ) -> Vec<Option<Root>> {
-    let alone = |i: usize| {
+    let alone = |i: &usize| {
+        let i = *i;
         let old = &before[i].shape;
         let root = problem.solve(predicted[i], old, Some(apart(predicted, i)));
         root.filter(|(_, shape)| assurance(shape, old) >= MIN_ASSURANCE)
     };
-    #[cfg(feature = "parallel")]
-    return (0..before.len()).into_par_iter().map(alone).collect();
-    #[cfg(not(feature = "parallel"))]
-    (0..before.len()).map(alone).collect()
+    let all: Vec<usize> = (0..before.len()).collect();
+    threads::each(&all, true, alone)
 }
 
 /// How far an eigenvalue is from the nearest of the others.

@@ -12,10 +12,9 @@ use super::still_air::{coupled_modes, is_coupled};
 use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{ValueAt, eigenvalues, eigenvector, first_order, root};
+use crate::threads;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A step is halved until every mode changes little, at most this many times.
@@ -176,14 +175,8 @@ impl StructureInWind<'_> {
         modes: &[Mode],
         find: impl Fn(&Mode) -> Result<Option<T>> + Send + Sync,
     ) -> Result<Vec<T>> {
-        #[cfg(feature = "parallel")]
-        if self.structure.is_modal() {
-            return modes
-                .par_iter()
-                .filter_map(|m| find(m).transpose())
-                .collect();
-        }
-        modes.iter().filter_map(|m| find(m).transpose()).collect()
+        let found = threads::each(modes, self.structure.is_modal(), find);
+        found.into_iter().filter_map(Result::transpose).collect()
     }
 
     /// The modes in still air; an undamped one counts as damped, so that it can lose its damping.

@@ -11,10 +11,9 @@ use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::state_space::{boundary, golden_section};
+use crate::threads;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
@@ -30,7 +29,6 @@ const EDGE_TOLERANCE: f64 = 1e-11;
 /// Relative distance from a critical speed, known to rounding, at which both sides of it are looked at.
 const BESIDE: f64 = 1e-7;
 /// States up to which one thread is faster than sharing the speeds among several.
-#[cfg(feature = "parallel")]
 const ALONE: usize = 40;
 /// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
 const PEAK_STEPS: usize = 24;
@@ -73,13 +71,8 @@ fn shared<T: Sync, U: Send>(
     states: usize,
     find: impl Fn(&T) -> Result<U> + Send + Sync,
 ) -> Result<Vec<U>> {
-    #[cfg(feature = "parallel")]
-    if states > ALONE {
-        return of.par_iter().map(find).collect();
-    }
-    // a program with one thread has no choice
-    let _ = states;
-    of.iter().map(find).collect()
+    let found = threads::each(of, states > ALONE, find);
+    found.into_iter().collect()
 }
 
 /// The fastest growing oscillations at one speed.

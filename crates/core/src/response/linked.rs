@@ -1,6 +1,7 @@
 //! Products with matrices of which most entries are zero.
 
-use super::packed::{LANES, Packed};
+use super::lanes::{FourLanes, LANES};
+use super::packed::Packed;
 use nalgebra::DMatrix;
 
 /// A matrix of which most entries are zero, row by row.
@@ -84,12 +85,12 @@ impl Linked {
     }
 
     #[inline(always)]
-    pub(super) fn set(&self, v: &[f64], y: &mut [f64]) {
+    pub(super) fn set<S: FourLanes>(&self, simd: S, v: &[f64], y: &mut [f64]) {
         match self {
-            Self::Few(matrix) => matrix.set(v, y),
+            Self::Few(matrix) => matrix.set(simd, v, y),
             Self::Many(full, linked) => {
                 let (first, rest) = y.split_at_mut(full.rows);
-                full.set(v, first);
+                full.set(simd, v, first);
                 rest.fill(0.0);
                 linked.add(|j| v[j], rest);
             }

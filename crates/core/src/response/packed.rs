@@ -1,13 +1,12 @@
 //! A product of matrix and vector for small matrices that are used often.
 
+use super::lanes::{FourLanes, LANES, OnLanes, on_lanes, with_vectors};
 use nalgebra::DMatrix;
+use pulp::{Simd, f64x4};
 
 /// States smaller than this have died out. Numbers below 1e-308 are computed thirty times slower; products with the
 /// coefficients of a step stay above.
 const DIED_OUT: f64 = 1e-250;
-
-/// Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
-pub(super) const LANES: usize = 4;
 
 /// Groups whose sums run at once: as many as the registers of a processor hold, so that every number of the vector is
 /// fetched once for all of them.
@@ -86,10 +85,10 @@ impl Packed {
         ]
     }
 
-    /// [`apply`] within what already runs on the widest vectors.
+    /// [`apply`] within what already runs on vectors.
     #[inline(always)]
-    pub(super) fn set(&self, v: &[f64], y: &mut [f64]) {
-        product(self, v, y, |sums| sums);
+    pub(super) fn set<S: FourLanes>(&self, simd: S, v: &[f64], y: &mut [f64]) {
+        product(simd, self, v, y, |sums| sums);
     }
 }
 
@@ -99,36 +98,17 @@ const PARTIAL_SUMS: usize = 4;
 /// `y = W v` over the first `v.len()` columns, which may be fewer than `W` has.
 ///
 /// Lanes and partial sums are added in one order on every processor: whatever vectors it has, the bits are the same.
-// `inline` here and in what calls it: compiled with the crate of the unit, whose optimisation at link time keeps the sums in registers.
-// Compiled with this one they lie on the stack, and a step takes 1300 instructions instead of 600.
 #[inline]
 pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
-    with_vectors(Apply { w, v, y });
+    on_lanes(Apply { w, v, y });
 }
 
 /// [`apply`] to a state: what has died out becomes zero; returns whether all of the new state is finite.
 #[inline]
 pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
-    with_vectors(Advance(Apply { w, v, y }))
+    on_lanes(Advance(Apply { w, v, y }))
 }
 
-/// Runs a product on vectors of four numbers where this processor has them: wider ones are no faster for so few.
-#[inline(always)]
-pub(super) fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(vectors) = pulp::x86::V3::try_new() {
-        return vectors.vectorize(product);
-    }
-    with_baseline(product)
-}
-
-/// Apart, so that it takes no room where it is not used.
-#[inline(never)]
-fn with_baseline<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
-    product.call()
-}
-
-/// A product that is compiled for each set of vectors a processor may have.
 struct Apply<'a> {
     w: &'a Packed,
     v: &'a [f64],
@@ -137,72 +117,77 @@ struct Apply<'a> {
 
 struct Advance<'a>(Apply<'a>);
 
-impl pulp::NullaryFnOnce for Apply<'_> {
+impl OnLanes for Apply<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        self.w.set(self.v, self.y);
+    fn run<S: FourLanes>(self, simd: S) {
+        self.w.set(simd, self.v, self.y);
     }
 }
 
-impl pulp::NullaryFnOnce for Advance<'_> {
+impl OnLanes for Advance<'_> {
     type Output = bool;
 
     #[inline(always)]
-    fn call(self) -> bool {
+    fn run<S: FourLanes>(self, simd: S) -> bool {
         let Apply { w, v, y } = self.0;
-        let mut spoilt = [0.0; LANES];
-        product(w, v, y, |sums| {
-            std::array::from_fn(|lane| settle(sums[lane], &mut spoilt[lane]))
+        let (zero, least) = (simd.splat_f64s(0.0), simd.splat_f64s(DIED_OUT));
+        let mut spoilt = zero;
+        product(simd, w, v, y, |x| {
+            spoilt = simd.add_f64s(spoilt, simd.mul_f64s(zero, x));
+            let died_out = simd.less_than_f64s(simd.abs_f64s(x), least);
+            simd.select_f64s(died_out, zero, x)
         });
-        spoilt == [0.0; LANES]
+        pulp::cast::<_, [f64; LANES]>(spoilt) == [0.0; LANES]
     }
 }
 
 /// `y = W v`, each group of rows through `finish`.
 #[inline(always)]
-fn product(
+fn product<S: FourLanes>(
+    simd: S,
     w: &Packed,
     v: &[f64],
     y: &mut [f64],
-    mut finish: impl FnMut([f64; LANES]) -> [f64; LANES],
+    mut finish: impl FnMut(f64x4) -> f64x4,
 ) {
     let (mut blocks, mut y) = (w.blocks.as_slice(), &mut y[..w.rows]);
     while y.len() > 2 * LANES {
         let (own, others) = blocks.split_at(w.columns);
         let groups = if v.len() > FEW_COLUMNS {
-            one_by_one(&own[..v.len()], v)
+            one_by_one(simd, &own[..v.len()], v)
         } else {
-            sums(&own[..v.len()], v)
+            sums(simd, &own[..v.len()], v)
         };
-        let groups = groups.map(&mut finish);
-        (blocks, y) = (others, write(y, groups));
+        (blocks, y) = (others, write(y, groups, &mut finish));
     }
     if y.len() > LANES {
-        write(
-            y,
-            sums(&w.rest.as_chunks::<2>().0[..v.len()], v).map(finish),
-        );
+        let columns = &w.rest.as_chunks::<2>().0[..v.len()];
+        write(y, sums(simd, columns, v), &mut finish);
     } else if !y.is_empty() {
-        write(
-            y,
-            sums(&w.rest.as_chunks::<1>().0[..v.len()], v).map(finish),
-        );
+        let columns = &w.rest.as_chunks::<1>().0[..v.len()];
+        write(y, sums(simd, columns, v), &mut finish);
     }
 }
 
-/// Writes groups of rows of which the last may hold more; returns the rows behind them.
+/// Finishes and writes groups of rows of which the last may hold more; returns the rows behind them.
 #[inline(always)]
-fn write<const N: usize>(rows: &mut [f64], groups: [[f64; LANES]; N]) -> &mut [f64] {
+fn write<'a, const N: usize>(
+    rows: &'a mut [f64],
+    groups: [f64x4; N],
+    finish: &mut impl FnMut(f64x4) -> f64x4,
+) -> &'a mut [f64] {
     if rows.len() >= N * LANES {
         let (rows, behind) = rows.split_at_mut(N * LANES);
-        for (rows, group) in rows.as_chunks_mut().0.iter_mut().zip(groups) {
-            *rows = group;
+        let rows = rows.as_chunks_mut::<LANES>().0;
+        for group in 0..N {
+            rows[group] = pulp::cast(finish(groups[group]));
         }
         return behind;
     }
     for (rows, group) in rows.chunks_mut(LANES).zip(groups) {
+        let group: [f64; LANES] = pulp::cast(finish(group));
         // lane by lane: so few are no copy of memory
         for (lane, sum) in group.into_iter().enumerate() {
             if let Some(row) = rows.get_mut(lane) {
@@ -215,73 +200,95 @@ fn write<const N: usize>(rows: &mut [f64], groups: [[f64; LANES]; N]) -> &mut [f
 
 /// The sums of `N` groups of rows.
 #[inline(always)]
-fn sums<const N: usize>(columns: &[[[f64; LANES]; N]], v: &[f64]) -> [[f64; LANES]; N] {
-    let mut sums = [[[0.0; LANES]; N]; PARTIAL_SUMS];
+fn sums<S: FourLanes, const N: usize>(
+    simd: S,
+    columns: &[[[f64; LANES]; N]],
+    v: &[f64],
+) -> [f64x4; N] {
+    let mut sums = [[simd.splat_f64s(0.0); N]; PARTIAL_SUMS];
     let (four_columns, last) = columns.as_chunks::<PARTIAL_SUMS>();
     let (fours, rest) = v.as_chunks::<PARTIAL_SUMS>();
     for (four, x) in four_columns.iter().zip(fours) {
         for part in 0..PARTIAL_SUMS {
-            add(&mut sums[part], &four[part], x[part]);
+            add(simd, &mut sums[part], &four[part], x[part]);
         }
     }
-    for (sum, (column, x)) in sums.iter_mut().zip(last.iter().zip(rest)) {
-        add(sum, column, *x);
+    // one after the other, not by a number that only the run knows: sums stay in registers
+    if let ([column, ..], [x, ..]) = (last, rest) {
+        add(simd, &mut sums[0], column, *x);
     }
-    let [a, b, c, d] = sums;
-    std::array::from_fn(|group| {
-        let [a, b, c, d] = [a[group], b[group], c[group], d[group]];
-        std::array::from_fn(|lane| (a[lane] + b[lane]) + (c[lane] + d[lane]))
-    })
+    if let ([_, column, ..], [_, x, ..]) = (last, rest) {
+        add(simd, &mut sums[1], column, *x);
+    }
+    if let ([_, _, column, ..], [_, _, x, ..]) = (last, rest) {
+        add(simd, &mut sums[2], column, *x);
+    }
+    let [mut a, b, c, d] = sums;
+    for group in 0..N {
+        let halves = [(a[group], b[group]), (c[group], d[group])];
+        let [ab, cd] = halves.map(|(x, y)| simd.add_f64s(x, y));
+        a[group] = simd.add_f64s(ab, cd);
+    }
+    a
 }
 
-/// The same, one group after the other, in a function of its own: compiled into its callers, so many sums may lose their vectors.
+/// The same, one group after the other, in a function of its own: so many columns wait for the matrix.
 #[inline(never)]
-fn one_by_one<const N: usize>(columns: &[[[f64; LANES]; N]], v: &[f64]) -> [[f64; LANES]; N] {
-    with_vectors(OneByOne { columns, v })
+fn one_by_one<S: FourLanes, const N: usize>(
+    simd: S,
+    columns: &[[[f64; LANES]; N]],
+    v: &[f64],
+) -> [f64x4; N] {
+    simd.vectorize(OneByOne { simd, columns, v })
 }
 
-struct OneByOne<'a, const N: usize> {
+struct OneByOne<'a, S, const N: usize> {
+    simd: S,
     columns: &'a [[[f64; LANES]; N]],
     v: &'a [f64],
 }
 
-impl<const N: usize> pulp::NullaryFnOnce for OneByOne<'_, N> {
-    type Output = [[f64; LANES]; N];
+impl<S: FourLanes, const N: usize> pulp::WithSimd for OneByOne<'_, S, N> {
+    type Output = [f64x4; N];
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
-        let mut all = [[0.0; LANES]; N];
-        for (group, all) in all.iter_mut().enumerate() {
-            let mut sums = [[0.0; LANES]; PARTIAL_SUMS];
+    fn with_simd<Any: Simd>(self, _: Any) -> Self::Output {
+        let simd = self.simd;
+        let mut all = [simd.splat_f64s(0.0); N];
+        for group in 0..N {
+            let mut sums = [simd.splat_f64s(0.0); PARTIAL_SUMS];
             let (four_columns, last) = self.columns.as_chunks::<PARTIAL_SUMS>();
             let (fours, rest) = self.v.as_chunks::<PARTIAL_SUMS>();
+            let mut grow = |part: usize, column: &[[f64; LANES]; N], x: f64| {
+                let product = simd.mul_f64s(pulp::cast(column[group]), simd.splat_f64s(x));
+                sums[part] = simd.add_f64s(sums[part], product);
+            };
             for (four, x) in four_columns.iter().zip(fours) {
                 for part in 0..PARTIAL_SUMS {
-                    for lane in 0..LANES {
-                        sums[part][lane] += four[part][group][lane] * x[part];
-                    }
+                    grow(part, &four[part], x[part]);
                 }
             }
-            for (sum, (column, x)) in sums.iter_mut().zip(last.iter().zip(rest)) {
-                for lane in 0..LANES {
-                    sum[lane] += column[group][lane] * x;
-                }
+            for (part, (column, x)) in last.iter().zip(rest).enumerate() {
+                grow(part, column, *x);
             }
             let [a, b, c, d] = sums;
-            for lane in 0..LANES {
-                all[lane] = (a[lane] + b[lane]) + (c[lane] + d[lane]);
-            }
+            all[group] = simd.add_f64s(simd.add_f64s(a, b), simd.add_f64s(c, d));
         }
         all
     }
 }
 
 #[inline(always)]
-fn add<const N: usize>(sum: &mut [[f64; LANES]; N], column: &[[f64; LANES]; N], x: f64) {
-    for (sum, column) in sum.iter_mut().zip(column) {
-        for lane in 0..LANES {
-            sum[lane] += column[lane] * x;
-        }
+fn add<S: FourLanes, const N: usize>(
+    simd: S,
+    sum: &mut [f64x4; N],
+    column: &[[f64; LANES]; N],
+    x: f64,
+) {
+    let x = simd.splat_f64s(x);
+    for group in 0..N {
+        let product = simd.mul_f64s(pulp::cast(column[group]), x);
+        sum[group] = simd.add_f64s(sum[group], product);
     }
 }
 
@@ -327,6 +334,7 @@ pub(super) fn largest_of(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::response::lanes::on_plain_numbers;
 
     /// One row of `W v` in the order of the partial sums.
     fn row(w: &DMatrix<f64>, i: usize, v: &[f64]) -> f64 {
@@ -352,7 +360,7 @@ mod tests {
                 let (mut wide, mut plain) = (vec![9.0; rows + 1], vec![9.0; rows + 1]);
                 apply(&packed, v, &mut wide);
                 let (w, y) = (&packed, &mut plain[..]);
-                with_baseline(Apply { w, v, y });
+                on_plain_numbers(Apply { w, v, y });
                 for y in [&wide, &plain] {
                     assert_eq!(&y[..rows], expected, "{rows} by {columns}");
                     assert_eq!(y[rows], 9.0, "{rows} by {columns}");

@@ -13,7 +13,7 @@ mod filters;
 mod flow;
 mod instant;
 
-use super::packed::LANES;
+use super::lanes::LANES;
 use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::section::Dof;

@@ -14,8 +14,9 @@
 //! to the system and their force to `w`.
 
 use super::gusts::{Gusts, SeriesPart};
+use super::lanes::{FourLanes, OnLanes, on_lanes};
 use super::linked::Linked;
-use super::packed::{Packed, largest_of, with_vectors};
+use super::packed::{Packed, largest_of};
 use super::values::GustCourse;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -192,7 +193,7 @@ impl PowerSeries {
         let tau = step / parts;
         for i in 0..parts as usize {
             let start = i as f64 * tau;
-            with_vectors(SeriesTerms(self, drive, [start, tau], acting));
+            on_lanes(SeriesTerms(self, drive, [start, tau], acting));
         }
         let sum = &self.work.sum;
         if !sum.iter().chain(&self.work.gusts).all(|x| x.is_finite()) {
@@ -211,7 +212,13 @@ impl PowerSeries {
 
     /// One part from the time `start` on.
     #[inline(always)]
-    fn part(&mut self, drive: &Drive<'_>, start: f64, tau: f64, gusts: bool) {
+    fn part<S: FourLanes>(
+        &mut self,
+        simd: S,
+        drive: &Drive<'_>,
+        [start, tau]: [f64; 2],
+        gusts: bool,
+    ) {
         // rounding must not turn a wind that comes to rest into a negative one
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
@@ -221,7 +228,7 @@ impl PowerSeries {
             wind,
             change,
         };
-        self.accelerations(drive, start, tau);
+        self.accelerations(simd, drive, start, tau);
         let norm = self.norm(wind + change.abs(), tau);
         let work = &mut self.work;
         let mut gusts = self.gusts.as_mut().filter(|_| gusts);
@@ -237,12 +244,13 @@ impl PowerSeries {
                 work.aerodynamic.rotate_right(1);
             }
             let (motion, filtered) = (&work.term[..2 * self.dofs], &work.term[self.dofs..]);
-            self.structure.set(motion, &mut work.structure[0]);
-            self.aerodynamic.set(filtered, &mut work.aerodynamic[0]);
+            self.structure.set(simd, motion, &mut work.structure[0]);
+            self.aerodynamic
+                .set(simd, filtered, &mut work.aerodynamic[0]);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
                 let force = gusts.next(k, part, drive.gust, &mut work.gusts);
-                self.force.set(force, &mut work.by_gusts);
+                self.force.set(simd, force, &mut work.by_gusts);
                 pushed = tau * largest_of(&work.by_gusts);
             }
             work.next_term(self.dofs, part, self.rate, k);
@@ -262,7 +270,7 @@ impl PowerSeries {
 
     /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
     #[inline(always)]
-    fn accelerations(&mut self, drive: &Drive<'_>, start: f64, tau: f64) {
+    fn accelerations<S: FourLanes>(&mut self, simd: S, drive: &Drive<'_>, start: f64, tau: f64) {
         let work = &mut self.work;
         for (power, push) in work.push.iter_mut().enumerate() {
             for (j, force) in work.force.iter_mut().enumerate() {
@@ -273,7 +281,7 @@ impl PowerSeries {
                     _ => tau * tau * w2,
                 };
             }
-            self.force.set(&work.force, push);
+            self.force.set(simd, &work.force, push);
         }
     }
 }
@@ -281,13 +289,13 @@ impl PowerSeries {
 /// A part, compiled for each set of vectors a processor may have: a closure would not always be.
 struct SeriesTerms<'a, 'b>(&'a mut PowerSeries, &'a Drive<'b>, [f64; 2], bool);
 
-impl pulp::NullaryFnOnce for SeriesTerms<'_, '_> {
+impl OnLanes for SeriesTerms<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        let Self(series, drive, [start, tau], gusts) = self;
-        series.part(drive, start, tau, gusts);
+    fn run<S: FourLanes>(self, simd: S) {
+        let Self(series, drive, from, gusts) = self;
+        series.part(simd, drive, from, gusts);
     }
 }
 

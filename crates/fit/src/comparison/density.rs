@@ -8,8 +8,7 @@
 
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result};
-use crate::signal::{Fourier, extremes, mean_and_deviation};
-use rustfft::num_complex::Complex64;
+use crate::signal::{Complex64, Fourier, extremes, mean_and_deviation};
 use serde::Serialize;
 use std::f64::consts::PI;
 

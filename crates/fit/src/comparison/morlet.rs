@@ -1,9 +1,8 @@
 //! Continuous Morlet transform on chosen frequencies.
 
 use crate::error::{Error, Result, positive};
-use crate::signal::Fourier;
+use crate::signal::{Complex64, Fourier};
 use rayon::prelude::*;
-use rustfft::num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use std::ops::Range;

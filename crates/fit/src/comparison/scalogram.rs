@@ -2,8 +2,7 @@
 //! levels, one level at a time, and moments over the signals at a level.
 
 use super::morlet::{LevelGroup, RowBuffer};
-use crate::signal::mean_and_deviation;
-use rustfft::num_complex::Complex64;
+use crate::signal::{Complex64, mean_and_deviation};
 use std::f64::consts::{LN_2, LOG10_E};
 
 /// A signal and what the statistic Θ of its scalogram needs: with `s(t) = ΣS` and the mean spectrum `h = S̄`,

@@ -6,9 +6,8 @@ use super::scalogram::{Moments, Scalogram};
 use super::surrogates::{Gamma, phase_randomised};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, non_negative};
-use crate::signal::mean_and_deviation;
+use crate::signal::{Complex64, mean_and_deviation};
 use rayon::prelude::*;
-use rustfft::num_complex::Complex64;
 use serde::Serialize;
 
 /// Parameters of [`stationarity`].

@@ -1,9 +1,8 @@
 //! Stationary companions of a signal, its spectrum with random phases; and the gamma distribution of what is found of them, by
 //! maximum likelihood.
 
-use crate::signal::{Fourier, random_stream};
+use crate::signal::{Complex64, Fourier, random_stream};
 use rand::Rng;
-use rustfft::num_complex::Complex64;
 use statrs::function::gamma::checked_gamma_lr;
 use std::f64::consts::TAU;
 

@@ -1,7 +1,7 @@
 //! Full cross-correlation of two real signals, and the energies of the parts that overlap.
 
+use super::Complex64;
 use super::fourier::Fourier;
-use rustfft::num_complex::Complex64;
 
 /// `c(n) = Σ_k X₂[k+n] X₁[k]`, `|n| < N`: a positive lag means that `X₂` comes later.
 pub struct CrossCorrelation {

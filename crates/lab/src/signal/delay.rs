@@ -4,9 +4,9 @@
 //! the slope of the phase of the cross-spectrum, `arg X₂X̄₁ = −ωδ` weighted by `ω²|X₁X₂|²`, refines it: for equal signals up to
 //! noise this is the maximum-likelihood delay (Knapp & Carter 1976, IEEE Trans. ASSP 24(4), with the noise white).
 
+use super::Complex64;
 use super::correlation::{CrossCorrelation, cross_spectrum};
 use crate::error::{Error, Result};
-use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

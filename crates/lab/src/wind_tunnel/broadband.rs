@@ -220,7 +220,7 @@ impl Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rustfft::FftPlanner;
+    use crate::signal::Fourier;
 
     const TIMING: Timing = Timing {
         still_s: 8.0,
@@ -232,10 +232,7 @@ mod tests {
 
     /// Share of the power of a motion between two frequencies, Hz.
     fn power_between(motion: &[f64], low: f64, high: f64) -> f64 {
-        let mut spectrum: Vec<Complex<f64>> = motion.iter().map(|x| (*x).into()).collect();
-        FftPlanner::new()
-            .plan_fft_forward(motion.len())
-            .process(&mut spectrum);
+        let spectrum = Fourier::new(motion.len()).spectrum(motion.iter().copied());
         let half = &spectrum[..motion.len() / 2];
         let frequency = |bin: usize| 200.0 * bin as f64 / motion.len() as f64;
         let all: f64 = half.iter().map(|z| z.norm_sqr()).sum();

@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::guard::{Component, array, guarded, install_panic_hook, panic_text, shielded};
+use super::guard::{Component, array, behave_as_a_guest, guarded, panic_text, shielded};
 use super::logger::{Category, Logger};
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
@@ -38,7 +38,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     _visible: fmi2Boolean,
     loggingOn: fmi2Boolean,
 ) -> fmi2Component {
-    install_panic_hook();
+    behave_as_a_guest();
     // SAFETY: NULL or valid by the contract of the interface; everything needed later is copied
     let (functions, name, guid, location) = unsafe {
         (

@@ -4,6 +4,8 @@
 //! on. Pointers of the importer are turned into references here and nowhere else.
 
 use super::logger::{Category, Logger, c_text};
+#[cfg(test)]
+use super::tests::silence;
 use super::types::{fmi2Component, fmi2Status};
 use crate::groups::Groups;
 use crate::instance::Instance;
@@ -183,43 +185,8 @@ pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &st
     fmi2Status::fmi2Error
 }
 
-/// Silence about panics inside [`shielded`], where the library shares its process with Rust code that may panic on its
-/// own account (tests, the program). The runtime in an FMU has a panic hook to itself and needs no bookkeeping.
-#[cfg(not(feature = "runtime"))]
-mod silence {
-    use std::cell::Cell;
-    use std::panic::PanicHookInfo;
-    use std::sync::OnceLock;
-
-    thread_local! {
-        // a plain cell: a thread-local value with a destructor would keep the library loaded for ever
-        static SHIELDED: Cell<bool> = const { Cell::new(false) };
-    }
-
-    type PanicHook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
-
-    /// The panic hook that was there before ours.
-    static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
-
-    pub(super) fn install() {
-        let _ = PREVIOUS_HOOK.set(std::panic::take_hook());
-        std::panic::set_hook(Box::new(|info| {
-            if let (false, Some(previous)) = (SHIELDED.get(), PREVIOUS_HOOK.get()) {
-                previous(info);
-            }
-        }));
-    }
-
-    pub(super) fn enter() -> bool {
-        SHIELDED.replace(true)
-    }
-
-    pub(super) fn leave(outer: bool) {
-        SHIELDED.set(outer);
-    }
-}
-
-#[cfg(feature = "runtime")]
+/// Silence about panics inside [`shielded`]. An FMU has the panics of its library to itself, and needs no bookkeeping.
+#[cfg(not(test))]
 mod silence {
     pub(super) fn install() {
         std::panic::set_hook(Box::new(|_| ()));
@@ -232,11 +199,14 @@ mod silence {
     pub(super) fn leave(_: bool) {}
 }
 
-/// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
-/// would cost tens of megabytes. The hook owns nothing, so that nothing leaks when the library is unloaded.
-pub(crate) fn install_panic_hook() {
-    static INSTALLED: std::sync::Once = std::sync::Once::new();
-    INSTALLED.call_once(silence::install);
+/// The process is an importer's. Panics inside [`shielded`] are silent: they are reported through its logger, and collecting a backtrace
+/// would cost tens of megabytes. The hook owns nothing and no thread is started, so that nothing is left when the library is unloaded.
+pub(crate) fn behave_as_a_guest() {
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| {
+        silence::install();
+        aerodeck_core::threads::stay_on_the_callers();
+    });
 }
 
 /// Runs `body`; a panic in it is returned, not passed on.

@@ -10,6 +10,7 @@ mod offsets;
 mod overflow;
 mod refusals;
 mod run;
+pub(super) mod silence;
 mod state;
 mod structure_outside;
 mod torture;

@@ -3,7 +3,7 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::Fmi3Boolean;
-use crate::fmi2::guard::{Component, array, guarded, install_panic_hook, panic_text, shielded};
+use crate::fmi2::guard::{Component, array, behave_as_a_guest, guarded, panic_text, shielded};
 use crate::fmi2::logger::{Category, Logger, PlainLogger};
 use crate::fmi2::types::{
     fmi2CoSimulation, fmi2Component, fmi2ModelExchange, fmi2Status, fmi2String, fmi2Type,
@@ -29,7 +29,7 @@ unsafe fn made(
     [name, token, path]: [fmi2String; 3],
     logger: Option<Logger>,
 ) -> fmi2Component {
-    install_panic_hook();
+    behave_as_a_guest();
     let Some(logger) = logger else {
         return std::ptr::null_mut(); // without a logger there is no one to tell
     };

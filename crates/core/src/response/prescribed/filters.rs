@@ -7,8 +7,8 @@ use super::course::{COEFFICIENTS, MotionCubic};
 use super::flow::StripFlow;
 use crate::aerodynamics::{DiscreteRealization, Realization};
 use crate::error::{Error, Result};
+use crate::response::lanes::{LANES, with_vectors};
 use crate::response::linked::Sparse;
-use crate::response::packed::{LANES, with_vectors};
 use nalgebra::DMatrix;
 
 /// Largest product of time and size of the filter matrix in one Taylor series: eighteen terms reach the last digit.

@@ -7,12 +7,10 @@ use crate::identification::least_squares::BLOCK_ROWS;
 use crate::identification::own::StaticTerm;
 use crate::identification::report::StaticReport;
 use crate::section::Dof;
-use crate::signal::{mean, resampled};
+use crate::signal::{Fourier, mean, resampled};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
-use nalgebra::Complex;
 use rayon::prelude::*;
-use rustfft::FftPlanner;
 use std::f64::consts::TAU;
 
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
@@ -307,7 +305,7 @@ fn band(signals: &Signals) -> Result<Option<(f64, f64)>> {
 /// Sum of the periodograms of blocks that overlap by half, without their mean, under a Hann window; the last block is
 /// what no whole one has held with its full weight, padded with zeros.
 fn power(signals: &Signals) -> Result<Vec<f64>> {
-    let transform = FftPlanner::new().plan_fft_forward(PERIODOGRAM);
+    let transform = Fourier::new(PERIODOGRAM);
     let mut power = vec![0.0; PERIODOGRAM / 2];
     let mut take = |samples: &[f64]| {
         let mean = mean(samples);
@@ -316,10 +314,7 @@ fn power(signals: &Signals) -> Result<Vec<f64>> {
             .iter()
             .enumerate()
             .map(|(k, x)| (x - mean) * (0.5 - 0.5 * (step * k as f64).cos()));
-        let mut spectrum: Vec<Complex<f64>> = windowed.map(Complex::from).collect();
-        spectrum.resize(PERIODOGRAM, Complex::default());
-        transform.process(&mut spectrum);
-        for (power, z) in power.iter_mut().zip(&spectrum) {
+        for (power, z) in power.iter_mut().zip(transform.spectrum(windowed)) {
             *power += z.norm_sqr();
         }
     };
