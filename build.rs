@@ -2,7 +2,7 @@
 //!
 //! This script calls cargo once more, on the crate of the unit, in the profile `fmu` and a target directory of its own, and copies
 //! the library to `OUT_DIR`, from where it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain.
-//! Ready-made runtimes, also for other platforms, can be embedded instead. Where Rust has the target for WebAssembly, the module that
+//! Ready-made runtimes, also for other platforms, can be embedded instead. Where Rust has a target for WebAssembly, the module that
 //! answers the sliders of a report is built in the same way; without it reports have no sliders.
 
 use std::env;
@@ -14,8 +14,8 @@ use std::process::{Command, ExitCode};
 /// library; or a folder of them, laid out as `binaries/` of an FMU, which are embedded all.
 const READY_MADE: &str = "AERODECK_RUNTIME";
 
-/// Target of the module that answers the sliders of a report, and its folder among the runtimes.
-const WASM: (&str, &str) = ("wasm32-unknown-unknown", "wasm32");
+/// Targets of the module that answers the sliders of a report, of which one is enough, and its folder among the runtimes.
+const WASM: ([&str; 2], &str) = (["wasm32-unknown-unknown", "wasm32-wasip2"], "wasm32");
 
 /// Name of the libraries in their folders.
 const LIBRARY: &str = "aerodeck_section";
@@ -52,8 +52,10 @@ fn embed_runtimes() -> Result<(), String> {
             watch(&library)?;
             runtimes.push((here.to_owned(), library));
         }
-        if env::var_os(READY_MADE).is_none() && has_wasm()? {
-            let module = build(&source, &out, &Part::live())?;
+        let wasm = WASM.0.into_iter().find(|target| has_target(target));
+        let wanted = cfg!(feature = "sliders") && env::var_os(READY_MADE).is_none();
+        if let Some(target) = wasm.filter(|_| wanted) {
+            let module = build(&source, &out, &Part::live(target))?;
             watch(&module)?;
             runtimes.push((WASM.1.to_owned(), module));
         }
@@ -132,20 +134,21 @@ fn extension() -> &'static str {
     }
 }
 
-/// Whether Rust can build for WebAssembly here.
-fn has_wasm() -> Result<bool, String> {
-    let output = Command::new(variable("RUSTC")?)
-        .args(["--print", "target-libdir", "--target", WASM.0])
+/// Whether Rust can build for a target here.
+fn has_target(target: &str) -> bool {
+    let rustc = env::var_os("RUSTC").unwrap_or_default();
+    let output = Command::new(rustc)
+        .args(["--print", "target-libdir", "--target", target])
         .output();
     let folder = output.map(|o| String::from_utf8_lossy(&o.stdout).trim().to_owned());
-    Ok(folder.is_ok_and(|folder| Path::new(&folder).is_dir()))
+    folder.is_ok_and(|folder| Path::new(&folder).is_dir())
 }
 
 /// A library that is built beside the program.
 struct Part {
     package: &'static str,
-    features: &'static [&'static str],
-    profile: &'static str,
+    /// For cargo.
+    options: &'static [&'static str],
     triple: String,
     file: String,
 }
@@ -155,19 +158,24 @@ impl Part {
         let prefix = if extension() == "dll" { "" } else { "lib" };
         Ok(Self {
             package: "aerodeck-unit",
-            features: &["--features", "runtime"],
-            profile: "fmu",
+            options: &["--features", "runtime"],
             triple: variable("TARGET")?,
             file: format!("{prefix}aerodeck_unit.{}", extension()),
         })
     }
 
-    fn live() -> Self {
+    /// Small, and quick to build: the crates are left as they are until what the module needs of them is in one piece. With
+    /// the linker itself it is a module that a browser takes, not a component of WASI.
+    fn live(triple: &str) -> Self {
         Self {
             package: "aerodeck-live",
-            features: &[],
-            profile: "live",
-            triple: WASM.0.to_owned(),
+            options: &[
+                "--config=profile.fmu.opt-level='s'",
+                "--config=profile.fmu.package.'*'.opt-level=0",
+                "--config=profile.fmu.package.aerodeck-core.opt-level=0",
+                "--config=target.wasm32-wasip2.linker='rust-lld'",
+            ],
+            triple: triple.to_owned(),
             file: "aerodeck_live.wasm".to_owned(),
         }
     }
@@ -184,7 +192,7 @@ fn build(source: &Path, out: &Path, part: &Part) -> Result<PathBuf, String> {
             .output()
             .map_err(|e| format!("cargo cannot be started to build the FMU runtime: {e}"))?;
         if output.status.success() {
-            let folder = target_dir.join(&part.triple).join(part.profile);
+            let folder = target_dir.join(&part.triple).join("fmu");
             return Ok(folder.join(&part.file));
         }
         said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -193,9 +201,8 @@ fn build(source: &Path, out: &Path, part: &Part) -> Result<PathBuf, String> {
         }
     }
     Err(format!(
-        "{} (profile `{}`, target {}), which this program carries, could not be built in {}; cargo said:\n{said}",
+        "{} (profile `fmu`, target {}), which this program carries, could not be built in {}; cargo said:\n{said}",
         part.package,
-        part.profile,
         part.triple,
         target_dir.display()
     ))
@@ -216,8 +223,8 @@ fn nested_cargo(source: &Path, target_dir: &Path, part: &Part) -> Result<Command
     cargo
         .args(["rustc", "--package", part.package, "--lib"])
         .args(["--crate-type", "cdylib"])
-        .args(part.features)
-        .args(["--profile", part.profile])
+        .args(["--profile", "fmu"])
+        .args(part.options)
         .args(["--target", &part.triple])
         .arg("--manifest-path")
         .arg(source.join("Cargo.toml"))
