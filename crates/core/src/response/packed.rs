@@ -312,23 +312,18 @@ pub(super) fn settled(values: &mut [f64]) -> bool {
 /// Largest magnitude; what is no number counts nothing.
 #[inline(always)]
 pub(super) fn largest_of(values: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
+    let larger = |largest: f64, x: &f64| if x.abs() > largest { x.abs() } else { largest };
     let (groups, rest) = values.as_chunks::<LANES>();
-    let larger = |largest: &mut f64, x: f64| {
-        if x.abs() > *largest {
-            *largest = x.abs();
-        }
-    };
+    let mut lanes = [0.0; LANES];
     for group in groups {
-        for (largest, x) in lanes.iter_mut().zip(group) {
-            larger(largest, *x);
-        }
+        lanes = std::array::from_fn(|lane| larger(lanes[lane], &group[lane]));
     }
-    let mut largest = 0.0;
-    for x in lanes.iter().chain(rest) {
-        larger(&mut largest, *x);
-    }
-    largest
+    let largest = if groups.is_empty() {
+        0.0
+    } else {
+        lanes.iter().fold(0.0, larger)
+    };
+    rest.iter().fold(largest, larger)
 }
 
 #[cfg(test)]
