@@ -87,7 +87,8 @@ impl Filtered {
         }
     }
 
-    fn advance(&mut self, step: &LowPassStep, samples: &[f64]) {
+    /// Takes the samples of a piece; states of the instants after the first are still to come.
+    fn take(&mut self, samples: &[f64]) {
         let before = self.input[self.input.len() - 1];
         self.input.clear();
         if self.started {
@@ -100,32 +101,73 @@ impl Filtered {
         }
         self.input.extend_from_slice(samples);
         for (column, x) in self.states.iter_mut().zip(self.state) {
-            column.clear();
             column.resize(samples.len() + 1, 0.0);
             column[0] = x;
         }
-        let mut w = self.state;
-        let [s0, s1, s2, s3] = &mut self.states;
-        for (k, pair) in self.input.windows(2).enumerate() {
-            let next: [f64; ORDER] = std::array::from_fn(|m| {
-                let held = step.g0[m] * pair[0] + step.g1[m] * pair[1];
-                step.phi[m]
-                    .iter()
-                    .zip(&w)
-                    .fold(held, |sum, (p, x)| sum + p * x)
-            });
-            w = next;
-            (s0[k + 1], s1[k + 1], s2[k + 1], s3[k + 1]) = (w[0], w[1], w[2], w[3]);
-        }
-        self.state = w;
     }
 }
 
 /// Step of the low-pass.
 struct LowPassStep {
+    /// Column after column.
     phi: [[f64; ORDER]; ORDER],
     g0: [f64; ORDER],
     g1: [f64; ORDER],
+}
+
+impl LowPassStep {
+    /// The piece that all channels have taken, some channels side by side: a sample waits for the one before it.
+    fn advance(&self, channels: Vec<&mut Filtered>) {
+        let mut channels = channels.into_iter();
+        let arch = pulp::Arch::new();
+        loop {
+            match [channels.next(), channels.next(), channels.next()] {
+                [Some(a), Some(b), Some(c)] => arch.dispatch(SideBySide(self, [a, b, c])),
+                [Some(a), Some(b), None] => return arch.dispatch(SideBySide(self, [a, b])),
+                [Some(a), ..] => return arch.dispatch(SideBySide(self, [a])),
+                _ => return,
+            }
+        }
+    }
+}
+
+/// Channels that go through the low-pass together.
+struct SideBySide<'a, const N: usize>(&'a LowPassStep, [&'a mut Filtered; N]);
+
+impl<const N: usize> pulp::NullaryFnOnce for SideBySide<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(step, channels) = self;
+        let rows = channels.iter().map(|c| c.input.len()).min().unwrap_or(0);
+        let mut channels = channels.map(|c| {
+            (
+                &mut c.state,
+                &c.input[..rows],
+                c.states.each_mut().map(|s| &mut s[..rows]),
+            )
+        });
+        let mut w = channels.each_ref().map(|(state, ..)| **state);
+        for k in 1..rows {
+            for (w, (_, input, states)) in w.iter_mut().zip(&mut channels) {
+                let mut next: [f64; ORDER] =
+                    std::array::from_fn(|m| step.g0[m] * input[k - 1] + step.g1[m] * input[k]);
+                for n in 0..ORDER {
+                    for m in 0..ORDER {
+                        next[m] += step.phi[n][m] * w[n];
+                    }
+                }
+                *w = next;
+                for m in 0..ORDER {
+                    states[m][k] = next[m];
+                }
+            }
+        }
+        for ((state, ..), w) in channels.into_iter().zip(w) {
+            *state = w;
+        }
+    }
 }
 
 /// Step of the filters of one candidate behind the low-pass.
@@ -284,7 +326,7 @@ impl<'a> ContinuousColumns<'a> {
         Ok(Self {
             bases,
             low_pass: LowPassStep {
-                phi: std::array::from_fn(|m| std::array::from_fn(|n| hold.phi[(m, n)])),
+                phi: std::array::from_fn(|n| std::array::from_fn(|m| hold.phi[(m, n)])),
                 g0: std::array::from_fn(|m| hold.g0[m]),
                 g1: std::array::from_fn(|m| hold.g1[m]),
             },
@@ -357,11 +399,15 @@ impl Columns for ContinuousColumns<'_> {
                     states[j] = steps[j].rest.iter().map(|x| x * first).collect();
                 }
             }
-            self.motion[j].advance(&self.low_pass, piece.motion[j]);
+            self.motion[j].take(piece.motion[j]);
         }
         for (filter, samples) in self.force.iter_mut().zip(&piece.force) {
-            filter.advance(&self.low_pass, samples);
+            filter.take(samples);
         }
+        let motions = self.motion.iter_mut().enumerate();
+        let moving = motions.filter(|(j, _)| active.contains(j));
+        let channels = moving.map(|(_, motion)| motion).chain(&mut self.force);
+        self.low_pass.advance(channels.collect());
     }
 
     fn columns<'a>(
