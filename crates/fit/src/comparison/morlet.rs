@@ -192,7 +192,7 @@ impl LevelGroup<'_> {
     ) -> &'b [Complex64] {
         let RowBuffer { values, scratch } = buffer;
         values.resize(kernel.len(), Complex64::default());
-        pulp::Arch::new().dispatch(Weighed {
+        pulp::Arch::new().dispatch(AtLevel {
             values,
             kernel,
             spectrum,
@@ -224,13 +224,13 @@ impl LevelGroup<'_> {
 }
 
 /// A spectrum by the kernel of a level.
-struct Weighed<'a> {
+struct AtLevel<'a> {
     values: &'a mut [Complex64],
     kernel: &'a [f64],
     spectrum: &'a [Complex64],
 }
 
-impl pulp::NullaryFnOnce for Weighed<'_> {
+impl pulp::NullaryFnOnce for AtLevel<'_> {
     type Output = ();
 
     #[inline(always)]
