@@ -134,7 +134,9 @@ impl Measured<'_> {
         let (curve, found) = (self.curve, self.exponent());
         let mut findings = Vec::new();
         if curve.kind != Kind::Threads && found > curve.exponent + TOLERANCE {
-            findings.push("grows faster than its theory".to_owned());
+            let why = Some(curve.beyond).filter(|why| !why.is_empty());
+            let why = why.map_or(String::new(), |why| format!(": {why}"));
+            findings.push(format!("grows faster than its theory{why}"));
         }
         let peaks: Vec<f64> = self.points.iter().filter_map(|p| p.peak_mib).collect();
         let most = peaks.iter().copied().fold(0.0, f64::max);

@@ -16,6 +16,7 @@ mod spline;
 
 pub use flat_plate::FlatPlate;
 pub use gust::GustSeries;
+pub(crate) use gust_force::LAGS;
 pub use gust_force::{GustForce, RationalAdmittance};
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::{Lags, MinimumStateModel, RationalModel};

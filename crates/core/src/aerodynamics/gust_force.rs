@@ -22,15 +22,18 @@ pub enum RationalAdmittance {
 /// Pole `pⱼ` and weight `wⱼ` of one lag.
 pub(super) type Lag = [f64; 2];
 
+/// Lags of an admittance that has any.
+pub(crate) const LAGS: usize = 4;
+
 /// Least squares of the logarithm of the modulus over 400 values of K from 0.001 to 20, evenly spread on a logarithmic scale.
-const SEARS: [Lag; 4] = [
+const SEARS: [Lag; LAGS] = [
     [0.082_32, 0.1522],
     [0.4902, 0.4716],
     [2.415, 0.2428],
     [17.54, 0.1334],
 ];
 /// As [`SEARS`].
-const LIEPMANN: [Lag; 4] = [
+const LIEPMANN: [Lag; LAGS] = [
     [0.054_75, 0.1690],
     [0.3888, 0.4302],
     [2.156, 0.2586],

@@ -6,26 +6,25 @@
 use super::linked::Sparse;
 use super::packed::largest_of;
 use super::values::{GustCourse, Inputs, SectionState, stated};
-use crate::aerodynamics::{GustForce, RationalAdmittance};
+use crate::aerodynamics::{GustForce, LAGS, RationalAdmittance};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::section::Structure;
 use crate::state_space::StateEquation;
 use nalgebra::{DMatrix, DVector};
+use std::array;
 
 /// Gust forces `F = V Q g` with `g` the channels through their lags.
 #[derive(Debug, Clone)]
 pub(super) struct Gusts {
-    /// `Q` by the lags of all channels, n×states, one channel after the other.
-    by_lags: Sparse,
-    /// `Q` by the channels themselves where nothing lags, n×channels; otherwise empty.
-    at_once: Sparse,
+    /// `Q`, n×channels.
+    by_channel: Sparse,
     motions: usize,
     channels: usize,
     /// Whether they blow on a section, whose steps are those of its importer; on a bridge turbulence cuts them.
     pub on_section: bool,
-    /// Pole and weight of each lag.
-    lags: &'static [[f64; 2]],
+    /// Weight of each lag; of no account where nothing lags.
+    weights: [f64; LAGS],
     /// How fast each number of the state follows its gust, 1/m times the wind: the pole of its lag over the width.
     speeds: Vec<f64>,
     series: LagSeries,
@@ -87,22 +86,14 @@ impl Gusts {
 
     /// `Q` by channel; `passing`: 1/m of each.
     fn of(by_gust: &DMatrix<f64>, passing: &[f64], admittance: RationalAdmittance) -> Self {
-        let (lags, (n, channels)) = (admittance.lags(), by_gust.shape());
+        let (lags, (motions, channels)) = (admittance.lags(), by_gust.shape());
         let of_channel = |p: &f64| lags.iter().map(|[pole, _]| pole * p).collect::<Vec<_>>();
-        let count = lags.len();
-        let by_lags = DMatrix::from_fn(n, channels * count, |i, g| {
-            by_gust[(i, g / count)] * lags[g % count][1]
-        });
-        let none = DMatrix::zeros(n, 0);
-        // the weights of lags sum to one
-        let at_once = if count == 0 { by_gust } else { &none };
         Self {
-            by_lags: Sparse::of(&by_lags),
-            at_once: Sparse::of(at_once),
-            motions: n,
+            by_channel: Sparse::of(by_gust),
+            motions,
             channels,
             on_section: false,
-            lags,
+            weights: array::from_fn(|lag| lags.get(lag).map_or(0.0, |[_, weight]| *weight)),
             speeds: passing.iter().flat_map(of_channel).collect(),
             series: LagSeries::default(),
         }
@@ -122,14 +113,14 @@ impl Gusts {
     #[inline(always)]
     pub(super) fn force_per_wind(&self, gust: &[f64], lagging: &[f64], force: &mut [f64]) {
         force.fill(0.0);
-        self.at_once.add(|j| stated(gust, j), force);
-        self.by_lags.add(|i| lagging[i], force);
+        let gust = |j| stated(gust, j);
+        add_force(&self.by_channel, self.weights, gust, lagging, force);
     }
 
     /// Rates of the lagging gusts per 1 m/s of wind.
     pub(super) fn rates_per_wind(&self, gust: &[f64], lagging: &[f64], rates: &mut [f64]) {
         for (i, (rate, speed)) in rates.iter_mut().zip(&self.speeds).enumerate() {
-            *rate = speed * (stated(gust, i / self.lags.len()) - lagging[i]);
+            *rate = speed * (stated(gust, i / LAGS) - lagging[i]);
         }
     }
 
@@ -213,25 +204,26 @@ impl Gusts {
             s.largest = s.largest.max(largest_of(&s.gusts));
         }
         s.felt.swap(0, 1);
-        let [felt, before] = &mut s.felt;
-        felt.fill(0.0);
-        self.at_once.add(|j| s.gusts[j], felt);
-        self.by_lags.add(|i| s.term[i], felt);
+        s.felt[0].fill(0.0);
+        add_force(
+            &self.by_channel,
+            self.weights,
+            |j| s.gusts[j],
+            &s.term,
+            &mut s.felt[0],
+        );
+        let [felt, before] = &s.felt;
         for (force, (felt, before)) in s.force.iter_mut().zip(felt.iter().zip(before)) {
-            *force = wind * felt + change * *before;
+            *force = wind * felt + change * before;
         }
         let factor = part.tau / (k + 1) as f64;
-        let count = self.lags.len().max(1);
-        let lags = s.term.chunks_mut(count).zip(s.lacking.chunks_mut(count));
-        let places = sum.chunks_mut(count).zip(self.speeds.chunks(count));
+        let lags = lanes(&mut s.term).iter_mut().zip(lanes(&mut s.lacking));
+        let places = lanes(sum).iter_mut().zip(self.speeds.as_chunks::<LAGS>().0);
         for (gust, ((term, lacking), (sum, speed))) in s.gusts.iter().zip(lags.zip(places)) {
-            let each = term.iter_mut().zip(lacking).zip(sum.iter_mut().zip(speed));
-            for ((term, lacking), (sum, speed)) in each {
-                let now = gust - *term;
-                *term = factor * speed * (wind * now + change * *lacking);
-                *lacking = now;
-                *sum += *term;
-            }
+            let now = term.map(|term| gust - term);
+            *term = array::from_fn(|i| factor * speed[i] * (wind * now[i] + change * lacking[i]));
+            *lacking = now;
+            *sum = array::from_fn(|i| sum[i] + term[i]);
         }
         s.last = largest_of(&s.term);
         s.largest = s.largest.max(s.last);
@@ -243,4 +235,29 @@ impl Gusts {
     pub(super) fn settled(&self, part: f64) -> bool {
         self.series.last <= part * self.series.largest
     }
+}
+
+/// Adds `Q g` of the channels, behind their lags where there are any: their weights sum to one.
+#[inline(always)]
+fn add_force(
+    by_channel: &Sparse,
+    weights: [f64; LAGS],
+    gust: impl Fn(usize) -> f64,
+    lagging: &[f64],
+    force: &mut [f64],
+) {
+    if lagging.is_empty() {
+        return by_channel.add(gust, force);
+    }
+    let (lagging, _) = lagging.as_chunks::<LAGS>();
+    let felt = |j: usize| {
+        let [a, b, c, d] = array::from_fn(|lag| weights[lag] * lagging[j][lag]);
+        (a + b) + (c + d)
+    };
+    by_channel.add(felt, force);
+}
+
+/// The lags of each channel.
+fn lanes(of_channels: &mut [f64]) -> &mut [[f64; LAGS]] {
+    of_channels.as_chunks_mut().0
 }

@@ -26,16 +26,6 @@ pub(super) fn on_lanes<J: OnLanes>(job: J) -> J::Output {
     on_plain_numbers(job)
 }
 
-/// Compiles a product for the vectors that this processor has.
-#[inline(always)]
-pub(super) fn with_vectors<P: NullaryFnOnce>(product: P) -> P::Output {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(vectors) = pulp::x86::V3::try_new() {
-        return vectors.vectorize(product);
-    }
-    product.call()
-}
-
 /// Apart, so that it takes no room where it is not used.
 #[inline(never)]
 pub(super) fn on_plain_numbers<J: OnLanes>(job: J) -> J::Output {

@@ -9,10 +9,12 @@ const MOST_TERMS: usize = 33;
 
 /// Terms of an exponential of this norm (3 at most) beyond which nothing is left but rounding.
 pub(super) fn terms_of_exponential(norm: f64) -> usize {
-    let (mut terms, mut size) = (1, norm);
-    while size > f64::EPSILON / 8.0 && terms < MOST_TERMS {
+    // the size of a term over what may be left out, without a division for each
+    let (mut terms, mut size, mut least) = (1, norm, f64::EPSILON / 8.0);
+    while size > least && terms < MOST_TERMS {
         terms += 1;
-        size *= norm / terms as f64;
+        size *= norm;
+        least *= terms as f64;
     }
     terms
 }

@@ -1,6 +1,6 @@
 //! A product of matrix and vector for small matrices that are used often.
 
-use super::lanes::{FourLanes, LANES, OnLanes, on_lanes, with_vectors};
+use super::lanes::{FourLanes, LANES, OnLanes, on_lanes};
 use nalgebra::DMatrix;
 use pulp::{Simd, f64x4};
 
@@ -58,7 +58,7 @@ impl Packed {
     /// Becomes `Σ Wₖ xᵏ`, all of one shape.
     #[inline(never)]
     pub(super) fn set_polynomial(&mut self, powers: &[Self], x: f64) {
-        with_vectors(|| self.horner(powers, x));
+        on_lanes(Horner(self, powers, x));
     }
 
     #[inline(always)]
@@ -69,11 +69,20 @@ impl Packed {
             rest.as_flattened_mut(),
         ];
         for (list, sums) in lists.into_iter().enumerate() {
-            sums.fill(0.0);
-            for power in powers.iter().rev() {
-                for (sum, w) in sums.iter_mut().zip(power.numbers()[list]) {
-                    *sum = w + x * *sum;
-                }
+            let (fours, rest) = sums.as_chunks_mut::<{ 4 * LANES }>();
+            let behind = 4 * LANES * fours.len();
+            for (i, sums) in fours.iter_mut().enumerate() {
+                *sums = polynomial(
+                    powers
+                        .iter()
+                        .rev()
+                        .map(|w| w.numbers()[list].as_chunks().0[i]),
+                    x,
+                );
+            }
+            for (i, sums) in rest.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+                let behind = |w: &Self| w.numbers()[list][behind..].as_chunks().0[i];
+                *sums = polynomial(powers.iter().rev().map(behind), x);
             }
         }
     }
@@ -92,6 +101,14 @@ impl Packed {
     }
 }
 
+/// `Σ wₖ xᵏ` from the highest power on, in registers.
+#[inline(always)]
+fn polynomial<const N: usize>(powers: impl Iterator<Item = [f64; N]>, x: f64) -> [f64; N] {
+    powers.fold([0.0; N], |sum, w| {
+        std::array::from_fn(|i| w[i] + x * sum[i])
+    })
+}
+
 /// Sums that run side by side, so that no addition waits for the one before it.
 const PARTIAL_SUMS: usize = 4;
 
@@ -107,6 +124,18 @@ pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
 #[inline]
 pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
     on_lanes(Advance(Apply { w, v, y }))
+}
+
+/// A matrix, the powers of its polynomial, and where.
+struct Horner<'a>(&'a mut Packed, &'a [Packed], f64);
+
+impl OnLanes for Horner<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: FourLanes>(self, _: S) {
+        self.0.horner(self.1, self.2);
+    }
 }
 
 struct Apply<'a> {
@@ -312,23 +341,18 @@ pub(super) fn settled(values: &mut [f64]) -> bool {
 /// Largest magnitude; what is no number counts nothing.
 #[inline(always)]
 pub(super) fn largest_of(values: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
+    let larger = |largest: f64, x: &f64| if x.abs() > largest { x.abs() } else { largest };
     let (groups, rest) = values.as_chunks::<LANES>();
-    let larger = |largest: &mut f64, x: f64| {
-        if x.abs() > *largest {
-            *largest = x.abs();
-        }
-    };
+    let mut lanes = [0.0; LANES];
     for group in groups {
-        for (largest, x) in lanes.iter_mut().zip(group) {
-            larger(largest, *x);
-        }
+        lanes = std::array::from_fn(|lane| larger(lanes[lane], &group[lane]));
     }
-    let mut largest = 0.0;
-    for x in lanes.iter().chain(rest) {
-        larger(&mut largest, *x);
-    }
-    largest
+    let largest = if groups.is_empty() {
+        0.0
+    } else {
+        lanes.iter().fold(0.0, larger)
+    };
+    rest.iter().fold(largest, larger)
 }
 
 #[cfg(test)]

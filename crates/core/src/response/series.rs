@@ -98,6 +98,8 @@ struct Work {
     push: [Vec<f64>; 3],
     /// Accelerations by the gusts, of the order at hand.
     by_gusts: Vec<f64>,
+    /// Those by nothing.
+    none: Vec<f64>,
 }
 
 impl PowerSeries {
@@ -142,6 +144,7 @@ impl PowerSeries {
                 force: vec![0.0; n],
                 push: std::array::from_fn(|_| vec![0.0; n]),
                 by_gusts: vec![0.0; n],
+                none: vec![0.0; n],
             },
         }
     }
@@ -230,30 +233,39 @@ impl PowerSeries {
         };
         self.accelerations(simd, drive, start, tau);
         let norm = self.norm(wind + change.abs(), tau);
-        let work = &mut self.work;
+        let (n, work) = (self.dofs, &mut self.work);
         let mut gusts = self.gusts.as_mut().filter(|_| gusts);
         match &mut gusts {
             Some(gusts) => gusts.begin(&work.gusts),
             None => work.by_gusts.fill(0.0),
         }
         let mut largest = work.begin();
+        let [mut s, mut s_before] = work.structure.each_mut().map(Vec::as_mut_slice);
+        let [mut g, mut g_before, mut g_first] = work.aerodynamic.each_mut().map(Vec::as_mut_slice);
         let mut last = [0.0; 3];
         for k in 0..MAX_TERMS {
             if change != 0.0 {
-                work.structure.swap(0, 1);
-                work.aerodynamic.rotate_right(1);
+                (s, s_before) = (s_before, s);
+                (g, g_before, g_first) = (g_first, g, g_before);
             }
-            let (motion, filtered) = (&work.term[..2 * self.dofs], &work.term[self.dofs..]);
-            self.structure.set(simd, motion, &mut work.structure[0]);
-            self.aerodynamic
-                .set(simd, filtered, &mut work.aerodynamic[0]);
+            self.structure.set(simd, &work.term[..2 * n], s);
+            self.aerodynamic.set(simd, &work.term[n..], g);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
                 let force = gusts.next(k, part, drive.gust, &mut work.gusts);
                 self.force.set(simd, force, &mut work.by_gusts);
                 pushed = tau * largest_of(&work.by_gusts);
             }
-            work.next_term(self.dofs, part, self.rate, k);
+            let push = [work.push.get(k).unwrap_or(&work.none), &work.by_gusts].map(Vec::as_slice);
+            let made_from = MadeFrom {
+                push,
+                structure: [s, s_before],
+                aerodynamic: [g, g_before, g_first],
+            };
+            made_from.next_term(&mut work.term, part, self.rate, k);
+            for (sum, term) in work.sum.iter_mut().zip(&work.term) {
+                *sum += term;
+            }
             let size = f64::max(largest_of(&work.term), pushed);
             largest = if size > largest { size } else { largest };
             last = [size, last[0], last[1]];
@@ -307,32 +319,39 @@ impl Work {
         self.aerodynamic[..2].iter_mut().for_each(|g| g.fill(0.0));
         largest_of(&self.term)
     }
+}
 
-    /// Replaces the term by the next one and adds it to the sum.
+/// What the next term is made from, of this term and those before.
+struct MadeFrom<'a> {
+    /// Accelerations by external forces and by gusts.
+    push: [&'a [f64]; 2],
+    structure: [&'a [f64]; 2],
+    aerodynamic: [&'a [f64]; 3],
+}
+
+impl MadeFrom<'_> {
+    /// Replaces the term by the next one.
     #[inline(always)]
-    fn next_term(&mut self, n: usize, part: SeriesPart, rate: f64, k: usize) {
+    fn next_term(self, term: &mut [f64], part: SeriesPart, rate: f64, k: usize) {
         let SeriesPart { wind, change, .. } = part;
         let factor = part.tau / (k + 1) as f64;
-        let push = self.push.get(k);
-        let [s, s_before] = &self.structure;
-        let [g, g_before, g_first] = &self.aerodynamic;
+        let [push, by_gusts] = self.push;
+        let n = push.len();
+        let [(s, d), (_, d_before)] = self.structure.map(|s| s.split_at(n));
+        let [(f, g), (f_before, g_before), (f_first, _)] = self.aerodynamic.map(|g| g.split_at(n));
+        let (velocity, behind) = term.split_at_mut(n);
+        let (displacement, filters) = behind.split_at_mut(n);
         for i in 0..n {
-            let velocity = self.term[i];
-            let push = push.map_or(0.0, |p| p[i]) + self.by_gusts[i];
-            let mut sum = s[i] + push + wind * (s[n + i] + wind * g[i]);
+            let mut sum = s[i] + (push[i] + by_gusts[i]) + wind * (d[i] + wind * f[i]);
             if change != 0.0 {
-                sum += change * (s_before[n + i] + 2.0 * wind * g_before[i] + change * g_first[i]);
+                sum += change * (d_before[i] + 2.0 * wind * f_before[i] + change * f_first[i]);
             }
-            self.term[i] = factor * sum;
-            self.term[n + i] = factor * rate * velocity;
+            displacement[i] = factor * rate * velocity[i];
+            velocity[i] = factor * sum;
         }
         let (now, before) = (factor * wind, factor * change);
-        let filters = &mut self.term[2 * n..];
-        for ((x, g), g_before) in filters.iter_mut().zip(&g[n..]).zip(&g_before[n..]) {
+        for ((x, g), g_before) in filters.iter_mut().zip(g).zip(g_before) {
             *x = now * g + before * g_before;
-        }
-        for (sum, term) in self.sum.iter_mut().zip(&self.term) {
-            *sum += term;
         }
     }
 }

@@ -191,8 +191,12 @@ impl LevelGroup<'_> {
         buffer: &'b mut RowBuffer,
     ) -> &'b [Complex64] {
         let RowBuffer { values, scratch } = buffer;
-        values.clear();
-        values.extend(kernel.iter().zip(spectrum).map(|(k, x)| x * k));
+        values.resize(kernel.len(), Complex64::default());
+        pulp::Arch::new().dispatch(AtLevel {
+            values,
+            kernel,
+            spectrum,
+        });
         self.fourier.inverse_in(values, scratch);
         &values[..self.plan.sample_count]
     }
@@ -216,6 +220,25 @@ impl LevelGroup<'_> {
         }
         self.fourier.forward(&mut kernel);
         kernel.iter().map(|z| z.re).collect()
+    }
+}
+
+/// A spectrum by the kernel of a level.
+struct AtLevel<'a> {
+    values: &'a mut [Complex64],
+    kernel: &'a [f64],
+    spectrum: &'a [Complex64],
+}
+
+impl pulp::NullaryFnOnce for AtLevel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let each = self.kernel.iter().zip(self.spectrum);
+        for (value, (k, x)) in self.values.iter_mut().zip(each) {
+            *value = Complex64::new(x.re * k, x.im * k);
+        }
     }
 }
 

@@ -40,12 +40,13 @@ impl Scalogram {
         &mut self,
         group: &LevelGroup<'_>,
         kernels: &[Vec<f64>],
+        buffer: &mut RowBuffer,
         mut visit: impl FnMut(usize, &[f64]),
     ) {
         let spectrum = group.spectrum(&self.samples);
-        let (mut buffer, mut power) = (RowBuffer::default(), vec![0.0; self.samples.len()]);
+        let mut power = vec![0.0; self.samples.len()];
         for (at, kernel) in kernels.iter().enumerate() {
-            let row = group.row(kernel, &spectrum, &mut buffer);
+            let row = group.row(kernel, &spectrum, buffer);
             let (sums, power) = (&mut *self, &mut power);
             pulp::Arch::new().dispatch(LevelSums { sums, row, power });
             visit(at, power);

@@ -152,11 +152,13 @@ impl<'a> Surrogates<'a> {
         for group in plan.groups() {
             let levels = group.levels.clone().into_par_iter();
             let kernels: Vec<Vec<f64>> = levels.map(|level| group.kernel(level)).collect();
-            own.advance(&group, &kernels, |_, _| ());
+            own.advance(&group, &kernels, &mut RowBuffer::default(), |_, _| ());
             let chunks = others.par_chunks_mut(CHUNK).map(|chunk| {
                 let mut moments = vec![Moments::new(signal.len()); kernels.len()];
+                let mut buffer = RowBuffer::default();
                 for other in chunk {
-                    other.advance(&group, &kernels, |at, power| moments[at].add(power));
+                    let add = |at: usize, power: &[f64]| moments[at].add(power);
+                    other.advance(&group, &kernels, &mut buffer, add);
                 }
                 moments
             });
@@ -309,7 +311,9 @@ mod tests {
         let mut scalogram: Vec<Vec<f64>> = Vec::new();
         for group in plan.groups() {
             let kernels: Vec<_> = group.levels.clone().map(|l| group.kernel(l)).collect();
-            signal.advance(&group, &kernels, |_, power| scalogram.push(power.to_vec()));
+            signal.advance(&group, &kernels, &mut RowBuffer::default(), |_, power| {
+                scalogram.push(power.to_vec())
+            });
         }
         let df = 18.0 / 19.0;
         let mean: Vec<f64> = scalogram

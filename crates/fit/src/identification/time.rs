@@ -3,6 +3,7 @@
 pub(crate) mod continuous;
 pub(crate) mod filters;
 pub(crate) mod fitted;
+pub(crate) mod low_pass;
 pub(crate) mod pass;
 pub(crate) mod record;
 pub(crate) mod search;

@@ -7,7 +7,7 @@ use super::course::{COEFFICIENTS, MotionCubic};
 use super::flow::StripFlow;
 use crate::aerodynamics::{DiscreteRealization, Realization};
 use crate::error::{Error, Result};
-use crate::response::lanes::{LANES, with_vectors};
+use crate::response::lanes::{FourLanes, LANES, OnLanes, on_lanes};
 use crate::response::linked::Sparse;
 use nalgebra::DMatrix;
 
@@ -139,9 +139,8 @@ impl FilterSeries {
         if self.matrix.is_empty() {
             self.series(step, flows);
         } else {
-            let (operand, matrix, sums) = (&self.operand, &self.matrix, &mut self.next);
-            with_vectors(|| product(matrix, operand, sums));
-            self.operand[..self.filters].copy_from_slice(sums);
+            on_lanes(Product(&self.matrix, &self.operand, &mut self.next));
+            self.operand[..self.filters].copy_from_slice(&self.next);
         }
         for (lane, filters) in group.filters.chunks_mut(self.filters.max(1)).enumerate() {
             for (filter, lanes) in filters.iter_mut().zip(&self.operand) {
@@ -193,7 +192,7 @@ impl FilterSeries {
                 }
             });
             let from = [start, part_s];
-            with_vectors(FilterTerms(self, from, x));
+            on_lanes(FilterTerms(self, from, x));
         }
     }
 
@@ -289,11 +288,11 @@ fn grown(state: &[f64]) -> Result<()> {
 /// A part, compiled for each set of vectors a processor may have: a closure would not always be.
 struct FilterTerms<'a>(&'a mut FilterSeries, [Lanes; 2], Lanes);
 
-impl pulp::NullaryFnOnce for FilterTerms<'_> {
+impl OnLanes for FilterTerms<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn run<S: FourLanes>(self, _: S) {
         self.0.part(self.1, self.2);
     }
 }
@@ -325,16 +324,23 @@ fn shift(courses: &[Lanes], dofs: usize, [start, length]: [Lanes; 2], shifted: &
     }
 }
 
-/// The matrix on the numbers of four strips.
-#[inline(always)]
-fn product(matrix: &[Lanes], operand: &[Lanes], sums: &mut [Lanes]) {
-    let rows = sums.len().max(1);
-    sums.fill([0.0; LANES]);
-    for (columns, numbers) in matrix.chunks(rows).zip(operand.chunks(LANES)) {
-        for (sum, row) in sums.iter_mut().zip(columns) {
-            for (entry, number) in row.iter().zip(numbers) {
-                for lane in 0..LANES {
-                    sum[lane] += entry * number[lane];
+/// A matrix on the numbers of four strips, and what becomes of them.
+struct Product<'a>(&'a [Lanes], &'a [Lanes], &'a mut [Lanes]);
+
+impl OnLanes for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: FourLanes>(self, _: S) {
+        let Self(matrix, operand, sums) = self;
+        let rows = sums.len().max(1);
+        sums.fill([0.0; LANES]);
+        for (columns, numbers) in matrix.chunks(rows).zip(operand.chunks(LANES)) {
+            for (sum, row) in sums.iter_mut().zip(columns) {
+                for (entry, number) in row.iter().zip(numbers) {
+                    for lane in 0..LANES {
+                        sum[lane] += entry * number[lane];
+                    }
                 }
             }
         }

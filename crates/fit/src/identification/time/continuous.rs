@@ -1,6 +1,7 @@
 //! Passes over records with the columns of continuous filters.
 
-use super::filters::{ContinuousColumns, NOISE_BANDWIDTH};
+use super::filters::ContinuousColumns;
+use super::low_pass::NOISE_BANDWIDTH;
 use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass_over};
 use super::record::{DimensionlessRecord, Records};
 use crate::error::Result;

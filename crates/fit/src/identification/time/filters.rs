@@ -7,126 +7,15 @@
 //! harmonic motion and its force are thereby distorted alike, up to what the low-pass leaves of the images above half
 //! the sampling frequency (about 1e-5 with the default cut-off).
 
+use super::low_pass::{Filtered, Hold, LowPassStep, ORDER, low_pass};
 use super::pass::{Columns, Piece};
 use super::record::DimensionlessRecord;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::form::FeedThrough;
 use crate::identification::least_squares::BLOCK_ROWS;
-use crate::state_space::{StepMatrices, c2d};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
-
-/// Order of the low-pass.
-const ORDER: usize = 4;
-/// `s⁴ + 2.61 s³ + 3.41 s² + 2.61 s + 1`: Butterworth of order four, from `s⁰` on; `2.61 = √(4 + 2√2)`, `3.41 = 2 + √2`.
-const BUTTERWORTH: [f64; ORDER] = [
-    1.0,
-    2.613_125_929_752_753,
-    3.414_213_562_373_095,
-    2.613_125_929_752_753,
-];
-
-/// Noise bandwidth of the low-pass over its cut-off, `(π/2n)/sin(π/2n)` with `n = 4`.
-pub(crate) const NOISE_BANDWIDTH: f64 = 1.026_172_152_977_031;
-
-/// Low-pass in dimensionless time, `w = (r_f, r_f', r_f'', r_f''')`, with the cut-off `Ω = 2πf_c B/V`.
-fn low_pass(omega: f64) -> (DMatrix<f64>, DVector<f64>) {
-    let mut a = DMatrix::zeros(ORDER, ORDER);
-    a.view_mut((0, 1), (ORDER - 1, ORDER - 1))
-        .fill_with_identity();
-    for (m, c) in BUTTERWORTH.iter().enumerate() {
-        a[(ORDER - 1, m)] = -c * omega.powi((ORDER - m) as i32);
-    }
-    let mut b = DVector::zeros(ORDER);
-    b[ORDER - 1] = omega.powi(ORDER as i32);
-    (a, b)
-}
-
-/// `z[k] = Φ z[k−1] + g₀ u[k−1] + g₁ u[k]`, the first-order hold between samples.
-struct Hold {
-    phi: DMatrix<f64>,
-    g0: DVector<f64>,
-    g1: DVector<f64>,
-}
-
-impl Hold {
-    fn new(a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> Result<Self> {
-        let b = DMatrix::from_column_slice(b.len(), 1, b.as_slice());
-        let StepMatrices {
-            phi,
-            gamma_0,
-            gamma_1,
-        } = c2d(a, &b, step)?;
-        let g1 = gamma_1.column(0) / step;
-        Ok(Self {
-            phi,
-            g0: gamma_0.column(0) - &g1,
-            g1,
-        })
-    }
-}
-
-/// The low-pass of one channel and what it has put out for the current piece.
-struct Filtered {
-    state: [f64; ORDER],
-    /// Samples of the piece after the one before it.
-    input: Vec<f64>,
-    /// States at the same instants as `input`, the one before the piece first.
-    states: [Vec<f64>; ORDER],
-    started: bool,
-}
-
-impl Filtered {
-    fn new() -> Self {
-        Self {
-            state: [0.0; ORDER],
-            input: vec![0.0],
-            states: std::array::from_fn(|_| Vec::with_capacity(BLOCK_ROWS + 1)),
-            started: false,
-        }
-    }
-
-    fn advance(&mut self, step: &LowPassStep, samples: &[f64]) {
-        let before = self.input[self.input.len() - 1];
-        self.input.clear();
-        if self.started {
-            self.input.push(before);
-        } else {
-            // as if the first value had always been there
-            self.input.push(samples[0]);
-            self.state = [samples[0], 0.0, 0.0, 0.0];
-            self.started = true;
-        }
-        self.input.extend_from_slice(samples);
-        for (column, x) in self.states.iter_mut().zip(self.state) {
-            column.clear();
-            column.resize(samples.len() + 1, 0.0);
-            column[0] = x;
-        }
-        let mut w = self.state;
-        let [s0, s1, s2, s3] = &mut self.states;
-        for (k, pair) in self.input.windows(2).enumerate() {
-            let next: [f64; ORDER] = std::array::from_fn(|m| {
-                let held = step.g0[m] * pair[0] + step.g1[m] * pair[1];
-                step.phi[m]
-                    .iter()
-                    .zip(&w)
-                    .fold(held, |sum, (p, x)| sum + p * x)
-            });
-            w = next;
-            (s0[k + 1], s1[k + 1], s2[k + 1], s3[k + 1]) = (w[0], w[1], w[2], w[3]);
-        }
-        self.state = w;
-    }
-}
-
-/// Step of the low-pass.
-struct LowPassStep {
-    phi: [[f64; ORDER]; ORDER],
-    g0: [f64; ORDER],
-    g1: [f64; ORDER],
-}
 
 /// Step of the filters of one candidate behind the low-pass.
 struct FilterStep {
@@ -283,11 +172,7 @@ impl<'a> ContinuousColumns<'a> {
         };
         Ok(Self {
             bases,
-            low_pass: LowPassStep {
-                phi: std::array::from_fn(|m| std::array::from_fn(|n| hold.phi[(m, n)])),
-                g0: std::array::from_fn(|m| hold.g0[m]),
-                g1: std::array::from_fn(|m| hold.g1[m]),
-            },
+            low_pass: LowPassStep::new(&hold),
             states: steps.iter().map(at_rest).collect(),
             steps,
             motion: (0..inputs).map(|_| Filtered::new()).collect(),
@@ -357,11 +242,15 @@ impl Columns for ContinuousColumns<'_> {
                     states[j] = steps[j].rest.iter().map(|x| x * first).collect();
                 }
             }
-            self.motion[j].advance(&self.low_pass, piece.motion[j]);
+            self.motion[j].take(piece.motion[j]);
         }
         for (filter, samples) in self.force.iter_mut().zip(&piece.force) {
-            filter.advance(&self.low_pass, samples);
+            filter.take(samples);
         }
+        let motions = self.motion.iter_mut().enumerate();
+        let moving = motions.filter(|(j, _)| active.contains(j));
+        let channels = moving.map(|(_, motion)| motion).chain(&mut self.force);
+        self.low_pass.advance(channels.collect());
     }
 
     fn columns<'a>(

@@ -16,6 +16,8 @@ use std::f64::consts::TAU;
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
 /// the rest of a rig is not perfectly quiet.
 const STILL: f64 = 0.01;
+/// Samples of a motion that are looked at together.
+const LOOKED_AT: usize = 64;
 /// The departure has to grow by this ratio to be noticed.
 const GROWTH: f64 = 1.01;
 
@@ -144,7 +146,10 @@ impl DimensionlessRecord {
             }
             for (motion, force) in motions.iter().zip(&forces) {
                 for ((from, factor), what) in [(motion, "motion"), (force, "force")] {
-                    if let Some(bad) = from.iter().position(|x| !(factor * x).is_finite()) {
+                    let finite = |x: &f64| (factor * x).is_finite();
+                    // all at once, and one by one only where there is one to be named
+                    let all = from.iter().fold(true, |all, x| all & finite(x));
+                    if !all && let Some(bad) = from.iter().position(|x| !finite(x)) {
                         return Err(Error::input(
                             format!("record {}, {what}, sample {}", header.name, read + bad),
                             "a finite number",
@@ -259,12 +264,24 @@ impl Signals {
         self.for_each_block(|block| {
             let motions = &block.channels[..self.dofs()];
             let first = first.get_or_insert_with(|| motions.iter().map(|m| m[0]).collect());
-            for k in 0..block.rows() {
-                let each = motions.iter().zip(&*first).map(|(m, x)| (m[k] - x).abs());
-                let now = each.fold(0.0, f64::max);
-                if now > GROWTH * largest {
-                    largest = now;
-                    growing.push((block.first + k, now));
+            for from in (0..block.rows()).step_by(LOOKED_AT) {
+                let part = from..block.rows().min(from + LOOKED_AT);
+                let limit = GROWTH * largest;
+                let grows = motions.iter().zip(&*first).map(|(m, x)| {
+                    let beyond = |any, m: &f64| any | ((m - x).abs() > limit);
+                    m[part.clone()].iter().fold(false, beyond)
+                });
+                // nearly all parts are passed over here
+                if !grows.fold(false, |any, one| any | one) {
+                    continue;
+                }
+                for k in part {
+                    let each = motions.iter().zip(&*first).map(|(m, x)| (m[k] - x).abs());
+                    let now = each.fold(0.0, f64::max);
+                    if now > GROWTH * largest {
+                        largest = now;
+                        growing.push((block.first + k, now));
+                    }
                 }
             }
             Ok(())

@@ -3,6 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::wind_tunnel::RecordSource;
+use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -41,16 +42,10 @@ impl SignalBlock {
         self.channels.first().map_or(0, Vec::len)
     }
 
-    fn bytes(&self) -> Vec<u8> {
-        let bytes_each = size_of::<f64>() * self.rows();
-        let mut bytes = vec![0; bytes_each * self.channels.len()];
-        for (part, channel) in bytes.chunks_mut(bytes_each.max(1)).zip(&self.channels) {
-            let (places, _) = part.as_chunks_mut();
-            for (place, x) in places.iter_mut().zip(channel) {
-                *place = x.to_le_bytes();
-            }
-        }
-        bytes
+    fn write(&self, file: &mut File) -> Result<()> {
+        let channels = self.channels.iter();
+        let mut written = channels.map(|channel| file.write_all(cast_slice(channel)));
+        written.try_for_each(|one| one).map_err(io)
     }
 }
 
@@ -107,13 +102,13 @@ impl SignalWriter {
         {
             let mut file = tempfile::tempfile().map_err(io)?;
             for block in blocks {
-                file.write_all(&block.bytes()).map_err(io)?;
+                block.write(&mut file)?;
             }
             signals.store = Store::File(Mutex::new(file));
         }
         match &mut signals.store {
             Store::Memory(blocks) => blocks.push(self.last.clone()),
-            Store::File(file) => locked(file).write_all(&self.last.bytes()).map_err(io)?,
+            Store::File(file) => self.last.write(&mut locked(file))?,
         }
         signals.rows += self.last.rows();
         self.last.first = signals.rows;
@@ -173,9 +168,9 @@ impl Signals {
         match &self.store {
             Store::Memory(blocks) => blocks.iter().try_for_each(f),
             Store::File(file) => {
-                let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+                let mut block = SignalBlock::default();
                 for first in (0..self.rows).step_by(SIGNAL_ROWS) {
-                    self.read(file, first, &mut block, &mut bytes)?;
+                    self.read(file, first, &mut block)?;
                     f(&block)?;
                 }
                 Ok(())
@@ -205,10 +200,10 @@ impl Signals {
                 within.take_while(|b| b.first < samples.end).for_each(take);
             }
             Store::File(file) => {
-                let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+                let mut block = SignalBlock::default();
                 let end = samples.end.min(self.rows);
                 for first in (first * SIGNAL_ROWS..end).step_by(SIGNAL_ROWS) {
-                    self.read(file, first, &mut block, &mut bytes)?;
+                    self.read(file, first, &mut block)?;
                     take(&block);
                 }
             }
@@ -226,12 +221,11 @@ impl Signals {
             return Ok(());
         }
         if let Store::File(file) = &self.store {
-            let (mut block, mut bytes) = (SignalBlock::default(), Vec::new());
+            let mut block = SignalBlock::default();
             for first in (0..self.rows).step_by(SIGNAL_ROWS) {
-                self.read(file, first, &mut block, &mut bytes)?;
+                self.read(file, first, &mut block)?;
                 f(&mut block);
-                let mut file = self.at(file, first)?;
-                file.write_all(&block.bytes()).map_err(io)?;
+                block.write(&mut *self.at(file, first)?)?;
             }
         }
         Ok(())
@@ -244,22 +238,14 @@ impl Signals {
         Ok(file)
     }
 
-    fn read(
-        &self,
-        file: &Mutex<File>,
-        first: usize,
-        block: &mut SignalBlock,
-        bytes: &mut Vec<u8>,
-    ) -> Result<()> {
+    fn read(&self, file: &Mutex<File>, first: usize, block: &mut SignalBlock) -> Result<()> {
         let rows = SIGNAL_ROWS.min(self.rows - first);
-        bytes.resize(rows * 2 * self.dofs * size_of::<f64>(), 0);
-        self.at(file, first)?.read_exact(bytes).map_err(io)?;
+        let mut file = self.at(file, first)?;
         block.first = first;
         block.channels.resize(2 * self.dofs, Vec::new());
-        let (numbers, _) = bytes.as_chunks::<{ size_of::<f64>() }>();
-        for (channel, numbers) in block.channels.iter_mut().zip(numbers.chunks(rows)) {
-            channel.clear();
-            channel.extend(numbers.iter().map(|x| f64::from_le_bytes(*x)));
+        for channel in &mut block.channels {
+            channel.resize(rows, 0.0);
+            file.read_exact(cast_slice_mut(channel)).map_err(io)?;
         }
         Ok(())
     }

@@ -61,7 +61,7 @@ impl Problem {
     fn flat(&self, each: &[Vector]) -> DVector<f64> {
         let mut all = DVector::zeros(self.rows.nrows());
         for (&(at, count), v) in self.spans.iter().zip(each) {
-            all.rows_mut(at, count).copy_from_slice(&v[..count]);
+            write(&mut all.as_mut_slice()[at..at + count], v);
         }
         all
     }
@@ -141,7 +141,7 @@ impl Problem {
             for (&(first, count), scaling) in self.spans.iter().zip(&scalings) {
                 let part = &mut column[first..first + count];
                 let v = scaling.divide(&from_fn(|r| part.get(r).copied().unwrap_or(0.0)));
-                part.copy_from_slice(&v[..count]);
+                write(part, &v);
             }
         }
         let system = Weighted::new(&scaled)?;
@@ -215,10 +215,10 @@ impl<'a> Weighted<'a> {
     fn solve(&self, b: &DVector<f64>, a: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let mut w = DVector::zeros(a.len());
         let mut y = DVector::zeros(b.len());
+        // of nothing, whose products are nothing
+        let (mut first, mut second) = (-a, -b);
         let mut before = f64::INFINITY;
         for _ in 0..=REFINEMENTS {
-            let first = -a - &w - transposed_times(self.rows, &y);
-            let second = &y - b - times(self.rows, &w);
             let left = first.norm_squared() + second.norm_squared();
             if left == 0.0 || left > 0.1 * before {
                 break;
@@ -228,8 +228,20 @@ impl<'a> Weighted<'a> {
             let by = self.factor.solve(&right);
             y += times(self.rows, &by) - second;
             w += by;
+            first = -a - &w - transposed_times(self.rows, &y);
+            second = &y - b - times(self.rows, &w);
         }
         (w, y)
+    }
+}
+
+/// As many numbers of a cone as it has rows.
+fn write(rows: &mut [f64], v: &Vector) {
+    // so few are no copy of memory
+    match rows {
+        [all] => *all = v[0],
+        [t, x, y] => [*t, *x, *y] = *v,
+        _ => {}
     }
 }
 
