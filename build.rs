@@ -2,7 +2,7 @@
 //! `aerodeck` exports FMUs without source tree or Rust toolchain.
 //!
 //! `aerodeck-runtime` is a dependency like others and shares all of their builds. Ready-made runtimes, also for other platforms, can be
-//! embedded besides. Where Rust has the target for WebAssembly, cargo is called once more for the module that answers the sliders of a
+//! embedded besides. Where Rust has a target for WebAssembly, cargo is called once more for the module that answers the sliders of a
 //! report; without it reports have no sliders.
 
 use std::env;
@@ -15,8 +15,8 @@ use std::process::{Command, ExitCode};
 /// library; or a folder of them, laid out as `binaries/` of an FMU, which are embedded all.
 const READY_MADE: &str = "AERODECK_RUNTIME";
 
-/// Target of the module that answers the sliders of a report, and its folder among the runtimes.
-const WASM: (&str, &str) = ("wasm32-unknown-unknown", "wasm32");
+/// Targets of the module that answers the sliders of a report, of which one is enough, and its folder among the runtimes.
+const WASM: ([&str; 2], &str) = (["wasm32-unknown-unknown", "wasm32-wasip2"], "wasm32");
 
 /// Name of the libraries in their folders.
 const LIBRARY: &str = "aerodeck_section";
@@ -50,8 +50,10 @@ fn embed_runtimes() -> Result<(), String> {
         if runtimes.iter().all(|(platform, _)| platform != here) {
             runtimes.push((here.to_owned(), own(&out)?));
         }
-        if env::var_os(READY_MADE).is_none() && has_wasm()? {
-            let module = build_live(&source, &out)?;
+        let wasm = WASM.0.into_iter().find(|target| has_target(target));
+        let wanted = cfg!(feature = "sliders") && env::var_os(READY_MADE).is_none();
+        if let Some(target) = wasm.filter(|_| wanted) {
+            let module = build_live(&source, &out, target)?;
             watch(&module)?;
             let copy = out.join("live.wasm");
             fs::copy(&module, &copy).map_err(|e| format!("{}: {e}", module.display()))?;
@@ -159,17 +161,18 @@ fn platform() -> Result<&'static str, String> {
     }
 }
 
-/// Whether Rust can build for WebAssembly here.
-fn has_wasm() -> Result<bool, String> {
-    let output = Command::new(variable("RUSTC")?)
-        .args(["--print", "target-libdir", "--target", WASM.0])
+/// Whether Rust can build for a target here.
+fn has_target(target: &str) -> bool {
+    let rustc = env::var_os("RUSTC").unwrap_or_default();
+    let output = Command::new(rustc)
+        .args(["--print", "target-libdir", "--target", target])
         .output();
     let folder = output.map(|o| String::from_utf8_lossy(&o.stdout).trim().to_owned());
-    Ok(folder.is_ok_and(|folder| Path::new(&folder).is_dir()))
+    folder.is_ok_and(|folder| Path::new(&folder).is_dir())
 }
 
 /// Builds the module for WebAssembly, in a target directory that the calling cargo has not locked, and says where it is.
-fn build_live(source: &Path, out: &Path) -> Result<PathBuf, String> {
+fn build_live(source: &Path, out: &Path, target: &str) -> Result<PathBuf, String> {
     let target_dir = out.join("live");
     let mut said = String::new();
     // what the outer build has fetched and locked is enough; the rest is for lock files that do not travel along
@@ -177,18 +180,20 @@ fn build_live(source: &Path, out: &Path) -> Result<PathBuf, String> {
         let output = Command::new(variable("CARGO")?)
             .args(["rustc", "--package", "aerodeck-live", "--lib"])
             .args(["--crate-type", "cdylib", "--profile", "live"])
-            .args(["--target", WASM.0, "--target-dir"])
+            .args(["--target", target, "--target-dir"])
             .arg(&target_dir)
             .args(network)
             .current_dir(source)
             .env("CARGO_BUILD_BUILD_DIR", &target_dir)
+            // with the linker itself it is a module that a browser takes, not a component of WASI
+            .env("CARGO_TARGET_WASM32_WASIP2_LINKER", "rust-lld")
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
             .env_remove("RUSTC_WORKSPACE_WRAPPER")
             .env_remove("RUSTFLAGS")
             .output()
             .map_err(|e| format!("cargo cannot be started to build aerodeck-live: {e}"))?;
         if output.status.success() {
-            return Ok(target_dir.join(WASM.0).join("live/aerodeck_live.wasm"));
+            return Ok(target_dir.join(target).join("live/aerodeck_live.wasm"));
         }
         said = String::from_utf8_lossy(&output.stderr).into_owned();
         if said.contains("could not compile") {

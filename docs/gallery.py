@@ -32,6 +32,31 @@ RUNS = [
 ]
 
 
+# the sliders of a report, moved and alone on their page
+MOVED = """<script>addEventListener("load", () => setTimeout(() => {
+  for (const [id, value] of [["torsion-frequency_hz", 112], ["torsion-damping_ratio", 250]]) {
+    const slider = document.getElementById("live-" + id);
+    slider.value = value;
+    slider.dispatchEvent(new Event("input"));
+  }
+  document.body.replaceChildren(document.getElementById("live"));
+}, 3000))</script>"""
+
+
+def sliders(page, folder):
+    """Photographs the sliders in a browser of the Chromium family, where there is one and the program carries their module."""
+    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    text = page.read_text(encoding="utf-8")
+    if not browser or "live-data" not in text:
+        return print("no browser, or no module for the sliders: gallery/sliders.png stays as it is")
+    moved = folder / "moved.html"
+    moved.write_text(text.replace("</body>", MOVED + "</body>"), encoding="utf-8")
+    subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+                    "--hide-scrollbars", "--virtual-time-budget=20000", f"--user-data-dir={folder / 'profile'}",
+                    "--window-size=980,1030", f"--screenshot={HERE / 'sliders.png'}", f"file://{moved}"],
+                   check=True, capture_output=True)  # fmt: skip
+
+
 def main(program):
     program = str(Path(program).resolve())
     HERE.mkdir(exist_ok=True)
@@ -48,6 +73,7 @@ def main(program):
                     there = ", ".join(sorted(p.name for p in found.parent.glob("*.svg")))
                     sys.exit(f"{left}: expected a picture, found {there}")
                 shutil.copy(found, HERE / f"{name}.svg")
+        sliders(Path(folder) / "demo/report.html", Path(folder))
 
 
 if __name__ == "__main__":

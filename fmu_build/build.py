@@ -42,7 +42,8 @@ TARGETS = {
     "aarch64-apple-darwin": ("libaerodeck_section.dylib", "dylib", ["aarch64-darwin"]),
 }
 RECORD = "built_from.json"
-LIVE = "wasm32-unknown-unknown"  # no platform of FMI: the module that answers the sliders of reports
+# no platform of FMI: the module that answers the sliders of reports, of which one target is enough
+LIVE = ["wasm32-unknown-unknown", "wasm32-wasip2"]
 # linkers that export less than zig's, where they are there
 LINKERS = {"x86_64-pc-windows-gnu": "x86_64-w64-mingw32-gcc"}
 MACHINES = {"x86_64-apple-darwin": (0x01000007, 3), "aarch64-apple-darwin": (0x0100000C, 0)}  # of Mach-O
@@ -109,14 +110,15 @@ def build(target, zig):
     return target_dir / target / "release" / file
 
 
-def build_live(out):
+def build_live(target, out):
     """The module for the sliders of reports, beside the runtimes."""
     target_dir = ROOT / "target" / "fmu-release"
     run("cargo", "rustc", "--locked", "--package", "aerodeck-live", "--lib", "--crate-type", "cdylib",
-        "--profile", "live", "--target", LIVE, "--target-dir", target_dir, env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(LIVE)))  # fmt: skip
+        "--profile", "live", "--target", target, "--target-dir", target_dir,
+        env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(target), CARGO_TARGET_WASM32_WASIP2_LINKER="rust-lld"))  # fmt: skip
     file = out / "wasm32" / f"{NAME}.wasm"
     file.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(target_dir / LIVE / "live" / "aerodeck_live.wasm", file)
+    shutil.copyfile(target_dir / target / "live" / "aerodeck_live.wasm", file)
     print(f"{file}: {file.stat().st_size} bytes")
 
 
@@ -200,10 +202,10 @@ def pack(model, fmu, out, program):
 
 def runtimes(out, targets, python, program):
     """Builds, checks and runs what can be built; the digest says of what."""
-    built = {target: build(target, python is not None) for target in targets if target != LIVE}
+    built = {target: build(target, python is not None) for target in targets if target not in LIVE}
     files = place(built, out)
-    if LIVE in targets:
-        build_live(out)
+    for target in set(LIVE) & set(targets):
+        build_live(target, out)
     if python:
         run(python, pathlib.Path(__file__).with_name("check_library.py"), *files)
         run_library.compare(python, ROOT, {file.parent.name: file for file in files}, program)
@@ -220,15 +222,16 @@ def main():
     arguments = parser.parse_args()
     out, program = arguments.out.resolve(), arguments.aerodeck and arguments.aerodeck.resolve()
     here, there = host(), installed_targets()
-    for target in [*TARGETS, LIVE]:
+    live = [target for target in LIVE if target in there][:1]
+    for target in [*TARGETS, *([] if live else LIVE[:1])]:
         if target not in there:
             print(f"skipped {target}: rustup target add {target}")
-    targets = [target for target in [*TARGETS, LIVE] if target in there]
+    targets = [target for target in [*TARGETS, *live] if target in there]
     if not arguments.again and is_built(out, digest(targets)):
         print(f"{out}: built before from these sources")
     else:
         python = tools()
-        alone = [target for target in targets if target in (here, LIVE) or shutil.which(LINKERS.get(target, ""))]
+        alone = [target for target in targets if target in (here, *LIVE) or shutil.which(LINKERS.get(target, ""))]
         for target in set(targets) - set(alone) if python is None else ():
             print(f"skipped {target}: ziglang and cargo-zigbuild are not there")
         targets = targets if python else alone

@@ -49,7 +49,7 @@
     const against = before ? ` (${percent < 0 ? "−" : "+"}${Math.abs(percent).toFixed(1)} % against this report)` : "";
     const tested = onset.in_tested_range == null ? "" : onset.in_tested_range ? ", inside the tested range" : ", OUTSIDE the tested range";
     return `Flutter onset ${onset.speed_m_s.toFixed(2)} m/s${against}, ${onset.frequency_hz.toFixed(3)} Hz, ` +
-      `V/(fB) ${onset.reduced_velocity.toFixed(2)}, ${onset.branch} branch${tested}`;
+      `V/(fB) ${onset.reduced_velocity.toFixed(2)}, ${onset.branch} mode${tested}`;
   };
   let own, answer, range, waiting;
   const charts = [];

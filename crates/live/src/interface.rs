@@ -2,7 +2,7 @@
 
 /// Room for a text of `length` bytes, to be filled and handed to [`aerodeck_live`].
 #[unsafe(no_mangle)]
-pub extern "C" fn aerodeck_reserve(length: usize) -> *mut u8 {
+extern "C" fn aerodeck_reserve(length: usize) -> *mut u8 {
     Box::into_raw(vec![0_u8; length].into_boxed_slice()).cast()
 }
 
@@ -12,7 +12,7 @@ pub extern "C" fn aerodeck_reserve(length: usize) -> *mut u8 {
 /// # Safety
 /// `request` comes from [`aerodeck_reserve`] with the same length and is not used again.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn aerodeck_live(request: *mut u8, length: usize) -> u64 {
+unsafe extern "C" fn aerodeck_live(request: *mut u8, length: usize) -> u64 {
     // SAFETY: as the caller promises
     let request = unsafe { text(request, length) };
     let answer = super::answer(&String::from_utf8_lossy(&request)).into_bytes();
@@ -26,7 +26,7 @@ pub unsafe extern "C" fn aerodeck_live(request: *mut u8, length: usize) -> u64 {
 /// # Safety
 /// Address and length are those of an answer that is not used again.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn aerodeck_release(answer: *mut u8, length: usize) {
+unsafe extern "C" fn aerodeck_release(answer: *mut u8, length: usize) {
     // SAFETY: as the caller promises
     drop(unsafe { text(answer, length) });
 }
