@@ -28,7 +28,7 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
     let stage = progress.steps("records in the time domain");
     let results = buffeting_study(&study, &|done, all| stage.at(done as u64, all as u64))?;
     drop(stage);
-    out.write_json("buffeting.json", &results)?;
+    out.write_json("buffeting.json", "buffeting-results", &results)?;
     if !results.responses.is_empty() {
         figures::write("buffeting", &mut out, || {
             buffeting_rms_figure(&study.name, &results)

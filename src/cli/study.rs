@@ -303,7 +303,7 @@ impl StudyStages<'_> {
         self.out.stage(SUMMARY)?;
         summary.files = self.out.targets();
         summary.files.sort();
-        self.out.write_json(SUMMARY, &summary)?;
+        self.out.write_json(SUMMARY, "summary", &summary)?;
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;
         let verbose = self.progress.verbose();

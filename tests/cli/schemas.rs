@@ -345,6 +345,7 @@ fn outputs_are_those_of_the_schemas() {
     for (command, values) in outputs(folder.path()) {
         let file = format!("docs/schema/{}.json", command.replace(' ', "-"));
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(&file);
+        let kind = aerodeck::json::format(&command.replace(' ', "-"));
         if update {
             let Value::Object(body) = schema(&values.iter().collect::<Vec<_>>()) else {
                 unreachable!("an object")
@@ -359,11 +360,14 @@ fn outputs_are_those_of_the_schemas() {
                 json!(format!("What `aerodeck {command} --json` prints")),
             );
             made.extend(body);
+            made["properties"]["format"] = json!({ "const": kind, "type": "string" });
             let text = format!("{:#}\n", Value::Object(made));
             fs::write(&path, text).unwrap();
         }
         let stored: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+        assert_eq!(stored["properties"]["format"]["const"], kind, "{file}");
         for value in &values {
+            assert_eq!(value["format"], kind, "{file}");
             wrong(&stored, value, &file, &mut found);
         }
     }
