@@ -11,8 +11,11 @@ use tempfile::TempDir;
 const SCATTER: &str = "schema = 1\nmodel = \"a/models/laguerre.json\"\nsamples = 300\ndesign_speed_m_s = 36.0\n\
      [[parameter]]\nname = \"torsion.damping_ratio\"\ndistribution = { kind = \"lognormal\", coefficient_of_variation = 0.4 }\n";
 
+const GUSTS: &str = "[buffeting]\nspeeds_m_s = [20.0]\n[buffeting.turbulence.vertical]\nspectrum = { shape = { kind = \"von_karman\" }, \
+     length_m = 20.0, intensity = 0.05 }\n";
+
 /// Command lines whose outputs make a schema, in this order: the first make the files that later ones read.
-const LINES: [(&str, &[&str]); 30] = [
+const LINES: [(&str, &[&str]); 31] = [
     ("", &["new", "--deck", "LN21-5200"]),
     ("", &["new", "--deck", "flat plate", "--out", "plate.toml"]),
     (
@@ -48,6 +51,10 @@ const LINES: [(&str, &[&str]); 30] = [
             "--set",
             "flutter.speed_max_m_s=30",
         ],
+    ),
+    (
+        "study",
+        &["study", "gusts.toml", "--out", "e", "--no-figures"],
     ),
     ("train", &["train", "study.toml", "--out", "a"]),
     (
@@ -203,6 +210,9 @@ fn outputs(at: &Path) -> BTreeMap<&'static str, Vec<Value>> {
         if command.is_empty() {
             if line.contains(&"--bridge") {
                 bridges(at);
+            } else if line.contains(&"LN21-5200") && line[0] == "new" {
+                let study = fs::read_to_string(at.join("study.toml")).unwrap();
+                fs::write(at.join("gusts.toml"), study + GUSTS).unwrap();
             }
             continue;
         }
