@@ -180,13 +180,13 @@ fn build_live(source: &Path, out: &Path, target: &str) -> Result<PathBuf, String
         let output = Command::new(variable("CARGO")?)
             .args(["rustc", "--package", "aerodeck-live", "--lib"])
             .args(["--crate-type", "cdylib", "--profile", "live"])
-            // with the linker itself it is a module that a browser takes, not a component of WASI
-            .args(["--config", "target.wasm32-wasip2.linker='rust-lld'"])
             .args(["--target", target, "--target-dir"])
             .arg(&target_dir)
             .args(network)
             .current_dir(source)
             .env("CARGO_BUILD_BUILD_DIR", &target_dir)
+            // with the linker itself it is a module that a browser takes, not a component of WASI
+            .env("CARGO_TARGET_WASM32_WASIP2_LINKER", "rust-lld")
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
             .env_remove("RUSTC_WORKSPACE_WRAPPER")
             .env_remove("RUSTFLAGS")

@@ -44,8 +44,6 @@ TARGETS = {
 RECORD = "built_from.json"
 # no platform of FMI: the module that answers the sliders of reports, of which one target is enough
 LIVE = ["wasm32-unknown-unknown", "wasm32-wasip2"]
-# as in build.rs: a module that a browser takes, not a component of WASI
-LINKER = "--config=target.wasm32-wasip2.linker='rust-lld'"
 # linkers that export less than zig's, where they are there
 LINKERS = {"x86_64-pc-windows-gnu": "x86_64-w64-mingw32-gcc"}
 MACHINES = {"x86_64-apple-darwin": (0x01000007, 3), "aarch64-apple-darwin": (0x0100000C, 0)}  # of Mach-O
@@ -116,8 +114,8 @@ def build_live(target, out):
     """The module for the sliders of reports, beside the runtimes."""
     target_dir = ROOT / "target" / "fmu-release"
     run("cargo", "rustc", "--locked", "--package", "aerodeck-live", "--lib", "--crate-type", "cdylib",
-        "--profile", "live", LINKER, "--target", target, "--target-dir", target_dir,
-        env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(target)))  # fmt: skip
+        "--profile", "live", "--target", target, "--target-dir", target_dir,
+        env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(target), CARGO_TARGET_WASM32_WASIP2_LINKER="rust-lld"))  # fmt: skip
     file = out / "wasm32" / f"{NAME}.wasm"
     file.parent.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(target_dir / target / "live" / "aerodeck_live.wasm", file)

@@ -50,8 +50,9 @@ mod wrapping;
 pub use answer::Answer;
 
 use crate::error::{Error, Result};
-use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
+use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
 
@@ -101,6 +102,9 @@ struct Cli {
     png: bool,
     #[command(subcommand)]
     command: Command,
+    /// What the answer is: the names of the command, as its schema has them.
+    #[arg(skip)]
+    kind: String,
 }
 
 #[derive(Subcommand)]
@@ -168,8 +172,8 @@ pub fn main() -> ExitCode {
             Ok(Some(schema)) => return print(&schema, false),
             Err(error) => return report(&error, false),
         }
-        let matches = groups::in_groups(Cli::command()).try_get_matches();
-        let cli = match matches.and_then(|m| Cli::from_arg_matches(&m)) {
+        let command = groups::in_groups(Cli::command());
+        let cli = match Cli::read(command, std::env::args_os()) {
             Ok(cli) => cli,
             Err(error) => return usage(&error),
         };
@@ -192,7 +196,7 @@ pub fn main() -> ExitCode {
 pub fn answer(arguments: &[String]) -> Result<(serde_json::Value, u8)> {
     let name = std::iter::once("aerodeck");
     let line = name.chain(arguments.iter().map(String::as_str));
-    let cli = Cli::try_parse_from(line).map_err(|e| {
+    let cli = Cli::read(Cli::command(), line).map_err(|e| {
         let said = e.to_string();
         Error::input("arguments", "a command line of the program", said.trim())
     })?;
@@ -201,10 +205,32 @@ pub fn answer(arguments: &[String]) -> Result<(serde_json::Value, u8)> {
 }
 
 impl Cli {
+    fn read(
+        command: clap::Command,
+        line: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+    ) -> std::result::Result<Self, clap::Error> {
+        let matches = command.try_get_matches_from(line)?;
+        let mut cli = Self::from_arg_matches(&matches)?;
+        cli.kind = kind(&matches);
+        Ok(cli)
+    }
+
     fn answer(&self) -> Result<Answer> {
         figures::want(!self.no_figures, self.png)?;
         let progress = progress::Progress::new(!self.quiet && !self.json, self.verbose);
-        run(&self.command, &progress)
+        run(&self.command, &progress).map(|answer| answer.of_kind(&self.kind))
+    }
+}
+
+/// What the command of a line answers.
+fn kind(line: &ArgMatches) -> String {
+    match line.subcommand() {
+        Some(("demo", demo)) if demo.get_flag("bridge") => "bridge-flutter".to_owned(),
+        Some(("demo", _)) => "study".to_owned(),
+        Some((name, inner)) => format!("{name}-{}", kind(inner))
+            .trim_end_matches('-')
+            .to_owned(),
+        None => String::new(),
     }
 }
 

@@ -83,7 +83,7 @@ pub use aerodeck_lab::{files, signal, wind_tunnel};
 pub use aerodeck_live as live;
 
 pub use aerodeck_core::{
-    Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, plausibility, response,
+    Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, json, plausibility, response,
     section, state_space, trained_model, units, verdict,
 };
 

@@ -42,7 +42,7 @@ pub(crate) use wind::{
     BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, WindStudy, buffeting_study,
     quasi_steady_study, simulated_motion,
 };
-pub use wind::{CoefficientsBlock, example_wind_study_text};
+pub use wind::{CoefficientsBlock, SectionBuffetingBlock, example_wind_study_text};
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
@@ -95,6 +95,8 @@ pub struct Study {
     pub flutter: FlutterBlock,
     /// Static coefficients, for quasi-steady theory beside the other routes to the onset.
     pub coefficients: Option<CoefficientsBlock>,
+    /// Turbulence, and the response of the section to it.
+    pub buffeting: Option<SectionBuffetingBlock>,
     /// What to export.
     #[serde(default)]
     pub export: ExportBlock,
@@ -231,6 +233,9 @@ impl Study {
         self.flutter.validate("flutter")?;
         if let Some(block) = &self.coefficients {
             block.validate("coefficients")?;
+        }
+        if let Some(block) = &self.buffeting {
+            block.validate("buffeting")?;
         }
         self.export.validate()?;
         self.exported().map(|_| ())

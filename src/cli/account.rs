@@ -56,6 +56,9 @@ pub(crate) fn chain(
             let _ = writeln!(text, "warning: {}: {warning}", summary.model);
         }
     }
+    if let Some(line) = &summary.buffeting {
+        let _ = writeln!(text, "Gusts     {line}");
+    }
     text.push_str(&failures(&summary.failed));
     let others = rest.lines().filter(|l| l.starts_with("warning: "));
     let warnings = others.filter(|l| !text.contains(l)).count();

@@ -2,6 +2,7 @@
 
 use super::wrapping::wrapped;
 use crate::error::{Error, Result};
+use crate::json;
 use crate::verdict::Verdict;
 use serde::Serialize;
 
@@ -41,6 +42,15 @@ impl Answer {
             refused: false,
             verbatim: false,
         })
+    }
+
+    /// The same answer, which says to machines what it is.
+    #[must_use]
+    pub(super) fn of_kind(mut self, kind: &str) -> Self {
+        if let serde_json::Value::Object(keys) = &mut self.json {
+            keys.insert(json::KEY.to_owned(), json::format(kind).into());
+        }
+        self
     }
 
     /// The same answer of a check that did or did not pass.

@@ -1,13 +1,20 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed.
 
 use super::answer::Answer;
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::wind::WindArgs;
 use super::{buffeting_page, figures, headline};
-use crate::error::{Result, counted};
+use crate::error::{Error, Result, counted};
 use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_page};
-use crate::study::{BuffetingStudy, WindStudy, buffeting_study};
+use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
 use std::fmt::Write as _;
+use std::path::Path;
+
+/// The page of the response.
+pub(super) const PAGE: &str = "buffeting.html";
+/// Key of that page where it is part of a study.
+pub(super) const OF_STUDY: &str = "study";
 
 /// Lines of the table at most: of finer lists of speeds every second, third, … is printed.
 const TABLE_LINES: usize = 15;
@@ -25,26 +32,9 @@ pub(crate) struct BuffetingArgs {
 /// Runs the command.
 pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.wind.open()?;
-    let stage = progress.steps("records in the time domain");
-    let results = buffeting_study(&study, &|done, all| stage.at(done as u64, all as u64))?;
-    drop(stage);
-    out.write_json("buffeting.json", &results)?;
-    if !results.responses.is_empty() {
-        figures::write("buffeting", &mut out, || {
-            buffeting_rms_figure(&study.name, &results)
-        })?;
-    }
-    for spectra in &results.spectra {
-        let title = format!("{} at {} m/s", study.name, spectra.speed_m_s);
-        let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
-        figures::write(&stem, &mut out, || {
-            buffeting_spectra_figure(&title, &results.dofs, spectra)
-        })?;
-    }
-    out.write(
-        "buffeting.html",
-        sections_page(&buffeting_page::page(&study, &results)?)?,
-    )?;
+    let speeds = study.speed_range()?.curve_speeds_m_s();
+    let results = response(&study, &speeds, progress)?;
+    write(&study.name, "", &results, &mut out)?;
     // a requirement is judged where it is stated, also beside a response to turbulence
     let required = study.speeds.required();
     let verdict = required.map(|_| study.verdict()).transpose()?;
@@ -52,6 +42,61 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
     let value = serde_json::json!({ "verdict": verdict, "buffeting": results, "findings": study.findings() });
     let answer = out.answer(text, value)?;
     Ok(answer.with_outcome_of(verdict.as_ref()))
+}
+
+fn response(study: &WindStudy, speeds: &[f64], progress: &Progress) -> Result<BuffetingStudy> {
+    let stage = progress.steps("records in the time domain");
+    buffeting_study(study, speeds, &|done, all| {
+        stage.at(done as u64, all as u64)
+    })
+}
+
+/// The response of a study's section to the turbulence that it states, and the same in a line; `model` is the file of the
+/// exported model.
+pub(super) fn of_study(
+    study: &Study,
+    block: &SectionBuffetingBlock,
+    model: &Path,
+    out: &mut OutputDir,
+    progress: &Progress,
+) -> Result<String> {
+    let model = std::path::absolute(model).map_err(|e| Error::io(model, e))?;
+    let speeds = match block.speeds_m_s.is_empty() {
+        true => study.speeds().curve_speeds_m_s(),
+        false => block.speeds_m_s.clone(),
+    };
+    let wind = WindStudy::of_study(study, block, &model);
+    let mut results = response(&wind, &speeds, progress)?;
+    results.aerodynamics = study.exported()?.name.clone();
+    let Some(last) = results.responses.last() else {
+        let reason = results.left_out.first().map_or("", |s| &s.reason);
+        return Err(Error::Numerical(format!("at no wind speed: {reason}")));
+    };
+    let rms = results.dofs.iter().zip(&last.rms).map(|(dof, rms)| {
+        let (factor, unit) = dof.shown_in();
+        format!("{} {:.4} {unit}", dof.symbol(), factor * rms)
+    });
+    let rms: Vec<String> = rms.collect();
+    let line = format!("RMS at {} m/s: {}", last.speed_m_s, rms.join(", "));
+    write(&study.name, OF_STUDY, &results, out)?;
+    Ok(line)
+}
+
+/// The results, their figures and their page.
+fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -> Result<()> {
+    out.write_json("buffeting.json", "buffeting-results", results)?;
+    if !results.responses.is_empty() {
+        figures::write("buffeting", out, || buffeting_rms_figure(name, results))?;
+    }
+    for spectra in &results.spectra {
+        let title = format!("{name} at {} m/s", spectra.speed_m_s);
+        let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
+        figures::write(&stem, out, || {
+            buffeting_spectra_figure(&title, &results.dofs, spectra)
+        })?;
+    }
+    let page = buffeting_page::page(name, key, results)?;
+    out.write(PAGE, sections_page(&page)?)
 }
 
 fn account(study: &WindStudy, results: &BuffetingStudy) -> String {

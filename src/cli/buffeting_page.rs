@@ -5,7 +5,7 @@ use crate::buffeting::peak_factor;
 use crate::error::Result;
 use crate::files::report_block::ReportBlock;
 use crate::report::{PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure};
-use crate::study::{BuffetingStudy, WindStudy};
+use crate::study::BuffetingStudy;
 
 /// Length of record for which peaks are expected, s.
 const DURATION_S: f64 = 600.0;
@@ -13,59 +13,65 @@ const DURATION_S: f64 = 600.0;
 /// Speeds of the table at most: of finer lists every second, third, … is shown.
 const SPEEDS: usize = 15;
 
-/// Root mean squares, peaks and accelerations over the wind speed, with the figures.
-pub(super) fn page(study: &WindStudy, results: &BuffetingStudy) -> Result<SectionsPage> {
+/// Root mean squares, peaks and accelerations over the wind speed, with the figures; another page takes them up by the `key`.
+pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<SectionsPage> {
     let mut rows = Vec::new();
     let every = results.responses.len().div_ceil(SPEEDS).max(1);
     for r in results.responses.iter().step_by(every) {
+        let mut equilibria = results.mean.iter();
+        let mean = equilibria.find(|m| m.speed_m_s == r.speed_m_s);
         for (i, dof) in results.dofs.iter().enumerate() {
             let (factor, unit) = dof.shown_in();
             let g = peak_factor(r.crossing_frequency_hz[i], DURATION_S);
+            let mean = mean.map(|m| format!("{:.5}", factor * m.displacement[i]));
+            let about = mean.as_ref().map_or(String::new(), |m| format!("{m} "));
             rows.push(vec![
                 format!("{:.2}", r.speed_m_s),
                 format!("{}, {unit}", dof.name()),
+                mean.unwrap_or("–".to_owned()),
                 format!("{:.5}", factor * r.rms[i]),
                 format!("{g:.2}"),
-                format!("±{:.5}", factor * g * r.rms[i]),
+                format!("{about}±{:.5}", factor * g * r.rms[i]),
                 format!("{:.5}", factor * r.acceleration_rms[i]),
             ]);
         }
     }
     let mut figures = Vec::new();
     if !results.responses.is_empty() {
-        let figure = buffeting_rms_figure(&study.name, results)?;
+        let figure = buffeting_rms_figure(name, results)?;
         figures.push(("RMS over wind speed.".to_owned(), figure.svg().to_owned()));
     }
     for spectra in &results.spectra {
-        let title = format!("{} at {} m/s", study.name, spectra.speed_m_s);
+        let title = format!("{name} at {} m/s", spectra.speed_m_s);
         let figure = buffeting_spectra_figure(&title, &results.dofs, spectra)?;
         let caption = format!("Spectra at {} m/s times the frequency.", spectra.speed_m_s);
         figures.push((caption, figure.svg().to_owned()));
     }
     let table = PageSection {
-        title: "Response over wind speed".to_owned(),
+        title: "Response to turbulence".to_owned(),
         text: vec![format!(
-            "About the mean, in the frequency domain; self-excited forces: {}. g: expected peak factor in {DURATION_S} s. The last column is \
-             the RMS of the acceleration, per s².",
+            "RMS about the mean, in the frequency domain; self-excited forces: {}. Mean: by the static coefficients, where some are \
+             stated. g: expected peak factor in {DURATION_S} s. The last column is the RMS of the acceleration, per s².",
             results.aerodynamics
         )],
         header: vec![
             "V m/s",
             "motion",
+            "mean",
             "RMS",
             "g",
-            "expected peak",
+            "mean ± expected peak",
             "acceleration",
         ],
         rows,
         figures,
     };
     Ok(SectionsPage {
-        title: study.name.clone(),
+        title: name.to_owned(),
         subtitle: "Response of a section to turbulence".to_owned(),
         answer: format!("Response at {} wind speeds", results.responses.len()),
         of: ReportBlock::default().dated(Some(&today()?)),
-        key: String::new(),
+        key: key.to_owned(),
         sections: vec![table],
     })
 }

@@ -51,7 +51,7 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
             onset_distribution_figure(&result)
         })?;
     }
-    out.write_json("monte_carlo.json", &result)?;
+    out.write_json("monte_carlo.json", "monte-carlo-results", &result)?;
     out.answer(account(&result), serde_json::json!({ "result": result }))
 }
 

@@ -5,6 +5,7 @@ use super::interrupt::{Temporary, uninterrupted};
 use super::lock::{FolderLock, LOCK_FILE};
 use super::wrapping::COLUMNS;
 use crate::error::{Error, Result};
+use crate::json;
 use crate::wind_tunnel::{Record, write_record};
 use rayon::prelude::*;
 use std::fs;
@@ -109,15 +110,14 @@ impl OutputDir {
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
-    /// Writes a result as indented JSON.
+    /// Writes a result of a kind as indented JSON.
     pub(crate) fn write_json(
         &mut self,
         name: impl AsRef<Path>,
+        kind: &str,
         value: &impl serde::Serialize,
     ) -> Result<()> {
-        let text = serde_json::to_string_pretty(value);
-        let text = text.map_err(|e| Error::Numerical(e.to_string()))?;
-        self.write(name, text + "\n")
+        self.write(name, json::write(kind, value)?)
     }
 
     /// Writes records as the files of these names, on all cores.

@@ -93,7 +93,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let mut out = OutputDir::new(&args.out)?;
     let names = write_records(&processed, &mut out)?;
     draw_stages(&processed, &mut out, progress)?;
-    out.write_json("processing.json", &processed.report)?;
+    out.write_json("processing.json", "processing", &processed.report)?;
     if let Some(found) = &derivatives {
         write_derivatives(args, &raw, found, &mut out)?;
         match write_table(&raw, found, &mut out) {
@@ -187,7 +187,7 @@ fn write_derivatives(
     found: &IdentifiedDerivatives,
     out: &mut OutputDir,
 ) -> Result<()> {
-    out.write_json("derivatives.json", found)?;
+    out.write_json("derivatives.json", "derivatives", found)?;
     let plot = plot(raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
     figures::write("derivatives", out, || derivatives_figure(&plot))
 }

@@ -42,7 +42,7 @@ pub(crate) fn run(args: &QuasiSteadyArgs, progress: &Progress) -> Result<Answer>
     let stage = progress.stage("nonlinear run");
     let run = simulated_motion(&study)?;
     drop(stage);
-    out.write_json("quasi_steady.json", &results)?;
+    out.write_json("quasi_steady.json", "quasi-steady-results", &results)?;
     draw(&study, &results, &mut out)?;
     if let Some(run) = &run {
         write_run(&study, run, &mut out)?;

@@ -10,6 +10,7 @@ mod variables;
 
 use super::answer::Answer;
 use super::bridge::files::BRIDGE_FMU;
+use super::buffeting;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
@@ -19,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetMethod};
 use crate::fmu::package::with_report;
 use crate::identification::EntryReport;
-use crate::report::{PageFigure, PageFit, StudyPage, study_page, summary_figure};
+use crate::report::{PageFigure, PageFit, StudyPage, sections_of, study_page, summary_figure};
 use crate::study::Study;
 use curves::curves_of;
 use folder::{PagePlace, REPORT, SUMMARY, SummaryKind, digest, parsed};
@@ -116,6 +117,11 @@ fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> 
     }
     page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
     page.live = live::sliders(&study, read(MODEL_FILE))?;
+    let turbulent = read(buffeting::PAGE).filter(|_| summary.buffeting.is_some());
+    let turbulent = turbulent.and_then(|bytes| String::from_utf8(bytes).ok());
+    page.taken_up = turbulent
+        .and_then(|text| sections_of(&text, buffeting::OF_STUDY))
+        .unwrap_or_default();
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
     let said = |name: &&str| place == PagePlace::Folder || *name != FMU_FILE;

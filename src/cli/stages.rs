@@ -102,7 +102,7 @@ pub(crate) fn train(
         let file = format!("{}.json", block.slug());
         let json = result.model.to_json()?;
         out.write(Path::new(MODELS).join(&file), &json)?;
-        out.write_json(Path::new(FITS).join(&file), &result.report)?;
+        out.write_json(Path::new(FITS).join(&file), "fit", &result.report)?;
         if let Ok(uncertainty) = &result.uncertainty {
             let file = format!("{}.{UNCERTAINTY}", block.slug());
             out.write(Path::new(FITS).join(file), uncertainty.to_json()?)?;

@@ -8,7 +8,7 @@ use super::report;
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
-use super::{account, evidence, figures, headline, measured_forces, select, stages};
+use super::{account, buffeting, evidence, figures, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
@@ -84,7 +84,8 @@ pub(crate) fn run_chain(
     let verdict = chain.verdict(own, &results);
     chain.draw(&trained, &results, &verdict)?;
     chain.draw_exported(own, &results, records.as_ref())?;
-    let summary = chain.summary(study_file, trained, results, stepped)?;
+    let mut summary = chain.summary(study_file, trained, results, stepped)?;
+    chain.buffeting(&mut summary)?;
     chain.finish(summary)
 }
 
@@ -292,9 +293,27 @@ impl StudyStages<'_> {
             deviations: results.deviations,
             fits: trained.into_iter().map(FitSummary::from).collect(),
             stepped,
+            buffeting: None,
             failed,
             files: Vec::new(),
         })
+    }
+
+    /// The response to turbulence, where the study states some. The flutter results are complete by now, and stay what they are.
+    fn buffeting(&mut self, summary: &mut Summary) -> Result<()> {
+        let Some(block) = &self.study.buffeting else {
+            return Ok(());
+        };
+        if summary.fits.iter().all(|f| f.model != summary.model) {
+            return Ok(());
+        }
+        let model = self.out.stage(stages::MODEL_FILE)?;
+        let (study, out) = (&self.study, &mut self.out);
+        match buffeting::of_study(study, block, &model, out, self.progress) {
+            Ok(line) => summary.buffeting = Some(line),
+            Err(e) => summary.failed.push(StageFailure::new("buffeting", e)),
+        }
+        Ok(())
     }
 
     /// Summary and report, then all files in their places.
@@ -303,7 +322,7 @@ impl StudyStages<'_> {
         self.out.stage(SUMMARY)?;
         summary.files = self.out.targets();
         summary.files.sort();
-        self.out.write_json(SUMMARY, &summary)?;
+        self.out.write_json(SUMMARY, "summary", &summary)?;
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;
         let verbose = self.progress.verbose();

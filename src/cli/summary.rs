@@ -57,6 +57,9 @@ pub(crate) struct Summary {
     pub fits: Vec<FitSummary>,
     /// The FMU stepped through its C interface.
     pub stepped: Option<SteppedOnset>,
+    /// Response to the turbulence of the study, in a line.
+    #[serde(default)]
+    pub buffeting: Option<String>,
     /// Stages that failed, and why; the others are complete.
     pub failed: Vec<StageFailure>,
     /// Files written.

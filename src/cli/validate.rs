@@ -39,7 +39,7 @@ pub(crate) fn run(args: &ValidateArgs, progress: &Progress) -> Result<Answer> {
     } else {
         table(&results)
     };
-    Ok(Answer::new(text, &results)?.passed_if(passed))
+    Ok(Answer::new(text, &serde_json::json!({ "cases": results }))?.passed_if(passed))
 }
 
 fn user_cases(files: &[PathBuf]) -> Result<Vec<CaseResult>> {

@@ -4,6 +4,7 @@ use super::{FlutterStudy, RouteTable, Study, slug};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetMethod};
 use crate::identification::FitReport;
+use crate::json;
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
@@ -38,7 +39,7 @@ pub(crate) fn saved_moved_onset(model: &TrainedModel, folder: &Path) -> Result<O
         return Ok(None);
     }
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-    let report: FitReport = serde_json::from_str(&text)
+    let report: FitReport = json::read("fit", &text)
         .map_err(|e| Error::json("the account of a fit", &e).in_file(&path))?;
     Ok(report.constraints.and_then(|held| held.onset))
 }

@@ -8,7 +8,7 @@ pub(crate) use quasi_steady::{
     QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion,
 };
 
-use super::{FlutterBlock, SpeedRange};
+use super::{FlutterBlock, SpeedRange, Study, is_default};
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, Interpolation};
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
@@ -86,8 +86,38 @@ pub struct CoefficientsBlock {
     pub arms_from: Option<String>,
 }
 
+/// The turbulence of a study, on its section in the forces of its exported model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionBuffetingBlock {
+    /// Mean wind speeds, m/s; left out, those of the curves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub speeds_m_s: Vec<f64>,
+    /// The gusts and their admittances.
+    pub turbulence: Turbulence,
+    /// Wind speeds at which the response is computed in the time domain as well.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub(crate) time: TimeBlock,
+}
+
+impl SectionBuffetingBlock {
+    /// Checks every value; `place` is the key of the block.
+    pub(in crate::study) fn validate(&self, place: &str) -> Result<()> {
+        self.turbulence.validate(&format!("{place}.turbulence"))?;
+        all_positive(&format!("{place}.speeds_m_s"), &self.speeds_m_s)?;
+        all_positive(&format!("{place}.time.speeds_m_s"), &self.time.speeds_m_s)
+    }
+}
+
+fn all_positive(place: &str, values: &[f64]) -> Result<()> {
+    for (i, value) in values.iter().enumerate() {
+        positive(format!("{place}[{i}]"), *value)?;
+    }
+    Ok(())
+}
+
 /// What is stepped in the time domain.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct TimeBlock {
     /// Mean wind speeds, m/s; none by default.
@@ -149,9 +179,7 @@ impl WindStudy {
         if let Some(turbulence) = &self.turbulence {
             turbulence.validate("turbulence")?;
         }
-        for (i, speed) in self.time.speeds_m_s.iter().enumerate() {
-            positive(format!("time.speeds_m_s[{i}]"), *speed)?;
-        }
+        all_positive("time.speeds_m_s", &self.time.speeds_m_s)?;
         if let Some(block) = &self.coefficients {
             block.validate("coefficients")?;
         }
@@ -163,6 +191,24 @@ impl WindStudy {
             finite("simulation.initial_rotation_deg", run.initial_rotation_deg)?;
         }
         Ok(())
+    }
+
+    /// The turbulence of a study as a wind file states it; `model` is the file of the exported model.
+    pub(crate) fn of_study(study: &Study, block: &SectionBuffetingBlock, model: &Path) -> Self {
+        Self {
+            schema: WIND_SCHEMA,
+            name: study.name.clone(),
+            section: Some(study.section.clone()),
+            coefficients: study.coefficients.clone(),
+            aerodynamics: model.to_string_lossy().into_owned(),
+            convention: StatedConvention::default(),
+            interpolation: Interpolation::default(),
+            speeds: study.flutter,
+            turbulence: Some(block.turbulence),
+            time: block.time.clone(),
+            simulation: None,
+            directory: study.directory.clone(),
+        }
     }
 
     /// The trained model of `aerodynamics`, when it names one.

@@ -25,6 +25,7 @@ const fn row(module: &'static str, may_use: &'static [&'static str]) -> Row {
 pub const ARROWS: &[Row] = &[
     row("error", &[]),
     row("threads", &[]),
+    row("json", &[]),
     row("units", &[]),
     row("state_space", &[]),
     row("signal", &[]),
@@ -127,7 +128,7 @@ const BELOW_STUDY: &[&str] = &[
 ];
 
 /// Every module may use these.
-const FOR_ALL: &[&str] = &["error"];
+const FOR_ALL: &[&str] = &["error", "json"];
 
 /// Files are written for about 400 lines; this is where they must be split.
 pub const LINES_AT_MOST: usize = 420;

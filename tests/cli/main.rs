@@ -18,6 +18,7 @@ mod derivatives;
 #[cfg(unix)]
 mod faults;
 mod flags;
+mod formats;
 mod implausible;
 mod names;
 mod newcomer;

@@ -11,8 +11,11 @@ use tempfile::TempDir;
 const SCATTER: &str = "schema = 1\nmodel = \"a/models/laguerre.json\"\nsamples = 300\ndesign_speed_m_s = 36.0\n\
      [[parameter]]\nname = \"torsion.damping_ratio\"\ndistribution = { kind = \"lognormal\", coefficient_of_variation = 0.4 }\n";
 
+const GUSTS: &str = "[buffeting]\nspeeds_m_s = [20.0]\n[buffeting.turbulence.vertical]\nspectrum = { shape = { kind = \"von_karman\" }, \
+     length_m = 20.0, intensity = 0.05 }\n";
+
 /// Command lines whose outputs make a schema, in this order: the first make the files that later ones read.
-const LINES: [(&str, &[&str]); 30] = [
+const LINES: [(&str, &[&str]); 31] = [
     ("", &["new", "--deck", "LN21-5200"]),
     ("", &["new", "--deck", "flat plate", "--out", "plate.toml"]),
     (
@@ -48,6 +51,10 @@ const LINES: [(&str, &[&str]); 30] = [
             "--set",
             "flutter.speed_max_m_s=30",
         ],
+    ),
+    (
+        "study",
+        &["study", "gusts.toml", "--out", "e", "--no-figures"],
     ),
     ("train", &["train", "study.toml", "--out", "a"]),
     (
@@ -203,6 +210,9 @@ fn outputs(at: &Path) -> BTreeMap<&'static str, Vec<Value>> {
         if command.is_empty() {
             if line.contains(&"--bridge") {
                 bridges(at);
+            } else if line.contains(&"LN21-5200") && line[0] == "new" {
+                let study = fs::read_to_string(at.join("study.toml")).unwrap();
+                fs::write(at.join("gusts.toml"), study + GUSTS).unwrap();
             }
             continue;
         }
@@ -345,6 +355,7 @@ fn outputs_are_those_of_the_schemas() {
     for (command, values) in outputs(folder.path()) {
         let file = format!("docs/schema/{}.json", command.replace(' ', "-"));
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(&file);
+        let kind = aerodeck::json::format(&command.replace(' ', "-"));
         if update {
             let Value::Object(body) = schema(&values.iter().collect::<Vec<_>>()) else {
                 unreachable!("an object")
@@ -359,11 +370,14 @@ fn outputs_are_those_of_the_schemas() {
                 json!(format!("What `aerodeck {command} --json` prints")),
             );
             made.extend(body);
+            made["properties"]["format"] = json!({ "const": kind, "type": "string" });
             let text = format!("{:#}\n", Value::Object(made));
             fs::write(&path, text).unwrap();
         }
         let stored: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+        assert_eq!(stored["properties"]["format"]["const"], kind, "{file}");
         for value in &values {
+            assert_eq!(value["format"], kind, "{file}");
             wrong(&stored, value, &file, &mut found);
         }
     }

@@ -381,7 +381,7 @@ fn validate_runs_cases_of_users() {
     fs::write(at.join("wrong.toml"), example.replace("90.466", "91.0")).unwrap();
     let (code, stdout, _) = command::aerodeck(at, &["validate", "--case", "wrong.toml", "--json"]);
     let json: Value = serde_json::from_str(&stdout).unwrap();
-    let failed = json
+    let failed = json["cases"]
         .as_array()
         .unwrap()
         .iter()

@@ -5,6 +5,7 @@ use crate::aerodynamics::{
     Realization, Transfer, TransferMatrix,
 };
 use crate::error::{Error, Result, finite, positive, without_control_characters};
+use crate::json;
 use crate::section::{Dof, SectionModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,9 @@ pub const SCHEMA_VERSION: u32 = 1;
 /// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
 /// functions with lags of each force, minimum-state form.
 pub const NEWEST_SCHEMA_VERSION: u32 = 2;
+
+/// What the files of models say they are.
+const KIND: &str = "model";
 
 /// States of a realisation at most, a hundred times those of any model that was ever fitted: its matrices are full.
 const MAX_STATES: usize = 1000;
@@ -204,7 +208,7 @@ impl TrainedModel {
     /// # Errors
     /// [`Error::Input`] with line and column for text that is not such a file, and for every value that cannot be.
     pub fn from_json(text: &str) -> Result<Self> {
-        let version: SchemaOnly = serde_json::from_str(text).map_err(|e| json_error(&e))?;
+        let version: SchemaOnly = json::read(KIND, text).map_err(|e| json_error(&e))?;
         if !(SCHEMA_VERSION..=NEWEST_SCHEMA_VERSION).contains(&version.schema_version) {
             return Err(Error::input(
                 "schema_version",
@@ -212,7 +216,7 @@ impl TrainedModel {
                 version.schema_version.to_string(),
             ));
         }
-        let model: Self = serde_json::from_str(text).map_err(|e| json_error(&e))?;
+        let model: Self = json::read(KIND, text).map_err(|e| json_error(&e))?;
         model.validate()?;
         Ok(model)
     }
@@ -223,10 +227,7 @@ impl TrainedModel {
     /// [`Error::Input`] when the model could not be read back.
     pub fn to_json(&self) -> Result<String> {
         self.validate()?;
-        let mut text =
-            serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
-        text.push('\n');
-        Ok(text)
+        json::write(KIND, self)
     }
 
     /// Checks every value.

@@ -3,7 +3,7 @@
 #![deny(unsafe_code)]
 
 use aerodeck_core::{
-    aerodynamics, aeroelastic, error, flutter, section, state_space, trained_model, units,
+    aerodynamics, aeroelastic, error, flutter, json, section, state_space, trained_model, units,
 };
 use aerodeck_lab::{files, signal, wind_tunnel};
 use error::Error;

@@ -2,7 +2,7 @@
 //! signals ([`signal`]), campaigns, load cells and the virtual wind tunnel ([`wind_tunnel`]).
 #![deny(unsafe_code)]
 
-use aerodeck_core::{aerodynamics, bridge, error, plausibility, section, units};
+use aerodeck_core::{aerodynamics, bridge, error, json, plausibility, section, units};
 use error::Error;
 
 pub mod files;

@@ -54,10 +54,11 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
         })?);
     }
     drop(stage);
-    match &all[..] {
-        [one] => out.write_json("bridge_buffeting.json", one)?,
-        all => out.write_json("bridge_buffeting.json", &all)?,
-    }
+    let (results, whole) = match &all[..] {
+        [one] => (serde_json::json!(one), serde_json::json!(one)),
+        all => (serde_json::json!(all), serde_json::json!({ "speeds": all })),
+    };
+    out.write_json("bridge_buffeting.json", "bridge-buffeting-results", &whole)?;
     let mut text = String::new();
     for (results, speed) in all.iter().zip(&speeds) {
         let name = match all.len() {
@@ -81,10 +82,6 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     let page = buffeting_page::page(&study, &file, &all)?;
     out.write(BUFFETING_PAGE, sections_page(&page)?)?;
     let verdict = required(&study)?;
-    let results = match &all[..] {
-        [one] => serde_json::json!(one),
-        all => serde_json::json!(all),
-    };
     let json = serde_json::json!({
         "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
     });

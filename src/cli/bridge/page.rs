@@ -20,7 +20,7 @@ pub(super) fn leave(
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
     let summary = BridgeSummary::of(ran, study, results, verdict, out.targets())?;
-    out.write_json(SUMMARY, &summary)?;
+    out.write_json(SUMMARY, "summary", &summary)?;
     report::leave(out)?;
     Ok(summary)
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::fmu::package::Label;
+use crate::json;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -42,7 +43,7 @@ pub(super) struct SummaryKind {
 
 /// The summary in `text`, which was read from `path`, as far as it is asked for.
 pub(super) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
-    serde_json::from_str(text).map_err(|e| {
+    json::read("summary", text).map_err(|e| {
         let expected = "the summary of `study`, `demo` or `bridge flutter` of this version";
         Error::json(expected, &e).in_file(path)
     })

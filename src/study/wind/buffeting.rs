@@ -6,7 +6,7 @@ use super::{QUASI_STEADY, WindStudy};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
-use crate::aeroelastic::static_equilibria;
+use crate::aeroelastic::{StaticEquilibrium, static_equilibria};
 use crate::buffeting::{
     BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, GustComponent, GustForces,
     TimePlan, buffeting_response, compare, response_spectrum, time_ensemble, unstable_roots,
@@ -37,6 +37,8 @@ pub(crate) struct BuffetingStudy {
     pub width_m: f64,
     /// Root mean squares at each speed at which the section is stable.
     pub responses: Vec<BuffetingResponse>,
+    /// Static equilibria at those speeds, as far as static coefficients have one.
+    pub mean: Vec<StaticEquilibrium>,
     /// Speeds of the lists that have no answer.
     pub left_out: Vec<SpeedLeftOut>,
     /// Spectra at the speeds of the time domain, else at the middle speed.
@@ -100,17 +102,18 @@ struct ForcesAtSpeed {
     forces: GustForces,
 }
 
-/// RMS over the speeds of the file, spectra, and the time domain where it is asked for. `progress` gets records done and
+/// RMS over these mean wind speeds, m/s, spectra, and the time domain where it is asked for. `progress` gets records done and
 /// all of them.
 pub(crate) fn buffeting_study(
     study: &WindStudy,
+    speeds_m_s: &[f64],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<BuffetingStudy> {
     let setting = Setting::new(study)?;
     let mut responses = Vec::new();
     let mut left_out = Vec::new();
-    for speed in study.speed_range()?.curve_speeds_m_s() {
-        responses.extend(setting.answered(speed, &mut left_out)?);
+    for speed in speeds_m_s {
+        responses.extend(setting.answered(*speed, &mut left_out)?);
     }
     // the same test for the speeds of the time domain, in which an unstable section would only grow
     let mut timed = Vec::new();
@@ -132,6 +135,7 @@ pub(crate) fn buffeting_study(
         aerodynamics: study.aerodynamics.clone(),
         dofs: setting.structure.dofs.clone(),
         width_m: setting.structure.width_m,
+        mean: setting.equilibria(&responses),
         responses,
         left_out,
         spectra,
@@ -236,6 +240,18 @@ impl<'a> Setting<'a> {
             forces: GustForces::quasi_steady(&linear),
             moving: Some(Box::new(linear)),
         }))
+    }
+
+    /// About which the responses are.
+    fn equilibria(&self, responses: &[BuffetingResponse]) -> Vec<StaticEquilibrium> {
+        let Some(theory) = &self.theory else {
+            return Vec::new();
+        };
+        let at = |r: &BuffetingResponse| {
+            let path = static_equilibria(&self.structure, theory, &[r.speed_m_s]);
+            path.map_or_else(|_| Vec::new(), |path| path.points)
+        };
+        responses.iter().flat_map(at).collect()
     }
 
     /// The problem of the frequency domain.

@@ -11,6 +11,7 @@ use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
+use crate::json;
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
@@ -153,7 +154,7 @@ impl ModelUncertainty {
 
     /// Reads what was saved.
     pub fn from_json(text: &str) -> Result<Self> {
-        serde_json::from_str(text).map_err(|e| {
+        json::read("uncertainty", text).map_err(|e| {
             Error::json(
                 "the uncertainty of a model as written by `aerodeck train`",
                 &e,
@@ -163,9 +164,7 @@ impl ModelUncertainty {
 
     /// Indented JSON.
     pub fn to_json(&self) -> Result<String> {
-        let text =
-            serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
-        Ok(text + "\n")
+        json::write("uncertainty", self)
     }
 
     /// What a reader must know of the onset: that the mean speeds contradict each other.

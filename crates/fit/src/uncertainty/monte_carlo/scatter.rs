@@ -8,6 +8,7 @@
 use super::coefficients;
 use super::plan::MonteCarloPlan;
 use crate::error::{Error, Place, Result, counted};
+use crate::json;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::CoefficientUncertainty;
@@ -68,12 +69,12 @@ fn all_parameters(path: &Path, text: &str) -> Result<Option<(PathBuf, Coefficien
     if !json {
         return Ok(None);
     }
-    if let Ok(saved) = serde_json::from_str::<Saved>(text) {
+    if let Ok(saved) = json::read::<Saved>("uncertainty", text) {
         return Ok(Some((path.to_owned(), saved.coefficients)));
     }
     let beside = path.with_extension("uncertainty.json");
     if let Ok(text) = std::fs::read_to_string(&beside) {
-        let saved: Saved = serde_json::from_str(&text).map_err(|e| {
+        let saved: Saved = json::read("uncertainty", &text).map_err(|e| {
             let place = format!("{}, line {}", beside.display(), e.line());
             Error::input(place, "the uncertainty of a model", e.to_string())
         })?;
@@ -164,7 +165,7 @@ struct ReportCoefficient {
 
 /// The blocks of all transfer functions of a fit, independent of each other.
 fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
-    let report: Report = serde_json::from_str(text)
+    let report: Report = json::read("fit", text)
         .map_err(|e| Error::json("a report of a fit as written by `aerodeck train`", &e))?;
     let size = report.entries.iter().map(|e| e.coefficients.len()).sum();
     let mut names = Vec::with_capacity(size);

@@ -10,10 +10,12 @@ use super::ntnu;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
 use crate::files::text::{csv_cell, file_name};
+use crate::json;
 use crate::wind_tunnel::record_file::write_rows;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, write_record};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -89,8 +91,8 @@ fn write_truth(
         table.push_str(&line);
     }
     write_text(&place(Path::new("truth.csv"))?, &table)?;
-    let applied = serde_json::to_string_pretty(&made.truth.disturbances)
-        .map_err(|e| Error::Numerical(e.to_string()))?;
+    let runs = BTreeMap::from([("runs", &made.truth.disturbances)]);
+    let applied = json::write("disturbances", &runs)?;
     write_text(&place(Path::new("disturbances.json"))?, &applied)?;
     for record in &made.truth.records {
         let path =

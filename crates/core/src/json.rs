@@ -1,0 +1,121 @@
+//! JSON that says what it is: its first key, `format`, is `aerodeck/KIND VERSION`.
+
+use crate::error::{Error, Result};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeSeed, Error as _, IntoDeserializer, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// The key that says what a file or an answer is.
+pub const KEY: &str = "format";
+
+/// What that key says of a `kind` in its first layout; the files of models number theirs by `schema_version`.
+///
+/// ```
+/// assert_eq!(aerodeck_core::json::format("model"), "aerodeck/model 1");
+/// ```
+pub fn format(kind: &str) -> String {
+    format!("aerodeck/{kind} 1")
+}
+
+/// Indented JSON of an object, beginning with what it is.
+///
+/// ```
+/// use aerodeck_core::json;
+/// let text = json::write("pair", &std::collections::BTreeMap::from([("a", 1)]))?;
+/// assert_eq!(text, "{\n  \"format\": \"aerodeck/pair 1\",\n  \"a\": 1\n}\n");
+/// # aerodeck_core::Result::Ok(())
+/// ```
+///
+/// # Errors
+/// [`Error::Numerical`] for a value that is no object or cannot be written as JSON.
+pub fn write(kind: &str, value: &impl Serialize) -> Result<String> {
+    #[derive(Serialize)]
+    struct WithFormat<'a, T> {
+        format: String,
+        #[serde(flatten)]
+        value: &'a T,
+    }
+    let format = format(kind);
+    let text = serde_json::to_string_pretty(&WithFormat { format, value });
+    text.map(|text| text + "\n")
+        .map_err(|e| Error::Numerical(e.to_string()))
+}
+
+/// Reads an object of a kind; one that does not say what it is is taken for it.
+///
+/// ```
+/// use std::collections::BTreeMap;
+/// let read = |text| aerodeck_core::json::read::<BTreeMap<String, f64>>("pair", text);
+/// assert_eq!(read("{ \"format\": \"aerodeck/pair 1\", \"a\": 2.5 }").unwrap(), read("{ \"a\": 2.5 }").unwrap());
+/// let refused = read("{ \"format\": \"aerodeck/model 1\" }").unwrap_err().to_string();
+/// assert_eq!(refused, "JSON of the format `aerodeck/model 1` at line 1 column 32");
+/// ```
+///
+/// # Errors
+/// Those of [`serde_json::from_str`], and one for another kind.
+pub fn read<T: for<'de> Deserialize<'de>>(
+    kind: &str,
+    text: &str,
+) -> std::result::Result<T, serde_json::Error> {
+    let mut source = serde_json::Deserializer::from_str(text);
+    let read = OfKind(kind, PhantomData).deserialize(&mut source)?;
+    source.end().map(|()| read)
+}
+
+struct OfKind<'a, T>(&'a str, PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> DeserializeSeed<'de> for OfKind<'_, T> {
+    type Value = T;
+
+    fn deserialize<D: Deserializer<'de>>(self, source: D) -> std::result::Result<T, D::Error> {
+        source.deserialize_map(self)
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for OfKind<'_, T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, keys: A) -> std::result::Result<T, A::Error> {
+        let kind = self.0;
+        T::deserialize(MapAccessDeserializer::new(OtherKeys { kind, keys }))
+    }
+}
+
+/// The keys of an object without the one that says what it is.
+struct OtherKeys<'a, A> {
+    kind: &'a str,
+    keys: A,
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for OtherKeys<'_, A> {
+    type Error = A::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> std::result::Result<Option<K::Value>, A::Error> {
+        while let Some(key) = self.keys.next_key::<String>()? {
+            if key != KEY {
+                return seed.deserialize(key.into_deserializer()).map(Some);
+            }
+            let found: String = self.keys.next_value()?;
+            if found.split(' ').next() != Some(&format!("aerodeck/{}", self.kind)) {
+                return Err(A::Error::custom(format!("JSON of the format `{found}`")));
+            }
+        }
+        Ok(None)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(
+        &mut self,
+        seed: V,
+    ) -> std::result::Result<V::Value, A::Error> {
+        self.keys.next_value_seed(seed)
+    }
+}
