@@ -1,5 +1,6 @@
 //! Work on all threads, as long as the process is ours.
 
+#[cfg(not(target_family = "wasm"))]
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -17,8 +18,12 @@ pub(crate) fn each<T: Sync, U: Send>(
     worth: bool,
     find: impl Fn(&T) -> U + Send + Sync,
 ) -> Vec<U> {
-    if worth && !ALONE.load(Ordering::Relaxed) {
+    let share = worth && !ALONE.load(Ordering::Relaxed);
+    #[cfg(not(target_family = "wasm"))]
+    if share {
         return of.par_iter().map(find).collect();
     }
+    // where there is one thread, there is nothing to share
+    let _ = share;
     of.iter().map(find).collect()
 }
