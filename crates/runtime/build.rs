@@ -1,4 +1,4 @@
-//! How the library is linked.
+//! How the library is linked; the Python package, which depends on it, is linked in the same way.
 
 use std::env;
 

@@ -26,3 +26,12 @@ pub use exports_model_exchange::*;
 pub use exports_state::*;
 pub use exports_stepping::*;
 pub use exports_variables::*;
+
+// glibc 2.35 gave `hypot` a new version of its symbol for the same numbers. Every call of a shared library that this crate is part of goes
+// to the first one (`--wrap` in the build script of `aerodeck-runtime`), so that a native build runs wherever the standard library does.
+#[cfg(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu"))]
+std::arch::global_asm!(
+    ".symver first_hypot, hypot@GLIBC_2.2.5",
+    ".globl __wrap_hypot",
+    "__wrap_hypot: jmp first_hypot@PLT",
+);
