@@ -79,9 +79,7 @@ fn own(out: &Path) -> Result<PathBuf, String> {
         "macos" => ("lib", "dylib"),
         _ => ("lib", "so"),
     };
-    // OUT_DIR is <target>[/<triple>]/<profile>/build/<package>/out
-    let build = out.ancestors().find(|a| a.ends_with("build"));
-    let deps = build.and_then(Path::parent).unwrap_or(out).join("deps");
+    let deps = folder_of_profile(out).join("deps");
     let library = deps.join(format!("{prefix}{LIBRARY}.{suffix}"));
     // what is only checked has no library, but needs a file to look at
     let absent = fs::create_dir_all(&deps).and_then(|()| File::create_new(&library));
@@ -93,7 +91,13 @@ fn own(out: &Path) -> Result<PathBuf, String> {
     }
 }
 
-/// Folders of this machine, one in the other, that places of panics may begin with.
+/// `<target>[/<triple>]/<profile>`, of which OUT_DIR is `build/<package>/out`.
+fn folder_of_profile(out: &Path) -> &Path {
+    let build = out.ancestors().find(|a| a.ends_with("build"));
+    build.and_then(Path::parent).unwrap_or(out)
+}
+
+/// Folders of this machine that places of panics may begin with.
 fn built_in() -> Vec<String> {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| {
         let user = env::var_os("HOME").or_else(|| env::var_os("USERPROFILE"))?;
@@ -171,9 +175,10 @@ fn has_target(target: &str) -> bool {
     folder.is_ok_and(|folder| Path::new(&folder).is_dir())
 }
 
-/// Builds the module for WebAssembly, in a target directory that the calling cargo has not locked, and says where it is.
+/// Builds the module for WebAssembly, in a target directory that the calling cargo has not locked and that its profiles and features
+/// share, and says where it is.
 fn build_live(source: &Path, out: &Path, target: &str) -> Result<PathBuf, String> {
-    let target_dir = out.join("live");
+    let target_dir = folder_of_profile(out).with_file_name("live-module");
     let mut said = String::new();
     // what the outer build has fetched and locked is enough; the rest is for lock files that do not travel along
     for network in [&["--offline", "--locked"][..], &["--locked"], &[]] {
