@@ -44,6 +44,8 @@ TARGETS = {
 RECORD = "built_from.json"
 # no platform of FMI: the module that answers the sliders of reports, of which one target is enough
 LIVE = ["wasm32-unknown-unknown", "wasm32-wasip2"]
+# the runtime as a component, of the draft FMI-LS-WASM, which archives of FMI 3.0 hold where they are asked for it
+COMPONENT = "wasm32-wasip2"
 # linkers that export less than zig's, where they are there
 LINKERS = {"x86_64-pc-windows-gnu": "x86_64-w64-mingw32-gcc"}
 MACHINES = {"x86_64-apple-darwin": (0x01000007, 3), "aarch64-apple-darwin": (0x0100000C, 0)}  # of Mach-O
@@ -122,6 +124,18 @@ def build_live(target, out):
     print(f"{file}: {file.stat().st_size} bytes")
 
 
+def build_component(out):
+    """The runtime for WebAssembly, beside the others; every engine has vectors of two numbers."""
+    target_dir = ROOT / "target" / "fmu-release"
+    run("cargo", "build", "--locked", "--package", "aerodeck-component", "--profile", "component",
+        "--target", COMPONENT, "--target-dir", target_dir,
+        env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(COMPONENT) + "\x1f-Ctarget-feature=+simd128"))  # fmt: skip
+    file = out / COMPONENT / f"{NAME}.wasm"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(target_dir / COMPONENT / "component" / "aerodeck_component.wasm", file)
+    print(f"{file}: {file.stat().st_size} bytes")
+
+
 def universal(libraries):
     """Both libraries for macOS in one file: (target, bytes) to bytes."""
     head = struct.pack(">II", 0xCAFEBABE, len(libraries))
@@ -141,7 +155,7 @@ def digest(targets):
     """Of all that the runtimes are made from: sources, locked dependencies, compiler, this script, and what is to be built."""
     found = hashlib.sha256(text_of("rustc", "-vV").encode())
     found.update(repr((sorted(targets), TOOLS)).encode())
-    crates = [p for name in ("core", "unit", "runtime", "live") for p in (ROOT / "crates" / name).rglob("*") if p.is_file()]
+    crates = [p for name in ("component", "core", "unit", "runtime", "live") for p in (ROOT / "crates" / name).rglob("*") if p.is_file()]
     scripts = [p for p in pathlib.Path(__file__).parent.iterdir() if p.suffix in (".py", ".c")]
     for file in sorted([ROOT / "Cargo.toml", ROOT / "Cargo.lock", *crates, *scripts]):
         found.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes())
@@ -206,6 +220,8 @@ def runtimes(out, targets, python, program):
     files = place(built, out)
     for target in set(LIVE) & set(targets):
         build_live(target, out)
+    if COMPONENT in installed_targets():
+        build_component(out)
     if python:
         run(python, pathlib.Path(__file__).with_name("check_library.py"), *files)
         run_library.compare(python, ROOT, {file.parent.name: file for file in files}, program)

@@ -8,11 +8,11 @@ import re
 import subprocess
 
 ROOT = pathlib.Path(__file__).parent.parent
-TARGET = "x86_64-unknown-linux-gnu"
+LINKED = [("aerodeck-runtime", "x86_64-unknown-linux-gnu"), ("aerodeck-component", "wasm32-wasip2")]
 HEAD = """Third-party software in the FMU runtime
 =======================================
 
-The shared libraries in binaries/ are made of aerodeck and of the Rust crates listed here, and of the Rust standard
+The libraries in binaries/ are made of aerodeck and of the Rust crates listed here, and of the Rust standard
 library (MIT OR Apache-2.0, Copyright The Rust Project Contributors). Where a crate offers a choice of licences, it
 is used under the first of MIT, Apache-2.0, BSD-3-Clause, Zlib that it offers. The licence texts that the crates ship
 follow the list; equal texts are given once.
@@ -26,11 +26,15 @@ def cargo(*arguments):
 
 def linked():
     """(name, version) of every crate of the runtime but build scripts, procedural macros and aerodeck."""
-    tree = cargo(
-        "tree", "--package", "aerodeck-runtime", "--edges", "normal,no-proc-macro", "--target", TARGET,
-        "--prefix", "none", "--format", "{p}", "--no-dedupe",
-    )
-    crates = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}
+    trees = [
+        cargo(
+            "tree", "--package", package, "--edges", "normal,no-proc-macro", "--target", target,
+            "--prefix", "none", "--format", "{p}", "--no-dedupe",
+        )
+        for package, target in LINKED
+    ]  # fmt: skip
+    lines = [line for tree in trees for line in tree.splitlines()]
+    crates = {tuple(line.split()[:2]) for line in lines if line.strip()}
     return sorted((name, version.lstrip("v")) for name, version in crates if not name.startswith("aerodeck"))
 
 
@@ -44,7 +48,7 @@ def texts(folder, licence):
 
 
 def main():
-    packages = json.loads(cargo("metadata", "--format-version", "1", "--filter-platform", TARGET))["packages"]
+    packages = json.loads(cargo("metadata", "--format-version", "1"))["packages"]
     by_name = {(p["name"], p["version"]): p for p in packages}
     lines, given = [], collections.OrderedDict()
     for name, version in linked():

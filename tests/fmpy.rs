@@ -7,6 +7,8 @@ mod bridge_fmu;
 #[allow(dead_code)] // the FMUs need one bridge
 #[path = "common/bridges.rs"]
 mod bridges;
+#[path = "common/component.rs"]
+mod component;
 #[path = "common/in_process.rs"]
 mod in_process;
 #[path = "common/matrix.rs"]
@@ -116,6 +118,10 @@ fn export() -> PathBuf {
     export_reals(&folder, &runtimes);
     export_fmi3(&folder, &runtimes);
     bridge_fmu::export(&folder, &runtimes);
+    let files = models::KINDS.map(models::model_file);
+    let named = models::KINDS.iter().zip(&files);
+    let named: Vec<(&str, &Path)> = named.map(|(kind, file)| (*kind, file.as_ref())).collect();
+    component::export(&folder, &named);
     let matrix = matrix_fmus::export(&folder, &runtimes, |_, _| true);
     let text = serde_json::to_string(&json!({
         "matrix": matrix, "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),

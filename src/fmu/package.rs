@@ -13,6 +13,8 @@ mod runtime;
 mod terminals;
 
 pub use super::standard::FmiVersion;
+use reference_runs::{WASM_MANIFEST, wasm_manifest};
+
 pub(super) use archive_file::archive;
 pub(crate) use archive_file::with_report;
 pub use archive_file::{Overwrite, write_archive};
@@ -272,22 +274,31 @@ fn assembled(
     for (name, text) in LICENCES {
         files.insert(format!("{licences}/{name}"), text.into());
     }
-    for runtime in runtimes {
-        if files
-            .insert(runtime.path_in_archive(version), runtime.bytes.to_vec())
-            .is_some()
-        {
-            return Err(Error::input(
-                "FMU",
-                "one runtime for each platform",
-                format!("two for {}", runtime.platform),
-            ));
-        }
-    }
+    files.extend(binaries(runtimes, version)?);
     if reference_runs {
         files.extend(reference_runs::files(resources, bounds, listing, version)?);
     }
     archive(&files)
+}
+
+/// The runtimes in their places, with what announces one for WebAssembly.
+fn binaries(runtimes: &[Runtime], version: FmiVersion) -> Result<BTreeMap<String, Vec<u8>>> {
+    let mut files = BTreeMap::new();
+    for runtime in runtimes {
+        if runtime.is_component() {
+            if version == FmiVersion::Two {
+                let expected = "FMI 3.0 (`--fmi 3`): there are no components in FMI 2.0";
+                return Err(Error::input("platform", expected, runtime.platform));
+            }
+            files.insert(WASM_MANIFEST.to_owned(), wasm_manifest().into_bytes());
+        }
+        let place = runtime.path_in_archive(version);
+        if files.insert(place, runtime.bytes.to_vec()).is_some() {
+            let found = format!("two for {}", runtime.platform);
+            return Err(Error::input("FMU", "one runtime for each platform", found));
+        }
+    }
+    Ok(files)
 }
 
 /// Packs the model and writes the archive: first beside its place, then moved there, so that no half a file is ever

@@ -22,6 +22,7 @@ const SOURCES: &[&str] = &[
     "crates/fit/src",
     "crates/fmu-host/src",
     "crates/lab/src",
+    "crates/component/src",
     "crates/live/src",
     "crates/runtime/src",
     "crates/unit/src",

@@ -80,6 +80,10 @@ pub const ARROWS: &[Row] = &[
     // a second shell over the guard of the first
     row("fmu::fmi3", &["fmu", "fmu::fmi2"]),
     row(
+        "fmu::component",
+        &["error", "fmu", "fmu::fmi2", "fmu::fmi3"],
+    ),
+    row(
         "uncertainty",
         &[
             "flutter+",
@@ -147,7 +151,8 @@ pub fn module_of(path: &str) -> Vec<String> {
 
 /// The room that a whole crate is; none where a crate has several.
 fn room_of_crate(path: &str) -> Option<&'static [&'static str]> {
-    let crates: [(&str, &[&str]); 3] = [
+    let crates: [(&str, &[&str]); 4] = [
+        ("crates/component/", &["fmu", "component"]),
         ("crates/fmu-host/", &["fmu", "importer"]),
         ("crates/live/", &["live"]),
         ("crates/unit/", &["fmu"]),

@@ -129,7 +129,7 @@ fn make(base: &Base, home: &Path, python: &Path) -> Result<(), String> {
             .arg(requirements(file)))
     };
     install("requirements.txt")?;
-    // no wheel for this platform: the suite goes without the second importer and says so
+    // no wheel for this platform: the suite goes without what is missing and says so
     let _ = install("requirements-optional.txt");
     Ok(())
 }

@@ -12,6 +12,7 @@ mod structure;
 mod tests;
 mod values;
 
+pub use crate::fmi2::logger::PlainLogger;
 pub use absent::*;
 pub use life::*;
 pub use model_exchange::*;

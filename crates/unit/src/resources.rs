@@ -12,6 +12,7 @@ use crate::bridge::GustChannels;
 use crate::error::{Error, Result};
 use crate::response::Stepper;
 use crate::trained_model::{Model, TrainedModel};
+use std::io::ErrorKind;
 use std::path::Path;
 use uuid::Uuid;
 
@@ -70,31 +71,42 @@ impl Resources {
         } else {
             folder_of(location)?
         };
-        let coded = folder.join(MODEL_FILE);
-        let raw = raw_folder(location).map(|folder| folder.join(MODEL_FILE));
-        let file = match raw {
-            Some(raw) if !coded.exists() && raw.exists() => raw,
-            _ => coded,
+        let raw = raw_folder(location).filter(|raw| raw.join(MODEL_FILE).exists());
+        let folder = match raw {
+            Some(raw) if !folder.join(MODEL_FILE).exists() => raw,
+            _ => folder,
         };
-        let read = |file: &Path| std::fs::read(file).map_err(|e| Error::io(file, e));
-        let optional = |name: &str| -> Result<Option<Vec<u8>>> {
-            let option = file.with_file_name(name);
-            option.exists().then(|| read(&option)).transpose()
-        };
-        let (force, gusts) = (optional(FORCE_FILE)?, optional(GUST_FILE)?);
-        let bounds = optional(BOUNDS_FILE)?;
-        if let Some(bridge) = optional(BRIDGE_FILE)? {
-            let place = file.with_file_name(BRIDGE_FILE);
-            let turbulence = optional(TURBULENCE_FILE)?;
-            return Self::of_bridge(&read(&file)?, &bridge, turbulence.as_deref())
-                .map_err(|e| e.in_file(&place));
+        Self::from_files(&folder, &|file| match std::fs::read(file) {
+            Err(e) if e.kind() == ErrorKind::NotFound && !file.ends_with(MODEL_FILE) => Ok(None),
+            read => read.map(Some).map_err(|e| Error::io(file, e)),
+        })
+    }
+
+    /// The same where the importer reads the files of the folder: their bytes, or none for what is not there.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_files(
+        folder: &Path,
+        read: &dyn Fn(&Path) -> Result<Option<Vec<u8>>>,
+    ) -> Result<Self> {
+        let beside = |name: &str| read(&folder.join(name));
+        let file = folder.join(MODEL_FILE);
+        let model = read(&file)?
+            .ok_or_else(|| Error::input("resources", MODEL_FILE, "none").in_file(folder))?;
+        if let Some(bridge) = beside(BRIDGE_FILE)? {
+            let turbulence = beside(TURBULENCE_FILE)?;
+            return Self::of_bridge(&model, &bridge, turbulence.as_deref())
+                .map_err(|e| e.in_file(folder.join(BRIDGE_FILE)));
         }
+        let (force, gusts) = (beside(FORCE_FILE)?, beside(GUST_FILE)?);
+        let bounds = beside(BOUNDS_FILE)?;
         let options = OptionFiles {
             force: force.as_deref(),
             gusts: gusts.as_deref(),
             bounds: bounds.as_deref(),
         };
-        Self::from_bytes(&read(&file)?, options).map_err(|e| e.in_file(&file))
+        Self::from_bytes(&model, options).map_err(|e| e.in_file(&file))
     }
 
     /// The same from the bytes of the model's file and of those beside it.

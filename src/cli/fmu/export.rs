@@ -60,7 +60,8 @@ pub(crate) struct FmuExportArgs {
     #[arg(long)]
     reals_only: bool,
     /// Platforms to pack for [default: all whose runtime is here]; arm-linux makes an archive for importers on 64-bit
-    /// ARM Linux, which look for it in linux64.
+    /// ARM Linux, which look for it in linux64. wasm32-wasip2, a component for WebAssembly (FMI 3.0 alone), is packed
+    /// where it is named.
     #[arg(long, value_delimiter = ',', value_name = "PLATFORM")]
     platforms: Vec<String>,
     /// Take gusts as inputs, whose forces follow from these static coefficients: a table (CSV), an embedded one, or

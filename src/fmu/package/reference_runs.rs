@@ -115,13 +115,28 @@ pub(super) fn files(
 
 fn manifest(related: Vec<Element>) -> String {
     let description = "Layered Standard providing information on related files included in an FMU.";
-    Element::new("fmiReferences")
-        .with("xmlns:fmi-ls", NAMESPACE)
-        .with("fmi-ls:fmi-ls-name", "org.fmi-standard.fmi-ls-ref")
-        .with("fmi-ls:fmi-ls-version", "1.0.0-alpha.1")
-        .with("fmi-ls:fmi-ls-description", description)
+    let standard = ["org.fmi-standard.fmi-ls-ref", "1.0.0-alpha.1", description];
+    announced("fmiReferences", standard)
         .containing(related)
         .document()
+}
+
+/// The manifest of a layered standard: its name, version and description.
+fn announced(root: &str, [name, version, description]: [&str; 3]) -> Element {
+    Element::new(root)
+        .with("xmlns:fmi-ls", NAMESPACE)
+        .with("fmi-ls:fmi-ls-name", name)
+        .with("fmi-ls:fmi-ls-version", version)
+        .with("fmi-ls:fmi-ls-description", description)
+}
+
+/// Where an archive says that it holds a component for WebAssembly, by the draft FMI-LS-WASM.
+pub(super) const WASM_MANIFEST: &str = "extra/org.modelica.fmi-ls-wasm/manifest.xml";
+
+pub(super) fn wasm_manifest() -> String {
+    let description = "FMI Layered Standard for WebAssembly";
+    let standard = ["org.modelica.fmi-ls-wasm", "0.1.0", description];
+    announced("fmiLayeredStandardManifest", standard).document()
 }
 
 /// An entry of the manifest.

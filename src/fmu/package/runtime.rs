@@ -15,17 +15,22 @@ pub(crate) const RUNTIME_DIR_VARIABLE: &str = "AERODECK_RUNTIME_DIR";
 /// Folder of the module for WebAssembly, which is no runtime of an FMU but is made and found as one.
 const LIVE: &str = "wasm32";
 
+/// Folder of the runtime as a component for WebAssembly, of the draft FMI-LS-WASM: it is packed only where it is asked for.
+const COMPONENT: &str = "wasm32-wasip2";
+
 /// Platform folders below `binaries/`, ending of the library, how it may begin, name in words.
-const PLATFORMS: [(&str, &str, &[&[u8]], &str); 7] = [
+const PLATFORMS: [(&str, &str, &[&[u8]], &str); 8] = [
     ("aarch64-darwin", "dylib", DYLIB, "macOS, Apple silicon"),
     ("aarch64-linux", "so", ELF, "Linux, 64-bit ARM"),
     ("darwin64", "dylib", DYLIB, "macOS, 64-bit Intel"),
     ("linux32", "so", ELF, "Linux, 32-bit Intel"),
     ("linux64", "so", ELF, "Linux, 64-bit Intel/AMD"),
+    (COMPONENT, "wasm", WASM, "WebAssembly, for FMI 3.0"),
     ("win32", "dll", PE, "Windows, 32-bit"),
     ("win64", "dll", PE, "Windows, 64-bit"),
 ];
 const ELF: &[&[u8]] = &[b"\x7fELF"];
+const WASM: &[&[u8]] = &[b"\0asm\x0d\0\x01\0"];
 const PE: &[&[u8]] = &[b"MZ"];
 const DYLIB: &[&[u8]] = &[b"\xcf\xfa\xed\xfe", UNIVERSAL];
 /// A dynamic library for Intel and Apple silicon at once.
@@ -92,12 +97,17 @@ impl Runtime {
     }
 
     /// The runtimes in the folder that `RUNTIME_DIR_VARIABLE` names, if it is set, and for other platforms those
-    /// that this program carries.
+    /// that this program carries; the component for WebAssembly has to be named, see [`Runtime::chosen`].
     ///
     /// # Errors
     /// [`Error::Io`] for a folder or file that cannot be read, [`Error::Input`] for a folder without any runtime and for
     /// files that are no library of their platform.
     pub fn available() -> Result<Vec<Self>> {
+        let all = Self::all()?.into_iter();
+        Ok(all.filter(|runtime| !runtime.is_component()).collect())
+    }
+
+    fn all() -> Result<Vec<Self>> {
         let mut all = match std::env::var_os(RUNTIME_DIR_VARIABLE) {
             Some(folder) => Self::in_folder(Path::new(&folder))?,
             None => Vec::new(),
@@ -111,13 +121,13 @@ impl Runtime {
         Ok(all)
     }
 
-    /// The runtimes for these platforms out of [`Runtime::available`]; `arm-linux` is the one for 64-bit ARM, in the
+    /// The runtimes for these platforms out of those that are here; `arm-linux` is the one for 64-bit ARM, in the
     /// folder `linux64` where importers on such a machine look, and in its own.
     ///
     /// # Errors
     /// [`Error::Io`] for a folder or file that cannot be read, [`Error::Input`] for a platform without a runtime.
     pub fn chosen(platforms: &[String]) -> Result<Vec<Self>> {
-        let available = Self::available()?;
+        let available = Self::all()?;
         let find = |wanted: &str| {
             let found = available.iter().find(|r| r.platform == wanted).cloned();
             found.ok_or_else(|| {
@@ -191,6 +201,11 @@ impl Runtime {
             bytes,
             extension,
         })
+    }
+
+    /// Whether it is a component for WebAssembly, of FMI 3.0 alone.
+    pub(super) fn is_component(&self) -> bool {
+        self.platform == COMPONENT
     }
 
     /// The platform in words.
@@ -284,6 +299,20 @@ mod tests {
             message.contains("solaris") && message.contains("is here:"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn components_are_of_fmi_3_alone() {
+        let component = Runtime::new(COMPONENT, Cow::Borrowed(WASM[0])).unwrap();
+        let runtimes = [component];
+        let refused = super::super::binaries(&runtimes, FmiVersion::Two).unwrap_err();
+        assert!(refused.to_string().contains("--fmi 3"), "{refused}");
+        let files = super::super::binaries(&runtimes, FmiVersion::Three).unwrap();
+        let names: Vec<_> = files.keys().map(String::as_str).collect();
+        let place = "binaries/wasm32-wasip2/aerodeck_section.wasm";
+        assert_eq!(names, [place, super::super::WASM_MANIFEST]);
+        // a module is none: browsers take it, hosts of components do not
+        assert!(Runtime::new(COMPONENT, Cow::Borrowed(b"\0asm\x01\0\0\0")).is_err());
     }
 
     #[test]

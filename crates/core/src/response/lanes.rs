@@ -1,6 +1,8 @@
 //! Vectors of four numbers: those of this processor, or four single ones.
 
-use pulp::{NullaryFnOnce, Scalar256b, Simd, f64x4, m64x4};
+#[cfg(target_arch = "x86_64")]
+use pulp::NullaryFnOnce;
+use pulp::{Scalar256b, Simd, f64x4, m64x4};
 
 /// Numbers in a vector. Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
 pub(super) const LANES: usize = 4;
@@ -32,8 +34,10 @@ pub(super) fn on_plain_numbers<J: OnLanes>(job: J) -> J::Output {
     job.run(Scalar256b)
 }
 
+#[cfg(target_arch = "x86_64")]
 struct On<J, S>(J, S);
 
+#[cfg(target_arch = "x86_64")]
 impl<J: OnLanes, S: FourLanes> NullaryFnOnce for On<J, S> {
     type Output = J::Output;
 

@@ -80,10 +80,7 @@ pub(crate) fn instantiate(
     let wrong = |place: &str, expected: &str, found: String| {
         Refusal::from(crate::Error::input(place, expected, found))
     };
-    if name.is_none_or(|n| n.to_string_lossy().trim().is_empty()) {
-        let found = name.map_or("NULL", |_| "a blank one");
-        return Err(wrong("instance name", "a name", found.into()));
-    }
+    check_name(name)?;
     if ![fmi2CoSimulation, fmi2ModelExchange].contains(&kind) {
         return Err(wrong(
             "type of the unit",
@@ -105,11 +102,25 @@ pub(crate) fn instantiate(
     let guid = utf8("GUID", guid)?;
     // NULL as an empty text: the archive is looked for around the library itself
     let location = location.map_or(Ok(String::new()), |_| utf8("resource location", location))?;
-    let resources = Resources::read(&location)?;
+    identified(Resources::read(&location)?, kind, &guid)
+}
+
+/// Refuses what has no name in the log.
+pub(crate) fn check_name(name: Option<&CStr>) -> CallResult<()> {
+    if name.is_some_and(|n| !n.to_string_lossy().trim().is_empty()) {
+        return Ok(());
+    }
+    let found = name.map_or("NULL", |_| "a blank one");
+    Err(crate::Error::input("instance name", "a name", found).into())
+}
+
+/// An instance of what has been read, if it is what the description names.
+pub(crate) fn identified(resources: Resources, kind: fmi2Type, guid: &str) -> CallResult<Instance> {
     let own = resources.guid.to_string();
     if guid != own {
         let expected = format!("{own} (from variables and resources/model.json)");
-        return Err(wrong("GUID", &expected, format!("`{guid}`")));
+        let wrong = crate::Error::input("GUID", &expected, format!("`{guid}`"));
+        return Err(Refusal::from(wrong));
     }
     let instance = Instance::new(resources)?;
     if kind == fmi2ModelExchange {

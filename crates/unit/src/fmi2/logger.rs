@@ -50,8 +50,7 @@ impl Category {
 }
 
 /// Writes a message in FMI 3.0: environment, status, category, message.
-pub(crate) type PlainLogger =
-    unsafe extern "C" fn(*mut c_void, fmi2Status, *const c_char, *const c_char);
+pub type PlainLogger = unsafe extern "C" fn(*mut c_void, fmi2Status, *const c_char, *const c_char);
 
 /// The importer's function.
 #[derive(Debug, Clone, Copy)]

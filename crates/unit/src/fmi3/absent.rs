@@ -40,3 +40,12 @@ absent! {
     fmi3SetShiftFraction, "SetShiftFraction", NO_CLOCKS,
         (vr: References, nvr: usize, counters: *const u64, resolutions: *const u64);
 }
+
+/// Says that there are no clocks, for a function of another interface.
+///
+/// # Safety
+/// A handle that has not been freed, or NULL.
+pub unsafe fn no_clocks(c: fmi2Component, function: &str) -> fmi2Status {
+    // SAFETY: by the contract of this function
+    unsafe { not_offered(c, function, NO_CLOCKS) }
+}

@@ -9,11 +9,16 @@ use crate::fmi2::types::{
     fmi2CoSimulation, fmi2Component, fmi2ModelExchange, fmi2Status, fmi2String, fmi2Type,
     fmi2ValueReference,
 };
-use crate::fmi2::{fmi2FreeInstance, fmi2Reset, fmi2Terminate, instantiate, text};
+use crate::fmi2::{
+    check_name, fmi2FreeInstance, fmi2Reset, fmi2Terminate, identified, instantiate, text,
+};
 use crate::groups::Groups;
+use crate::instance::Instance;
 use crate::lifecycle::Call;
 use crate::refusal::{CallResult, Refusal};
-use std::ffi::{c_char, c_void};
+use crate::resources::Resources;
+use std::ffi::{CStr, c_char, c_void};
+use std::path::Path;
 
 /// Version of the standard.
 #[unsafe(no_mangle)]
@@ -29,18 +34,27 @@ unsafe fn made(
     [name, token, path]: [fmi2String; 3],
     logger: Option<Logger>,
 ) -> fmi2Component {
-    behave_as_a_guest();
     let Some(logger) = logger else {
         return std::ptr::null_mut(); // without a logger there is no one to tell
     };
     // SAFETY: by the contract of this function; everything needed later is copied
     let (name, token, path) = unsafe { (text(name), text(token), text(path)) };
+    component(function, logger, || instantiate(name, kind, token, path))
+}
+
+/// A component around what `instantiate` makes; NULL with a logged reason where it makes nothing.
+fn component(
+    function: &str,
+    logger: Logger,
+    instantiate: impl FnOnce() -> CallResult<Instance>,
+) -> fmi2Component {
+    behave_as_a_guest();
     let refuse = |why: &str| {
         let message = format!("fmi3{function}: {why}");
         logger.log(fmi2Status::fmi2Error, Category::Error, &message);
         std::ptr::null_mut()
     };
-    match shielded(|| instantiate(name, kind, token, path)) {
+    match shielded(instantiate) {
         Ok(Ok(instance)) => {
             let mut component = Component::new(instance, logger);
             component.groups = Groups::new(component.instance.table());
@@ -49,6 +63,43 @@ unsafe fn made(
         Ok(Err(refusal)) => refuse(&refusal.message),
         Err(panic) => refuse(&format!("internal error ({})", panic_text(&*panic))),
     }
+}
+
+/// An instance for co-simulation of files that the importer reads itself, as [`fmi3InstantiateCoSimulation`] makes one of a folder. The
+/// handle is one for all functions of this module, [`fmi3FreeInstance`] included; `log` writes with the environment beside it.
+pub fn instantiate_from_files(
+    name: &CStr,
+    token: &str,
+    logging_on: bool,
+    log: PlainLogger,
+    environment: *mut c_void,
+    read: &dyn Fn(&Path) -> crate::error::Result<Option<Vec<u8>>>,
+) -> fmi2Component {
+    let logger = Logger::plain(log, environment, logging_on);
+    component("InstantiateCoSimulation", logger, || {
+        check_name(Some(name))?;
+        let resources = Resources::from_files(Path::new("resources"), read)?;
+        identified(resources, fmi2CoSimulation, token)
+    })
+}
+
+/// How many values some variables have, elements of arrays counted; as many as references where one of them is unknown.
+///
+/// # Safety
+/// A handle that has not been freed.
+pub unsafe fn count_of_values(c: fmi2Component, references: &[fmi2ValueReference]) -> usize {
+    // SAFETY: by the contract of this function
+    let Some(component) = (unsafe { c.cast::<Component>().as_ref() }) else {
+        return references.len();
+    };
+    let groups = &component.groups;
+    let count = |reference: &fmi2ValueReference| match groups.names_at(*reference) {
+        Some(names) => names.of.len(),
+        None => groups
+            .places(&[*reference])
+            .map_or(1, |places| places.len()),
+    };
+    references.iter().map(count).sum()
 }
 
 /// Makes an instance that steps itself; NULL with a logged reason when anything is wrong. Event mode, early return and

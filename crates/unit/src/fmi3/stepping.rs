@@ -4,9 +4,10 @@
 
 use super::Fmi3Boolean;
 use super::life::{check_count, places};
-use crate::fmi2::guard::{array, array_mut, guarded};
+use crate::fmi2::guard::{Component, array, array_mut, guarded};
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 use crate::lifecycle::Call;
+use crate::refusal::CallResult;
 
 /// # Safety
 /// `at` is NULL or points to room for a value.
@@ -61,14 +62,7 @@ pub unsafe extern "C" fn fmi3GetOutputDerivatives(
             |component| {
                 let references = array(vr, nvr, "valueReferences")?;
                 let orders = array(orders, nvr, "orders")?;
-                let mut of_each = Vec::with_capacity(nValues);
-                for (reference, order) in references.iter().zip(orders) {
-                    let count = component
-                        .groups
-                        .places(std::slice::from_ref(reference))?
-                        .len();
-                    of_each.extend(std::iter::repeat_n(*order, count));
-                }
+                let of_each = of_elements(component, references, orders)?;
                 let places = places(component, vr, nvr, "valueReferences")?;
                 check_count("values", places.len(), nValues)?;
                 let values = array_mut(values, nValues, "values")?;
@@ -76,4 +70,39 @@ pub unsafe extern "C" fn fmi3GetOutputDerivatives(
             },
         )
     }
+}
+
+/// Orders of rates, one for each element of arrays.
+fn of_elements(
+    component: &Component,
+    references: &[fmi2ValueReference],
+    orders: &[i32],
+) -> CallResult<Vec<i32>> {
+    let mut all = Vec::with_capacity(references.len());
+    for (reference, order) in references.iter().zip(orders) {
+        let count = component.groups.places(&[*reference])?.len();
+        all.extend(std::iter::repeat_n(*order, count));
+    }
+    Ok(all)
+}
+
+/// Sets first rates of inputs, which FMI 3.0 cannot and the draft of FMI-LS-WASM can.
+///
+/// # Safety
+/// A handle that has not been freed, or NULL.
+pub unsafe fn set_input_derivatives(
+    c: fmi2Component,
+    references: &[fmi2ValueReference],
+    orders: &[i32],
+    values: &[f64],
+) -> fmi2Status {
+    let call = Call::SetRealInputDerivatives.by("SetInputDerivatives");
+    let body = |component: &mut Component| {
+        let places = component.groups.places(references)?;
+        check_count("values", places.len(), values.len())?;
+        let orders = of_elements(component, references, orders)?;
+        component.instance.set_input_rates(&places, &orders, values)
+    };
+    // SAFETY: by the contract of this function
+    unsafe { guarded(c, call, body) }
 }
