@@ -48,6 +48,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         width_m: bridge.width_m(),
         length_m: node.length_m,
         wind_factor: 1.0,
+        model: 0,
     };
     let options = ForceOptions {
         strips: bridge.nodes.iter().map(strip).collect(),
