@@ -6,6 +6,7 @@ use super::force_options::{FORCE_FILE, ForceOptions, FurtherModel, StripsOfModel
 use super::identity;
 use super::location::{MODEL_FILE, beside, folder_of, own_binary, raw_folder, refused};
 use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
+use super::standard::each_once;
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
 use crate::bridge::GustChannels;
@@ -135,6 +136,17 @@ impl Resources {
             table,
             guid,
         })
+    }
+
+    /// The trained model, and those of further strips.
+    pub fn models(&self) -> impl Iterator<Item = &TrainedModel> {
+        let further = self.force.iter().flat_map(|force| &force.further);
+        std::iter::once(&self.model).chain(further.map(|f| &f.model))
+    }
+
+    /// What its models are, or what is said of them, each once.
+    pub fn words(&self, of: fn(&TrainedModel) -> &str) -> String {
+        each_once(self.models().map(of))
     }
 
     /// The strips of each model of a unit of forces; none of other units.

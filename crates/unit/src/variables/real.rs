@@ -5,7 +5,7 @@ use super::{Causality, Initial, Response, Role, StartValue, Variability, Variabl
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::si::{self, SiUnit};
-use crate::standard::printable;
+use crate::standard::{each_once, printable};
 use crate::trained_model::TrainedModel;
 use std::f64::consts::TAU;
 
@@ -135,11 +135,7 @@ pub(super) fn constants(models: &[&TrainedModel], filters: usize) -> Result<Vec<
     let states = i32::try_from(filters)
         .map_err(|_| Error::input("model", "fewer filter states", filters.to_string()))?;
     let version = env!("CARGO_PKG_VERSION");
-    let words = |of: fn(&TrainedModel) -> &str| {
-        let mut words: Vec<&str> = models.iter().map(|m| of(m)).collect();
-        words.dedup();
-        text(&words.join("; "))
-    };
+    let words = |of: fn(&TrainedModel) -> &str| text(&each_once(models.iter().map(|m| of(m))));
     Ok(vec![
         constant(
             "filters",
