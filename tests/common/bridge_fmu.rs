@@ -1,6 +1,7 @@
 //! The FMUs of the Langenuen bridge: the whole of it, its forces alone, and a system of its parts.
 
-use crate::bridges::{SEARCH, TWO, coupled, langenuen, lively, onset, patchwork};
+use crate::bridges::{SEARCH, TWO, coupled, langenuen, lively, onset};
+use crate::patchwork::patchwork;
 use aerodeck::aerodynamics::RationalAdmittance;
 use aerodeck::files::bridge::FieldTable;
 use aerodeck::flutter::{find_onset, motion_at_onset};

@@ -114,7 +114,8 @@ def test_a_bridge_in_parts_finds_its_onset(name):
             parameter_set=SimpleNamespace(parameters=parameters),
         )
         names = [n for n in found.dtype.names if n.startswith("structure.") and n.endswith((".heave", ".rotation"))]
-        assert len(names) == 126
+        # one node of `sections` is in none of them
+        assert len(names) == {"bridge": 126, "sections": 124}[name]
         scale = [15.5 if n.endswith(".rotation") else 1.0 for n in names]
         motion = np.column_stack([found[n] * f for n, f in zip(names, scale)])
         growths.append(eigenvalue(motion[len(motion) // 3 :: every], step * every, hertz).real)
