@@ -19,6 +19,8 @@ mod matrix_fmus;
 #[path = "common/models.rs"]
 #[allow(dead_code)] // how the fixtures are made is not needed here
 mod models;
+#[path = "common/patchwork.rs"]
+mod patchwork;
 #[path = "common/python.rs"]
 mod python;
 #[path = "common/three_dof.rs"]

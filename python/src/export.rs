@@ -184,6 +184,7 @@ fn force(
             width_m,
             length_m,
             wind_factor: 1.0,
+            model: 0,
         };
         options.strips = strips.into_iter().map(strip).collect();
         options.named_strips = true;

@@ -59,7 +59,6 @@ pub(super) fn described(
     identity: &'static str,
 ) -> Element {
     let Resources {
-        model,
         force,
         bridge,
         guid,
@@ -76,12 +75,15 @@ pub(super) fn described(
         Some(_) => "forces at nodes",
         None => "forces per unit length",
     };
-    let (name, kind) = (&model.name, model.model.kind());
-    let kind = if alone { "modes" } else { kind };
-    let source = &model.provenance.source;
+    let name = resources.words(|m| &m.name);
+    let kind = match alone {
+        true => "modes".to_owned(),
+        false => resources.words(|m| m.model.kind()),
+    };
+    let source = resources.words(|m| &m.provenance.source);
     Element::new("fmiModelDescription")
         .with("fmiVersion", version)
-        .with("modelName", line(label.name.as_deref().unwrap_or(name)))
+        .with("modelName", line(label.name.as_deref().unwrap_or(&name)))
         .with(identity, guid)
         .with(
             "description",

@@ -106,7 +106,7 @@ impl GroupedVariables<'_> {
             count => format!(
                 "{} (the first of {count}{})",
                 v.description,
-                self.named(&v.name)
+                self.named(reference)
             ),
         };
         let element = Element::new(kind)
@@ -148,11 +148,11 @@ impl GroupedVariables<'_> {
     }
 
     /// Where the names of the elements of an array stand, in words.
-    fn named(&self, name: &str) -> String {
+    fn named(&self, reference: usize) -> String {
         let mut all = self.groups.names();
-        let of = all.find(|(_, names)| name.starts_with(&format!("{}[", names.kind)));
+        let of = all.find(|(_, names)| names.arrays.contains(&reference));
         of.map_or_else(String::new, |(_, names)| {
-            format!(", named in {}_name", names.kind)
+            format!(", named in {}", names.name)
         })
     }
 
@@ -160,17 +160,26 @@ impl GroupedVariables<'_> {
     fn names(&self) -> impl Iterator<Item = Element> {
         self.groups.names().map(|(reference, names)| {
             let kind = names.kind;
+            let which = match names.name.strip_prefix(kind) {
+                Some("_name") => {
+                    format!("Names of the {kind}s, in the order of every array of them")
+                }
+                _ => {
+                    let first = self.groups.all()[names.arrays[0]][0];
+                    let (_, of) = self.at(first).name.split_once("].").unwrap_or_default();
+                    format!(
+                        "Names of the {kind}s that have {of}, in the order of every array of these"
+                    )
+                }
+            };
             let starts = names
                 .of
                 .iter()
                 .map(|name| Element::new("Start").with("value", name.to_string_lossy()));
             Element::new("String")
-                .with("name", format!("{kind}_name"))
+                .with("name", &names.name)
                 .with("valueReference", reference)
-                .with(
-                    "description",
-                    format!("Names of the {kind}s, in the order of every array of them"),
-                )
+                .with("description", which)
                 .with("causality", "local")
                 .with("variability", "constant")
                 .with("initial", "exact")

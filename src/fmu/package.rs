@@ -112,7 +112,10 @@ pub fn package(
         reference_runs,
     } = export.into();
     check_listing(listing, version)?;
-    growth::check(model, growing)?;
+    let further = force.iter().flat_map(|force| &force.further);
+    for model in std::iter::once(model).chain(further.map(|f| &f.model)) {
+        growth::check(model, growing)?;
+    }
     let force = force.map(|force| force.to_json()).transpose()?;
     let gusts = gusts.as_ref().map(as_json).transpose()?;
     let bounds_json = bounds.as_ref().map(as_json).transpose()?;
@@ -269,7 +272,7 @@ fn assembled(
     let licences = "documentation/licenses";
     files.insert(
         format!("{licences}/license.txt"),
-        licence(&resources.model).into_bytes(),
+        licence(&resources).into_bytes(),
     );
     for (name, text) in LICENCES {
         files.insert(format!("{licences}/{name}"), text.into());
@@ -354,12 +357,19 @@ pub fn write_fmu(
     write_archive(path, &package(model, runtimes, export)?, overwrite)
 }
 
-fn licence(model: &TrainedModel) -> String {
+fn licence(resources: &Resources) -> String {
+    let data = |model: &TrainedModel| {
+        format!(
+            "\nThe model in resources/ was made from data of this source:\n    {}\nunder this licence:\n    {}\n",
+            model.provenance.source, model.provenance.licence
+        )
+    };
+    let mut texts: Vec<String> = resources.models().map(data).collect();
+    texts.dedup();
     format!(
         "The program in binaries/ is part of aerodeck and is licensed under MIT (LICENSE-MIT.txt) or Apache-2.0\n\
-         (LICENSE-APACHE.txt), at your choice. It contains software of others: THIRD-PARTY.txt.\n\n\
-         The model in resources/ was made from data of this source:\n    {}\nunder this licence:\n    {}\n",
-        model.provenance.source, model.provenance.licence
+         (LICENSE-APACHE.txt), at your choice. It contains software of others: THIRD-PARTY.txt.\n{}",
+        texts.concat()
     )
 }
 

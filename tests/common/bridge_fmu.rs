@@ -1,19 +1,20 @@
 //! The FMUs of the Langenuen bridge: the whole of it, its forces alone, and a system of its parts.
 
-use crate::bridges::{TWO, langenuen, lively};
-use aerodeck::aeroelastic::CoupledSection;
+use crate::bridges::{SEARCH, TWO, coupled, langenuen, lively, onset};
+use crate::patchwork::patchwork;
+use aerodeck::aerodynamics::RationalAdmittance;
 use aerodeck::files::bridge::FieldTable;
-use aerodeck::flutter::{OnsetSearch, find_onset, motion_at_onset};
+use aerodeck::flutter::{find_onset, motion_at_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
     Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, package_bridge, write_archive,
     write_fmu,
 };
 use aerodeck::fmu::variables::Listing;
-use aerodeck::study::bridge::BridgeExportOptions;
+use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 use serde_json::json;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes `bridge.fmu`, `bridge_force.fmu` and, in `bridge.json`, the structure and the onset by eigenvalues.
 pub fn export(folder: &Path, runtimes: &[Runtime]) {
@@ -32,22 +33,14 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
     }
     gusts(folder, runtimes);
-    let verdict = study.verdict().unwrap();
-    let all = BridgeExportOptions::default();
-    let system = study
-        .system(&all, &verdict, runtimes, &Label::default())
-        .unwrap();
-    write_archive(
-        &folder.join("bridge.ssp"),
-        &system.package().unwrap(),
-        Overwrite::Refuse,
-    )
-    .unwrap();
+    sections(folder, runtimes);
+    system(folder.join("bridge.ssp"), &study, runtimes);
     let bridge = &study.by_model;
     let strip = |node: &aerodeck::bridge::Node| StripOptions {
         width_m: bridge.width_m(),
         length_m: node.length_m,
         wind_factor: 1.0,
+        model: 0,
     };
     let options = ForceOptions {
         strips: bridge.nodes.iter().map(strip).collect(),
@@ -67,14 +60,8 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
     };
     let fmu = folder.join("bridge_force.fmu");
     write_fmu(&fmu, &export.model, runtimes, Overwrite::Refuse, force).unwrap();
-    let realised = bridge.forces().realize().unwrap();
-    let section = CoupledSection::new(bridge.structure(), realised).unwrap();
-    let search = OnsetSearch {
-        speed_max_m_s: 100.0,
-        speeds: 50,
-    };
-    let found = find_onset("bridge", &section, &search, None).unwrap();
-    let onset = &found.onset().unwrap().at;
+    let section = coupled(bridge);
+    let onset = &onset(find_onset("bridge", &section, &SEARCH, None).unwrap()).at;
     let motion = motion_at_onset(bridge, &bridge.forces(), onset).unwrap();
     // coordinates of the modes in the order of the bridge
     let flutter: Vec<[f64; 2]> = bridge
@@ -95,6 +82,36 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         "modes": bridge.modes,
     });
     fs::write(folder.join("bridge.json"), text.to_string()).unwrap();
+}
+
+/// Writes the system of a bridge.
+fn system(path: PathBuf, study: &BridgeStudy, runtimes: &[Runtime]) {
+    let (all, verdict) = (BridgeExportOptions::default(), study.verdict().unwrap());
+    let system = study.system(&all, &verdict, runtimes, &Label::default());
+    let bytes = system.unwrap().package().unwrap();
+    write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+}
+
+/// Writes the forces on a bridge of several sections in both versions, its system and, in `sections.json`, its onset by eigenvalues.
+fn sections(folder: &Path, runtimes: &[Runtime]) {
+    let study = patchwork();
+    system(folder.join("sections.ssp"), &study, runtimes);
+    let wanted = BridgeExportOptions::default();
+    let gusts = Some(RationalAdmittance::Sears);
+    let each = study.section_forces(&wanted, gusts).unwrap();
+    let all = study.joined(each).unwrap();
+    for (name, version) in [
+        ("sections_force", FmiVersion::Two),
+        ("sections_force_fmi3", FmiVersion::Three),
+    ] {
+        let export = all.packed(&Label::default(), version);
+        let path = folder.join(format!("{name}.fmu"));
+        write_fmu(&path, &all.model, runtimes, Overwrite::Refuse, export).unwrap();
+    }
+    let section = coupled(&study.by_model);
+    let onset = onset(find_onset("bridge", &section, &SEARCH, None).unwrap()).at;
+    let text = json!({ "onset_m_s": onset.speed_m_s, "frequency_hz": onset.frequency_hz });
+    fs::write(folder.join("sections.json"), text.to_string()).unwrap();
 }
 
 /// Writes `bridge_gusts.fmu`: every node with forces of its own and with gusts of its own, and a little turbulence.

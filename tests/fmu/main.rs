@@ -10,6 +10,8 @@ mod matrix;
 mod matrix_fmus;
 #[path = "../common/models.rs"]
 mod models;
+#[path = "../common/patchwork.rs"]
+mod patchwork;
 #[path = "../common/three_dof.rs"]
 mod three_dof;
 #[path = "../common/trained.rs"]

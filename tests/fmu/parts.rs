@@ -1,13 +1,17 @@
 //! A bridge in parts: its structure alone, the forces on its strips, and both as a system.
 
 use crate::bridges::{DECKS, THREE, TWO, langenuen, langenuen_text, lively, read};
+use crate::patchwork::patchwork;
+use aerodeck::aerodynamics::{RationalAdmittance, Transfer};
 use aerodeck::bridge::BridgeMode;
 use aerodeck::fmu::description_fmi3;
-use aerodeck::fmu::importer::{Fmu, Slave, Value};
+use aerodeck::fmu::force_options::StripsOfModel;
+use aerodeck::fmu::importer::{Fmu, Slave, Value, replay};
 use aerodeck::fmu::package::{
     FmiVersion, Label, Overwrite, Runtime, package, package_bridge, write_archive,
 };
 use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::variables::Causality;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart};
 use std::f64::consts::TAU;
 
@@ -154,44 +158,152 @@ fn the_forces_of_every_girder_are_packed() {
     }
 }
 
-/// Two sections of different widths in a profile: a unit each, and every node once.
+/// Sections of several kinds of forces in a profile: one unit with a strip at every node, without a fault in both versions, which
+/// repeats its runs; and one component of the system.
 #[test]
-fn every_section_is_a_component() {
-    let one = langenuen_text("LN21-5200", TWO, "linear_v_hat");
-    let (before, after) = one.split_once("[[section]]").unwrap();
-    let (section, rest) = after.split_once("[flutter]").unwrap();
-    let west = section.replace("\"girder\"", "\"west side\"\nto = \"1151\"");
-    let east = section
-        .replace("\"girder\"", "\"east\"\nfrom = \"1156\"")
-        .replace("31.0", "30.0");
-    let text = format!(
-        "{before}[[section]]{west}[[section]]{east}[wind]\nprofile = [{{ along_m = -617.5, factor = 0.9 }}, {{ along_m = 617.5, factor = 1.0 }}]\n[flutter]{rest}"
-    );
-    let study = read(&text.replace(
-        "damping_ratio = 0.002",
-        "damping_ratio = 0.002\nselect = [2, 3, 5, 23]",
-    ));
+fn all_sections_are_one_unit() {
+    let study = patchwork();
     let wanted = BridgeExportOptions {
         allow_unstable: true,
         ..BridgeExportOptions::default()
     };
+    let each = study.section_forces(&wanted, None).unwrap();
+    let names: Vec<&str> = each.iter().map(|f| f.sections[0].as_str()).collect();
+    // in the order of the nodes
+    assert_eq!(names, ["west side", "middle", "east", "fairing", "end"]);
+    let forces = study.joined(each.clone()).unwrap();
+    let nodes = study.by_model.nodes.iter();
+    let numbers = nodes.map(|n| n.name.parse().unwrap());
+    let in_sections: Vec<u32> = numbers.filter(|n| *n != 1301).collect();
+    assert_eq!(forces.options.nodes, in_sections);
+    let strips = &forces.options.strips;
+    let factors: Vec<f64> = strips.iter().map(|s| s.wind_factor).collect();
+    assert!(factors.is_sorted() && factors[0] < 0.93 && *factors.last().unwrap() > 0.97);
+    assert_eq!(
+        [strips[0].width_m, strips[strips.len() - 1].width_m],
+        [31.0, 30.0]
+    );
+    let parts = forces.options.parts(&forces.model, None);
+    let filters: Vec<usize> = parts.iter().map(|p| p.filters).collect();
+    assert_eq!(filters, [6, 6, 4, 4, 0]);
+    for version in [FmiVersion::Two, FmiVersion::Three] {
+        let export = forces.packed(&Label::default(), version);
+        let fmu = opened(&package(&forces.model, &runtimes(), export).unwrap());
+        let report = fmu.check();
+        assert!(report.passed() && report.ran.is_some(), "{report:#?}");
+        assert_eq!(report.findings, []);
+        for run in replay(&fmu).unwrap() {
+            assert_eq!(run.difference, 0.0, "{run:#?}");
+        }
+    }
     let verdict = study.verdict().unwrap();
     let system = study
         .system(&wanted, &verdict, &runtimes(), &Label::default())
         .unwrap();
     let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
-    assert_eq!(names, ["structure", "force_west_side", "force_east"]);
-    // heave and rotation with their rates there, lift and moment back
-    assert_eq!(system.connections.len(), 6 * study.by_model.nodes.len());
-    let forces = study.section_forces(&wanted, None).unwrap();
-    assert_eq!(forces[1].options.strips[0].width_m, 30.0);
-    let factors: Vec<f64> = forces
-        .iter()
-        .flat_map(|f| &f.options.strips)
-        .map(|s| s.wind_factor)
-        .collect();
-    assert!(factors.is_sorted() && factors[0] < 0.93 && *factors.last().unwrap() > 0.97);
+    assert_eq!(names, ["structure", "force"]);
+    // motions with their rates there, a force each back
+    let of = |f: &SectionForcePart| 3 * f.model.model.dofs().len() * f.options.strips.len();
+    assert_eq!(system.connections.len(), each.iter().map(of).sum::<usize>());
     assert!(system.package().unwrap().len() > 100_000);
+}
+
+/// Each of its strips is that of the unit of its section alone, under the same motion and gusts, bit for bit.
+#[test]
+fn the_unit_of_all_sections_is_the_units_of_each() {
+    let study = patchwork();
+    let wanted = BridgeExportOptions {
+        allow_unstable: true,
+        ..BridgeExportOptions::default()
+    };
+    let gusts = Some(RationalAdmittance::Liepmann);
+    let each = study.section_forces(&wanted, gusts).unwrap();
+    let all = study.joined(each.clone()).unwrap();
+    let started = |forces: &SectionForcePart| {
+        let export = forces.packed(&Label::default(), FmiVersion::Two);
+        let fmu = opened(&package(&forces.model, &runtimes(), export).unwrap());
+        let mut slave = fmu.instantiate("forces").unwrap();
+        slave.setup(0.0, None, None).unwrap();
+        slave.enter_initialization().unwrap();
+        slave.exit_initialization().unwrap();
+        (fmu, slave)
+    };
+    let (_, mut whole) = started(&all);
+    for forces in &each {
+        let (fmu, mut part) = started(forces);
+        whole.reset().unwrap();
+        whole.setup(0.0, None, None).unwrap();
+        whole.enter_initialization().unwrap();
+        whole.exit_initialization().unwrap();
+        let variables = &fmu.model_description().variables;
+        let named = |causality| {
+            let own = variables.iter().filter(move |v| v.causality == causality);
+            own.map(|v| v.name.as_str())
+        };
+        for step in 0..4 {
+            let time = 0.05 * f64::from(step);
+            for (i, name) in named(Causality::Input).enumerate() {
+                let value = match name {
+                    "wind_speed" => 30.0 + time,
+                    _ => 0.02 * (2.0 * time + i as f64).sin(),
+                };
+                whole.set(name, &Value::Real(value)).unwrap();
+                part.set(name, &Value::Real(value)).unwrap();
+            }
+            whole.do_step(time, 0.05).unwrap();
+            part.do_step(time, 0.05).unwrap();
+            for name in named(Causality::Output) {
+                let [a, b] = [real(&whole, name), real(&part, name)];
+                assert!(a != 0.0 && a.to_bits() == b.to_bits(), "{name}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// In FMI 3.0 arrays say of which nodes they are.
+#[test]
+fn arrays_of_some_nodes_are_named() {
+    let study = patchwork();
+    let wanted = BridgeExportOptions {
+        allow_unstable: true,
+        ..BridgeExportOptions::default()
+    };
+    let forces = study
+        .joined(study.section_forces(&wanted, None).unwrap())
+        .unwrap();
+    let export = forces.packed(&Label::default(), FmiVersion::Three);
+    let fmu = opened(&package(&forces.model, &runtimes(), export).unwrap());
+    let variables = &fmu.model_description().variables;
+    let names = |array: &str| -> Vec<u32> {
+        let own = variables
+            .iter()
+            .filter(|v| v.name.starts_with(&format!("{array}[")));
+        let name = own.map(|v| match &v.start {
+            Some(Value::String(name)) => name.parse().unwrap(),
+            other => panic!("{}: {other:?}", v.name),
+        });
+        name.collect()
+    };
+    let parts = forces.options.parts(&forces.model, None);
+    let nodes = |wanted: &dyn Fn(&StripsOfModel<'_>) -> bool| -> Vec<u32> {
+        let parts = parts.iter().filter(|p| wanted(p));
+        let nodes = parts.flat_map(|p| &forces.options.nodes[p.strips.clone()]);
+        nodes.copied().collect()
+    };
+    assert_eq!(names("node_name"), forces.options.nodes);
+    assert_eq!(names("node_name_2"), nodes(&|p| p.filters > 0));
+    assert_eq!(names("node_name_3"), nodes(&|p| p.filters > 4));
+    assert_eq!(
+        names("node_name_4"),
+        nodes(&|p| p.model.section.lateral.is_some())
+    );
+    let text = |array: &str| {
+        let first = variables.iter().find(|v| v.name == array).unwrap();
+        first.description.clone().unwrap()
+    };
+    assert!(text("sway[1]").contains("the first of 31, named in node_name_4"));
+    assert!(text("filter[6,1]").contains("the first of 42, named in node_name_3"));
+    assert!(text("node_name_4[1]").contains("nodes that have sway"));
 }
 
 /// Gusts belong to the forces.

@@ -1,7 +1,10 @@
 //! What makes an exported unit one of forces alone: its strips, and where their forces act.
 
+use crate::aerodynamics::{GustForce, Realizable};
 use crate::error::{Error, Result, counted, non_negative, positive};
+use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The file of the options in `resources/`; an archive without it holds a coupled section.
 pub const FORCE_FILE: &str = "force.json";
@@ -23,14 +26,58 @@ pub struct StripOptions {
     pub length_m: f64,
     /// Wind speed at the strip over the input `wind_speed`.
     pub wind_factor: f64,
+    /// Whose forces act on it: 0 for those of the model of the archive, 1 for the first of [`ForceOptions::further`], and so on.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub model: usize,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde asks
+fn is_zero(model: &usize) -> bool {
+    *model == 0
+}
+
+/// A further force model of a unit whose strips do not all have the same: that of another section of a bridge.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FurtherModel {
+    /// The model.
+    pub model: TrainedModel,
+    /// Forces of gusts on its strips, where the unit takes gusts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gusts: Option<GustForce>,
+}
+
+/// Strips that lie side by side under the forces of one model.
+#[derive(Debug, Clone)]
+pub struct StripsOfModel<'a> {
+    /// The model.
+    pub model: &'a TrainedModel,
+    /// Forces of gusts on them.
+    pub gusts: Option<&'a GustForce>,
+    /// Among all strips.
+    pub strips: Range<usize>,
+    /// Filters of each strip.
+    pub filters: usize,
+    /// Lagging gusts of each strip.
+    pub lags: usize,
+}
+
+impl StripsOfModel<'_> {
+    /// Filters and lagging gusts of each strip.
+    pub fn inner(&self) -> usize {
+        self.filters + self.lags
+    }
 }
 
 /// The options of a unit of forces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceOptions {
-    /// The strips, one at least.
+    /// The strips, one at least; those of one model after those of another.
     pub strips: Vec<StripOptions>,
+    /// Models of strips whose forces are not those of the model of the archive.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further: Vec<FurtherModel>,
     /// Whether variables are named by strip (`strip[1].heave`); a single strip may go without (`heave`).
     pub named_strips: bool,
     /// Numbers of the nodes of a bridge in whose places the strips are: their variables are named by them
@@ -49,18 +96,58 @@ impl ForceOptions {
                 width_m,
                 length_m: 1.0,
                 wind_factor: 1.0,
+                model: 0,
             }],
+            further: Vec::new(),
             named_strips: false,
             nodes: Vec::new(),
             prediction_steps: EXPLICIT_PREDICTION,
         }
     }
 
+    /// The strips of each model, in the order of the strips: of the archive's, with its forces of gusts, then of the further ones.
+    pub fn parts<'a>(
+        &'a self,
+        model: &'a TrainedModel,
+        gusts: Option<&'a GustForce>,
+    ) -> Vec<StripsOfModel<'a>> {
+        let further = self.further.iter().map(|f| (&f.model, f.gusts.as_ref()));
+        let all = std::iter::once((model, gusts)).chain(further).enumerate();
+        let from = |k: usize| self.strips.partition_point(|s| s.model < k);
+        all.map(|(k, (model, gusts))| StripsOfModel {
+            strips: from(k)..from(k + 1),
+            filters: model.model.realize().states(),
+            lags: gusts.map_or(0, GustForce::states),
+            model,
+            gusts,
+        })
+        .collect()
+    }
+
+    /// Strips of several models are those of nodes of a bridge, one model after another, and each model has some.
+    fn check_models(&self) -> Result<()> {
+        let models: Vec<usize> = self.strips.iter().map(|s| s.model).collect();
+        let mut used = models.clone();
+        used.dedup();
+        if !used.iter().copied().eq(0..=self.further.len()) {
+            let expected = format!(
+                "strips of {}, those of one after those of another",
+                counted(self.further.len() + 1, "model")
+            );
+            return Err(Error::input("strips: model", expected, format!("{used:?}")));
+        }
+        if !self.further.is_empty() && self.nodes.is_empty() {
+            let expected = "the nodes of a bridge for strips of several models";
+            return Err(Error::input("nodes", expected, "none"));
+        }
+        self.further.iter().try_for_each(|f| f.model.validate())
+    }
+
     /// Checks the options.
     ///
     /// # Errors
     /// [`Error::Input`] for no strip or too many, several without names, a width or length that is not positive, a
-    /// negative wind factor, a prediction outside 0 to 3.
+    /// negative wind factor, a prediction outside 0 to 3; for models without strips, or whose strips lie between those of another.
     pub fn validate(&self) -> Result<()> {
         let count = self.strips.len();
         if count == 0 || count > MAX_STRIPS {
@@ -71,6 +158,7 @@ impl ForceOptions {
             let found = format!("{count} without");
             return Err(Error::input("strips", "names for more than one", found));
         }
+        self.check_models()?;
         let mut nodes = self.nodes.clone();
         nodes.sort_unstable();
         nodes.dedup();

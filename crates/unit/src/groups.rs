@@ -24,27 +24,52 @@ pub struct Groups {
 /// Which element of an array is which: the names of nodes or modes, itself an array.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ElementNames {
+    /// Name of the array: `node_name` of all nodes, `node_name_2` and so on of those nodes that have something others have not.
+    pub name: String,
     /// What is named: `node`, `mode`.
     pub kind: &'static str,
-    /// The names, in the order of all arrays of this kind.
+    /// The names, in the order of all arrays that have these elements.
     pub of: Vec<CString>,
+    /// Value references of those arrays.
+    pub arrays: Vec<usize>,
 }
 
 impl ElementNames {
-    /// Of an array of this kind; `None` for others.
-    fn new(kind: &'static str, groups: &[Vec<u32>], table: &VariableTable) -> Option<Self> {
-        let name = |place: u32| {
+    /// Of the arrays of this kind: those of all elements first.
+    fn of_kind(kind: &'static str, groups: &[Vec<u32>], table: &VariableTable) -> Vec<Self> {
+        let element = |place: u32| {
             let of = table.variables()[place as usize].name.as_str();
-            let number = of
-                .strip_prefix(kind)?
-                .strip_prefix('[')?
-                .split_once("].")?
-                .0;
-            CString::new(number).ok()
+            let number = of.strip_prefix(kind)?.strip_prefix('[')?;
+            Some(number.split_once("].")?.0)
         };
-        let array = groups.iter().find(|places| name(places[0]).is_some())?;
-        let of = array.iter().filter_map(|place| name(*place)).collect();
-        Some(Self { kind, of })
+        let all = groups.iter().enumerate();
+        let all = all.filter(|(_, places)| element(places[0]).is_some());
+        let most = all.clone().map(|(_, places)| places.len()).max();
+        let mut sets: Vec<(Vec<&str>, Vec<usize>)> = Vec::new();
+        for (reference, places) in all {
+            let of = || places.iter().filter_map(|p| element(*p));
+            // as many as there are at most are all, which saves a look
+            let same = |(set, _): &&mut (Vec<&str>, Vec<usize>)| {
+                set.len() == places.len()
+                    && (Some(set.len()) == most || of().eq(set.iter().copied()))
+            };
+            match sets.iter_mut().find(same) {
+                Some((_, arrays)) => arrays.push(reference),
+                None => sets.push((of().collect(), vec![reference])),
+            }
+        }
+        sets.sort_by_key(|(set, _)| std::cmp::Reverse(set.len()));
+        let name = |i: usize| match i {
+            0 => format!("{kind}_name"),
+            _ => format!("{kind}_name_{}", i + 1),
+        };
+        let sets = sets.into_iter().enumerate().map(|(i, (set, arrays))| Self {
+            name: name(i),
+            kind,
+            of: set.iter().filter_map(|s| CString::new(*s).ok()).collect(),
+            arrays,
+        });
+        sets.collect()
     }
 }
 
@@ -74,7 +99,7 @@ impl Groups {
             }
         }
         let kinds = ["node", "mode"].into_iter();
-        let names = kinds.filter_map(|kind| ElementNames::new(kind, &groups, table));
+        let names = kinds.flat_map(|kind| ElementNames::of_kind(kind, &groups, table));
         // strips that are counted, not those of nodes
         let counted = |places: &&Vec<u32>| {
             let v = &table.variables()[places[0] as usize];

@@ -19,6 +19,7 @@ pub(crate) mod derivatives;
 mod force_ahead;
 mod force_derivatives;
 mod force_exchange;
+mod force_parts;
 mod force_unit;
 mod integration;
 mod layout;
@@ -77,7 +78,7 @@ impl Instance {
     pub fn new(resources: Resources) -> Result<Self> {
         let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
             (Some(options), _) => Box::new(BridgeUnit::new(&resources, options)?),
-            (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
+            (None, Some(_)) => Box::new(ForceUnit::new(&resources)?),
             (None, None) => Box::new(SectionUnit::new(&resources)?),
         };
         let layout = VariablePlaces::new(&resources.table, |place| unit.held_output(place))?;

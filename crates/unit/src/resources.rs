@@ -2,10 +2,11 @@
 
 use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
-use super::force_options::{FORCE_FILE, ForceOptions};
+use super::force_options::{FORCE_FILE, ForceOptions, FurtherModel, StripsOfModel};
 use super::identity;
 use super::location::{MODEL_FILE, beside, folder_of, own_binary, raw_folder, refused};
 use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
+use super::standard::each_once;
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
 use crate::bridge::GustChannels;
@@ -124,6 +125,9 @@ impl Resources {
             .gusts
             .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.at(GUST_FILE)))
             .transpose()?;
+        for further in force.iter().flat_map(|f| &f.further) {
+            check_further(further, gusts.is_some()).map_err(|e| e.at(FORCE_FILE))?;
+        }
         let bounds = options
             .bounds
             .map(|bounds| OnsetBounds::from_json(text(bounds)?).map_err(|e| e.at(BOUNDS_FILE)))
@@ -144,6 +148,24 @@ impl Resources {
             table,
             guid,
         })
+    }
+
+    /// The trained model, and those of further strips.
+    pub fn models(&self) -> impl Iterator<Item = &TrainedModel> {
+        let further = self.force.iter().flat_map(|force| &force.further);
+        std::iter::once(&self.model).chain(further.map(|f| &f.model))
+    }
+
+    /// What its models are, or what is said of them, each once.
+    pub fn words(&self, of: fn(&TrainedModel) -> &str) -> String {
+        each_once(self.models().map(of))
+    }
+
+    /// The strips of each model of a unit of forces; none of other units.
+    pub fn parts(&self) -> Vec<StripsOfModel<'_>> {
+        let force = self.force.iter();
+        let parts = force.flat_map(|f| f.parts(&self.model, self.gusts.as_ref()));
+        parts.collect()
     }
 
     /// The same forces on another number of strips, or on those of the export; those beyond them are like the last.
@@ -216,6 +238,24 @@ fn check_sampling(model: &TrainedModel) -> Result<()> {
             m.delta_s.to_string(),
         )),
         _ => Ok(()),
+    }
+}
+
+/// A further model is one that can be stepped, and its strips feel gusts where the others do.
+fn check_further(further: &FurtherModel, gusts: bool) -> Result<()> {
+    check_sampling(&further.model)?;
+    let dofs = further.model.model.dofs();
+    match &further.gusts {
+        Some(force) if gusts => force.validate(dofs),
+        None if !gusts => Ok(()),
+        _ => {
+            let place = format!("gusts on {}", further.model.name);
+            Err(Error::input(
+                place,
+                "forces of gusts on the strips of all models, or of none",
+                "some",
+            ))
+        }
     }
 }
 

@@ -25,6 +25,7 @@ pub use super::standard::{Causality, Initial, Variability};
 pub use computed::{ComputedNumber, Formula, Known, OnsetNumbers, Present};
 pub(crate) use computed_rows::LINEAR_ROTATION_RAD;
 pub use dual::Dual;
+pub(crate) use force::{StripState, strip_states};
 pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use variable::{

@@ -27,6 +27,7 @@ use std::path::PathBuf;
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
 /// Example: aerodeck fmu export bridge.toml --bridge --nodes 1001,1156
 /// Example: aerodeck fmu export bridge.toml --bridge --kind force --out bridge_force.fmu
+/// Example: aerodeck fmu export bridge.toml --bridge --kind force --section "side span" --out side_span.fmu
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -43,7 +44,7 @@ pub(crate) struct FmuExportArgs {
     /// --bridge the structure alone.
     #[arg(long, value_enum, default_value_t = ExportKind::Section)]
     kind: ExportKind,
-    /// The section of a bridge whose forces are packed; may be left out where there is one.
+    /// The section of a bridge whose forces are packed [default: all sections in one archive].
     #[arg(long, requires = "bridge")]
     section: Option<String>,
     /// Number of strips of a force FMU, with variables named strip[1].heave …; by default one strip with plain names.

@@ -29,27 +29,33 @@ pub fn documentation(
     verdict: Option<&Verdict>,
 ) -> Result<String> {
     let model = &resources.model;
+    let parts = resources.parts();
+    let firsts: Vec<usize> = parts.iter().map(|p| p.strips.start).collect();
     let page = DocumentationPage {
         model,
-        kind: model.model.kind(),
+        name: resources.words(|m| &m.name),
+        kind: resources.words(|m| m.model.kind()),
         guid: resources.guid.to_string(),
         version: env!("CARGO_PKG_VERSION"),
-        filters: model.model.realize().states(),
+        filters: resources
+            .models()
+            .map(|m| m.model.realize().states())
+            .max()
+            .unwrap_or(0),
         initial_rotation_deg: digits(model.experiment.initial_rotation_rad.to_degrees()),
-        lateral: model.section.lateral.is_some(),
+        lateral: resources.models().any(|m| m.section.lateral.is_some()),
         platforms: runtimes
             .iter()
             .map(|r| (r.path_in_archive(FmiVersion::Two), r.platform_words()))
             .collect(),
-        groups: groups(resources.table.listed(listing).table.variables()),
-        range: Range::of(model),
-        speeds: speeds(model),
+        groups: groups(resources.table.listed(listing).table.variables(), &firsts),
+        models: resources.models().map(ModelText::of).collect(),
         stability: match &resources.force {
             None => stability(model, verdict)?,
             Some(_) => Vec::new(),
         },
         force: resources.force.as_ref(),
-        sampling: SamplingText::of(model),
+        sampling: resources.models().find_map(SamplingText::of),
     };
     page.render()
         .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
@@ -59,7 +65,8 @@ pub fn documentation(
 #[template(path = "fmu_documentation.html")]
 struct DocumentationPage<'a> {
     model: &'a TrainedModel,
-    kind: &'static str,
+    name: String,
+    kind: String,
     guid: String,
     version: &'static str,
     filters: usize,
@@ -67,11 +74,27 @@ struct DocumentationPage<'a> {
     lateral: bool,
     platforms: Vec<(String, &'static str)>,
     groups: Vec<Group>,
-    range: Range,
-    speeds: Vec<Speeds>,
+    models: Vec<ModelText<'a>>,
     stability: Vec<String>,
     force: Option<&'a ForceOptions>,
     sampling: Option<SamplingText>,
+}
+
+/// Where a model holds, and how it was made.
+struct ModelText<'a> {
+    model: &'a TrainedModel,
+    range: Range,
+    speeds: Vec<Speeds>,
+}
+
+impl<'a> ModelText<'a> {
+    fn of(model: &'a TrainedModel) -> Self {
+        Self {
+            model,
+            range: Range::of(model),
+            speeds: speeds(model),
+        }
+    }
 }
 
 /// Variables of one role.
@@ -90,13 +113,18 @@ struct Row {
     description: String,
 }
 
-fn groups(variables: &[Variable]) -> Vec<Group> {
+/// Of several strips those of these alone: all strips of a model have the same variables.
+fn groups(variables: &[Variable], strips: &[usize]) -> Vec<Group> {
+    let is_shown = |v: &Variable| match v.role {
+        Role::Motion(s, ..) | Role::Force(s, ..) | Role::Strip(s, _) => strips.contains(&s),
+        _ => true,
+    };
     let group = |title, note, belongs: &dyn Fn(&Variable) -> bool| Group {
         title,
         note,
         rows: variables
             .iter()
-            .filter(|v| belongs(v) && of_first_strip(v))
+            .filter(|v| belongs(v) && is_shown(v))
             .map(row)
             .collect(),
     };
@@ -124,14 +152,6 @@ fn groups(variables: &[Variable]) -> Vec<Group> {
         ),
         group("Constants", "", &|v| v.causality == Causality::Local),
     ]
-}
-
-/// All strips have the same variables.
-fn of_first_strip(v: &Variable) -> bool {
-    !matches!(
-        v.role,
-        Role::Motion(1.., ..) | Role::Force(1.., ..) | Role::Strip(1.., _)
-    )
 }
 
 fn row(v: &Variable) -> Row {

@@ -1,27 +1,47 @@
-//! A bridge in parts: its structure as one unit, the wind forces on the strips of each section as another.
+//! A bridge in parts: its structure as one unit, the wind forces on the strips of its sections as another.
 
 use super::{BridgeExportOptions, BridgeStudy};
 use crate::aerodynamics::{GustForce, Lags, RationalAdmittance, RationalModel, Transfer};
 use crate::bridge::{StripGroup, motion_index};
 use crate::error::{Error, Result};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
-use crate::fmu::force_options::{ForceOptions, StripOptions};
+use crate::fmu::force_options::{ForceOptions, FurtherModel, StripOptions};
 use crate::fmu::package::BridgeExport;
 use crate::section::Dof;
 use crate::trained_model::{Model, Provenance, TrainedModel};
 use nalgebra::DMatrix;
+use std::collections::BTreeMap;
 
-/// The wind forces on one section of a bridge, as strips with the numbers of their nodes.
+/// The wind forces on sections of a bridge, as strips with the numbers of their nodes.
 #[derive(Debug, Clone)]
 pub struct SectionForcePart {
-    /// Name of the section.
-    pub section: String,
-    /// Its force model.
+    /// Names of the sections.
+    pub sections: Vec<String>,
+    /// What they are called together.
+    pub name: String,
+    /// The force model of the first; those of the others are in the options.
     pub model: TrainedModel,
-    /// A strip for each of its nodes.
+    /// A strip for each of their nodes.
     pub options: ForceOptions,
-    /// Forces of gusts, where they are wanted.
+    /// Forces of gusts on the first, where they are wanted.
     pub gusts: Option<GustForce>,
+}
+
+impl SectionForcePart {
+    /// The strips of another section behind its own.
+    fn push(&mut self, other: Self) {
+        let own = &mut self.options;
+        let model = own.further.len() + 1;
+        let strips = other.options.strips.into_iter();
+        own.strips
+            .extend(strips.map(|s| StripOptions { model, ..s }));
+        own.nodes.extend(other.options.nodes);
+        own.further.push(FurtherModel {
+            model: other.model,
+            gusts: other.gusts,
+        });
+        self.sections.extend(other.sections);
+    }
 }
 
 /// No forces of heave and rotation, whatever moves.
@@ -94,7 +114,8 @@ impl BridgeStudy {
         Ok(whole)
     }
 
-    /// The wind forces of every section, each on strips at its nodes; with gusts as inputs where `gusts` states their admittance.
+    /// The wind forces of every section, each on strips at its nodes, in the order of the nodes; with gusts as inputs where `gusts` states
+    /// their admittance.
     ///
     /// # Errors
     /// As [`Self::export`]; [`Error::Input`] for gusts on sections without static coefficients.
@@ -106,6 +127,23 @@ impl BridgeStudy {
         self.section_forces_of(&self.export(wanted)?, gusts)
     }
 
+    /// Those of all sections as one.
+    ///
+    /// # Errors
+    /// As [`Self::export`]; [`Error::Input`] for a bridge without sections, or with more strips than a unit may have.
+    pub fn joined(&self, forces: Vec<SectionForcePart>) -> Result<SectionForcePart> {
+        let mut each = forces.into_iter();
+        let mut all = each
+            .next()
+            .ok_or_else(|| Error::input("sections", "one at least", "none"))?;
+        each.for_each(|other| all.push(other));
+        if !all.options.further.is_empty() {
+            all.name = format!("{}, wind forces", self.file.name);
+        }
+        all.options.validate()?;
+        Ok(all)
+    }
+
     /// The wind forces of the whole bridge as it is exported.
     pub(super) fn section_forces_of(
         &self,
@@ -113,7 +151,7 @@ impl BridgeStudy {
         gusts: Option<RationalAdmittance>,
     ) -> Result<Vec<SectionForcePart>> {
         let matrices = gusts.map(|_| self.gust_matrices()).transpose()?;
-        let mut all = Vec::new();
+        let mut all = BTreeMap::new();
         for (s, (block, forces)) in self.file.sections.iter().zip(&self.sections).enumerate() {
             let groups = self.by_model.groups.iter().zip(&self.section_of_group);
             let own = groups
@@ -144,12 +182,15 @@ impl BridgeStudy {
                 });
             let mut section = self.by_model.equivalent_section(&dofs)?;
             section.width_m = block.width_m;
-            all.push(SectionForcePart {
-                section: block.name.clone(),
+            let name = format!("{}, {}", self.file.name, block.name);
+            let nodes = own.iter().flat_map(|g| &self.by_model.groups[*g].nodes);
+            let part = SectionForcePart {
+                sections: vec![block.name.clone()],
+                name: name.clone(),
                 options: self.strips(&own)?,
                 gusts,
                 model: TrainedModel {
-                    name: format!("{}, {}", self.file.name, block.name),
+                    name,
                     section,
                     tested_range: forces.tested.unwrap_or(whole.model.tested_range),
                     provenance: Provenance {
@@ -162,9 +203,10 @@ impl BridgeStudy {
                     schema_version: model.schema_version(),
                     model,
                 },
-            });
+            };
+            all.insert(nodes.min().copied(), part);
         }
-        Ok(all)
+        Ok(all.into_values().collect())
     }
 
     /// A strip at each node of these groups, in the order of the nodes.
@@ -180,6 +222,7 @@ impl BridgeStudy {
             width_m: group.width_m,
             length_m: bridge.nodes[*node].length_m,
             wind_factor: group.wind_factor,
+            model: 0,
         };
         let options = ForceOptions {
             strips: own.iter().map(strip).collect(),

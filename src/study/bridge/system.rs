@@ -1,4 +1,4 @@
-//! A bridge as a system of FMUs: its structure, and the wind forces of each section beside it.
+//! A bridge as a system of FMUs: its structure, and the wind forces beside it.
 
 use super::{BridgeExportOptions, BridgeStudy, SectionForcePart};
 use crate::aerodynamics::Transfer as _;
@@ -11,8 +11,9 @@ use crate::fmu::ssp::{Connection, System, SystemComponent};
 use crate::section::Dof;
 use crate::verdict::Verdict;
 
-/// Name of the structure among the components.
+/// Names of the components.
 const STRUCTURE: &str = "structure";
+const FORCE: &str = "force";
 
 /// A degree of freedom in the names of variables: the motion that the forces follow, the force, and what it is to the structure.
 struct Names {
@@ -40,41 +41,35 @@ fn names(dof: Dof) -> Names {
 
 impl SectionForcePart {
     /// What packs it. Whether the bridge grows below its onset has been judged before.
-    pub(crate) fn packed(&self, label: &Label, version: FmiVersion) -> Export {
+    pub fn packed(&self, label: &Label, version: FmiVersion) -> Export {
         Export {
             force: Some(self.options.clone()),
             gusts: self.gusts.clone(),
-            label: label.clone(),
+            label: Label {
+                name: label.name.clone().or_else(|| Some(self.name.clone())),
+                ..label.clone()
+            },
             version,
             ..GrowthPolicy::Allow.into()
         }
     }
 
-    /// Name of its component in a system.
-    fn component_name(&self, sections: usize) -> String {
-        let word = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-        match sections {
-            1 => "force".to_owned(),
-            _ => format!(
-                "force_{}",
-                self.section.chars().map(word).collect::<String>()
-            ),
-        }
-    }
-
     /// Connections with the structure, there and back.
-    fn connections(&self, component: &str) -> (Vec<Connection>, Vec<Connection>) {
+    fn connections(&self) -> (Vec<Connection>, Vec<Connection>) {
         let (mut motions, mut forces) = (Vec::new(), Vec::new());
-        for node in &self.options.nodes {
+        let parts = self.options.parts(&self.model, None).into_iter();
+        let strips = parts.flat_map(|part| part.strips.map(move |s| (s, part.model)));
+        for (strip, model) in strips {
+            let node = self.options.nodes[strip];
             let at = |element: &str, of: &str| [element.to_owned(), format!("node[{node}].{of}")];
-            for dof in self.model.model.dofs() {
+            for dof in model.model.dofs() {
                 let names = names(*dof);
                 motions.extend(names.motion.map(|of| Connection {
                     from: at(STRUCTURE, of),
-                    to: at(component, of),
+                    to: at(FORCE, of),
                 }));
                 forces.push(Connection {
-                    from: at(component, names.force),
+                    from: at(FORCE, names.force),
                     to: at(STRUCTURE, names.external),
                 });
             }
@@ -84,8 +79,8 @@ impl SectionForcePart {
 }
 
 impl BridgeStudy {
-    /// The bridge as a system of two units or more, which give what the whole bridge gives as far as the steps in which they exchange
-    /// motion and forces allow.
+    /// The bridge as a system of two units, which give what the whole bridge gives as far as the steps in which they exchange motion
+    /// and forces allow.
     ///
     /// # Errors
     /// As [`Self::structure`] and [`Self::section_forces`].
@@ -97,54 +92,41 @@ impl BridgeStudy {
         label: &Label,
     ) -> Result<System> {
         let whole = self.export(wanted)?;
-        let forces = self.section_forces_of(&whole, None)?;
+        let forces = self.joined(self.section_forces_of(&whole, None)?)?;
         let mut structure = self.structure_of(whole, true)?;
         structure.verdict = Some(verdict.clone());
-        let mut system = System {
+        let (motions, back) = forces.connections();
+        let from = |list: &[Connection]| list.iter().map(|c| c.from[1].clone()).collect();
+        let to = |list: &[Connection]| list.iter().map(|c| c.to[1].clone()).collect();
+        let export = forces.packed(label, FmiVersion::Two);
+        let components = vec![
+            SystemComponent {
+                name: STRUCTURE.to_owned(),
+                fmu: package_bridge(&structure, runtimes, label, FmiVersion::Two)?,
+                inputs: to(&back),
+                outputs: from(&motions),
+                values: structure_values(&structure.bridge),
+            },
+            SystemComponent {
+                name: FORCE.to_owned(),
+                fmu: package(&forces.model, runtimes, export)?,
+                inputs: to(&motions),
+                outputs: from(&back),
+                values: [
+                    ("wind_speed", forces.model.experiment.wind_speed_m_s),
+                    ("air_density", self.by_model.air_density_kg_m3),
+                    ("prediction", forces.options.prediction_steps),
+                ]
+                .map(|(name, value)| (name.to_owned(), value))
+                .to_vec(),
+            },
+        ];
+        Ok(System {
             name: self.file.name.clone(),
-            components: Vec::new(),
-            connections: Vec::new(),
-            experiment: structure.model.experiment.clone(),
-        };
-        let mut whole = SystemComponent {
-            name: STRUCTURE.to_owned(),
-            fmu: package_bridge(&structure, runtimes, label, FmiVersion::Two)?,
-            inputs: Vec::new(),
-            outputs: Vec::new(),
-            values: structure_values(&structure.bridge),
-        };
-        for section in &forces {
-            let name = section.component_name(forces.len());
-            let (motions, back) = section.connections(&name);
-            let ends = |list: &[Connection], to: bool| -> Vec<String> {
-                let end = |c: &Connection| {
-                    if to {
-                        c.to[1].clone()
-                    } else {
-                        c.from[1].clone()
-                    }
-                };
-                list.iter().map(end).collect()
-            };
-            whole.outputs.extend(ends(&motions, false));
-            whole.inputs.extend(ends(&back, true));
-            let experiment = &section.model.experiment;
-            let export = section.packed(label, FmiVersion::Two);
-            system.components.push(SystemComponent {
-                fmu: package(&section.model, runtimes, export)?,
-                inputs: ends(&motions, true),
-                outputs: ends(&back, false),
-                values: vec![
-                    ("wind_speed".to_owned(), experiment.wind_speed_m_s),
-                    ("air_density".to_owned(), self.by_model.air_density_kg_m3),
-                    ("prediction".to_owned(), section.options.prediction_steps),
-                ],
-                name,
-            });
-            system.connections.extend(motions.into_iter().chain(back));
-        }
-        system.components.insert(0, whole);
-        Ok(system)
+            components,
+            connections: motions.into_iter().chain(back).collect(),
+            experiment: structure.model.experiment,
+        })
     }
 }
 

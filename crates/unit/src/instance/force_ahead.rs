@@ -1,9 +1,12 @@
 //! Forces alone in co-simulation: where the motion goes on until the instant at which they act.
 
+use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE, check_forces};
 use super::memory::Memory;
 use crate::error::Result;
-use crate::response::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
+use crate::response::{
+    ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow,
+};
 
 impl ForceUnit {
     /// The motion as it has been set.
@@ -29,6 +32,50 @@ impl ForceUnit {
         motion.extend((0..self.motions() / 3).map(coordinate));
     }
 
+    /// Takes the motion of a new point of time into the numbers of a state. After an error they have to be made anew.
+    pub(super) fn take(
+        &mut self,
+        state: &mut [f64],
+        given: &GivenMotion,
+        flows: &[StripFlow],
+    ) -> Result<()> {
+        for part in &mut self.parts {
+            let own = GivenMotion {
+                motion: &given.motion[part.coordinates.clone()],
+                ..*given
+            };
+            let state = &mut state[part.state.clone()];
+            part.forces.take(state, &own, &flows[part.strips.clone()])?;
+        }
+        Ok(())
+    }
+
+    /// Takes the motion of the present into the state, from that before.
+    pub(super) fn take_motion(&mut self, memory: &mut Memory, before: &SectionState) -> Result<()> {
+        let mut work = std::mem::take(&mut self.work);
+        self.motion(memory, &mut work.motion);
+        work.flows.clear();
+        work.flows.extend(self.flows(&memory.values));
+        let given = GivenMotion {
+            time_s: memory.time,
+            wind_speed_m_s: memory.values[self.inputs[0]],
+            motion: &work.motion,
+        };
+        let taken = self.take(&mut memory.system.values, &given, &work.flows);
+        if taken.is_ok() {
+            let mut gusts = std::mem::take(&mut memory.system.gusts);
+            self.take_gusts(&mut gusts, before, memory, &work.flows);
+            memory.system.gusts = gusts;
+        }
+        self.work = work;
+        taken
+    }
+
+    /// The forces of the first strips of a state, whose points of time are those of all.
+    fn first_of<'a>(&self, system: &'a SectionState) -> &'a [f64] {
+        &system.values[self.first()..]
+    }
+
     /// Finds the forces of all strips. `renewed` says that there is motion of the present time.
     pub(super) fn ahead_into(
         &mut self,
@@ -39,12 +86,11 @@ impl ForceUnit {
         work.flows.clear();
         work.flows.extend(self.flows(&memory.values));
         let density = self.air_density(&memory.values);
-        let first = self.first();
         let mut system = &memory.system;
         let mut ahead_s = system.values[0];
         if renewed {
             self.motion(memory, &mut work.motion);
-            if let Some(newest) = PrescribedForces::newest_s(&system.values[first..]) {
+            if let Some(newest) = PrescribedForces::newest_s(self.first_of(system)) {
                 ahead_s = (newest + ahead_s - memory.time).max(0.0);
             }
             let given = GivenMotion {
@@ -53,52 +99,53 @@ impl ForceUnit {
                 motion: &work.motion,
             };
             work.renewed.set_to(system);
-            let state = &mut work.renewed.values[first..];
-            self.forces.take(state, &given, &work.flows)?;
-            let before = &memory.system.values[first..];
-            self.take_gusts(&mut work.renewed.gusts, before, memory, &work.flows);
+            self.take(&mut work.renewed.values, &given, &work.flows)?;
+            self.take_gusts(&mut work.renewed.gusts, system, memory, &work.flows);
             system = &work.renewed;
         }
-        let (state, gusts) = (&system.values[first..], &system.gusts);
-        let n = self.forces.dofs().len();
-        let wind = PrescribedForces::newest_wind_m_s(state);
         work.forces.clear();
         work.forces
             .resize(self.coordinates(), ForceAhead::default());
-        let found = &mut work.forces;
-        self.forces
-            .ahead(state, &work.flows, ahead_s, density, found)?;
-        if let Some((strips, _)) = &self.gusts {
-            let each = work.flows.iter().zip(found.chunks_mut(n));
-            let each = each.zip(gusts.chunks(strips.per_strip()));
-            for (s, ((flow, forces), strip)) in each.enumerate() {
+        for part in &mut self.parts {
+            let flows = &work.flows[part.strips.clone()];
+            let found = &mut work.forces[part.coordinates.clone()];
+            let state = &system.values[part.state.clone()];
+            part.forces.ahead(state, flows, ahead_s, density, found)?;
+        }
+        let wind = PrescribedForces::newest_wind_m_s(self.first_of(system));
+        for s in 0..self.gusts.len() {
+            let part = StripsUnderModel::of(&self.parts, s);
+            if let Some(gusts) = &part.gusts {
                 let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
-                let air = flow.in_air(wind, density);
-                strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
+                let air = work.flows[s].in_air(wind, density);
+                let strip = &system.gusts[part.gusts_of(s)];
+                let forces = &mut work.forces[part.coordinates_of(s)];
+                gusts.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
             }
         }
         check_forces(&work.forces)
     }
 
-    /// The gusts go to the present time, from the state of the forces before.
+    /// The gusts go to the present time, from the state before.
     pub(super) fn take_gusts(
         &self,
         gusts: &mut [f64],
-        before: &[f64],
+        before: &SectionState,
         memory: &Memory,
         flows: &[StripFlow],
     ) {
-        let Some((strips, places)) = &self.gusts else {
-            return;
-        };
+        let before = self.first_of(before);
         let seconds = PrescribedForces::newest_s(before).map(|t| memory.time - t);
         let now = memory.values[self.inputs[0]];
         // to second order in the change of the wind, as the filters of the motion
         let wind = 0.5 * (PrescribedForces::newest_wind_m_s(before) + now);
-        let each = gusts.chunks_mut(strips.per_strip()).zip(flows).zip(places);
-        for ((strip, flow), places) in each {
+        for (s, (places, flow)) in self.gusts.iter().zip(flows).enumerate() {
+            let part = StripsUnderModel::of(&self.parts, s);
             let widths = seconds.map(|s| s * wind * flow.wind_factor / flow.width_m);
-            strips.take(strip, places.map(|place| memory.values[place]), widths);
+            if let Some(strips) = &part.gusts {
+                let strip = &mut gusts[part.gusts_of(s)];
+                strips.take(strip, places.map(|place| memory.values[place]), widths);
+            }
         }
     }
 
@@ -106,7 +153,7 @@ impl ForceUnit {
     pub(super) fn renewed(&self, memory: &Memory) -> bool {
         let [flags, state] = [
             &memory.system.values[1..self.first()],
-            &memory.system.values[self.first()..],
+            self.first_of(&memory.system),
         ];
         let newest = PrescribedForces::newest_s(state);
         newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))

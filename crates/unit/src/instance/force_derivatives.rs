@@ -99,8 +99,10 @@ impl ForceUnit {
         }
         still.system.gusts.fill(0.0);
         still.input_rates.fill(0.0);
-        let first = self.first();
-        self.forces.forget(&mut still.system.values[first..]);
+        for part in &self.parts {
+            let state = &mut still.system.values[part.state.clone()];
+            part.forces.forget(state);
+        }
         still
     }
 

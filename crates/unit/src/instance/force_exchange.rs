@@ -3,6 +3,7 @@
 //! Nothing is predicted and nothing derived from earlier motion, so that the rates of the motion have to be set. A displacement
 //! that moves while its rate has never been set is a motion that was not connected: it ends the run.
 
+use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET, check_forces};
 use super::memory::Memory;
 use crate::error::{Error, Result};
@@ -11,6 +12,7 @@ use crate::refusal::{CallResult, Refusal};
 use crate::response::ForceAhead;
 use crate::section::Dof;
 use crate::variables::{Role, VariableTable};
+use std::ops::Range;
 
 /// A displacement that has changed between events.
 const MOVES: f64 = 3.0;
@@ -28,17 +30,20 @@ impl ForceUnit {
         }
     }
 
-    /// Displacement, rate and acceleration of each coordinate of strip `s` as they count now.
-    fn motion_now(&self, memory: &Memory, s: usize) -> [[f64; 3]; Dof::THREE.len()] {
+    /// Displacement, rate and acceleration of these coordinates, those of a strip, as they count now.
+    fn motion_now(
+        &self,
+        memory: &Memory,
+        coordinates: Range<usize>,
+    ) -> [[f64; 3]; Dof::THREE.len()] {
         let stated = memory.values[self.derivatives];
         let counts = |order: usize| stated < 0.0 || order as f64 <= stated;
         let number = |i: usize, order: usize| {
             let value = memory.values[self.inputs[1 + 3 * i + order]];
             if counts(order) { value } else { 0.0 }
         };
-        let n = self.forces.dofs().len();
         let mut motion = [[0.0; 3]; Dof::THREE.len()];
-        for (i, motion) in (s * n..(s + 1) * n).zip(&mut motion) {
+        for (i, motion) in coordinates.zip(&mut motion) {
             *motion = [0, 1, 2].map(|order| number(i, order));
         }
         motion
@@ -48,15 +53,15 @@ impl ForceUnit {
     fn gusts_now<'a>(
         &self,
         memory: &Memory,
+        part: &StripsUnderModel,
         s: usize,
         strip: &'a mut Vec<f64>,
     ) -> Option<&'a [f64]> {
-        let (strips, places) = self.gusts.as_ref()?;
-        let of = strips.per_strip();
+        let places = self.gusts.get(s)?;
         strip.clear();
-        strip.extend_from_slice(&memory.system.gusts[s * of..(s + 1) * of]);
-        for (gust, place) in strip.iter_mut().zip(places[s]) {
-            *gust = memory.values[place];
+        strip.extend_from_slice(&memory.system.gusts[part.gusts_of(s)]);
+        for (gust, place) in strip.iter_mut().zip(places) {
+            *gust = memory.values[*place];
         }
         Some(strip)
     }
@@ -64,20 +69,20 @@ impl ForceUnit {
     /// Finds the forces of the instant, of all strips.
     pub(super) fn at_instant(&mut self, memory: &Memory, work: &mut ForceWork) -> Result<()> {
         let density = self.air_density(&memory.values);
-        let n = self.forces.dofs().len();
         let wind = memory.values[self.inputs[0]];
         work.forces.clear();
         work.forces
             .resize(self.coordinates(), ForceAhead::default());
-        for (s, forces) in work.forces.chunks_mut(n).enumerate() {
-            let flow = self.flow(&memory.values, s);
-            let air = flow.in_air(wind, density);
-            let state = &memory.system.values[self.first()..];
-            let filters = &state[self.forces.filters(s)];
-            let motion = self.motion_now(memory, s);
-            self.forces.at_instant(filters, &motion[..n], air, forces);
-            let strip = self.gusts_now(memory, s, &mut work.strip);
-            if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
+        for (part, s) in self.parts_and_strips() {
+            let air = self.flow(&memory.values, s).in_air(wind, density);
+            let filters = &memory.system.values[part.filters_of(s)];
+            let own = part.coordinates_of(s);
+            let motion = self.motion_now(memory, own.clone());
+            let forces = &mut work.forces[own.clone()];
+            part.forces
+                .at_instant(filters, &motion[..own.len()], air, forces);
+            let strip = self.gusts_now(memory, part, s, &mut work.strip);
+            if let (Some(gusts), Some(strip)) = (&part.gusts, strip) {
                 gusts.add_ahead(strip, [0.0; 2], 0.0, air, forces);
             }
         }
@@ -86,51 +91,63 @@ impl ForceUnit {
 
     /// Writes the rates of filters and lagging gusts, per second, in the order of [`Role::Filter`].
     pub(super) fn rates_now(&mut self, memory: &Memory, rates: &mut [f64]) {
-        let strips = self.strips();
         let mut work = std::mem::take(&mut self.work);
-        for s in 0..strips {
-            self.rates_of(memory, s, &mut work);
-            for (slot, rate) in rates[s..].iter_mut().step_by(strips).zip(&work.rates) {
-                *slot = *rate;
-            }
+        work.rates.clear();
+        for (part, s) in self.parts_and_strips() {
+            self.add_rates(memory, part, s, &mut work);
+        }
+        for (slot, place) in rates.iter_mut().zip(&self.inner) {
+            *slot = work.rates[*place];
         }
         self.work = work;
     }
 
-    /// Finds those of strip `s`.
-    pub(super) fn rates_of(&self, memory: &Memory, s: usize, work: &mut ForceWork) {
+    /// Adds those of strip `s`.
+    pub(super) fn add_rates(
+        &self,
+        memory: &Memory,
+        part: &StripsUnderModel,
+        s: usize,
+        work: &mut ForceWork,
+    ) {
         let flow = self.flow(&memory.values, s);
         let wind = memory.values[self.inputs[0]] * flow.wind_factor;
-        let displacement = self.motion_now(memory, s).map(|m| m[0]);
-        let state = &memory.system.values[self.first()..];
-        let filters = &state[self.forces.filters(s)];
-        work.rates.clear();
-        work.rates.resize(filters.len(), 0.0);
-        let (width, rates) = (flow.width_m, &mut work.rates);
-        self.forces
+        let displacement = self
+            .motion_now(memory, part.coordinates_of(s))
+            .map(|m| m[0]);
+        let filters = &memory.system.values[part.filters_of(s)];
+        let before = work.rates.len();
+        work.rates.resize(before + filters.len(), 0.0);
+        let (width, rates) = (flow.width_m, &mut work.rates[before..]);
+        part.forces
             .filter_rates(filters, &displacement, wind, width, rates);
-        let strip = self.gusts_now(memory, s, &mut work.strip);
-        if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
+        let strip = self.gusts_now(memory, part, s, &mut work.strip);
+        if let (Some(gusts), Some(strip)) = (&part.gusts, strip) {
             work.rates.extend(gusts.rates(strip, wind / flow.width_m));
         }
     }
 
+    /// Every strip with the part to which it belongs.
+    fn parts_and_strips(&self) -> impl Iterator<Item = (&StripsUnderModel, usize)> {
+        let each = self.parts.iter();
+        each.flat_map(|part| part.strips.clone().map(move |s| (part, s)))
+    }
+
     /// The flow settles around the deck where it is held, in the gusts that blow.
     pub(super) fn settle(&self, memory: &mut Memory) -> Result<()> {
-        let settling = self.forces.settling()?;
-        let n = self.forces.dofs().len();
-        for s in 0..self.strips() {
-            let flow = self.flow(&memory.values, s);
-            let at = |i: usize| memory.values[self.inputs[1 + 3 * i]];
-            let displacement: Vec<f64> = (s * n..(s + 1) * n).map(at).collect();
-            let first = self.first();
-            let filters = &mut memory.system.values[first..][self.forces.filters(s)];
-            self.forces
-                .settle_at(&settling, &displacement, flow.width_m, filters);
-            if let Some((gusts, places)) = &self.gusts {
-                let of = gusts.per_strip();
-                let strip = &mut memory.system.gusts[s * of..(s + 1) * of];
-                gusts.take(strip, places[s].map(|place| memory.values[place]), None);
+        for part in &self.parts {
+            let settling = part.forces.settling()?;
+            for s in part.strips.clone() {
+                let flow = self.flow(&memory.values, s);
+                let at = |i: usize| memory.values[self.inputs[1 + 3 * i]];
+                let displacement: Vec<f64> = part.coordinates_of(s).map(at).collect();
+                let filters = &mut memory.system.values[part.filters_of(s)];
+                part.forces
+                    .settle_at(&settling, &displacement, flow.width_m, filters);
+                if let Some(gusts) = &part.gusts {
+                    let strip = &mut memory.system.gusts[part.gusts_of(s)];
+                    gusts.take(strip, self.gusts[s].map(|place| memory.values[place]), None);
+                }
             }
         }
         Ok(())
@@ -138,7 +155,11 @@ impl ForceUnit {
 
     /// Whether the motion that is said to be set is enough.
     pub(super) fn check_stated(&self, memory: &Memory) -> Result<()> {
-        let rates = (0..self.forces.dofs().len()).any(|dof| self.forces.feels(dof)[0]);
+        let feels = |part: &StripsUnderModel| {
+            let mut dofs = 0..part.forces.dofs().len();
+            dofs.any(|dof| part.forces.feels(dof)[0])
+        };
+        let rates = self.parts.iter().any(feels);
         if memory.values[self.derivatives] == 0.0 && rates {
             return Err(Error::input(
                 "motion_derivatives",
@@ -159,14 +180,18 @@ impl ForceUnit {
         if memory.values[self.derivatives] >= 0.0 {
             return Ok(());
         }
-        let n = self.forces.dofs().len();
         let flags = &memory.system.values[1..self.first()];
         let name = |index: usize| &table.variables()[self.inputs[1 + index]].name;
-        for (i, flags) in flags.chunks(3).enumerate() {
-            let [rate, acceleration] = self.forces.feels(i % n);
+        let each = self.parts.iter().flat_map(|part| {
+            let own = part.coordinates.clone();
+            own.map(move |i| (i, part, i - part.coordinates.start))
+        });
+        for ((i, part, of_part), flags) in each.zip(flags.chunks(3)) {
             if flags[0] != MOVES {
                 continue;
             }
+            let dof = of_part % part.forces.dofs().len();
+            let [rate, acceleration] = part.forces.feels(dof);
             if rate && flags[1] == NOT_SET {
                 return Err(Refusal::error(format!(
                     "`{}` moves, but `{}` has never been set: in model exchange the forces of an instant need the rates of \

@@ -4,21 +4,22 @@
 //! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well. Where
 //! the importer integrates, they are those of its instant.
 
+use super::force_parts::StripsUnderModel;
 use super::layout::{Source, place};
 use super::memory::Memory;
 use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
-use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
-use crate::force_options::ForceOptions;
+use crate::force_options::StripsOfModel;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
-use crate::response::{
-    ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow, StripGusts,
-    wind_at_rest,
+use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow, wind_at_rest};
+use crate::section::Dof;
+use crate::variables::{
+    ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
+    strip_states,
 };
-use crate::variables::{ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, VariableTable};
 
 /// How a number of the motion has been set since the last step.
 pub(super) const NOT_SET: f64 = 0.0;
@@ -27,10 +28,10 @@ pub(super) const SET: f64 = 1.0;
 pub(super) const SET_AS_DERIVATIVE: f64 = 2.0;
 
 /// See the module. The state is the time from the newest motion to the instant of the forces (s), how each number of
-/// the motion has been set since, then the state of the forces.
+/// the motion has been set since, then the state of the forces, of the strips of one model after those of another.
 #[derive(Debug)]
 pub(super) struct ForceUnit {
-    pub forces: PrescribedForces,
+    pub parts: Vec<StripsUnderModel>,
     /// Wind, then the motion: strip by strip, displacement, rate and acceleration of each degree of freedom.
     pub inputs: Vec<usize>,
     /// Index of the motion among the inputs, by place; zero for what is none.
@@ -39,13 +40,15 @@ pub(super) struct ForceUnit {
     outputs: Vec<[usize; 2]>,
     /// Width, length, wind factor of each strip.
     strips: Vec<[usize; 3]>,
-    /// Forces of gusts, and the gusts of each strip; none where the unit takes none.
-    pub gusts: Option<(StripGusts, Vec<[usize; 2]>)>,
+    /// The gusts of each strip, where the unit takes some.
+    pub gusts: Vec<[usize; 2]>,
     density: usize,
     prediction: usize,
     pub derivatives: usize,
-    /// Entry of the system's state that each filter is, then each lagging gust; all of one kind strip by strip.
+    /// Entry of the system's state that each filter is, then each lagging gust, in the order of [`Role::Filter`].
     pub entries: Vec<usize>,
+    /// Place of each of them where they stand strip by strip.
+    pub inner: Vec<usize>,
     /// The same by place in the table.
     held: Vec<Option<usize>>,
     /// Whether the importer integrates.
@@ -70,24 +73,25 @@ pub(super) struct ForceWork {
     pub renewed: SectionState,
     /// Gusts of a strip.
     pub strip: Vec<f64>,
-    /// Rates of a strip.
+    /// Rates strip by strip.
     pub rates: Vec<f64>,
     before: SectionState,
 }
 
 impl ForceUnit {
-    /// The forces of a trained model.
+    /// The forces of trained models.
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] for a table that is not one of forces.
-    pub(super) fn new(resources: &Resources, options: &ForceOptions) -> Result<Self> {
+    pub(super) fn new(resources: &Resources) -> Result<Self> {
         let table = &resources.table;
-        let dofs = resources.model.section.dofs();
-        let n = dofs.len();
-        let coordinate = |s: usize, dof| s * n + dofs.iter().position(|d| *d == dof).unwrap_or(0);
-        let count = options.strips.len();
-        let mut inputs = vec![place(table, Role::WindSpeed)?; 1 + 3 * n * count];
-        let (mut outputs, mut strips) = (vec![[0; 2]; n * count], vec![[0; 3]; count]);
+        let of_models = resources.parts();
+        let parts = StripsUnderModel::all(&of_models, 1);
+        let last = |range: fn(&StripsUnderModel) -> usize| parts.last().map_or(0, range);
+        let (count, coordinates) = (last(|p| p.strips.end), last(|p| p.coordinates.end));
+        let coordinate = |s: usize, dof| coordinate(&parts, s, dof);
+        let mut inputs = vec![place(table, Role::WindSpeed)?; 1 + 3 * coordinates];
+        let (mut outputs, mut strips) = (vec![[0; 2]; coordinates], vec![[0; 3]; count]);
         let mut gusts = vec![[0; 2]; count];
         // in one pass: there may be ten thousand strips
         for (place, variable) in table.variables().iter().enumerate() {
@@ -105,15 +109,16 @@ impl ForceUnit {
         for (index, place) in inputs.iter().enumerate() {
             input_at[*place] = index;
         }
-        let gust_force = resources.gusts.as_ref();
-        if gust_force.is_some() {
+        if resources.gusts.is_some() {
             // behind the motion, which is what has an index
             inputs.extend(gusts.iter().flatten());
+        } else {
+            gusts.clear();
         }
         let mut unit = Self {
             input_at,
-            gusts: gust_force.map(|force| (StripGusts::new(force), gusts)),
-            forces: PrescribedForces::new(resources.model.model.realize(), dofs),
+            gusts,
+            parts,
             inputs,
             outputs,
             strips,
@@ -121,6 +126,7 @@ impl ForceUnit {
             prediction: place(table, Role::Prediction)?,
             derivatives: place(table, Role::MotionDerivatives)?,
             entries: Vec::new(),
+            inner: Vec::new(),
             held: Vec::new(),
             integrated: false,
             settle_pending: true,
@@ -128,22 +134,31 @@ impl ForceUnit {
             warned_of_mass: false,
             work: ForceWork::default(),
         };
-        unit.find_states(table);
+        unit.find_states(table, &of_models);
         Ok(unit)
     }
 
     /// Where the states stand.
-    fn find_states(&mut self, table: &VariableTable) {
-        let (strips, first) = (self.strips.len(), self.first());
+    fn find_states(&mut self, table: &VariableTable, of_models: &[StripsOfModel<'_>]) {
         let behind = self.at_rest().values.len();
-        for k in 0..self.forces.filters(0).len() {
-            let of = |s: usize| first + self.forces.filters(s).start + k;
-            self.entries.extend((0..strips).map(of));
-        }
-        let of_strip = self.gusts.as_ref().map_or(0, |(g, _)| g.per_strip());
-        for lag in 2..of_strip {
-            let of = |s: usize| behind + s * of_strip + lag;
-            self.entries.extend((0..strips).map(of));
+        for StripState {
+            strip,
+            number,
+            lags,
+        } in strip_states(of_models)
+        {
+            let part = StripsUnderModel::of(&self.parts, strip);
+            let filters = part.filters_of(strip);
+            let (entry, number) = match lags {
+                false => (filters.start + number, number),
+                // behind the gusts that blow
+                true => (
+                    behind + part.gusts_of(strip).start + 2 + number,
+                    filters.len() + number,
+                ),
+            };
+            self.entries.push(entry);
+            self.inner.push(part.inner_place(strip, number));
         }
         let states = table.variables().iter().map(|v| self.entry_of(v.role));
         self.held = states.collect();
@@ -162,11 +177,6 @@ impl ForceUnit {
     /// Where the state of the forces begins.
     pub(super) fn first(&self) -> usize {
         1 + self.motions()
-    }
-
-    /// How many strips there are.
-    pub(super) fn strips(&self) -> usize {
-        self.strips.len()
     }
 
     /// The air around strip `s`.
@@ -191,9 +201,7 @@ impl ForceUnit {
         let Role::Force(s, kind, dof) = role else {
             return ForceAhead::default();
         };
-        let dofs = self.forces.dofs();
-        let index = dofs.iter().position(|d| *d == dof).unwrap_or(0);
-        let ForceAhead { force, rate } = forces[s * dofs.len() + index];
+        let ForceAhead { force, rate } = forces[coordinate(&self.parts, s, dof)];
         let factor = match kind {
             ForceOutput::PerLength => 1.0,
             ForceOutput::Total => memory.values[self.strips[s][1]],
@@ -212,11 +220,12 @@ impl Unit for ForceUnit {
 
     fn at_rest(&self) -> SectionState {
         let mut values = vec![NOT_SET; self.first()];
-        values.extend(self.forces.rest(self.strips.len()));
-        let of_strip = self.gusts.as_ref().map_or(0, |(g, _)| g.per_strip());
+        for part in &self.parts {
+            values.extend(part.forces.rest(part.strips.len()));
+        }
         SectionState {
             values,
-            gusts: vec![0.0; self.strips.len() * of_strip],
+            gusts: vec![0.0; self.parts.last().map_or(0, |part| part.lagging.end)],
             ..SectionState::default()
         }
     }
@@ -244,12 +253,11 @@ impl Unit for ForceUnit {
     }
 
     fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        let n = self.forces.dofs().len();
-        let rotations = self.inputs[1..self.first()]
-            .chunks(3)
-            .skip(n - 1)
-            .step_by(n);
-        let largest = rotations.map(|places| memory.values[places[0]].abs());
+        let rotations = self.parts.iter().flat_map(|part| {
+            let n = part.forces.dofs().len();
+            part.coordinates.clone().skip(n - 1).step_by(n)
+        });
+        let largest = rotations.map(|i| memory.values[self.inputs[1 + 3 * i]].abs());
         let largest = largest.fold(0.0, f64::max);
         if largest > LINEAR_ROTATION_RAD && !self.warned {
             self.warned = true;
@@ -307,11 +315,14 @@ impl Prepared for ForceUnit {
     }
 
     fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
-        let strips = self.strips();
+        let place = *self.inner.get(i)?;
+        let part = self.parts.iter().find(|part| place < part.inner.end)?;
+        let [strip, number] = part.at_inner(place);
         let mut work = std::mem::take(&mut self.work);
-        self.rates_of(memory, i % strips, &mut work);
+        work.rates.clear();
+        self.add_rates(memory, part, strip, &mut work);
         self.work = work;
-        self.work.rates.get(i / strips).copied()
+        self.work.rates.get(number).copied()
     }
 
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
@@ -348,6 +359,13 @@ impl Prepared for ForceUnit {
     }
 }
 
+/// Which of all coordinates a degree of freedom of strip `s` is.
+fn coordinate(parts: &[StripsUnderModel], s: usize, dof: Dof) -> usize {
+    let part = StripsUnderModel::of(parts, s);
+    let of_strip = part.forces.dofs().iter().position(|d| *d == dof);
+    part.coordinates_of(s).start + of_strip.unwrap_or(0)
+}
+
 /// Refuses forces that no number holds any more.
 pub(super) fn check_forces(found: &[ForceAhead]) -> Result<()> {
     if found.iter().all(|f| f.force.is_finite()) {
@@ -377,36 +395,16 @@ impl ForceUnit {
         found
     }
 
-    /// Takes the motion of the present into the state, from that before.
-    fn take_motion(&mut self, memory: &mut Memory, before: &SectionState) -> Result<()> {
-        let mut work = std::mem::take(&mut self.work);
-        self.motion(memory, &mut work.motion);
-        work.flows.clear();
-        work.flows.extend(self.flows(&memory.values));
-        let given = GivenMotion {
-            time_s: memory.time,
-            wind_speed_m_s: memory.values[self.inputs[0]],
-            motion: &work.motion,
-        };
-        let first = self.first();
-        let state = &mut memory.system.values[first..];
-        let taken = self.forces.take(state, &given, &work.flows);
-        if taken.is_ok() {
-            let mut gusts = std::mem::take(&mut memory.system.gusts);
-            self.take_gusts(&mut gusts, &before.values[first..], memory, &work.flows);
-            memory.system.gusts = gusts;
-        }
-        self.work = work;
-        taken
-    }
-
     fn put_out(&self, memory: &mut Memory) {
-        let n = self.forces.dofs().len();
-        let found = self.outputs.iter().zip(&self.work.forces);
-        for (i, ([per_length, total], force)) in found.enumerate() {
-            let length = memory.values[self.strips[i / n][1]];
-            memory.values[*per_length] = force.force;
-            memory.values[*total] = force.force * length;
+        for part in &self.parts {
+            let n = part.forces.dofs().len();
+            let own = part.coordinates.clone();
+            let found = self.outputs[own.clone()].iter().zip(&self.work.forces[own]);
+            for (i, ([per_length, total], force)) in found.enumerate() {
+                let length = memory.values[self.strips[part.strips.start + i / n][1]];
+                memory.values[*per_length] = force.force;
+                memory.values[*total] = force.force * length;
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ mod allocations;
 mod damping;
 mod differences;
 mod followed;
+pub(crate) mod several_models;
 mod unknown;
 
 use super::Instance;
@@ -25,17 +26,20 @@ use std::sync::Arc;
 enum Kind {
     Section(&'static str),
     Forces(&'static str),
+    /// On strips of several models.
+    Patched,
     Bridge,
     /// With dampers.
     Damped,
 }
 
-const KINDS: [Kind; 7] = [
+const KINDS: [Kind; 8] = [
     Kind::Section("continuous_laguerre"),
     Kind::Section("rational"),
     Kind::Section("discrete_laguerre"),
     Kind::Forces("rational"),
     Kind::Forces("discrete_laguerre"),
+    Kind::Patched,
     Kind::Bridge,
     Kind::Damped,
 ];
@@ -106,14 +110,18 @@ fn resources(kind: Kind) -> Resources {
     resources_in(kind, false)
 }
 
-/// With gusts among the inputs, of a bridge also turbulence in the archive, or without.
-fn resources_in(kind: Kind, gusts: bool) -> Resources {
-    let force = GustForce {
+fn gust_force() -> GustForce {
+    GustForce {
         dofs: Dof::TWO.to_vec(),
         coefficients: vec![[0.3, -5.0], [0.05, 1.2]],
         admittance: RationalAdmittance::Sears,
         source: "test".into(),
-    };
+    }
+}
+
+/// With gusts among the inputs, of a bridge also turbulence in the archive, or without.
+fn resources_in(kind: Kind, gusts: bool) -> Resources {
+    let force = gust_force();
     let gust_text = gusts.then(|| serde_json::to_string(&force).unwrap());
     let of_files = |name, force: Option<&str>| {
         let files = OptionFiles {
@@ -129,6 +137,7 @@ fn resources_in(kind: Kind, gusts: bool) -> Resources {
             let options = ForceOptions::single(0.5).to_json().unwrap();
             of_files(name, Some(&options))
         }
+        Kind::Patched => several_models::resources(gusts),
         Kind::Bridge | Kind::Damped => {
             let json = fixture("rational");
             let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();

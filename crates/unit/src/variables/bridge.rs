@@ -38,7 +38,7 @@ pub(super) fn variables(
     table.extend((0..options.modes.len()).map(|m| initial(options, m)));
     table.extend(SEARCHED.iter().map(ComputedNumber::variable));
     let filters = stepper.section().aerodynamics().states();
-    table.extend(constants(model, filters)?);
+    table.extend(constants(&[model], filters)?);
     let interval = options.onset_interval.into_iter();
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));

@@ -6,7 +6,7 @@ use super::section::{air_density, capitalized, filter, gust_filter, gust_inputs,
 use super::{ForceOutput, InitialDependency, Response, Role, StripParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
-use crate::force_options::{ForceOptions, MAX_PREDICTION};
+use crate::force_options::{ForceOptions, MAX_PREDICTION, StripsOfModel};
 use crate::section::Dof;
 use crate::si::{self, SiUnit};
 use crate::trained_model::TrainedModel;
@@ -17,48 +17,87 @@ pub(super) fn variables(
     options: &ForceOptions,
     gusts: Option<&GustForce>,
 ) -> Result<Vec<Variable>> {
-    let dofs = model.section.dofs();
+    let parts = options.parts(model, gusts);
+    let each = || {
+        parts
+            .iter()
+            .flat_map(|p| p.strips.clone().map(move |s| (p.model, s)))
+    };
     let mut table = vec![wind_speed(model)];
-    for (s, _) in options.strips.iter().enumerate() {
-        table.extend(motion(model, &dofs, s, options));
+    for (model, s) in each() {
+        table.extend(motion(model, s, options));
         table.extend(
             gusts
                 .iter()
                 .flat_map(|_| gust_inputs(s, |of| name(options, s, of))),
         );
     }
-    for (s, _) in options.strips.iter().enumerate() {
-        table.extend(forces(model, &dofs, s, options));
-    }
+    table.extend(each().flat_map(|(model, s)| forces(model, s, options)));
     table.push(air_density().start(model.section.air_density_kg_m3));
     for s in 0..options.strips.len() {
         table.extend(strip(s, options));
     }
     table.extend(coupling(options));
-    table.extend(constants(model, model.model.realize().states())?);
-    if let Realization::Continuous(c) = model.model.realize() {
-        let lags = gusts.map_or(0, GustForce::states);
-        add_states(&mut table, options, c.a.nrows(), lags);
+    let models: Vec<&TrainedModel> = parts.iter().map(|p| p.model).collect();
+    let filters = parts.iter().map(|p| p.filters).max();
+    table.extend(constants(&models, filters.unwrap_or(0))?);
+    let states = strip_states(&parts);
+    let sampled = |m: &&TrainedModel| matches!(m.model.realize(), Realization::Discrete(_));
+    if !models.iter().any(sampled) {
+        add_states(&mut table, options, &states);
     }
-    fill_dependencies(&mut table, options.strips.len());
+    let of_state: Vec<usize> = states.iter().map(|state| state.strip).collect();
+    fill_dependencies(&mut table, options.strips.len(), &of_state);
     Ok(table)
 }
 
-/// Filters and lagging gusts with their rates, for importers that integrate: each of all strips before the next, as arrays
-/// stand.
-fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, filters: usize, lags: usize) {
-    let strips = options.strips.len();
-    for k in 0..filters + lags {
-        for s in 0..strips {
-            let (i, lag) = (k * strips + s, (k + 1).checked_sub(filters + 1));
-            let pair = match lag {
-                None => filter(i, &name(options, s, &format!("filter[{}]", k + 1))),
-                Some(j) => gust_filter(i, &name(options, s, &format!("gust_filter[{}]", j + 1))),
-            };
-            let state = table.len();
-            table.extend(pair);
-            table[state + 1].derivative_of = Some(state);
+/// A filter or lagging gust of a strip.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StripState {
+    /// Its strip.
+    pub strip: usize,
+    /// Which of the filters, or of the lagging gusts.
+    pub number: usize,
+    /// Whether it is a lagging gust.
+    pub lags: bool,
+}
+
+/// Filters, then lagging gusts of strips in the order of [`Role::Filter`]: each of all strips that have it before the next, as
+/// arrays stand.
+pub(crate) fn strip_states(parts: &[StripsOfModel<'_>]) -> Vec<StripState> {
+    let mut all = Vec::new();
+    for lags in [false, true] {
+        let count = |p: &StripsOfModel<'_>| if lags { p.lags } else { p.filters };
+        for number in 0..parts.iter().map(count).max().unwrap_or(0) {
+            let having = parts.iter().filter(|p| number < count(p));
+            let strips = having.flat_map(|p| p.strips.clone());
+            all.extend(strips.map(|strip| StripState {
+                strip,
+                number,
+                lags,
+            }));
         }
+    }
+    all
+}
+
+/// Filters and lagging gusts with their rates, for importers that integrate.
+fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, states: &[StripState]) {
+    for (i, state) in states.iter().enumerate() {
+        let of = |kind: &str| {
+            name(
+                options,
+                state.strip,
+                &format!("{kind}[{}]", state.number + 1),
+            )
+        };
+        let pair = match state.lags {
+            false => filter(i, &of("filter")),
+            true => gust_filter(i, &of("gust_filter")),
+        };
+        let place = table.len();
+        table.extend(pair);
+        table[place + 1].derivative_of = Some(place);
     }
 }
 
@@ -73,13 +112,11 @@ fn name(options: &ForceOptions, s: usize, of: &str) -> String {
 
 fn motion<'a>(
     model: &'a TrainedModel,
-    dofs: &'a [Dof],
     s: usize,
     options: &'a ForceOptions,
 ) -> impl Iterator<Item = Variable> + 'a {
-    let each = dofs
-        .iter()
-        .flat_map(|&dof| Response::MOTION.map(|response| (dof, response)));
+    let dofs = model.section.dofs().into_iter();
+    let each = dofs.flat_map(|dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
         let (w, i) = (names_of(dof), response as usize);
         let text = match response {
@@ -109,11 +146,10 @@ fn motion<'a>(
 
 fn forces<'a>(
     model: &'a TrainedModel,
-    dofs: &'a [Dof],
     s: usize,
     options: &'a ForceOptions,
 ) -> impl Iterator<Item = Variable> + 'a {
-    dofs.iter().flat_map(move |&dof| {
+    model.section.dofs().into_iter().flat_map(move |dof| {
         let w = names_of(dof);
         let (total_unit, total_quantity): (&'static SiUnit, _) = match dof {
             Dof::Torsion => (&si::NEWTON_METRE, "Torque"),
@@ -205,8 +241,8 @@ struct StripDependencies {
 }
 
 /// Forces follow the wind and the motion of their strip, its states, and everything that is stated of it; a filter's rate
-/// the displacements and all filters, that of a lagging gust the gusts and itself.
-fn fill_dependencies(table: &mut [Variable], strips: usize) {
+/// the displacements and all filters, that of a lagging gust the gusts and itself. `of_state` is the strip of each state.
+fn fill_dependencies(table: &mut [Variable], strips: usize, of_state: &[usize]) {
     let (mut shared, mut of_strip) = (Vec::new(), vec![StripDependencies::default(); strips]);
     for (place, variable) in table.iter().enumerate() {
         match variable.role {
@@ -214,8 +250,8 @@ fn fill_dependencies(table: &mut [Variable], strips: usize) {
             Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => {
                 of_strip[s].known.push(place);
             }
-            Role::Filter(i) if is_lag(variable) => of_strip[i % strips].lags.push(place),
-            Role::Filter(i) => of_strip[i % strips].filters.push(place),
+            Role::Filter(i) if is_lag(variable) => of_strip[of_state[i]].lags.push(place),
+            Role::Filter(i) => of_strip[of_state[i]].filters.push(place),
             _ => {}
         }
     }
@@ -223,10 +259,10 @@ fn fill_dependencies(table: &mut [Variable], strips: usize) {
     for (place, variable) in table.iter_mut().enumerate() {
         let (strip, states) = match variable.role {
             Role::Force(s, ..) => (s, [&of_strip[s].filters[..], &of_strip[s].lags].concat()),
-            Role::Filter(i) => (i % strips, vec![place]),
+            Role::Filter(i) => (of_state[i], vec![place]),
             // behind its state
-            Role::FilterRate(i) if is_lag(variable) => (i % strips, vec![place - 1]),
-            Role::FilterRate(i) => (i % strips, of_strip[i % strips].filters.clone()),
+            Role::FilterRate(i) if is_lag(variable) => (of_state[i], vec![place - 1]),
+            Role::FilterRate(i) => (of_state[i], of_strip[of_state[i]].filters.clone()),
             _ => continue,
         };
         let known = shared.iter().chain(&of_strip[strip].known).copied();

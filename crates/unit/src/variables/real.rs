@@ -5,7 +5,7 @@ use super::{Causality, Initial, Response, Role, StartValue, Variability, Variabl
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::si::{self, SiUnit};
-use crate::standard::printable;
+use crate::standard::{each_once, printable};
 use crate::trained_model::TrainedModel;
 use std::f64::consts::TAU;
 
@@ -123,8 +123,8 @@ pub(super) const LOCAL: VariableKind = VariableKind::new(Causality::Local, Varia
 pub(super) const INNER: VariableKind = VariableKind::new(Causality::Local, Variability::Continuous);
 pub(super) const SPEED: Option<&SiUnit> = Some(&si::METRE_PER_SECOND);
 
-/// `filters` is the number of the states of its forces.
-pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Variable>> {
+/// `filters` is the number of the states of the forces, the largest of several models.
+pub(super) fn constants(models: &[&TrainedModel], filters: usize) -> Result<Vec<Variable>> {
     let constant = |name, value, text: &str| Variable {
         initial: Some(Initial::Exact),
         value,
@@ -135,6 +135,7 @@ pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Vari
     let states = i32::try_from(filters)
         .map_err(|_| Error::input("model", "fewer filter states", filters.to_string()))?;
     let version = env!("CARGO_PKG_VERSION");
+    let words = |of: fn(&TrainedModel) -> &str| text(&each_once(models.iter().map(|m| of(m))));
     Ok(vec![
         constant(
             "filters",
@@ -143,10 +144,14 @@ pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Vari
         ),
         constant(
             "model_kind",
-            text(model.model.kind()),
+            words(|m| m.model.kind()),
             "Kind of the aerodynamic model",
         ),
-        constant("model_name", text(&model.name), "Name of the trained model"),
+        constant(
+            "model_name",
+            words(|m| &m.name),
+            "Name of the trained model",
+        ),
         constant(
             "aerodeck_version",
             text(version),

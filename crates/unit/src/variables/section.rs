@@ -48,7 +48,7 @@ pub(super) fn variables(
     table.extend(dofs.iter().flat_map(|&dof| initial_values(dof, model)));
     table.push(search_limit(model));
     table.extend(SEARCHED.iter().map(ComputedNumber::variable));
-    table.extend(constants(model, realization.states())?);
+    table.extend(constants(&[model], realization.states())?);
     table.extend(bounds.into_iter().flat_map(|b| onset_bounds(b, "section")));
     table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
     if let Realization::Continuous(c) = realization {

@@ -1,4 +1,4 @@
-//! A whole bridge as an FMU, its structure alone, or the wind forces on a section of it.
+//! A whole bridge as an FMU, its structure alone, or the wind forces on its sections.
 
 use super::{ExportKind, FmuExportArgs};
 use crate::cli::answer::Answer;
@@ -141,7 +141,7 @@ impl FmuExportArgs {
         Ok(Answer::new(text, &json)?.with_outcome_of(verdict))
     }
 
-    /// The wind forces on one section.
+    /// The wind forces on all sections, or on the one that is wanted.
     fn bridge_forces(
         &self,
         study: &BridgeStudy,
@@ -152,7 +152,10 @@ impl FmuExportArgs {
         let all = study
             .section_forces(wanted, gusts)
             .map_err(stages::or_allow_unstable)?;
-        let mut forces = self.chosen(all)?;
+        let mut forces = match &self.section {
+            Some(name) => chosen(name, all)?,
+            None => study.joined(all)?,
+        };
         let prediction = &mut forces.options.prediction_steps;
         *prediction = self.prediction.unwrap_or(*prediction);
         let mut export = forces.packed(&self.label()?, self.fmi);
@@ -168,33 +171,24 @@ impl FmuExportArgs {
             verdict.headline,
             path.display(),
             counted(nodes.len(), "strip"),
-            forces.model.name,
+            forces.name,
             nodes[0],
             nodes[nodes.len() - 1],
         );
-        let json = serde_json::json!({ "fmu": path, "section": forces.section, "nodes": nodes, "verdict": verdict });
+        let json = serde_json::json!({ "fmu": path, "sections": forces.sections, "nodes": nodes, "verdict": verdict });
         Ok(Answer::new(text, &json)?.with_outcome_of(verdict))
     }
+}
 
-    /// The section that is wanted; the only one where none is named.
-    fn chosen(&self, mut all: Vec<SectionForcePart>) -> Result<SectionForcePart> {
-        let names: Vec<&str> = all.iter().map(|f| f.section.as_str()).collect();
-        let expected = format!("one of the sections {}", names.join(", "));
-        let chosen = match &self.section {
-            None if all.len() == 1 => Some(0),
-            None => None,
-            Some(name) => names.iter().position(|n| n == name),
-        };
-        match chosen {
-            Some(place) => Ok(all.swap_remove(place)),
-            None => {
-                let found = self.section.as_ref().map(|name| format!("`{name}`"));
-                Err(Error::input(
-                    "--section",
-                    expected,
-                    found.unwrap_or_else(|| "none".to_owned()),
-                ))
-            }
+/// The forces of the section of that name.
+fn chosen(name: &str, mut all: Vec<SectionForcePart>) -> Result<SectionForcePart> {
+    let mut each = all.iter();
+    match each.position(|forces| forces.sections == [name]) {
+        Some(place) => Ok(all.swap_remove(place)),
+        None => {
+            let names: Vec<String> = all.into_iter().flat_map(|f| f.sections).collect();
+            let expected = format!("one of the sections {}", names.join(", "));
+            Err(Error::input("--section", expected, format!("`{name}`")))
         }
     }
 }

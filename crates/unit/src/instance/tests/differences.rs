@@ -19,6 +19,7 @@ fn derivatives_while_initialising_are_differences() {
     for kind in [
         Kind::Section("continuous_laguerre"),
         Kind::Section("rational"),
+        Kind::Patched,
         Kind::Bridge,
         Kind::Damped,
     ] {
