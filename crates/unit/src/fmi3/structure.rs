@@ -6,18 +6,24 @@ use crate::fmi2::guard::{Component, array, array_mut, guarded, place};
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 use crate::lifecycle::{Call, State};
 use crate::refusal::{CallResult, Refusal};
+use crate::variables::DependencyKind;
 
 /// A number that depends on an input, a state or a parameter of an instant at once, as an importer is told.
 struct ElementDependency {
     dependent: usize,
     reference: fmi2ValueReference,
     element: usize,
-    /// `fmi3Constant` or `fmi3Dependent`.
-    kind: i32,
+    kind: DependencyKind,
 }
 
-const CONSTANT: i32 = 1;
-const DEPENDENT: i32 = 5;
+/// A kind of dependency in the words of the interface.
+fn fmi3_kind(kind: DependencyKind) -> i32 {
+    match kind {
+        DependencyKind::Constant => 1,
+        DependencyKind::Tunable => 3,
+        DependencyKind::Dependent => 5,
+    }
+}
 
 /// Begins the choice of the number of strips.
 #[unsafe(no_mangle)]
@@ -119,7 +125,7 @@ pub unsafe extern "C" fn fmi3SetUInt64(
 }
 
 /// What the numbers of a variable depend on: while initialising on what has been set for it, later on inputs and states at once.
-fn dependencies(c: &Component, reference: u32) -> CallResult<Vec<ElementDependency>> {
+fn dependencies(c: &mut Component, reference: u32) -> CallResult<Vec<ElementDependency>> {
     let Some(places) = c.groups.all().get(reference as usize) else {
         return match c.groups.is_known(reference) {
             true => Ok(Vec::new()),
@@ -132,22 +138,21 @@ fn dependencies(c: &Component, reference: u32) -> CallResult<Vec<ElementDependen
         c.instance.state(),
         State::Instantiated | State::Initialization
     );
+    let table = c.instance.described_table()?;
     let mut all = Vec::new();
     for (i, own) in places.iter().enumerate() {
-        let v = &c.instance.table().variables()[*own as usize];
-        let on_initial = v.initial_dependencies.iter().map(|d| (d.on, d.constant));
-        let direct = v.direct_inputs.iter().map(|on| (*on, false));
-        let on: Vec<(usize, bool)> = match initial {
-            true => on_initial.collect(),
-            false => direct.collect(),
+        let v = &table.variables()[*own as usize];
+        let on = match initial {
+            true => &v.initial_dependencies,
+            false => &v.direct_inputs,
         };
-        all.extend(on.into_iter().filter_map(|(on, constant)| {
-            let (reference, element) = c.groups.element_of(on)?;
+        all.extend(on.iter().filter_map(|dependency| {
+            let (reference, element) = c.groups.element_of(dependency.on)?;
             Some(ElementDependency {
                 dependent: i + 1,
                 reference,
                 element: element + 1,
-                kind: if constant { CONSTANT } else { DEPENDENT },
+                kind: dependency.kind,
             })
         }));
     }
@@ -196,7 +201,7 @@ pub unsafe extern "C" fn fmi3GetVariableDependencies(
             let kinds = array_mut(dependencyKinds, n, "dependencyKinds")?;
             for (i, d) in all.iter().enumerate() {
                 (own[i], on[i]) = (d.dependent, d.reference);
-                (elements[i], kinds[i]) = (d.element, d.kind);
+                (elements[i], kinds[i]) = (d.element, fmi3_kind(d.kind));
             }
             Ok(())
         })
