@@ -9,7 +9,10 @@ use super::package::label::Label;
 use super::resources::Resources;
 use super::si::SiUnit;
 use super::standard::FmiTerm;
-use super::variables::{Causality, ListedVariables, Listing, StartValue, Variable, VariableTable};
+use super::variables::{
+    Causality, Dependency, DependencyKind, ListedVariables, Listing, StartValue, Variable,
+    VariableTable,
+};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
@@ -24,7 +27,7 @@ const TOLERANCE: f64 = 1e-6;
 /// # Errors
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
 pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
-    let Resources { model, table, .. } = resources;
+    let table = resources.described_table()?;
     let ListedVariables { table, references } = &table.listed(listing);
     let variables = references.iter().zip(table.variables());
     let variables = variables
@@ -35,7 +38,7 @@ pub fn model_description(resources: &Resources, listing: Listing, label: &Label)
         .containing([
             Element::new("UnitDefinitions").containing(units(table)?),
             log_categories(),
-            experiment(&model.experiment)?,
+            experiment(&resources.model.experiment)?,
             Element::new("ModelVariables").containing(variables),
             structure(table),
         ]);
@@ -226,22 +229,12 @@ fn structure(table: &VariableTable) -> Element {
     let variables = || table.variables().iter().enumerate();
     let outputs = variables()
         .filter(|(_, v)| v.causality == Causality::Output)
-        .map(|(i, v)| unknown(i, v.direct_inputs.iter().map(|&on| (on, "dependent"))));
+        .map(|(i, v)| unknown(i, &v.direct_inputs));
     let initial = variables()
         .filter(|(_, v)| v.is_initial_unknown())
-        .map(|(i, v)| {
-            let kind = |constant| if constant { "constant" } else { "dependent" };
-            unknown(
-                i,
-                v.initial_dependencies
-                    .iter()
-                    .map(|d| (d.on, kind(d.constant))),
-            )
-        });
-    let rates = table.state_rates().into_iter().map(|i| {
-        let of = &table.variables()[i];
-        unknown(i, of.direct_inputs.iter().map(|&on| (on, "dependent")))
-    });
+        .map(|(i, v)| unknown(i, &v.initial_dependencies));
+    let rates = table.state_rates().into_iter();
+    let rates = rates.map(|i| unknown(i, &table.variables()[i].direct_inputs));
     let rates: Vec<Element> = rates.collect();
     let rates = (!rates.is_empty()).then(|| Element::new("Derivatives").containing(rates));
     Element::new("ModelStructure")
@@ -250,16 +243,21 @@ fn structure(table: &VariableTable) -> Element {
         .containing([Element::new("InitialUnknowns").containing(initial)])
 }
 
-fn unknown(at: usize, on: impl Iterator<Item = (usize, &'static str)>) -> Element {
-    let (indices, kinds): (Vec<_>, Vec<_>) =
-        on.map(|(on, kind)| ((on + 1).to_string(), kind)).unzip();
-    Element::new("Unknown")
-        .with("index", at + 1)
-        .with("dependencies", indices.join(" "))
-        .with_any(
-            "dependenciesKind",
-            (!kinds.is_empty()).then(|| kinds.join(" ")),
-        )
+fn unknown(at: usize, on: &[Dependency]) -> Element {
+    let on = on.iter().map(|d| (d.on + 1, d.kind));
+    depending(Element::new("Unknown").with("index", at + 1), on)
+}
+
+/// Adds what an unknown depends on, by index or value reference.
+pub(super) fn depending(
+    unknown: Element,
+    on: impl Iterator<Item = (usize, DependencyKind)>,
+) -> Element {
+    let (on, kinds): (Vec<_>, Vec<_>) = on.map(|(on, kind)| (on.to_string(), kind.word())).unzip();
+    unknown.with("dependencies", on.join(" ")).with_any(
+        "dependenciesKind",
+        (!kinds.is_empty()).then(|| kinds.join(" ")),
+    )
 }
 
 /// Step of the default experiment, s: that of the model, or the smallest multiple of it that needs no more than a

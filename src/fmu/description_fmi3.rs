@@ -1,23 +1,23 @@
 //! `modelDescription.xml` of FMI 3.0, made from the same variable table: strips, modes and nodes are arrays, and the time has a variable.
 
-use super::description::{described, experiment, log_categories, number, units};
+use super::description::{depending, described, experiment, log_categories, number, units};
 use super::force_options::MAX_STRIPS;
 use super::groups::{Groups, array_of};
 use super::identity::MODEL_IDENTIFIER;
 use super::package::label::Label;
 use super::resources::Resources;
 use super::standard::FmiTerm;
-use super::variables::{Causality, InitialDependency, StartValue, Variable, VariableTable};
+use super::variables::{Causality, Dependency, StartValue, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::Result;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// The description of an exported model.
 ///
 /// # Errors
 /// [`crate::Error::Input`] when a number cannot stand in a description (not finite).
 pub fn model_description(resources: &Resources, label: &Label) -> Result<String> {
-    let table = &resources.table;
+    let table = &resources.described_table()?;
     let groups = Groups::new(table);
     let listed = GroupedVariables { table, groups };
     let mut variables = Vec::new();
@@ -210,7 +210,7 @@ impl GroupedVariables<'_> {
         let all = || self.groups.all().iter().enumerate();
         let direct = |name: &'static str, reference: usize, places: &[u32]| {
             let on = places.iter().flat_map(|p| &self.at(*p).direct_inputs);
-            self.unknown(name, reference, on.map(|on| (*on, "dependent")))
+            self.unknown(name, reference, on)
         };
         let outputs = all()
             .filter(|(_, places)| self.at(places[0]).causality == Causality::Output)
@@ -226,12 +226,8 @@ impl GroupedVariables<'_> {
         let initial = all()
             .filter(|(_, places)| self.at(places[0]).is_initial_unknown())
             .map(|(reference, places)| {
-                let of = places
-                    .iter()
-                    .flat_map(|p| &self.at(*p).initial_dependencies);
-                let kind =
-                    |d: &InitialDependency| if d.constant { "constant" } else { "dependent" };
-                self.unknown("InitialUnknown", reference, of.map(|d| (d.on, kind(d))))
+                let of = places.iter().map(|p| &self.at(*p).initial_dependencies);
+                self.unknown("InitialUnknown", reference, of.flatten())
             });
         Element::new("ModelStructure")
             .containing(outputs)
@@ -239,25 +235,20 @@ impl GroupedVariables<'_> {
             .containing(initial)
     }
 
-    fn unknown<'k>(
+    fn unknown<'a>(
         &self,
         name: &'static str,
         reference: usize,
-        on: impl Iterator<Item = (usize, &'k str)>,
+        on: impl Iterator<Item = &'a Dependency>,
     ) -> Element {
-        let on: BTreeSet<(usize, &str)> = on
-            .filter_map(|(place, kind)| Some((self.groups.reference_of(place)?, kind)))
-            .collect();
-        let (references, kinds): (Vec<_>, Vec<_>) = on
-            .into_iter()
-            .map(|(on, kind)| (on.to_string(), kind))
-            .unzip();
-        Element::new(name)
-            .with("valueReference", reference)
-            .with("dependencies", references.join(" "))
-            .with_any(
-                "dependenciesKind",
-                (!kinds.is_empty()).then(|| kinds.join(" ")),
-            )
+        let mut kinds = BTreeMap::new();
+        for d in on {
+            if let Some(reference) = self.groups.reference_of(d.on) {
+                let kind = kinds.entry(reference).or_insert(d.kind);
+                *kind = d.kind.max(*kind);
+            }
+        }
+        let unknown = Element::new(name).with("valueReference", reference);
+        depending(unknown, kinds.into_iter())
     }
 }

@@ -33,7 +33,7 @@ fn set(slave: &mut Slave, name: &str, value: f64) {
     slave.set(name, &Value::Real(value)).unwrap();
 }
 
-const BLOCKS: &str = "[[damper]]\nnode = \"1156\"\nmotion = \"torsion\"\narm_m = 13.0\nmass_kg = 60e3\nfrequency_hz = 0.34\ndamping_ratio = 0.1\n\
+pub const BLOCKS: &str = "[[damper]]\nnode = \"1156\"\nmotion = \"torsion\"\narm_m = 13.0\nmass_kg = 60e3\nfrequency_hz = 0.34\ndamping_ratio = 0.1\n\
      [[damper]]\nnode = \"1081\"\nmotion = \"lateral\"\nmass_kg = 40e3\nfrequency_hz = 0.055\ndamping_ratio = 0.08\n\
      [[damper]]\nnode = \"1001\"\nmotion = \"vertical\"\ncoefficient = 1e5\n";
 

@@ -20,6 +20,7 @@ mod trained;
 mod bridge;
 mod calculated_onset;
 mod dampers;
+mod dependencies;
 mod description;
 mod importer;
 mod manual;

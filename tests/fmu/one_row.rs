@@ -6,7 +6,7 @@ use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Label;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::fmu::variables::{Causality, ComputedNumber, Formula, Known, Listing};
+use aerodeck::fmu::variables::{Causality, ComputedNumber, Dependency, Formula, Known, Listing};
 use aerodeck::study::bridge::BridgeExportOptions;
 
 /// Reads all that has a derivative.
@@ -87,14 +87,14 @@ impl Unit {
 
 fn check(resources: Resources, initial: &str, rotations: &[&str]) {
     let resources = with_row(resources);
-    let of_row = resources.table.variables().last().unwrap().clone();
-    let names = |places: &[usize]| -> Vec<String> {
-        let all = resources.table.variables();
-        places.iter().map(|p| all[*p].name.clone()).collect()
+    let described = resources.described_table().unwrap();
+    let of_row = described.variables().last().unwrap();
+    let names = |on: &[Dependency]| -> Vec<String> {
+        let all = described.variables();
+        on.iter().map(|d| all[d.on].name.clone()).collect()
     };
     let direct = names(&of_row.direct_inputs);
-    let places: Vec<usize> = of_row.initial_dependencies.iter().map(|d| d.on).collect();
-    let knowns = names(&places);
+    let knowns = names(&of_row.initial_dependencies);
     assert!(direct.contains(&"wind_speed".to_owned()), "{direct:?}");
     for known in ["wind_speed", "air_density", "onset_search_limit", initial] {
         assert!(knowns.contains(&known.to_owned()), "{known}: {knowns:?}");

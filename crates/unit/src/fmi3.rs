@@ -2,6 +2,21 @@
 //!
 //! There are no clocks and no events of our own: functions for them answer with an error and leave the run alone.
 
+/// Functions that are those of FMI 2.0 under another name: arguments behind the handle, and what is passed on of them.
+macro_rules! as_in_fmi2 {
+    ($($(#[$text:meta])* $name:ident($($argument:ident: $type:ty),*) => $two:ident($($passed:expr),*);)*) => {$(
+        $(#[$text])*
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(
+            c: $crate::fmi2::types::fmi2Component
+            $(, $argument: $type)*
+        ) -> $crate::fmi2::types::fmi2Status {
+            // SAFETY: by the contract of the interface
+            unsafe { $crate::fmi2::$two(c $(, $passed)*) }
+        }
+    )*};
+}
+
 mod absent;
 mod life;
 mod model_exchange;

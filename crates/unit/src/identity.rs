@@ -30,7 +30,7 @@ pub fn guid(table: &VariableTable, files: &[&[u8]]) -> Uuid {
     Uuid::new_v5(&NAMESPACE, &bytes)
 }
 
-/// Everything of a variable that the importer relies on; numbers by their bits, lists and texts behind their length.
+/// Everything of a variable that the importer relies on, with dependencies where its row states them; numbers by their bits, lists and texts behind their length.
 fn put_variable(bytes: &mut Vec<u8>, v: &Variable) {
     put_text(bytes, &v.name);
     let initial = v.initial.map_or(0, |initial| 1 + initial as u8);
@@ -53,13 +53,11 @@ fn put_variable(bytes: &mut Vec<u8>, v: &Variable) {
     put_text(bytes, v.unit.map_or("", |unit| unit.name));
     put_number(bytes, v.min);
     put_number(bytes, v.max);
-    put_count(bytes, v.direct_inputs.len());
-    for on in &v.direct_inputs {
-        put_count(bytes, *on);
-    }
-    put_count(bytes, v.initial_dependencies.len());
-    for dependency in &v.initial_dependencies {
-        put_count(bytes, 2 * dependency.on + usize::from(dependency.constant));
+    for list in [&v.direct_inputs, &v.initial_dependencies] {
+        put_count(bytes, list.len());
+        for dependency in list {
+            put_count(bytes, 3 * dependency.on + dependency.kind as usize);
+        }
     }
 }
 
@@ -87,7 +85,7 @@ fn put_count(bytes: &mut Vec<u8>, mut count: usize) {
 #[cfg(test)]
 mod tests {
     use super::super::standard::{Causality, Initial, Variability};
-    use super::super::variables::{InitialDependency, Role};
+    use super::super::variables::{Dependency, Role};
     use super::*;
 
     fn variable() -> Variable {
@@ -107,7 +105,7 @@ mod tests {
             max: None,
             nominal: None,
             derivative_of: None,
-            direct_inputs: vec![3],
+            direct_inputs: vec![Dependency::plain(3)],
             initial_dependencies: Vec::new(),
         }
     }
@@ -115,8 +113,7 @@ mod tests {
     /// Whatever an importer relies on makes another identity, and what stands in one place is not taken for another.
     #[test]
     fn every_part_of_a_variable_counts() {
-        let on = |on, constant| vec![InitialDependency { on, constant }];
-        let changes: [fn(&mut Variable); 16] = [
+        let changes: [fn(&mut Variable); 17] = [
             |_| (),
             |v| v.name = "ab".into(),
             |v| v.causality = Causality::Output,
@@ -131,8 +128,9 @@ mod tests {
             |v| v.unit = Some(&crate::si::METRE),
             |v| v.min = Some(0.0),
             |v| v.max = Some(0.0),
-            |v| v.direct_inputs = vec![3, 200],
-            |v| v.direct_inputs = vec![300],
+            |v| v.direct_inputs = [3, 200].map(Dependency::plain).to_vec(),
+            |v| v.direct_inputs = vec![Dependency::plain(300)],
+            |v| v.direct_inputs = vec![Dependency::constant(3)],
         ];
         let mut variables: Vec<Variable> = changes
             .iter()
@@ -142,9 +140,14 @@ mod tests {
                 changed
             })
             .collect();
-        for initial_dependencies in [on(3, false), on(3, true), on(1000, false)] {
+        let all = [
+            Dependency::plain(3),
+            Dependency::constant(3),
+            Dependency::plain(1000),
+        ];
+        for dependency in all {
             variables.push(Variable {
-                initial_dependencies,
+                initial_dependencies: vec![dependency],
                 ..variable()
             });
         }

@@ -15,6 +15,7 @@ mod calculated;
 mod coupled;
 mod coupled_derivatives;
 mod damping;
+mod dependencies;
 pub(crate) mod derivatives;
 mod force_ahead;
 mod force_derivatives;
@@ -68,6 +69,8 @@ pub struct Instance {
     /// Rates of the states at hand.
     rates: Vec<f64>,
     notices: Vec<String>,
+    /// The table with its dependencies, once they have been asked for.
+    described: Option<VariableTable>,
 }
 
 impl Instance {
@@ -94,6 +97,7 @@ impl Instance {
             outputs_current: false,
             rates: Vec::new(),
             notices: Vec::new(),
+            described: None,
             layout,
             resources,
         })

@@ -9,7 +9,6 @@ mod bridge_states;
 mod computed;
 mod computed_rows;
 mod dampers;
-mod dependencies;
 mod dof_names;
 mod dual;
 mod force;
@@ -23,13 +22,13 @@ mod variable;
 
 pub use super::standard::{Causality, Initial, Variability};
 pub use computed::{ComputedNumber, Formula, Known, OnsetNumbers, Present};
-pub(crate) use computed_rows::LINEAR_ROTATION_RAD;
+pub(crate) use computed_rows::{LINEAR_ROTATION_RAD, fill_computed_dependencies};
 pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
 pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use variable::{
-    ForceOutput, GustDirection, InitialDependency, ModeOutput, Response, Role, StartValue,
+    Dependency, DependencyKind, ForceOutput, GustDirection, ModeOutput, Response, Role, StartValue,
     StripParameter, Variable,
 };
 
@@ -62,12 +61,7 @@ impl VariableTable {
         bounds: Option<OnsetBounds>,
     ) -> Result<Self> {
         let variables = match force {
-            None => {
-                let mut variables = section::variables(model, gusts, bounds)?;
-                dependencies::fill(&mut variables, model, gusts);
-                computed_rows::fill_dependencies(&mut variables);
-                variables
-            }
+            None => section::variables(model, gusts, bounds)?,
             Some(options) => force::variables(model, options, gusts)?,
         };
         Self::checked(variables)
@@ -90,7 +84,6 @@ impl VariableTable {
     #[must_use]
     pub fn with_number(mut self, number: &'static ComputedNumber) -> Self {
         self.variables.push(number.variable());
-        computed_rows::fill_dependencies(&mut self.variables);
         self
     }
 
@@ -102,6 +95,11 @@ impl VariableTable {
     /// The variables; the place of each is its value reference.
     pub fn variables(&self) -> &[Variable] {
         &self.variables
+    }
+
+    /// The same, for their dependencies to be entered.
+    pub(crate) fn variables_mut(&mut self) -> &mut [Variable] {
+        &mut self.variables
     }
 
     /// Place of the variable with this role.

@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::guard::{Component, array, behave_as_a_guest, guarded, panic_text, shielded};
+use super::guard::{Component, array, behave_as_a_guest, exported, guarded, panic_text, shielded};
 use super::logger::{Category, Logger};
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
@@ -178,78 +178,35 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     unsafe { guarded(c, Call::SetDebugLogging, body) }
 }
 
-/// Sets start and stop time of the run, s. The tolerance is not needed: steps are exact.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetupExperiment(
-    c: fmi2Component,
-    _toleranceDefined: fmi2Boolean,
-    _tolerance: fmi2Real,
-    startTime: fmi2Real,
-    stopTimeDefined: fmi2Boolean,
-    stopTime: fmi2Real,
-) -> fmi2Status {
-    let stop = (stopTimeDefined != 0).then_some(stopTime);
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::SetupExperiment, |component| {
-            component.instance.set_up_experiment(startTime, stop)
-        })
-    }
-}
-
-/// Begins the initialisation.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::EnterInitializationMode, |component| {
-            component.instance.enter_initialization();
-            Ok(())
-        })
-    }
-}
-
-/// Releases the section.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::ExitInitializationMode, |component| {
-            component.instance.exit_initialization()?;
-            let message = format!("released at {} s", component.instance.time_s());
-            component
-                .logger
-                .log(fmi2Status::fmi2OK, Category::Events, &message);
-            Ok(())
-        })
-    }
-}
-
-/// Ends the run.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::Terminate, |component| {
-            component.instance.terminate();
-            Ok(())
-        })
-    }
-}
-
-/// Restores every default, as after instantiation; logging stays as it is.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::Reset, |component| {
-            component.instance.reset();
-            component.logger.log(
-                fmi2Status::fmi2OK,
-                Category::Events,
-                "every default restored",
-            );
-            Ok(())
-        })
-    }
+exported! {
+    /// Sets start and stop time of the run, s. The tolerance is not needed: steps are exact.
+    fmi2SetupExperiment(
+        _toleranceDefined: fmi2Boolean, _tolerance: fmi2Real, startTime: fmi2Real,
+        stopTimeDefined: fmi2Boolean, stopTime: fmi2Real
+    ) Call::SetupExperiment =>
+        |component| component.instance.set_up_experiment(startTime, (stopTimeDefined != 0).then_some(stopTime));
+    /// Begins the initialisation.
+    fmi2EnterInitializationMode() Call::EnterInitializationMode => |component| {
+        component.instance.enter_initialization();
+        Ok(())
+    };
+    /// Releases the section.
+    fmi2ExitInitializationMode() Call::ExitInitializationMode => |component| {
+        component.instance.exit_initialization()?;
+        let message = format!("released at {} s", component.instance.time_s());
+        component.logger.log(fmi2Status::fmi2OK, Category::Events, &message);
+        Ok(())
+    };
+    /// Ends the run.
+    fmi2Terminate() Call::Terminate => |component| {
+        component.instance.terminate();
+        Ok(())
+    };
+    /// Restores every default, as after instantiation; logging stays as it is.
+    fmi2Reset() Call::Reset => |component| {
+        component.instance.reset();
+        let message = "every default restored";
+        component.logger.log(fmi2Status::fmi2OK, Category::Events, message);
+        Ok(())
+    };
 }

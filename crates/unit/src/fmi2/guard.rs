@@ -159,6 +159,22 @@ pub(crate) unsafe fn guarded<'a>(
     }
 }
 
+/// Functions of the C interface that are one guarded call each: name, arguments behind the handle, the call, and what it does.
+macro_rules! exported {
+    ($($(#[$text:meta])* $name:ident($($argument:ident: $type:ty),*) $call:expr => $body:expr;)*) => {$(
+        $(#[$text])*
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(
+            c: $crate::fmi2::types::fmi2Component
+            $(, $argument: $type)*
+        ) -> $crate::fmi2::types::fmi2Status {
+            // SAFETY: handles, pointers and arrays are valid by the contract of the interface
+            unsafe { $crate::fmi2::guard::guarded(c, $call, $body) }
+        }
+    )*};
+}
+pub(crate) use exported;
+
 #[cold]
 fn poisoned(component: &Component, function: &str) -> fmi2Status {
     let message = format!(

@@ -3,15 +3,15 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::Fmi3Boolean;
-use crate::fmi2::guard::{Component, array, behave_as_a_guest, guarded, panic_text, shielded};
+use crate::fmi2::guard::{
+    Component, array, behave_as_a_guest, exported, guarded, panic_text, shielded,
+};
 use crate::fmi2::logger::{Category, Logger, PlainLogger};
 use crate::fmi2::types::{
     fmi2CoSimulation, fmi2Component, fmi2ModelExchange, fmi2Status, fmi2String, fmi2Type,
     fmi2ValueReference,
 };
-use crate::fmi2::{
-    check_name, fmi2FreeInstance, fmi2Reset, fmi2Terminate, identified, instantiate, text,
-};
+use crate::fmi2::{check_name, fmi2FreeInstance, fmi2Reset, identified, instantiate, text};
 use crate::groups::Groups;
 use crate::instance::Instance;
 use crate::lifecycle::Call;
@@ -171,56 +171,33 @@ pub unsafe extern "C" fn fmi3FreeInstance(c: fmi2Component) {
     unsafe { fmi2FreeInstance(c) }
 }
 
-/// Switches log categories on or off; no categories means all.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetDebugLogging(
-    c: fmi2Component,
-    loggingOn: Fmi3Boolean,
-    nCategories: usize,
-    categories: *const fmi2String,
-) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        crate::fmi2::fmi2SetDebugLogging(c, i32::from(loggingOn != 0), nCategories, categories)
-    }
+as_in_fmi2! {
+    /// Switches log categories on or off; no categories means all.
+    fmi3SetDebugLogging(
+        loggingOn: Fmi3Boolean, nCategories: usize, categories: *const fmi2String
+    ) => fmi2SetDebugLogging(i32::from(loggingOn != 0), nCategories, categories);
 }
 
-/// Sets the times of the run (s) and begins the initialisation. The tolerance is not needed: steps are exact.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterInitializationMode(
-    c: fmi2Component,
-    _toleranceDefined: Fmi3Boolean,
-    _tolerance: f64,
-    startTime: f64,
-    stopTimeDefined: Fmi3Boolean,
-    stopTime: f64,
-) -> fmi2Status {
-    let stop = (stopTimeDefined != 0).then_some(stopTime);
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::EnterInitializationMode, |component| {
-            if component.configuration.is_some() {
-                return Err(Refusal::error("the configuration mode was not left"));
-            }
-            component.instance.set_up_experiment(startTime, stop)?;
-            component.instance.enter_initialization();
-            Ok(())
-        })
-    }
+exported! {
+    /// Sets the times of the run (s) and begins the initialisation. The tolerance is not needed: steps are exact.
+    fmi3EnterInitializationMode(
+        _toleranceDefined: Fmi3Boolean, _tolerance: f64, startTime: f64, stopTimeDefined: Fmi3Boolean,
+        stopTime: f64
+    ) Call::EnterInitializationMode => |component| {
+        if component.configuration.is_some() {
+            return Err(Refusal::error("the configuration mode was not left"));
+        }
+        component.instance.set_up_experiment(startTime, (stopTimeDefined != 0).then_some(stopTime))?;
+        component.instance.enter_initialization();
+        Ok(())
+    };
 }
 
-/// Releases the section.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ExitInitializationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe { crate::fmi2::fmi2ExitInitializationMode(c) }
-}
-
-/// Ends the run.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Terminate(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe { fmi2Terminate(c) }
+as_in_fmi2! {
+    /// Releases the section.
+    fmi3ExitInitializationMode() => fmi2ExitInitializationMode();
+    /// Ends the run.
+    fmi3Terminate() => fmi2Terminate();
 }
 
 /// Restores every default, as after instantiation; logging stays as it is.

@@ -4,7 +4,7 @@
 
 use super::Fmi3Boolean;
 use super::life::{check_count, places};
-use crate::fmi2::guard::{Component, array, array_mut, guarded};
+use crate::fmi2::guard::{Component, array, array_mut, exported, guarded};
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 use crate::lifecycle::Call;
 use crate::refusal::CallResult;
@@ -18,58 +18,33 @@ unsafe fn put<T>(at: *mut T, value: T) {
     }
 }
 
-/// Advances by one communication step, to its end or not at all.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DoStep(
-    c: fmi2Component,
-    currentCommunicationPoint: f64,
-    communicationStepSize: f64,
-    _noSetFMUStatePriorToCurrentPoint: Fmi3Boolean,
-    eventHandlingNeeded: *mut bool,
-    terminateSimulation: *mut bool,
-    earlyReturn: *mut bool,
-    lastSuccessfulTime: *mut f64,
-) -> fmi2Status {
-    // SAFETY: handle and pointers are valid by the contract of the interface
-    unsafe {
-        guarded(c, Call::DoStep, |component| {
-            for flag in [eventHandlingNeeded, terminateSimulation, earlyReturn] {
-                put(flag, false);
-            }
-            let instance = &mut component.instance;
-            let outcome = instance.do_step(currentCommunicationPoint, communicationStepSize);
-            put(lastSuccessfulTime, instance.time_s());
-            outcome
-        })
-    }
-}
-
-/// Reads first rates of outputs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetOutputDerivatives(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    orders: *const i32,
-    values: *mut f64,
-    nValues: usize,
-) -> fmi2Status {
-    // SAFETY: handle and arrays are valid by the contract of the interface
-    unsafe {
-        guarded(
-            c,
-            Call::GetRealOutputDerivatives.by("GetOutputDerivatives"),
-            |component| {
-                let references = array(vr, nvr, "valueReferences")?;
-                let orders = array(orders, nvr, "orders")?;
-                let of_each = of_elements(component, references, orders)?;
-                let places = places(component, vr, nvr, "valueReferences")?;
-                check_count("values", places.len(), nValues)?;
-                let values = array_mut(values, nValues, "values")?;
-                component.instance.output_rates(&places, &of_each, values)
-            },
-        )
-    }
+exported! {
+    /// Advances by one communication step, to its end or not at all.
+    fmi3DoStep(
+        currentCommunicationPoint: f64, communicationStepSize: f64,
+        _noSetFMUStatePriorToCurrentPoint: Fmi3Boolean, eventHandlingNeeded: *mut bool,
+        terminateSimulation: *mut bool, earlyReturn: *mut bool, lastSuccessfulTime: *mut f64
+    ) Call::DoStep => |component| {
+        for flag in [eventHandlingNeeded, terminateSimulation, earlyReturn] {
+            put(flag, false);
+        }
+        let instance = &mut component.instance;
+        let outcome = instance.do_step(currentCommunicationPoint, communicationStepSize);
+        put(lastSuccessfulTime, instance.time_s());
+        outcome
+    };
+    /// Reads first rates of outputs.
+    fmi3GetOutputDerivatives(
+        vr: *const fmi2ValueReference, nvr: usize, orders: *const i32, values: *mut f64, nValues: usize
+    ) Call::GetRealOutputDerivatives.by("GetOutputDerivatives") => |component| {
+        let references = array(vr, nvr, "valueReferences")?;
+        let orders = array(orders, nvr, "orders")?;
+        let of_each = of_elements(component, references, orders)?;
+        let places = places(component, vr, nvr, "valueReferences")?;
+        check_count("values", places.len(), nValues)?;
+        let values = array_mut(values, nValues, "values")?;
+        component.instance.output_rates(&places, &of_each, values)
+    };
 }
 
 /// Orders of rates, one for each element of arrays.

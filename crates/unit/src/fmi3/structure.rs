@@ -2,55 +2,50 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use crate::fmi2::guard::{Component, array, array_mut, guarded, place};
-use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
+use crate::fmi2::guard::{Component, array, array_mut, exported, place};
+use crate::fmi2::types::fmi2ValueReference;
 use crate::lifecycle::{Call, State};
 use crate::refusal::{CallResult, Refusal};
+use crate::variables::DependencyKind;
 
 /// A number that depends on an input, a state or a parameter of an instant at once, as an importer is told.
 struct ElementDependency {
     dependent: usize,
     reference: fmi2ValueReference,
     element: usize,
-    /// `fmi3Constant` or `fmi3Dependent`.
-    kind: i32,
+    kind: DependencyKind,
 }
 
-const CONSTANT: i32 = 1;
-const DEPENDENT: i32 = 5;
-
-/// Begins the choice of the number of strips.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3EnterConfigurationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::SetupExperiment.by("EnterConfigurationMode"), |c| {
-            let Some(strips) = c.groups.strips() else {
-                return Err(Refusal::call("there are no structural parameters"));
-            };
-            c.configuration = Some(strips);
-            Ok(())
-        })
+/// A kind of dependency in the words of the interface.
+fn fmi3_kind(kind: DependencyKind) -> i32 {
+    match kind {
+        DependencyKind::Constant => 1,
+        DependencyKind::Tunable => 3,
+        DependencyKind::Dependent => 5,
     }
 }
 
-/// Ends it: the unit has as many strips from now on, each of those beyond the exported ones like the last of these. What has been set
-/// before stays where there still is such a variable.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ExitConfigurationMode(c: fmi2Component) -> fmi2Status {
-    // SAFETY: by the contract of the interface
-    unsafe {
-        guarded(c, Call::SetupExperiment.by("ExitConfigurationMode"), |c| {
-            let Some(strips) = c.configuration.take() else {
-                return Err(Refusal::call("the configuration mode was not entered"));
-            };
-            if c.groups.strips() != Some(strips) {
-                let resized = c.instance.resized(Some(strips))?;
-                c.replace(resized);
-            }
-            Ok(())
-        })
-    }
+exported! {
+    /// Begins the choice of the number of strips.
+    fmi3EnterConfigurationMode() Call::SetupExperiment.by("EnterConfigurationMode") => |c| {
+        let Some(strips) = c.groups.strips() else {
+            return Err(Refusal::call("there are no structural parameters"));
+        };
+        c.configuration = Some(strips);
+        Ok(())
+    };
+    /// Ends it: the unit has as many strips from now on, each of those beyond the exported ones like the last of these. What has been set
+    /// before stays where there still is such a variable.
+    fmi3ExitConfigurationMode() Call::SetupExperiment.by("ExitConfigurationMode") => |c| {
+        let Some(strips) = c.configuration.take() else {
+            return Err(Refusal::call("the configuration mode was not entered"));
+        };
+        if c.groups.strips() != Some(strips) {
+            let resized = c.instance.resized(Some(strips))?;
+            c.replace(resized);
+        }
+        Ok(())
+    };
 }
 
 /// Refuses references that are not the number of strips.
@@ -65,61 +60,42 @@ fn check_strips(c: &Component, references: &[fmi2ValueReference]) -> CallResult<
     }
 }
 
-/// Reads the number of strips.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetUInt64(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    values: *mut u64,
-    nValues: usize,
-) -> fmi2Status {
-    // SAFETY: handle and arrays are valid by the contract of the interface
-    unsafe {
-        guarded(c, Call::GetInteger.by("GetUInt64"), |c| {
-            let present = check_strips(c, array(vr, nvr, "valueReferences")?)?;
-            super::life::check_count("values", nvr, nValues)?;
-            let strips = c.configuration.unwrap_or(present) as u64;
-            array_mut(values, nValues, "values")?.fill(strips);
-            Ok(())
-        })
-    }
-}
-
-/// Sets the number of strips, in the configuration mode.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetUInt64(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    values: *const u64,
-    nValues: usize,
-) -> fmi2Status {
-    // SAFETY: handle and arrays are valid by the contract of the interface
-    unsafe {
-        guarded(c, Call::SetInteger.by("SetUInt64"), |c| {
-            check_strips(c, array(vr, nvr, "valueReferences")?)?;
-            super::life::check_count("values", nvr, nValues)?;
-            for value in array(values, nValues, "values")? {
-                if c.configuration.is_none() {
-                    let message = "strips: may be set in the configuration mode only";
-                    return Err(Refusal::error(message));
-                }
-                let most = crate::force_options::MAX_STRIPS;
-                let strips = usize::try_from(*value).ok();
-                let Some(strips) = strips.filter(|n| (1..=most).contains(n)) else {
-                    let message = format!("strips: expected 1 to {most}, found {value}");
-                    return Err(Refusal::discard(message));
-                };
-                c.configuration = Some(strips);
+exported! {
+    /// Reads the number of strips.
+    fmi3GetUInt64(
+        vr: *const fmi2ValueReference, nvr: usize, values: *mut u64, nValues: usize
+    ) Call::GetInteger.by("GetUInt64") => |c| {
+        let present = check_strips(c, array(vr, nvr, "valueReferences")?)?;
+        super::life::check_count("values", nvr, nValues)?;
+        let strips = c.configuration.unwrap_or(present) as u64;
+        array_mut(values, nValues, "values")?.fill(strips);
+        Ok(())
+    };
+    /// Sets the number of strips, in the configuration mode.
+    fmi3SetUInt64(
+        vr: *const fmi2ValueReference, nvr: usize, values: *const u64, nValues: usize
+    ) Call::SetInteger.by("SetUInt64") => |c| {
+        check_strips(c, array(vr, nvr, "valueReferences")?)?;
+        super::life::check_count("values", nvr, nValues)?;
+        for value in array(values, nValues, "values")? {
+            if c.configuration.is_none() {
+                let message = "strips: may be set in the configuration mode only";
+                return Err(Refusal::error(message));
             }
-            Ok(())
-        })
-    }
+            let most = crate::force_options::MAX_STRIPS;
+            let strips = usize::try_from(*value).ok();
+            let Some(strips) = strips.filter(|n| (1..=most).contains(n)) else {
+                let message = format!("strips: expected 1 to {most}, found {value}");
+                return Err(Refusal::discard(message));
+            };
+            c.configuration = Some(strips);
+        }
+        Ok(())
+    };
 }
 
 /// What the numbers of a variable depend on: while initialising on what has been set for it, later on inputs and states at once.
-fn dependencies(c: &Component, reference: u32) -> CallResult<Vec<ElementDependency>> {
+fn dependencies(c: &mut Component, reference: u32) -> CallResult<Vec<ElementDependency>> {
     let Some(places) = c.groups.all().get(reference as usize) else {
         return match c.groups.is_known(reference) {
             true => Ok(Vec::new()),
@@ -132,73 +108,53 @@ fn dependencies(c: &Component, reference: u32) -> CallResult<Vec<ElementDependen
         c.instance.state(),
         State::Instantiated | State::Initialization
     );
+    let table = c.instance.described_table()?;
     let mut all = Vec::new();
     for (i, own) in places.iter().enumerate() {
-        let v = &c.instance.table().variables()[*own as usize];
-        let on_initial = v.initial_dependencies.iter().map(|d| (d.on, d.constant));
-        let direct = v.direct_inputs.iter().map(|on| (*on, false));
-        let on: Vec<(usize, bool)> = match initial {
-            true => on_initial.collect(),
-            false => direct.collect(),
+        let v = &table.variables()[*own as usize];
+        let on = match initial {
+            true => &v.initial_dependencies,
+            false => &v.direct_inputs,
         };
-        all.extend(on.into_iter().filter_map(|(on, constant)| {
-            let (reference, element) = c.groups.element_of(on)?;
+        all.extend(on.iter().filter_map(|dependency| {
+            let (reference, element) = c.groups.element_of(dependency.on)?;
             Some(ElementDependency {
                 dependent: i + 1,
                 reference,
                 element: element + 1,
-                kind: if constant { CONSTANT } else { DEPENDENT },
+                kind: dependency.kind,
             })
         }));
     }
     Ok(all)
 }
 
-/// How many there are, of all its numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
-    c: fmi2Component,
-    vr: fmi2ValueReference,
-    nDependencies: *mut usize,
-) -> fmi2Status {
-    // SAFETY: handle and place are valid by the contract of the interface
-    unsafe {
-        let call = Call::SetDebugLogging.by("GetNumberOfVariableDependencies");
-        guarded(c, call, |c| {
-            *place(nDependencies, "nDependencies")? = dependencies(c, vr)?.len();
-            Ok(())
-        })
-    }
-}
-
-/// Which they are: indices of elements count from one.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetVariableDependencies(
-    c: fmi2Component,
-    dependent: fmi2ValueReference,
-    elementIndicesOfDependent: *mut usize,
-    independents: *mut fmi2ValueReference,
-    elementIndicesOfIndependents: *mut usize,
-    dependencyKinds: *mut i32,
-    nDependencies: usize,
-) -> fmi2Status {
-    // SAFETY: handle and arrays are valid by the contract of the interface
-    unsafe {
-        let call = Call::SetDebugLogging.by("GetVariableDependencies");
-        guarded(c, call, |c| {
-            let all = dependencies(c, dependent)?;
-            super::life::check_count("nDependencies", all.len(), nDependencies)?;
-            let n = nDependencies;
-            let own = array_mut(elementIndicesOfDependent, n, "elementIndicesOfDependent")?;
-            let on = array_mut(independents, n, "independents")?;
-            let of = elementIndicesOfIndependents;
-            let elements = array_mut(of, n, "elementIndicesOfIndependents")?;
-            let kinds = array_mut(dependencyKinds, n, "dependencyKinds")?;
-            for (i, d) in all.iter().enumerate() {
-                (own[i], on[i]) = (d.dependent, d.reference);
-                (elements[i], kinds[i]) = (d.element, d.kind);
-            }
-            Ok(())
-        })
-    }
+exported! {
+    /// How many there are, of all its numbers.
+    fmi3GetNumberOfVariableDependencies(
+        vr: fmi2ValueReference, nDependencies: *mut usize
+    ) Call::SetDebugLogging.by("GetNumberOfVariableDependencies") => |c| {
+        *place(nDependencies, "nDependencies")? = dependencies(c, vr)?.len();
+        Ok(())
+    };
+    /// Which they are: indices of elements count from one.
+    fmi3GetVariableDependencies(
+        dependent: fmi2ValueReference, elementIndicesOfDependent: *mut usize,
+        independents: *mut fmi2ValueReference, elementIndicesOfIndependents: *mut usize,
+        dependencyKinds: *mut i32, nDependencies: usize
+    ) Call::SetDebugLogging.by("GetVariableDependencies") => |c| {
+        let all = dependencies(c, dependent)?;
+        super::life::check_count("nDependencies", all.len(), nDependencies)?;
+        let n = nDependencies;
+        let own = array_mut(elementIndicesOfDependent, n, "elementIndicesOfDependent")?;
+        let on = array_mut(independents, n, "independents")?;
+        let of = elementIndicesOfIndependents;
+        let elements = array_mut(of, n, "elementIndicesOfIndependents")?;
+        let kinds = array_mut(dependencyKinds, n, "dependencyKinds")?;
+        for (i, d) in all.iter().enumerate() {
+            (own[i], on[i]) = (d.dependent, d.reference);
+            (elements[i], kinds[i]) = (d.element, fmi3_kind(d.kind));
+        }
+        Ok(())
+    };
 }

@@ -10,7 +10,7 @@ impl Instance {
     ///
     /// # Errors
     /// A unit without continuous states: sampled models, and bridges with more than anybody integrates.
-    pub(crate) fn for_model_exchange(mut self) -> CallResult<Self> {
+    pub fn for_model_exchange(mut self) -> CallResult<Self> {
         if !self.offers_model_exchange() {
             return Err(Refusal::error(
                 "type of the unit: expected co-simulation (1), because sampled models have no continuous states and bridges of \
@@ -57,7 +57,7 @@ impl Instance {
     ///
     /// # Errors
     /// Another number of them; a discard where one is not finite, with everything as it was.
-    pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> CallResult<()> {
+    pub fn set_continuous_states(&mut self, states: &[f64]) -> CallResult<()> {
         self.check_states("states", states.len())?;
         if !states.iter().all(|x| x.is_finite()) {
             return Err(Refusal::discard("states: expected finite numbers"));

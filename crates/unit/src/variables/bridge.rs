@@ -7,7 +7,7 @@ use super::section::{
     air_density, capitalized, gust_inputs, onset_bounds, search_limit, wind_speed,
 };
 use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, StartValue, Variable};
-use super::{bridge_states, computed_rows, dampers, dependencies};
+use super::{bridge_states, dampers};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::response::Stepper;
@@ -42,9 +42,7 @@ pub(super) fn variables(
     let interval = options.onset_interval.into_iter();
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
-    fill_dependencies(&mut table);
-    bridge_states::add(&mut table, options, stepper)?;
-    computed_rows::fill_dependencies(&mut table);
+    bridge_states::add(&mut table, options, stepper);
     if options.structure_alone {
         for variable in &mut table {
             variable.is_listed = is_of_structure(variable.role);
@@ -211,40 +209,4 @@ fn initial(options: &BridgeOptions, m: usize) -> Variable {
     let name = format!("mode[{number}].initial_coordinate");
     let text = format!("At release: coordinate of mode {number}");
     real(name, Role::InitialMode(m), FIXED, text).start(options.initial[m])
-}
-
-/// Displacements and rates follow the state; accelerations and forces follow wind, external forces and gusts at once.
-fn fill_dependencies(table: &mut [Variable]) {
-    let places = |wanted: &dyn Fn(Role) -> bool| -> Vec<usize> {
-        (0..table.len())
-            .filter(|i| wanted(table[*i].role))
-            .collect()
-    };
-    let inputs = places(&|r| matches!(r, Role::WindSpeed | Role::NodeForce(..) | Role::Gust(..)));
-    let release = places(&|r| matches!(r, Role::InitialMode(_)));
-    let all = places(&|r| {
-        matches!(
-            r,
-            Role::Section(_)
-                | Role::ModeParameter(..)
-                | Role::DamperParameter(_)
-                | Role::WindSpeed
-                | Role::NodeForce(..)
-                | Role::Gust(..)
-                | Role::InitialMode(_)
-                | Role::TurbulenceFactor
-        )
-    });
-    let dependent = |on: &[usize]| dependencies::dependent(on.iter().copied());
-    for variable in table.iter_mut() {
-        (variable.direct_inputs, variable.initial_dependencies) = match variable.role {
-            Role::NodeMotion(_, Response::Acceleration, _)
-            | Role::Mode(_, ModeOutput::Force)
-            | Role::Damper(_, Response::Acceleration) => (inputs.clone(), dependent(&all)),
-            Role::NodeMotion(..) | Role::Mode(..) | Role::Damper(..) => {
-                (Vec::new(), dependent(&release))
-            }
-            _ => continue,
-        };
-    }
 }

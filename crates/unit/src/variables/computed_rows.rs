@@ -3,11 +3,13 @@
 
 use super::computed::Formula::{Flag, Real};
 use super::computed::{ComputedNumber, Known};
-use super::dependencies::dependent;
 use super::real::{CALCULATED, DISCRETE, OUTPUT, SPEED, real};
-use super::{Causality, Formula, Response, Role, StartValue, Variable};
+use super::{
+    Causality, Dependency, Formula, Response, Role, SectionParameter, StartValue, Variable,
+};
 use crate::section::Dof;
 use crate::si;
+use std::collections::BTreeSet;
 
 /// Rotation up to which forces are taken as linear: 10 degrees.
 pub(crate) const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -142,52 +144,55 @@ impl ComputedNumber {
     }
 }
 
-/// Fills in what the computed numbers of a section or bridge depend on: what is searched for and damped on all parameters of the
-/// structure; wind and rotation on themselves.
-pub(super) fn fill_dependencies(table: &mut [Variable]) {
-    let places = |wanted: &dyn Fn(Role) -> bool| -> Vec<usize> {
-        (0..table.len())
-            .filter(|i| wanted(table[*i].role))
-            .collect()
-    };
-    let wind = places(&|r| r == Role::WindSpeed);
-    let parameters = places(&|r| {
-        matches!(
-            r,
-            Role::Section(_)
-                | Role::ModeParameter(..)
-                | Role::DamperParameter(_)
-                | Role::OnsetSearchLimit
-        )
-    });
-    let modes = places(&|r| matches!(r, Role::InitialMode(_)));
-    let release = places(&|r| r == Role::InitialDisplacement(Dof::Torsion));
-    let states_are_seen = table.iter().any(|v| v.derivative_of.is_some());
-    let turns = places(&|r| match r {
-        Role::Response(Response::Displacement, dof) => dof == Dof::Torsion,
-        Role::Filter(entry) => entry < modes.len(),
-        _ => false,
-    });
-    for variable in table.iter_mut() {
-        let Role::Computed(number) = variable.role else {
+/// Enters what the computed numbers of a section or bridge depend on, once that of the motion is known.
+pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
+    let of_bridge = table.iter().any(|v| matches!(v.role, Role::InitialMode(_)));
+    for at in 0..table.len() {
+        let Role::Computed(number) = table[at].role else {
             continue;
         };
-        let reads = |any: &[Known]| any.iter().any(|known| number.reads(*known));
-        let (mut direct, mut initial) = (Vec::new(), Vec::new());
-        if reads(&[Known::Onset, Known::Damping, Known::TestedWind]) {
-            initial.extend(&parameters);
+        let mut on = [BTreeSet::new(), BTreeSet::new()];
+        let [direct, initial] = &mut on;
+        for (place, variable) in table.iter().enumerate() {
+            if number
+                .reads
+                .iter()
+                .any(|known| follows(*known, variable.role, of_bridge))
+            {
+                initial.insert(place);
+                if variable.causality == Causality::Input {
+                    direct.insert(place);
+                }
+            }
+            let turns = match variable.role {
+                Role::Response(Response::Displacement, dof)
+                | Role::NodeMotion(_, Response::Displacement, dof) => dof == Dof::Torsion,
+                _ => false,
+            };
+            if turns && number.reads(Known::Rotation) {
+                direct.extend(variable.direct_inputs.iter().map(|d| d.on));
+                initial.extend(variable.initial_dependencies.iter().map(|d| d.on));
+            }
         }
-        if reads(&[Known::Wind, Known::Damping, Known::TestedWind]) {
-            direct.extend(&wind);
-            initial.extend(&wind);
+        let [direct, initial] = on.map(|on| on.into_iter().map(Dependency::plain).collect());
+        (table[at].direct_inputs, table[at].initial_dependencies) = (direct, initial);
+    }
+}
+
+/// Whether what a row reads follows a parameter or the wind. The forces of a bridge are tested at the frequency of its onset.
+fn follows(known: Known, on: Role, of_bridge: bool) -> bool {
+    let (wind, limit) = (on == Role::WindSpeed, on == Role::OnsetSearchLimit);
+    let parameter = on.is_tuned() || matches!(on, Role::Section(_));
+    match known {
+        Known::Onset => parameter || limit,
+        Known::Wind => wind,
+        Known::Damping => parameter || wind,
+        Known::TestedWind if of_bridge => parameter || limit || wind,
+        Known::TestedWind => {
+            use SectionParameter::{Frequency, Width};
+            wind || matches!(on, Role::Section(Width | Frequency(_)))
         }
-        if reads(&[Known::Rotation]) {
-            initial.extend(release.iter().chain(&modes));
-            direct.extend(turns.iter().filter(|_| states_are_seen));
-        }
-        direct.sort_unstable();
-        variable.direct_inputs = direct;
-        initial.sort_unstable();
-        variable.initial_dependencies = dependent(initial);
+        // as those that are put out
+        Known::Rotation => false,
     }
 }

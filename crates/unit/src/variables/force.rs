@@ -3,7 +3,7 @@
 use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
 use super::section::{air_density, capitalized, filter, gust_filter, gust_inputs, wind_speed};
-use super::{ForceOutput, InitialDependency, Response, Role, StripParameter, Variable};
+use super::{Dependency, ForceOutput, Response, Role, StripParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::force_options::{ForceOptions, MAX_PREDICTION, StripsOfModel};
@@ -275,14 +275,13 @@ fn fill_dependencies(table: &mut [Variable], strips: usize, of_state: &[usize]) 
             )
         };
         if !matches!(variable.role, Role::Filter(_)) {
-            variable.direct_inputs = known.iter().copied().filter(input).collect();
+            let direct = known.iter().copied().filter(input);
+            variable.direct_inputs = direct.map(Dependency::plain).collect();
         }
-        variable.direct_inputs.extend(states);
-        let dependency = |on| InitialDependency {
-            on,
-            constant: false,
-        };
-        variable.initial_dependencies = known.into_iter().map(dependency).collect();
+        variable
+            .direct_inputs
+            .extend(states.into_iter().map(Dependency::plain));
+        variable.initial_dependencies = known.into_iter().map(Dependency::plain).collect();
     }
 }
 

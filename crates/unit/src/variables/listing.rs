@@ -1,6 +1,6 @@
 //! The table as a description lists it: all of it, or its real variables for importers that take no others.
 
-use super::{InitialDependency, StartValue, Variable, VariableTable};
+use super::{Dependency, StartValue, Variable, VariableTable};
 
 /// Which variables a description lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -34,12 +34,15 @@ impl VariableTable {
         let variables = references.iter().map(|&reference| {
             let mut variable = self.variables[reference].clone();
             variable.derivative_of = variable.derivative_of.and_then(place);
-            let direct = &variable.direct_inputs;
-            variable.direct_inputs = direct.iter().filter_map(|&on| place(on)).collect();
-            let initial = variable.initial_dependencies.iter();
-            variable.initial_dependencies = initial
-                .filter_map(|d| place(d.on).map(|on| InitialDependency { on, ..*d }))
-                .collect();
+            let lists = [
+                &mut variable.direct_inputs,
+                &mut variable.initial_dependencies,
+            ];
+            for list in lists {
+                let listed = list.iter();
+                let listed = listed.filter_map(|d| place(d.on).map(|on| Dependency { on, ..*d }));
+                *list = listed.collect();
+            }
             variable
         });
         let variables = variables.collect();

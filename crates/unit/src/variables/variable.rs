@@ -4,7 +4,7 @@ use super::computed::ComputedNumber;
 use super::parameters::{ModeParameter, SectionParameter};
 use crate::section::Dof;
 use crate::si::SiUnit;
-use crate::standard::{Causality, Initial, Variability};
+use crate::standard::{Causality, FmiTerm, Initial, Variability};
 
 /// Type of a variable, with its start value where it has one.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,13 +170,54 @@ pub enum StripParameter {
     WindFactor,
 }
 
-/// One known that an unknown of the initialisation depends on.
+/// By what an importer may count on a known, from the most to the least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DependencyKind {
+    /// It is multiplied by a constant.
+    Constant,
+    /// It is multiplied by a number that changes with parameters only.
+    Tunable,
+    /// Nothing.
+    Dependent,
+}
+
+impl FmiTerm for DependencyKind {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("constant", Self::Constant),
+        ("tunable", Self::Tunable),
+        ("dependent", Self::Dependent),
+    ];
+}
+
+/// One known that an unknown depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct InitialDependency {
+pub struct Dependency {
     /// Place of the known in the table.
     pub on: usize,
-    /// The dependence is multiplication by a constant.
-    pub constant: bool,
+    /// How.
+    pub kind: DependencyKind,
+}
+
+impl Dependency {
+    /// Of which no more is known.
+    pub(crate) fn plain(on: usize) -> Self {
+        let kind = DependencyKind::Dependent;
+        Self { on, kind }
+    }
+
+    /// The same by a constant factor.
+    pub(crate) fn constant(on: usize) -> Self {
+        let kind = DependencyKind::Constant;
+        Self { on, kind }
+    }
+
+    /// The same while initialising, where the standard knows of no factors that are tuned.
+    pub(crate) fn of_initialization(self) -> Self {
+        match self.kind {
+            DependencyKind::Constant => self,
+            DependencyKind::Tunable | DependencyKind::Dependent => Self::plain(self.on),
+        }
+    }
 }
 
 /// One variable.
@@ -213,9 +254,9 @@ pub struct Variable {
     /// The variable whose rate it is, by place in the table (rates of states only).
     pub derivative_of: Option<usize>,
     /// Inputs and states that act on it without delay, by place in the table (outputs and rates of states only).
-    pub direct_inputs: Vec<usize>,
+    pub direct_inputs: Vec<Dependency>,
     /// What it depends on while initialising, by place in the table (unknowns only).
-    pub initial_dependencies: Vec<InitialDependency>,
+    pub initial_dependencies: Vec<Dependency>,
 }
 
 impl Variable {

@@ -54,11 +54,14 @@ fn offsets_are_parameters_where_they_are_stated() {
 #[test]
 fn a_moment_acts_on_the_heave() {
     let archive = unbalanced("discrete_laguerre", (0.0, 0.05));
-    let table = &archive.resources.table;
+    let table = archive.resources.described_table().unwrap();
     let moment = table.find_name("external_moment").unwrap();
-    let of = |name: &str| &table.variables()[table.find_name(name).unwrap()].direct_inputs;
-    assert!(of("heave_acceleration").contains(&moment));
-    assert!(!of("lift").contains(&moment));
+    let acts_on = |name: &str| {
+        let variable = &table.variables()[table.find_name(name).unwrap()];
+        variable.direct_inputs.iter().any(|d| d.on == moment)
+    };
+    assert!(acts_on("heave_acceleration"));
+    assert!(!acts_on("lift"));
     let unit = Unit::instantiate(archive);
     unit.start();
     let before = unit.get(["heave_acceleration"])[0];

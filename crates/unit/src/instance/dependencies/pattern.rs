@@ -1,0 +1,160 @@
+//! The pattern of the matrices of a unit: which response follows what acts, and by what kind of factor.
+
+use crate::error::Result;
+use crate::instance::coupled::CoupledUnit;
+use crate::instance::layout::Source;
+use crate::instance::memory::Memory;
+use crate::instance::sensitivity::SectionValues;
+use crate::resources::Resources;
+use crate::variables::{DependencyKind, Role, Variable};
+
+/// Wind speeds, m/s, at which nothing vanishes by chance.
+const WINDS_M_S: [f64; 2] = [7.3, 11.9];
+/// In place of a parameter that is zero, whatever its unit.
+const IN_PLACE_OF_ZERO: f64 = 0.01;
+/// Relative change of a parameter by which it shows whether a factor depends on it.
+const CHANGE: f64 = 1e-3;
+
+/// Kinds of factors by column; `None` for zeros.
+type PatternRow = Vec<Option<DependencyKind>>;
+
+/// What acts on a unit at an instant, a column each: the entries of its state with lagging gusts behind, forces on its coordinates,
+/// channels of the gusts, and last the wind, with what else scales all that the air does.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ActingColumns {
+    /// Where the forces begin.
+    pub forces: usize,
+    /// Where the gusts begin.
+    pub gusts: usize,
+    /// The last one.
+    pub air: usize,
+}
+
+/// See the module.
+pub(super) struct Pattern<T> {
+    /// With generic parameters.
+    pub unit: T,
+    /// The same at rest, every input zero.
+    pub calm: Memory,
+    pub columns: ActingColumns,
+    /// Places of the responses, which are the rows.
+    pub responses: Vec<usize>,
+    /// While it moves.
+    pub moving: Vec<PatternRow>,
+    /// At the release, to which dampers have gone along: their springs are slack.
+    pub released: Vec<PatternRow>,
+}
+
+impl<T: CoupledUnit> Pattern<T> {
+    pub(super) fn of(mut unit: T, resources: &Resources) -> Result<Self> {
+        let table = resources.table.variables();
+        let start = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
+        let with = |value: fn(usize, &Variable) -> f64| {
+            let mut memory = start.clone();
+            for (i, (own, variable)) in memory.values.iter_mut().zip(table).enumerate() {
+                *own = generic(variable, *own) * value(i, variable);
+            }
+            memory
+        };
+        let mut calm = with(|_, _| 1.0);
+        let changed = with(|i, _| 1.0 + CHANGE * (1 + i % 7) as f64);
+        let slack = with(|_, v| match (v.role, v.quantity) {
+            (Role::DamperParameter(_), Some("Frequency" | "DampingRatio")) => 0.0,
+            _ => 1.0,
+        });
+        unit.changed(Source::Section);
+        unit.prepared(resources, &mut calm)?;
+        unit.load_inputs(&calm);
+        let (_, inputs) = unit.parts();
+        let forces = calm.system.all().len();
+        let gusts = forces + inputs.force.len();
+        let air = gusts + inputs.gust_m_s.len();
+        let columns = ActingColumns { forces, gusts, air };
+        let is_response = |place: &usize| {
+            let source = Source::of(table[*place].role);
+            matches!(source, Source::Response | Source::State | Source::Rate)
+        };
+        let responses: Vec<usize> = (0..table.len()).filter(is_response).collect();
+        let roles: Vec<Role> = responses.iter().map(|place| table[*place].role).collect();
+        let mut entries = |of: &Memory, wind: f64| {
+            unit.with_parameters(resources, of, &mut |unit| {
+                unit.load_inputs(of);
+                let mut all = Vec::with_capacity(roles.len() * (columns.air + 1));
+                for column in 0..=columns.air {
+                    let values = response(unit, of, columns, column, wind)?;
+                    all.extend(roles.iter().map(|role| unit.pick(&values, *role)));
+                }
+                Ok(all)
+            })
+        };
+        let [first, second] = WINDS_M_S;
+        let [usual, in_more_wind] = [entries(&calm, first)?, entries(&calm, second)?];
+        let [changed, slack] = [entries(&changed, first)?, entries(&slack, first)?];
+        let rows = |present: &[f64]| -> Vec<PatternRow> {
+            let entry = |row, column| {
+                let at = column * roles.len() + row;
+                let kind = if column == columns.air || in_more_wind[at] != usual[at] {
+                    DependencyKind::Dependent
+                } else if changed[at] != usual[at] {
+                    DependencyKind::Tunable
+                } else {
+                    DependencyKind::Constant
+                };
+                (present[at] != 0.0).then_some(kind)
+            };
+            let row = |row| (0..=columns.air).map(|column| entry(row, column)).collect();
+            (0..roles.len()).map(row).collect()
+        };
+        Ok(Self {
+            moving: rows(&usual),
+            released: rows(&slack),
+            unit,
+            calm,
+            columns,
+            responses,
+        })
+    }
+}
+
+/// A start value that hides nothing: inputs are off, parameters on.
+fn generic(variable: &Variable, start: f64) -> f64 {
+    match (Source::of(variable.role), variable.role) {
+        (Source::Input, _) | (_, Role::TurbulenceFactor) => 0.0,
+        (Source::Section, _) if start == 0.0 => IN_PLACE_OF_ZERO,
+        _ => start,
+    }
+}
+
+/// What one of something does to a unit at rest, and what more wind does to one in motion.
+fn response(
+    unit: &mut impl CoupledUnit,
+    rest: &Memory,
+    columns: ActingColumns,
+    column: usize,
+    wind: f64,
+) -> Result<SectionValues> {
+    // sines of whole numbers have nothing to do with one another
+    let uneven = |count: usize| (1..=count).map(|i| (i as f64).sin());
+    let (air, mut on) = (column == columns.air, rest.clone());
+    for (place, value) in unit.inputs().iter().zip(uneven(unit.inputs().len())) {
+        on.values[*place] = if air { value } else { 0.0 };
+    }
+    unit.load_inputs(&on);
+    let (stepper, inputs) = unit.parts();
+    inputs.wind_speed_m_s = wind;
+    if air {
+        let state = rest
+            .system
+            .with_all(&uneven(columns.forces).collect::<Vec<_>>());
+        return Ok(SectionValues::by_speed(stepper, &state, inputs));
+    }
+    let mut state = rest.system.clone();
+    if column < columns.forces {
+        state.set_number(column, 1.0);
+    } else if column < columns.gusts {
+        inputs.force[column - columns.forces] = 1.0;
+    } else {
+        inputs.gust_m_s[column - columns.gusts] = 1.0;
+    }
+    unit.instant(&state)
+}
