@@ -1,6 +1,6 @@
 //! Continuous Morlet transform on chosen frequencies.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::signal::{Complex64, Fourier};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -74,7 +74,7 @@ impl Morlet {
     /// For signals of `sample_count` samples.
     ///
     /// # Errors
-    /// [`Error::Input`] for parameters that are not positive, a highest frequency beyond Nyquist, or a record too
+    /// [`Error::Input`](crate::error::Error::Input) for parameters that are not positive, a highest frequency beyond Nyquist, or a record too
     /// short to hold any coefficient outside the cone.
     pub(super) fn new(
         parameters: &WaveletParameters,
@@ -96,16 +96,15 @@ impl Morlet {
             let transform = transform.unwrap_or_else(|| Arc::new(Fourier::new(length)));
             plan.fourier.push(transform);
         }
-        if plan.inside(plan.level_count() - 1).is_empty() {
-            return Err(Error::input(
-                "signals for the wavelet transform",
-                format!(
-                    "a record longer than twice the cone at {} Hz",
-                    parameters.frequency_max_hz
-                ),
-                format!("{} s", sample_count as f64 * time_step_s),
-            ));
-        }
+        ensure(
+            !plan.inside(plan.level_count() - 1).is_empty(),
+            "signals for the wavelet transform",
+            format_args!(
+                "a record longer than twice the cone at {} Hz",
+                parameters.frequency_max_hz
+            ),
+            format_args!("{} s", sample_count as f64 * time_step_s),
+        )?;
         Ok(plan)
     }
 
@@ -252,24 +251,26 @@ fn quick_length(least: usize) -> usize {
 
 fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
     let p = parameters;
-    if p.level_count == 0 {
-        return Err(Error::input("number of wavelet levels", "at least 1", "0"));
-    }
+    ensure(
+        p.level_count != 0,
+        "number of wavelet levels",
+        "at least 1",
+        "0",
+    )?;
     positive("lowest wavelet frequency, Hz", p.frequency_min_hz)?;
     positive("central frequency of the wavelet", p.central_frequency)?;
     positive("truncation of the wavelet", p.truncation)?;
     crate::error::non_negative("cone of influence of the wavelet", p.cone)?;
     let nyquist = 0.5 / time_step_s;
-    if !(p.frequency_max_hz >= p.frequency_min_hz && p.frequency_max_hz <= nyquist) {
-        return Err(Error::input(
-            "highest wavelet frequency, Hz",
-            format!(
-                "a number from {} Hz to the Nyquist frequency {nyquist} Hz",
-                p.frequency_min_hz
-            ),
-            p.frequency_max_hz.to_string(),
-        ));
-    }
+    ensure(
+        p.frequency_max_hz >= p.frequency_min_hz && p.frequency_max_hz <= nyquist,
+        "highest wavelet frequency, Hz",
+        format_args!(
+            "a number from {} Hz to the Nyquist frequency {nyquist} Hz",
+            p.frequency_min_hz
+        ),
+        p.frequency_max_hz,
+    )?;
     Ok(())
 }
 

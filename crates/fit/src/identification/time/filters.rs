@@ -10,7 +10,7 @@
 use super::low_pass::{Filtered, Hold, LowPassStep, ORDER, low_pass};
 use super::pass::{Columns, Piece};
 use super::record::DimensionlessRecord;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::FeedThrough;
 use crate::identification::least_squares::BLOCK_ROWS;
@@ -145,16 +145,15 @@ impl<'a> ContinuousColumns<'a> {
         cutoff_hz: f64,
         constant: bool,
     ) -> Result<Self> {
-        if cutoff_hz * record.step_s >= 0.5 {
-            return Err(Error::input(
-                "low_pass_hz",
-                format!(
-                    "less than half the sampling frequency of record {}",
-                    record.name()
-                ),
-                cutoff_hz.to_string(),
-            ));
-        }
+        ensure(
+            cutoff_hz * record.step_s < 0.5,
+            "low_pass_hz",
+            format_args!(
+                "less than half the sampling frequency of record {}",
+                record.name()
+            ),
+            cutoff_hz,
+        )?;
         let step = record.delta_s();
         let (a, b) = low_pass(TAU * cutoff_hz / record.rate);
         let hold = Hold::new(&a, &b, step)?;
