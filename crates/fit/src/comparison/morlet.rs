@@ -2,6 +2,7 @@
 
 use crate::error::{Result, ensure, positive};
 use crate::signal::{Complex64, Fourier};
+use aerodeck_core::vectorised;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -191,11 +192,7 @@ impl LevelGroup<'_> {
     ) -> &'b [Complex64] {
         let RowBuffer { values, scratch } = buffer;
         values.resize(kernel.len(), Complex64::default());
-        pulp::Arch::new().dispatch(AtLevel {
-            values,
-            kernel,
-            spectrum,
-        });
+        at_level(values, kernel, spectrum);
         self.fourier.inverse_in(values, scratch);
         &values[..self.plan.sample_count]
     }
@@ -222,20 +219,10 @@ impl LevelGroup<'_> {
     }
 }
 
-/// A spectrum by the kernel of a level.
-struct AtLevel<'a> {
-    values: &'a mut [Complex64],
-    kernel: &'a [f64],
-    spectrum: &'a [Complex64],
-}
-
-impl pulp::NullaryFnOnce for AtLevel<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let each = self.kernel.iter().zip(self.spectrum);
-        for (value, (k, x)) in self.values.iter_mut().zip(each) {
+vectorised! {
+    /// A spectrum by the kernel of a level.
+    fn at_level<'a>(values: &'a mut [Complex64], kernel: &'a [f64], spectrum: &'a [Complex64]) -> () {
+        for (value, (k, x)) in values.iter_mut().zip(kernel.iter().zip(spectrum)) {
             *value = Complex64::new(x.re * k, x.im * k);
         }
     }
