@@ -19,7 +19,7 @@ pub use equilibrium::{
 };
 
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::section::Structure;
 use crate::state_space::{
     Continuous, Damping, Discrete, StateEquation, StateSpace, c2d, first_order,
@@ -108,13 +108,12 @@ impl CoupledSection {
             Realization::Continuous(c) => c.c.nrows().max(c.e0.nrows()),
             Realization::Discrete(d) => d.c.nrows(),
         };
-        if forces != n {
-            return Err(Error::input(
-                "coupled section",
-                format!("an aerodynamic model of {n} degrees of freedom"),
-                forces.to_string(),
-            ));
-        }
+        ensure(
+            forces == n,
+            "coupled section",
+            format_args!("an aerodynamic model of {n} degrees of freedom"),
+            forces,
+        )?;
         let aerodynamics = at_axis(&structure, aerodynamics);
         let mut mass = structure.mass.clone();
         if let Realization::Continuous(c) = &aerodynamics {

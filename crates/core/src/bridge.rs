@@ -27,7 +27,7 @@ pub use modal::ModalForces;
 pub use similarity::{Similarity, similarities};
 
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, counted, finite, non_negative, positive};
+use crate::error::{Error, Result, counted, ensure, finite, non_negative, positive};
 use crate::section::{Dof, Rotation, SectionModel, Translation};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -128,9 +128,12 @@ impl Bridge {
         };
         positive("air_density_kg_m3", air_density_kg_m3)?;
         check_nodes(&bridge.nodes)?;
-        if bridge.modes.is_empty() {
-            return Err(Error::input("modes", "at least one mode", "none"));
-        }
+        ensure(
+            !bridge.modes.is_empty(),
+            "modes",
+            "at least one mode",
+            "none",
+        )?;
         for mode in &bridge.modes {
             check_mode(mode, bridge.nodes.len())?;
         }
@@ -145,10 +148,12 @@ impl Bridge {
     /// modes.
     pub fn of_section(section: &SectionModel, forces: Arc<dyn Transfer>) -> Result<Self> {
         let s = section.structure()?;
-        if s.axis_offset_m != 0.0 || section.static_coupling() != 0.0 {
-            let found = "an offset of axis or mass";
-            return Err(Error::input("section", "motions that are its modes", found));
-        }
+        ensure(
+            s.axis_offset_m == 0.0 && section.static_coupling() == 0.0,
+            "section",
+            "motions that are its modes",
+            "an offset of axis or mass",
+        )?;
         let mode = |i: usize| {
             let (m, k) = (s.mass[(i, i)], s.stiffness[(i, i)]);
             let mut shape = [0.0; 3];
@@ -198,9 +203,7 @@ impl Bridge {
             .filter(|(i, _)| keep(*i))
             .map(|(_, m)| m.clone())
             .collect();
-        if kept.is_empty() {
-            return Err(Error::input("modes", "at least one mode", "none"));
-        }
+        ensure(!kept.is_empty(), "modes", "at least one mode", "none")?;
         Ok(Self {
             modes: kept,
             ..self.clone()
@@ -273,9 +276,12 @@ impl Bridge {
     }
 
     fn check_groups(&self) -> Result<()> {
-        if self.groups.is_empty() {
-            return Err(Error::input("section", "at least one section", "none"));
-        }
+        ensure(
+            !self.groups.is_empty(),
+            "section",
+            "at least one section",
+            "none",
+        )?;
         let mut owner: Vec<Option<&str>> = vec![None; self.nodes.len()];
         for group in &self.groups {
             let place = format!("section {}", group.name);
@@ -298,11 +304,12 @@ impl Bridge {
             .groups
             .iter()
             .any(|g| g.wind_factor > 0.0 && !g.nodes.is_empty());
-        if wind {
-            return Ok(());
-        }
-        let expected = "wind somewhere along the bridge";
-        Err(Error::input("wind profile", expected, "zero everywhere"))
+        ensure(
+            wind,
+            "wind profile",
+            "wind somewhere along the bridge",
+            "zero everywhere",
+        )
     }
 }
 
@@ -324,9 +331,7 @@ pub fn tributary_lengths(along_m: &[f64]) -> Vec<f64> {
 }
 
 fn check_nodes(nodes: &[Node]) -> Result<()> {
-    if nodes.is_empty() {
-        return Err(Error::input("nodes", "at least one node", "none"));
-    }
+    ensure(!nodes.is_empty(), "nodes", "at least one node", "none")?;
     let mut before: Option<&Node> = None;
     for node in nodes {
         let place = format!("node {}", node.name);
@@ -348,23 +353,20 @@ fn check_nodes(nodes: &[Node]) -> Result<()> {
 }
 
 fn check_mode(mode: &BridgeMode, nodes: usize) -> Result<()> {
-    let place = format!("mode {}", mode.number);
+    let place = format_args!("mode {}", mode.number);
     positive(format!("{place}: frequency_hz"), mode.frequency_hz)?;
     positive(format!("{place}: generalised mass"), mode.generalised_mass)?;
     non_negative(format!("{place}: damping_ratio"), mode.damping_ratio)?;
-    if mode.shape.len() != nodes {
-        return Err(Error::input(
-            place,
-            format!("a shape at {}", counted(nodes, "node")),
-            counted(mode.shape.len(), "node"),
-        ));
-    }
-    if mode.shape.iter().flatten().all(|x| x.is_finite()) {
-        return Ok(());
-    }
-    Err(Error::input(
+    ensure(
+        mode.shape.len() == nodes,
+        place,
+        format_args!("a shape at {}", counted(nodes, "node")),
+        counted(mode.shape.len(), "node"),
+    )?;
+    ensure(
+        mode.shape.iter().flatten().all(|x| x.is_finite()),
         place,
         "finite displacements",
         "one that is not",
-    ))
+    )
 }

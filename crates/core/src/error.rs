@@ -171,16 +171,31 @@ pub fn has_control_characters(text: &str) -> bool {
     text.contains(|c: char| c.is_control() && !['\n', '\r', '\t'].contains(&c))
 }
 
+/// Nothing if it `holds`; the words are put together only where it does not.
+///
+/// # Errors
+/// [`Error::Input`] with what was `expected` and `found` at `place` otherwise.
+pub fn ensure(
+    holds: bool,
+    place: impl Into<Place>,
+    expected: impl fmt::Display,
+    found: impl fmt::Display,
+) -> Result<()> {
+    match holds {
+        true => Ok(()),
+        false => Err(Error::input(place, expected.to_string(), found.to_string())),
+    }
+}
+
 /// Refuses a text with control characters: names end up in files, pages, descriptions of FMUs and on terminals.
 pub fn without_control_characters(place: impl Into<Place>, text: &str) -> Result<()> {
-    match has_control_characters(text) {
-        false => Ok(()),
-        true => Err(Error::input(
-            place,
-            "a text without control characters",
-            "one with them",
-        )),
-    }
+    let is_plain = !has_control_characters(text);
+    ensure(
+        is_plain,
+        place,
+        "a text without control characters",
+        "one with them",
+    )
 }
 
 /// `value` if it is finite and positive.
@@ -188,11 +203,8 @@ pub fn without_control_characters(place: impl Into<Place>, text: &str) -> Result
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
 pub fn positive(place: impl Into<Place>, value: f64) -> Result<f64> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::input(place, "a positive number", value.to_string()))
-    }
+    let holds = value.is_finite() && value > 0.0;
+    ensure(holds, place, "a positive number", value).map(|()| value)
 }
 
 /// `value` if it is finite.
@@ -200,57 +212,38 @@ pub fn positive(place: impl Into<Place>, value: f64) -> Result<f64> {
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
 pub fn finite(place: impl Into<Place>, value: f64) -> Result<f64> {
-    if value.is_finite() {
-        return Ok(value);
-    }
-    Err(Error::input(place, "a finite number", value.to_string()))
+    ensure(value.is_finite(), place, "a finite number", value).map(|()| value)
 }
 
 /// Nothing if the schema that a file states is the one that is read.
 pub fn of_schema(expected: u32, found: u32) -> Result<()> {
-    if found == expected {
-        return Ok(());
-    }
-    Err(Error::input(
-        "schema",
-        expected.to_string(),
-        found.to_string(),
-    ))
+    ensure(found == expected, "schema", expected, found)
 }
 
 /// Nothing if `values` are `count` finite numbers.
 pub fn finite_numbers(place: impl Into<Place>, values: &[f64], count: usize) -> Result<()> {
-    if values.len() == count && values.iter().all(|x| x.is_finite()) {
-        return Ok(());
-    }
-    let expected = format!("{count} finite numbers");
-    Err(Error::input(place, expected, format!("{values:?}")))
+    let holds = values.len() == count && values.iter().all(|x| x.is_finite());
+    let (expected, found) = (
+        format_args!("{count} finite numbers"),
+        format_args!("{values:?}"),
+    );
+    ensure(holds, place, expected, found)
 }
 
 /// Nothing if `value` is at most `bound`: one that no real study reaches.
 pub fn at_most(place: impl Into<Place>, value: f64, bound: f64) -> Result<()> {
-    if value <= bound {
-        Ok(())
-    } else {
-        Err(Error::input(
-            place,
-            format!("at most {bound}"),
-            value.to_string(),
-        ))
-    }
+    ensure(
+        value <= bound,
+        place,
+        format_args!("at most {bound}"),
+        value,
+    )
 }
 
 /// `value` if it is finite and not negative.
 pub fn non_negative(place: impl Into<Place>, value: f64) -> Result<f64> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::input(
-            place,
-            "zero or a positive number",
-            value.to_string(),
-        ))
-    }
+    let holds = value.is_finite() && value >= 0.0;
+    ensure(holds, place, "zero or a positive number", value).map(|()| value)
 }
 
 /// So many of something in words: `1 mode`, `3 modes`.

@@ -19,6 +19,7 @@ pub mod state_space;
 pub mod threads;
 pub mod trained_model;
 pub mod units;
+mod vectorised;
 pub mod verdict;
 
 pub use error::{Error, Result};

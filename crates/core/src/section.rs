@@ -9,7 +9,7 @@ mod structure;
 
 pub use structure::Structure;
 
-use crate::error::{Error, Place, Result, finite, non_negative, positive};
+use crate::error::{Error, Place, Result, ensure, finite, non_negative, positive};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -281,13 +281,12 @@ impl SectionModel {
             finite("section.mass_offset_m", e)?;
             // about the axis J = J_cg + m e²
             let radius = (twist.mass / heave.mass).sqrt();
-            if e.abs() >= radius {
-                return Err(Error::input(
-                    "section.mass_offset_m",
-                    format!("less than the radius of gyration about the axis, {radius:.4} m"),
-                    e.to_string(),
-                ));
-            }
+            ensure(
+                e.abs() < radius,
+                "section.mass_offset_m",
+                format_args!("less than the radius of gyration about the axis, {radius:.4} m"),
+                e,
+            )?;
         }
         Ok([Some(heave), sway.transpose()?, Some(twist)])
     }

@@ -4,7 +4,7 @@ use crate::aerodynamics::{
     DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel, Realizable,
     Realization, Transfer, TransferMatrix,
 };
-use crate::error::{Error, Result, finite, positive, without_control_characters};
+use crate::error::{Error, Result, ensure, finite, positive, without_control_characters};
 use crate::json;
 use crate::section::{Dof, SectionModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -96,13 +96,12 @@ impl Model {
 
     fn validate(&self) -> Result<()> {
         let states = self.states_at_most();
-        if states > MAX_STATES {
-            return Err(Error::input(
-                "model",
-                format!("filters or lags of at most {MAX_STATES} states"),
-                states.to_string(),
-            ));
-        }
+        ensure(
+            states <= MAX_STATES,
+            "model",
+            format_args!("filters or lags of at most {MAX_STATES} states"),
+            states,
+        )?;
         match self {
             Self::Laguerre(m) => m.validate(),
             Self::DiscreteLaguerre(m) => m.validate(),
@@ -209,13 +208,12 @@ impl TrainedModel {
     /// [`Error::Input`] with line and column for text that is not such a file, and for every value that cannot be.
     pub fn from_json(text: &str) -> Result<Self> {
         let version: SchemaOnly = json::read(KIND, text).map_err(|e| json_error(&e))?;
-        if !(SCHEMA_VERSION..=NEWEST_SCHEMA_VERSION).contains(&version.schema_version) {
-            return Err(Error::input(
-                "schema_version",
-                format!("{SCHEMA_VERSION} to {NEWEST_SCHEMA_VERSION}"),
-                version.schema_version.to_string(),
-            ));
-        }
+        ensure(
+            (SCHEMA_VERSION..=NEWEST_SCHEMA_VERSION).contains(&version.schema_version),
+            "schema_version",
+            format_args!("{SCHEMA_VERSION} to {NEWEST_SCHEMA_VERSION}"),
+            version.schema_version,
+        )?;
         let model: Self = json::read(KIND, text).map_err(|e| json_error(&e))?;
         model.validate()?;
         Ok(model)
@@ -245,13 +243,12 @@ impl TrainedModel {
         }
         self.section.structure()?;
         self.model.validate()?;
-        if self.schema_version < self.model.schema_version() {
-            return Err(Error::input(
-                "schema_version",
-                format!("at least {} for this model", self.model.schema_version()),
-                self.schema_version.to_string(),
-            ));
-        }
+        ensure(
+            self.schema_version >= self.model.schema_version(),
+            "schema_version",
+            format_args!("at least {} for this model", self.model.schema_version()),
+            self.schema_version,
+        )?;
         if self.model.dofs() != self.section.dofs() {
             let own = Dof::names(&self.section.dofs());
             let expected = format!("the section's degrees of freedom {own}");
@@ -259,15 +256,13 @@ impl TrainedModel {
             return Err(Error::input("model.dofs", expected, found));
         }
         positive("tested_range.min", self.tested_range.min.full_width())?;
-        if self.tested_range.max < self.tested_range.min
-            || !self.tested_range.max.full_width().is_finite()
-        {
-            return Err(Error::input(
-                "tested_range.max",
-                "a finite number not below tested_range.min",
-                self.tested_range.max.full_width().to_string(),
-            ));
-        }
+        ensure(
+            self.tested_range.max >= self.tested_range.min
+                && self.tested_range.max.full_width().is_finite(),
+            "tested_range.max",
+            "a finite number not below tested_range.min",
+            self.tested_range.max.full_width(),
+        )?;
         self.experiment.validate()
     }
 }

@@ -45,7 +45,7 @@ pub use stationarity::{
 };
 pub use wavelet::{NormalisedWaveletDetails, wavelet, wavelet_normalised};
 
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Error, Result, counted, ensure, positive};
 use serde::Serialize;
 
 /// A reference signal and the signal compared with it, sampled together.
@@ -66,23 +66,21 @@ impl<'a> SignalPair<'a> {
     /// or a time step that is not positive.
     pub fn new(reference: &'a [f64], compared: &'a [f64], time_step_s: f64) -> Result<Self> {
         positive("time step of the compared signals, s", time_step_s)?;
-        if reference.len() != compared.len() {
-            return Err(Error::input(
-                "compared signal",
-                format!(
-                    "{}, as in the reference",
-                    counted(reference.len(), "sample")
-                ),
-                counted(compared.len(), "sample"),
-            ));
-        }
-        if reference.len() < 2 {
-            return Err(Error::input(
-                "reference signal",
-                "at least 2 samples",
-                counted(reference.len(), "sample"),
-            ));
-        }
+        ensure(
+            reference.len() == compared.len(),
+            "compared signal",
+            format_args!(
+                "{}, as in the reference",
+                counted(reference.len(), "sample")
+            ),
+            counted(compared.len(), "sample"),
+        )?;
+        ensure(
+            reference.len() >= 2,
+            "reference signal",
+            "at least 2 samples",
+            counted(reference.len(), "sample"),
+        )?;
         check_finite("reference signal", reference)?;
         check_finite("compared signal", compared)?;
         let even = reference.len() & !1;

@@ -1,6 +1,6 @@
 //! Gusts over time: the turbulence components `u` along the mean wind and `w` upwards.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 
 /// Gusts at equal time steps, on straight lines in between.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,26 +14,24 @@ impl GustSeries {
     /// Gusts `u`, `w` (m/s) every `step_s` seconds from time zero.
     ///
     /// # Errors
-    /// [`Error::Input`] for a step that is not positive, series of different length, fewer than two samples, and
+    /// [`Error::Input`](crate::error::Error::Input) for a step that is not positive, series of different length, fewer than two samples, and
     /// numbers that are not finite, with the sample.
     pub fn new(step_s: f64, along_m_s: Vec<f64>, vertical_m_s: Vec<f64>) -> Result<Self> {
         positive("gusts: step", step_s)?;
-        if along_m_s.len() != vertical_m_s.len() || along_m_s.len() < 2 {
-            return Err(Error::input(
-                "gusts",
-                "two series of the same length, at least 2 samples",
-                format!("{} and {}", along_m_s.len(), vertical_m_s.len()),
-            ));
-        }
+        ensure(
+            along_m_s.len() == vertical_m_s.len() && along_m_s.len() >= 2,
+            "gusts",
+            "two series of the same length, at least 2 samples",
+            format_args!("{} and {}", along_m_s.len(), vertical_m_s.len()),
+        )?;
         let pairs = along_m_s.iter().zip(&vertical_m_s).enumerate();
         for (i, (u, w)) in pairs {
-            if !(u.is_finite() && w.is_finite()) {
-                return Err(Error::input(
-                    format!("gusts: sample {}", i + 1),
-                    "finite speeds",
-                    format!("u = {u}, w = {w}"),
-                ));
-            }
+            ensure(
+                u.is_finite() && w.is_finite(),
+                format_args!("gusts: sample {}", i + 1),
+                "finite speeds",
+                format_args!("u = {u}, w = {w}"),
+            )?;
         }
         Ok(Self {
             step_s,

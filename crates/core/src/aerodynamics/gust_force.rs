@@ -1,7 +1,7 @@
 //! Forces of gusts that can be stepped: static coefficients through a rational admittance.
 
 use super::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
-use crate::error::{Error, Result, finite};
+use crate::error::{Result, ensure, finite};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -98,22 +98,21 @@ impl GustForce {
     /// Checks the coefficients for a model with these degrees of freedom.
     ///
     /// # Errors
-    /// [`Error::Input`] for other degrees of freedom, another number of rows and numbers that are not finite.
+    /// [`Error::Input`](crate::error::Error::Input) for other degrees of freedom, another number of rows and numbers that are not finite.
     pub fn validate(&self, dofs: &[Dof]) -> Result<()> {
-        if self.dofs != dofs || self.coefficients.len() != dofs.len() {
-            return Err(Error::input(
-                "gust forces",
-                format!(
-                    "a row for each degree of freedom of the model, {}",
-                    Dof::names(dofs)
-                ),
-                format!(
-                    "{} rows for {}",
-                    self.coefficients.len(),
-                    Dof::names(&self.dofs)
-                ),
-            ));
-        }
+        ensure(
+            self.dofs == dofs && self.coefficients.len() == dofs.len(),
+            "gust forces",
+            format_args!(
+                "a row for each degree of freedom of the model, {}",
+                Dof::names(dofs)
+            ),
+            format_args!(
+                "{} rows for {}",
+                self.coefficients.len(),
+                Dof::names(&self.dofs)
+            ),
+        )?;
         for (row, dof) in self.coefficients.iter().zip(dofs) {
             for (x, gust) in row.iter().zip(["u", "w"]) {
                 finite(

@@ -13,7 +13,7 @@ pub use coefficients::{CoefficientRow, CoefficientsAt, CoefficientsHeader, Stati
 pub use coefficients::{TABLE_SIGN_CONVENTION, TABLE_UNITS};
 pub use linear::LinearQuasiSteady;
 
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 
 /// Quasi-steady theory of one deck.
@@ -56,16 +56,15 @@ impl QuasiSteady {
     /// The theory for a deck of these degrees of freedom.
     ///
     /// # Errors
-    /// [`Error::Input`] when the degrees of freedom are neither [`Dof::TWO`] nor [`Dof::THREE`] or an arm is not finite.
+    /// [`Error::Input`](crate::error::Error::Input) when the degrees of freedom are neither [`Dof::TWO`] nor [`Dof::THREE`] or an arm is not finite.
     pub fn new(coefficients: StaticCoefficients, arms: Arms, dofs: &[Dof]) -> Result<Self> {
         arms.validate("")?;
-        if dofs != Dof::TWO && dofs != Dof::THREE {
-            return Err(Error::input(
-                "quasi-steady theory",
-                "vertical and torsional degrees of freedom, with or without the lateral one between",
-                Dof::names(dofs),
-            ));
-        }
+        ensure(
+            dofs == Dof::TWO || dofs == Dof::THREE,
+            "quasi-steady theory",
+            "vertical and torsional degrees of freedom, with or without the lateral one between",
+            Dof::names(dofs),
+        )?;
         Ok(Self {
             coefficients,
             arms,

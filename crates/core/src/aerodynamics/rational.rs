@@ -6,7 +6,7 @@ mod minimum_state;
 pub use minimum_state::MinimumStateModel;
 
 use super::{ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix};
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
 use crate::state_space::complex;
 use crate::units::ReducedFrequency;
@@ -54,21 +54,18 @@ impl Lags {
         let lists = match self {
             Self::Shared(lags) => std::slice::from_ref(lags),
             Self::PerForce(rows) => {
-                if rows.len() != n {
-                    let found = rows.len().to_string();
-                    return Err(Error::input(
-                        PLACE,
-                        format!("{n} lists, one per force"),
-                        found,
-                    ));
-                }
-                if rows.iter().any(|r| r.len() != rows[0].len()) {
-                    return Err(Error::input(
-                        PLACE,
-                        "lists of one length",
-                        "different lengths",
-                    ));
-                }
+                ensure(
+                    rows.len() == n,
+                    PLACE,
+                    format_args!("{n} lists, one per force"),
+                    rows.len(),
+                )?;
+                ensure(
+                    rows.iter().all(|r| r.len() == rows[0].len()),
+                    PLACE,
+                    "lists of one length",
+                    "different lengths",
+                )?;
                 rows
             }
         };
@@ -117,14 +114,12 @@ pub struct RationalModel {
 /// Checks that matrices are n×n and finite.
 fn check_square(place: &str, n: usize, terms: &[&DMatrix<f64>]) -> Result<()> {
     let square = |m: &&DMatrix<f64>| m.shape() == (n, n) && m.iter().all(|x| x.is_finite());
-    if terms.iter().all(square) {
-        return Ok(());
-    }
-    Err(Error::input(
+    ensure(
+        terms.iter().all(square),
         place,
-        format!("finite {n}x{n} matrices"),
+        format_args!("finite {n}x{n} matrices"),
         "another shape or a number that is not finite",
-    ))
+    )
 }
 
 impl RationalModel {
@@ -135,13 +130,12 @@ impl RationalModel {
         terms.extend(&self.lag_terms);
         check_square("rational model", n, &terms)?;
         self.lags.validate(n)?;
-        if self.lag_terms.len() != self.lags.count() {
-            return Err(Error::input(
-                "rational model: lag_terms",
-                format!("one matrix per lag, {} in all", self.lags.count()),
-                self.lag_terms.len().to_string(),
-            ));
-        }
+        ensure(
+            self.lag_terms.len() == self.lags.count(),
+            "rational model: lag_terms",
+            format_args!("one matrix per lag, {} in all", self.lags.count()),
+            self.lag_terms.len(),
+        )?;
         Ok(())
     }
 

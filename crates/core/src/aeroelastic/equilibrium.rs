@@ -6,7 +6,7 @@
 //! the rotation leaves the table.
 
 use crate::aerodynamics::quasi_steady::QuasiSteady;
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, ensure, non_negative};
 use crate::section::{Dof, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -102,13 +102,12 @@ pub fn static_equilibria(
     let mut points = Vec::with_capacity(speeds_m_s.len());
     let mut last = 0.0;
     for &speed in speeds_m_s {
-        if non_negative("wind speeds", speed)? < last {
-            return Err(Error::input(
-                "wind speeds",
-                "rising numbers",
-                format!("{speed} after {last}"),
-            ));
-        }
+        ensure(
+            non_negative("wind speeds", speed)? >= last,
+            "wind speeds",
+            "rising numbers",
+            format_args!("{speed} after {last}"),
+        )?;
         last = speed;
         let pressure = 0.5 * structure.air_density_kg_m3 * speed * speed;
         let (reached, arrived) = branch.follow(at, pressure)?;
@@ -147,13 +146,12 @@ struct Branch<'a> {
 
 impl<'a> Branch<'a> {
     fn new(structure: &'a Structure, theory: &'a QuasiSteady) -> Result<Self> {
-        if theory.dofs() != structure.dofs {
-            return Err(Error::input(
-                "static equilibrium",
-                format!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
-                Dof::names(theory.dofs()),
-            ));
-        }
+        ensure(
+            theory.dofs() == structure.dofs,
+            "static equilibrium",
+            format_args!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
+            Dof::names(theory.dofs()),
+        )?;
         let mut flexibility = structure.stiffness.clone().try_inverse().ok_or_else(|| {
             Error::Numerical("static equilibrium: a degree of freedom has no stiffness".into())
         })?;

@@ -12,7 +12,7 @@
 //! coupled by nothing else: the wind does not blow at a damper.
 
 use super::{Bridge, DampedPoint, Dampers, motion_index};
-use crate::error::{Error, Result, counted, finite, non_negative, positive};
+use crate::error::{Result, counted, ensure, finite, non_negative, positive};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -21,16 +21,18 @@ impl Bridge {
     /// The same bridge with these dampers.
     ///
     /// # Errors
-    /// [`Error::Input`] for nodes that are none, masses that follow a rotation, and masses, frequencies, damping ratios and
+    /// [`Error::Input`](crate::error::Error::Input) for nodes that are none, masses that follow a rotation, and masses, frequencies, damping ratios and
     /// coefficients that are not positive (damping ratios and coefficients may be zero).
     pub fn with_dampers(mut self, dampers: Dampers) -> Result<Self> {
         for damper in &dampers.masses {
             let key = |of: &str| format!("{}: {of}", damper.name);
             self.check_point(&damper.name, &damper.at)?;
-            if damper.at.motion == Dof::Torsion {
-                let expected = "vertical or lateral";
-                return Err(Error::input(key("motion"), expected, "torsion"));
-            }
+            ensure(
+                damper.at.motion != Dof::Torsion,
+                key("motion"),
+                "vertical or lateral",
+                "torsion",
+            )?;
             positive(key("mass_kg"), damper.mass_kg)?;
             positive(key("frequency_hz"), damper.frequency_hz)?;
             non_negative(key("damping_ratio"), damper.damping_ratio)?;
@@ -47,11 +49,12 @@ impl Bridge {
 
     fn check_point(&self, name: &str, point: &DampedPoint) -> Result<()> {
         finite(format!("{name}: offset_m"), point.offset_m)?;
-        if point.node < self.nodes.len() {
-            return Ok(());
-        }
-        let expected = format!("one of {}", counted(self.nodes.len(), "node"));
-        Err(Error::input(name, expected, format!("node {}", point.node)))
+        ensure(
+            point.node < self.nodes.len(),
+            name,
+            format_args!("one of {}", counted(self.nodes.len(), "node")),
+            format_args!("node {}", point.node),
+        )
     }
 
     /// Number of coordinates: the modes, then the masses of the dampers.

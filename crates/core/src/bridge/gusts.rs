@@ -5,7 +5,7 @@
 //! the width of their strip: strips of one `p/B` share the lags of each mode, and their forces per 1 m/s of wind are a channel.
 
 use super::Bridge;
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Result, counted, ensure};
 use crate::section::Dof;
 
 /// What the gusts of strips do to the mass-normalised modes, per 1 m/s of wind.
@@ -24,13 +24,12 @@ impl GustChannels {
     /// # Errors
     /// [`Error::Input`] for another number of matrices than of groups and for strips of nodes that are none or already taken.
     pub fn new(bridge: &Bridge, matrices: &[[[f64; 2]; 3]], strips: &[Vec<usize>]) -> Result<Self> {
-        if matrices.len() != bridge.groups.len() {
-            return Err(Error::input(
-                "gust forces",
-                format!("coefficients of {}", counted(bridge.groups.len(), "group")),
-                matrices.len().to_string(),
-            ));
-        }
+        ensure(
+            matrices.len() == bridge.groups.len(),
+            "gust forces",
+            format_args!("coefficients of {}", counted(bridge.groups.len(), "group")),
+            matrices.len(),
+        )?;
         let strip_of_node = owners(bridge, strips)?;
         let modes = bridge.coordinates();
         let mut all = Self {

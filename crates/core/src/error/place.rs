@@ -160,6 +160,12 @@ impl From<String> for Place {
     }
 }
 
+impl From<fmt::Arguments<'_>> for Place {
+    fn from(text: fmt::Arguments<'_>) -> Self {
+        text.to_string().into()
+    }
+}
+
 impl From<&String> for Place {
     fn from(text: &String) -> Self {
         text.as_str().into()

@@ -4,7 +4,7 @@ use super::following::{Follower, Mode};
 use super::mode_words::mode_in_words;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, ensure, non_negative};
 use crate::section::Structure;
 use crate::state_space::damping_ratio;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -143,13 +143,12 @@ pub fn trace_modes(
     let mut branches = empty_branches(section.structure(), speeds_m_s.len());
     let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
-        if non_negative("wind speeds", speed)? < last {
-            return Err(Error::input(
-                "wind speeds",
-                "increasing numbers",
-                format!("{speed} after {last}"),
-            ));
-        }
+        ensure(
+            non_negative("wind speeds", speed)? >= last,
+            "wind speeds",
+            "increasing numbers",
+            format_args!("{speed} after {last}"),
+        )?;
         last = speed;
         if speed < modes.speed {
             // below the first speed at which the sampled system resolves the modes nothing can be said

@@ -2,6 +2,7 @@
 //! at every wind speed.
 
 use super::columns::{ComplexColumns, EntryBlock, WIDTH, dot, entry};
+use crate::vectorised;
 use nalgebra::{Complex, DMatrix};
 use std::ops::Range;
 
@@ -133,36 +134,23 @@ pub fn solve_complex(
     a: &DMatrix<Complex64>,
     sides: &DMatrix<Complex64>,
 ) -> Option<DMatrix<Complex64>> {
-    let solve = Solve(ComplexColumns::of(a), ComplexColumns::of(sides));
-    Some(pulp::Arch::new().dispatch(solve)?.to_matrix())
+    Some(solution(ComplexColumns::of(a), ComplexColumns::of(sides))?.to_matrix())
 }
 
 /// Numbers whose product is the determinant of `a`, n×n: that of many modes is beyond all numbers. `None` as for
 /// [`solve_complex`].
 pub fn pivots(a: &DMatrix<Complex64>) -> Option<Vec<Complex64>> {
-    let factors = pulp::Arch::new().dispatch(Decompose(ComplexColumns::of(a)))?;
+    let factors = triangles(ComplexColumns::of(a))?;
     Some(factors.pivots().collect())
 }
 
-struct Solve(ComplexColumns, ComplexColumns);
-
-impl pulp::NullaryFnOnce for Solve {
-    type Output = Option<ComplexColumns>;
-
-    #[inline(always)]
-    fn call(self) -> Option<ComplexColumns> {
-        Some(self.0.factors()?.solve(self.1))
+vectorised! {
+    fn solution(a: ComplexColumns, sides: ComplexColumns) -> Option<ComplexColumns> {
+        Some(a.factors()?.solve(sides))
     }
-}
 
-struct Decompose(ComplexColumns);
-
-impl pulp::NullaryFnOnce for Decompose {
-    type Output = Option<Factors>;
-
-    #[inline(always)]
-    fn call(self) -> Option<Factors> {
-        self.0.factors()
+    fn triangles(a: ComplexColumns) -> Option<Factors> {
+        a.factors()
     }
 }
 

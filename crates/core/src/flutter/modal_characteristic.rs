@@ -15,6 +15,7 @@ use super::columns::{ComplexColumns, RealColumns, Term};
 use super::elimination::{Factors, solve_complex};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
+use crate::vectorised;
 use chains::{Chain, chains};
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -123,10 +124,7 @@ impl AtSpeed<'_> {
         let mut shape = ComplexColumns::of_column(&near.normalize());
         for _ in 0..MAX_ROUNDS {
             let terms = self.terms(lambda)?;
-            let Some(round) = pulp::Arch::new().dispatch(TwoSided {
-                terms,
-                shape: &shape,
-            }) else {
+            let Some(round) = two_sided(terms, &shape) else {
                 // an eigenvalue that is met exactly, as those of still air, cannot be solved with
                 lambda *= 1.0 + NUDGE;
                 continue;
@@ -146,7 +144,7 @@ impl AtSpeed<'_> {
                 continue;
             }
             let terms = self.terms(lambda)?;
-            let (step, better) = pulp::Arch::new().dispatch(Residual { terms, round })?;
+            let (step, better) = without_residual(terms, round)?;
             lambda -= step;
             if settled(step, step.norm() * part, lambda, POLISHED) {
                 return Some((lambda, better.to_column()));
@@ -164,11 +162,7 @@ impl AtSpeed<'_> {
     ) -> Option<DMatrix<Complex64>> {
         let terms = self.terms(lambda)?;
         let basis = ComplexColumns::of(basis);
-        Some(
-            pulp::Arch::new()
-                .dispatch(InverseStep { terms, basis })?
-                .to_matrix(),
-        )
+        Some(inverse_of_slope(terms, basis)?.to_matrix())
     }
 
     /// `det D(λ)` over that of the mass, as the product of what `each` makes of the pivots; `None` at an eigenvalue.
@@ -178,7 +172,7 @@ impl AtSpeed<'_> {
         each: impl FnMut(Complex64) -> Complex64,
     ) -> Option<Complex64> {
         let terms = self.terms(lambda)?;
-        let factors = pulp::Arch::new().dispatch(Triangles { terms })?;
+        let factors = triangles(terms)?;
         let product: Complex64 = factors.pivots().map(each).product();
         Some(product / self.problem.mass_determinant)
     }
@@ -207,44 +201,7 @@ impl AtSpeed<'_> {
     }
 }
 
-/// `D⁻¹ D' U`, compiled for the vectors of the processor.
-struct InverseStep<'a> {
-    terms: Vec<Term<'a>>,
-    basis: ComplexColumns,
-}
-
-impl pulp::NullaryFnOnce for InverseStep<'_> {
-    type Output = Option<ComplexColumns>;
-
-    #[inline(always)]
-    fn call(self) -> Option<ComplexColumns> {
-        let (value, slope) = ComplexColumns::sum(&self.terms);
-        Some(value.factors()?.solve(slope.times(&self.basis)))
-    }
-}
-
-/// `D` as a product of triangles.
-struct Triangles<'a> {
-    terms: Vec<Term<'a>>,
-}
-
-impl pulp::NullaryFnOnce for Triangles<'_> {
-    type Output = Option<Factors>;
-
-    #[inline(always)]
-    fn call(self) -> Option<Factors> {
-        ComplexColumns::value(&self.terms).factors()
-    }
-}
-
-/// A round of two-sided inverse iteration.
-struct TwoSided<'a> {
-    terms: Vec<Term<'a>>,
-    /// Of unit norm.
-    shape: &'a ComplexColumns,
-}
-
-/// What it finds.
+/// What a round of two-sided inverse iteration finds.
 struct Round {
     /// What is to be taken from the eigenvalue.
     step: Complex64,
@@ -256,16 +213,24 @@ struct Round {
     scale: Complex64,
 }
 
-impl pulp::NullaryFnOnce for TwoSided<'_> {
-    type Output = Option<Round>;
+vectorised! {
+    /// `D⁻¹ D' U`.
+    fn inverse_of_slope<'a>(terms: Vec<Term<'a>>, basis: ComplexColumns) -> Option<ComplexColumns> {
+        let (value, slope) = ComplexColumns::sum(&terms);
+        Some(value.factors()?.solve(slope.times(&basis)))
+    }
 
-    /// `None` where it is not finite.
-    #[inline(always)]
-    fn call(self) -> Option<Round> {
-        let (value, slope) = ComplexColumns::sum(&self.terms);
+    /// `D` as a product of triangles.
+    fn triangles<'a>(terms: Vec<Term<'a>>) -> Option<Factors> {
+        ComplexColumns::value(&terms).factors()
+    }
+
+    /// A round of two-sided inverse iteration from a shape of unit norm; `None` where it is not finite.
+    fn two_sided<'a>(terms: Vec<Term<'a>>, shape: &'a ComplexColumns) -> Option<Round> {
+        let (value, slope) = ComplexColumns::sum(&terms);
         let factors = value.factors()?;
-        let side = slope.times(self.shape);
-        let left = factors.solve_transposed(&slope.transposed_times(self.shape));
+        let side = slope.times(shape);
+        let left = factors.solve_transposed(&slope.transposed_times(shape));
         // `D u` is the right-hand side
         let applied = left.dot(&side);
         let mut right = factors.solve(side);
@@ -281,28 +246,12 @@ impl pulp::NullaryFnOnce for TwoSided<'_> {
             scale: scale / size,
         })
     }
-}
 
-/// A residual taken away with the triangles of the round before: `z = D(λ₀)⁻¹ D(λ) u`, `u ← u − z`, `λ ← λ − (wᵀDu)/(wᵀD'u)`.
-struct Residual<'a> {
-    terms: Vec<Term<'a>>,
-    round: Round,
-}
-
-impl pulp::NullaryFnOnce for Residual<'_> {
-    type Output = Option<(Complex64, ComplexColumns)>;
-
-    /// What is to be taken from the eigenvalue, and the better shape; `None` where they are not finite.
-    #[inline(always)]
-    fn call(self) -> Option<(Complex64, ComplexColumns)> {
-        let value = ComplexColumns::value(&self.terms);
-        let Round {
-            factors,
-            mut right,
-            left,
-            scale,
-            ..
-        } = self.round;
+    /// A residual taken away with the triangles of the round before: `z = D(λ₀)⁻¹ D(λ) u`, `u ← u − z`,
+    /// `λ ← λ − (wᵀDu)/(wᵀD'u)`: what is to be taken from the eigenvalue, and the better shape; `None` where they are not finite.
+    fn without_residual<'a>(terms: Vec<Term<'a>>, round: Round) -> Option<(Complex64, ComplexColumns)> {
+        let value = ComplexColumns::value(&terms);
+        let Round { factors, mut right, left, scale, .. } = round;
         let residual = value.times(&right);
         let from_left = value.transposed_times(&left);
         let before = left.dot(&residual);

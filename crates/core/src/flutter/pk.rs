@@ -13,7 +13,7 @@ use super::judged::{StableRange, damps_fast_motion, entry_reason};
 use super::mode_words::the_mode;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::section::Structure;
 use crate::units::ReducedFrequencyRange;
 use nalgebra::Complex;
@@ -35,13 +35,12 @@ pub fn pk_curves(
 ) -> Result<FlutterCurves> {
     let mut last = 0.0;
     for &speed in speeds_m_s {
-        if positive("wind speeds", speed)? <= last {
-            return Err(Error::input(
-                "wind speeds",
-                "increasing numbers above zero",
-                format!("{speed} after {last}"),
-            ));
-        }
+        ensure(
+            positive("wind speeds", speed)? > last,
+            "wind speeds",
+            "increasing numbers above zero",
+            format_args!("{speed} after {last}"),
+        )?;
         last = speed;
     }
     let iteration = StructureInWind { structure, model };
@@ -76,13 +75,12 @@ pub fn quasi_pk_mode(
 ) -> Result<Complex<f64>> {
     positive("wind speed", speed_m_s)?;
     let n = structure.dofs.len();
-    if dof >= n {
-        return Err(Error::input(
-            "degree of freedom",
-            format!("an index below {n}"),
-            dof.to_string(),
-        ));
-    }
+    ensure(
+        dof < n,
+        "degree of freedom",
+        format_args!("an index below {n}"),
+        dof,
+    )?;
     let speeds: Vec<f64> = (1..=STEPS_TO_MODE)
         .map(|i| speed_m_s * i as f64 / STEPS_TO_MODE as f64)
         .collect();

@@ -9,7 +9,7 @@ use super::present_modes::ModesOverWind;
 use super::still_air::lowest_speed;
 use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::state_space::{boundary, golden_section};
 use crate::threads;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -132,15 +132,14 @@ impl<'a> Scan<'a> {
     /// What a scan from still air covers.
     pub(super) fn looked_at(&self, to_m_s: f64) -> Result<StableRange> {
         let lowest = lowest_speed(self.section)?;
-        if lowest >= to_m_s {
-            return Err(Error::input(
-                "highest wind speed",
-                format!(
-                    "more than {lowest:.3} m/s, below which the sampled model has too few samples per period"
-                ),
-                format!("{to_m_s} m/s"),
-            ));
-        }
+        ensure(
+            lowest < to_m_s,
+            "highest wind speed",
+            format_args!(
+                "more than {lowest:.3} m/s, below which the sampled model has too few samples per period"
+            ),
+            format_args!("{to_m_s} m/s"),
+        )?;
         Ok(StableRange {
             from_m_s: lowest,
             to_m_s,
@@ -153,13 +152,12 @@ impl<'a> Scan<'a> {
     fn speeds(&self, from_m_s: f64, to_m_s: f64, coarse: bool) -> Result<Vec<f64>> {
         non_negative("lowest wind speed", from_m_s)?;
         positive("highest wind speed", to_m_s)?;
-        if from_m_s >= to_m_s {
-            return Err(Error::input(
-                "highest wind speed",
-                format!("a number above the lowest, {from_m_s} m/s"),
-                to_m_s.to_string(),
-            ));
-        }
+        ensure(
+            from_m_s < to_m_s,
+            "highest wind speed",
+            format_args!("a number above the lowest, {from_m_s} m/s"),
+            to_m_s,
+        )?;
         let (ratio, part) = if coarse { COARSE } else { FINE };
         let mut all = Vec::new();
         let mut speed = from_m_s.max(self.lowest(to_m_s)?);

@@ -6,7 +6,7 @@ use super::judged::{Exit, JudgedSpeeds, damps_fast_motion};
 use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 
@@ -49,13 +49,12 @@ impl OnsetSearch {
     /// [`Error::Input`] for a highest speed that is not positive or fewer than two speeds.
     pub fn speeds_m_s(&self) -> Result<Vec<f64>> {
         let highest = positive("flutter.speed_max_m_s", self.speed_max_m_s)?;
-        if self.speeds < 2 {
-            return Err(Error::input(
-                "flutter.speeds",
-                "at least 2",
-                self.speeds.to_string(),
-            ));
-        }
+        ensure(
+            self.speeds >= 2,
+            "flutter.speeds",
+            "at least 2",
+            self.speeds,
+        )?;
         let speed = |i: usize| highest * i as f64 / self.speeds as f64;
         Ok((1..=self.speeds).map(speed).collect())
     }

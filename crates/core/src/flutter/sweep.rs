@@ -18,7 +18,7 @@ pub use basis::LinearForces;
 pub use samples::at_samples;
 pub use samples::stands_at_samples;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::section::{Dof, SectionModel, Structure};
 use crossing::{Crossing, refine};
 use nalgebra::Complex;
@@ -148,10 +148,12 @@ impl OnsetSweep {
     /// [`Error::Input`] for a section that cannot be and coefficients of another number.
     pub fn onset(&self, section: &SectionModel, coefficients: &[f64]) -> Result<SweepOutcome> {
         let (expected, found) = (self.forces.coefficients().len(), coefficients.len());
-        if found != expected {
-            let place = "coefficients of the force model";
-            return Err(Error::input(place, expected.to_string(), found.to_string()));
-        }
+        ensure(
+            found == expected,
+            "coefficients of the force model",
+            expected,
+            found,
+        )?;
         Ok(match self.forces.dofs.len() {
             2 => Sweep::<2>::new(self, supports(section)?, coefficients).run(),
             _ => Sweep::<3>::new(self, supports(section)?, coefficients).run(),

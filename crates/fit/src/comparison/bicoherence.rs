@@ -3,7 +3,7 @@
 use super::amplitude::distance_metric;
 use super::morlet::{Morlet, RowBuffer, WaveletParameters};
 use super::{Metric, SignalPair};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Result, ensure, non_negative, positive};
 use crate::signal::{Complex64, mean_and_deviation, random_stream};
 use nalgebra::DMatrix;
 use rand::Rng;
@@ -79,7 +79,7 @@ pub struct BicoherenceDetails {
 /// Memory: `W` at all levels up to `f_max/2` and their sums, 96 bytes per level and sample, and 16 bytes per surrogate and sample.
 ///
 /// # Errors
-/// [`Error::Input`] for unusable parameters or a record too short for the cone at `f_max/2`.
+/// [`Error::Input`](crate::error::Error::Input) for unusable parameters or a record too short for the cone at `f_max/2`.
 pub fn bicoherence(
     pair: &SignalPair<'_>,
     parameters: &BicoherenceParameters,
@@ -122,20 +122,18 @@ fn check(parameters: &BicoherenceParameters) -> Result<()> {
     non_negative("randomisation of the biphase", parameters.randomisation)?;
     non_negative("threshold of coupling", parameters.threshold_deviations)?;
     let smallest = positive("smallest biphase, rad", parameters.smallest_biphase_rad)?;
-    if smallest >= PI {
-        return Err(Error::input(
-            "smallest biphase, rad",
-            "a number below π",
-            smallest.to_string(),
-        ));
-    }
-    if parameters.surrogate_count < 2 {
-        return Err(Error::input(
-            "number of surrogates",
-            "at least 2",
-            parameters.surrogate_count.to_string(),
-        ));
-    }
+    ensure(
+        smallest < PI,
+        "smallest biphase, rad",
+        "a number below π",
+        smallest,
+    )?;
+    ensure(
+        parameters.surrogate_count >= 2,
+        "number of surrogates",
+        "at least 2",
+        parameters.surrogate_count,
+    )?;
     Ok(())
 }
 
@@ -172,13 +170,12 @@ impl Plane {
         let level_count = (0..whole.level_count())
             .take_while(|&level| whole.frequency_hz(level) <= half_hz)
             .count();
-        if level_count == 0 {
-            return Err(Error::input(
-                "highest wavelet frequency, Hz",
-                "at least twice the lowest",
-                parameters.wavelet.frequency_max_hz.to_string(),
-            ));
-        }
+        ensure(
+            level_count != 0,
+            "highest wavelet frequency, Hz",
+            "at least twice the lowest",
+            parameters.wavelet.frequency_max_hz,
+        )?;
         let lowest = parameters.wavelet.frequency_min_hz;
         let grid = |level_count: usize, first_hz: f64| WaveletParameters {
             level_count,

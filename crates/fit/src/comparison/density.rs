@@ -7,7 +7,7 @@
 //! reference.
 
 use super::{Metric, SignalPair};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::signal::{Complex64, Fourier, extremes, mean_and_deviation};
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -82,13 +82,12 @@ fn values(place: &str, signal: &[f64], parameters: &DensityParameters) -> Result
     let (mean, deviation) = mean_and_deviation(signal.iter().copied());
     let largest = signal.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     // The deviation of a constant is the rounding error of its mean.
-    if deviation <= 1e-12 * largest {
-        return Err(Error::input(
-            place,
-            "a signal that varies",
-            format!("{mean} throughout"),
-        ));
-    }
+    ensure(
+        deviation > 1e-12 * largest,
+        place,
+        "a signal that varies",
+        format_args!("{mean} throughout"),
+    )?;
     if !deviation.is_finite() {
         return Err(Error::Numerical(format!(
             "{place}: the variance is too large for double precision"

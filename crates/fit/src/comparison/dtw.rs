@@ -7,7 +7,7 @@
 //! recomputing only the triangle of cells that can lie on it. The path is the one the full matrix would give, to
 //! the last tie: the values are the same numbers.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 
 /// Antidiagonals between those kept. At 20 000 × 20 000 samples these take 13 MB and a triangle 0.3 MB.
 const INTERVAL: usize = 512;
@@ -38,13 +38,12 @@ pub fn warping_path(
     reference: &[f64],
     band: Option<usize>,
 ) -> Result<WarpingPath> {
-    if compared.is_empty() || reference.is_empty() {
-        return Err(Error::input(
-            "signals to be warped",
-            "at least one sample each",
-            format!("{} and {} samples", compared.len(), reference.len()),
-        ));
-    }
+    ensure(
+        !compared.is_empty() && !reference.is_empty(),
+        "signals to be warped",
+        "at least one sample each",
+        format_args!("{} and {} samples", compared.len(), reference.len()),
+    )?;
     let excess = compared.len().abs_diff(reference.len());
     if let Some(width) = band
         && width < excess

@@ -1,7 +1,8 @@
 //! Continuous Morlet transform on chosen frequencies.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::signal::{Complex64, Fourier};
+use aerodeck_core::vectorised;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -74,7 +75,7 @@ impl Morlet {
     /// For signals of `sample_count` samples.
     ///
     /// # Errors
-    /// [`Error::Input`] for parameters that are not positive, a highest frequency beyond Nyquist, or a record too
+    /// [`Error::Input`](crate::error::Error::Input) for parameters that are not positive, a highest frequency beyond Nyquist, or a record too
     /// short to hold any coefficient outside the cone.
     pub(super) fn new(
         parameters: &WaveletParameters,
@@ -96,16 +97,15 @@ impl Morlet {
             let transform = transform.unwrap_or_else(|| Arc::new(Fourier::new(length)));
             plan.fourier.push(transform);
         }
-        if plan.inside(plan.level_count() - 1).is_empty() {
-            return Err(Error::input(
-                "signals for the wavelet transform",
-                format!(
-                    "a record longer than twice the cone at {} Hz",
-                    parameters.frequency_max_hz
-                ),
-                format!("{} s", sample_count as f64 * time_step_s),
-            ));
-        }
+        ensure(
+            !plan.inside(plan.level_count() - 1).is_empty(),
+            "signals for the wavelet transform",
+            format_args!(
+                "a record longer than twice the cone at {} Hz",
+                parameters.frequency_max_hz
+            ),
+            format_args!("{} s", sample_count as f64 * time_step_s),
+        )?;
         Ok(plan)
     }
 
@@ -192,11 +192,7 @@ impl LevelGroup<'_> {
     ) -> &'b [Complex64] {
         let RowBuffer { values, scratch } = buffer;
         values.resize(kernel.len(), Complex64::default());
-        pulp::Arch::new().dispatch(AtLevel {
-            values,
-            kernel,
-            spectrum,
-        });
+        at_level(values, kernel, spectrum);
         self.fourier.inverse_in(values, scratch);
         &values[..self.plan.sample_count]
     }
@@ -223,20 +219,10 @@ impl LevelGroup<'_> {
     }
 }
 
-/// A spectrum by the kernel of a level.
-struct AtLevel<'a> {
-    values: &'a mut [Complex64],
-    kernel: &'a [f64],
-    spectrum: &'a [Complex64],
-}
-
-impl pulp::NullaryFnOnce for AtLevel<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let each = self.kernel.iter().zip(self.spectrum);
-        for (value, (k, x)) in self.values.iter_mut().zip(each) {
+vectorised! {
+    /// A spectrum by the kernel of a level.
+    fn at_level<'a>(values: &'a mut [Complex64], kernel: &'a [f64], spectrum: &'a [Complex64]) -> () {
+        for (value, (k, x)) in values.iter_mut().zip(kernel.iter().zip(spectrum)) {
             *value = Complex64::new(x.re * k, x.im * k);
         }
     }
@@ -252,24 +238,26 @@ fn quick_length(least: usize) -> usize {
 
 fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
     let p = parameters;
-    if p.level_count == 0 {
-        return Err(Error::input("number of wavelet levels", "at least 1", "0"));
-    }
+    ensure(
+        p.level_count != 0,
+        "number of wavelet levels",
+        "at least 1",
+        "0",
+    )?;
     positive("lowest wavelet frequency, Hz", p.frequency_min_hz)?;
     positive("central frequency of the wavelet", p.central_frequency)?;
     positive("truncation of the wavelet", p.truncation)?;
     crate::error::non_negative("cone of influence of the wavelet", p.cone)?;
     let nyquist = 0.5 / time_step_s;
-    if !(p.frequency_max_hz >= p.frequency_min_hz && p.frequency_max_hz <= nyquist) {
-        return Err(Error::input(
-            "highest wavelet frequency, Hz",
-            format!(
-                "a number from {} Hz to the Nyquist frequency {nyquist} Hz",
-                p.frequency_min_hz
-            ),
-            p.frequency_max_hz.to_string(),
-        ));
-    }
+    ensure(
+        p.frequency_max_hz >= p.frequency_min_hz && p.frequency_max_hz <= nyquist,
+        "highest wavelet frequency, Hz",
+        format_args!(
+            "a number from {} Hz to the Nyquist frequency {nyquist} Hz",
+            p.frequency_min_hz
+        ),
+        p.frequency_max_hz,
+    )?;
     Ok(())
 }
 

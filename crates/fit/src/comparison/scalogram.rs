@@ -3,6 +3,7 @@
 
 use super::morlet::{LevelGroup, RowBuffer};
 use crate::signal::{Complex64, mean_and_deviation};
+use aerodeck_core::vectorised;
 use std::f64::consts::{LN_2, LOG10_E};
 
 /// A signal and what the statistic Θ of its scalogram needs: with `s(t) = ΣS` and the mean spectrum `h = S̄`,
@@ -47,9 +48,8 @@ impl Scalogram {
         let mut power = vec![0.0; self.samples.len()];
         for (at, kernel) in kernels.iter().enumerate() {
             let row = group.row(kernel, &spectrum, buffer);
-            let (sums, power) = (&mut *self, &mut power);
-            pulp::Arch::new().dispatch(LevelSums { sums, row, power });
-            visit(at, power);
+            add_level(self, row, &mut power);
+            visit(at, &power);
         }
     }
 
@@ -87,22 +87,24 @@ impl Scalogram {
     }
 }
 
-/// A level that is added to the sums.
-struct LevelSums<'a> {
-    sums: &'a mut Scalogram,
-    row: &'a [Complex64],
-    power: &'a mut [f64],
-}
-
-impl pulp::NullaryFnOnce for LevelSums<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        for (p, w) in self.power.iter_mut().zip(self.row) {
+vectorised! {
+    /// Adds a level to the sums; its power is left in `power`.
+    fn add_level<'a>(sums: &'a mut Scalogram, row: &'a [Complex64], power: &'a mut [f64]) -> () {
+        for (p, w) in power.iter_mut().zip(row) {
             *p = w.re * w.re + w.im * w.im;
         }
-        self.sums.add(self.power);
+        sums.add(power);
+    }
+
+    /// Adds a signal to the moments.
+    fn add_signal<'a>(moments: &'a mut Moments, power: &'a [f64]) -> () {
+        let part = 1.0 / moments.count;
+        let to = moments.mean.iter_mut().zip(&mut moments.squares);
+        for (p, (m, s)) in power.iter().zip(to) {
+            let step = p - *m;
+            *m += step * part;
+            *s += step * (p - *m);
+        }
     }
 }
 
@@ -161,8 +163,7 @@ impl Moments {
     /// Takes a signal (Welford's recurrence).
     pub(super) fn add(&mut self, power: &[f64]) {
         self.count += 1.0;
-        let moments = self;
-        pulp::Arch::new().dispatch(OneMore { moments, power });
+        add_signal(self, power);
     }
 
     /// Takes the signals of others (Chan, Golub & LeVeque 1983).
@@ -183,31 +184,6 @@ impl Moments {
         let each = self.mean.iter().zip(&self.squares);
         each.map(|(m, s)| m + deviations * (s / (self.count - 1.0)).sqrt())
             .fold(0.0, f64::max)
-    }
-}
-
-/// A signal that is added to the moments.
-struct OneMore<'a> {
-    moments: &'a mut Moments,
-    power: &'a [f64],
-}
-
-impl pulp::NullaryFnOnce for OneMore<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Moments {
-            count,
-            mean,
-            squares,
-        } = self.moments;
-        let part = 1.0 / *count;
-        for ((p, m), s) in self.power.iter().zip(mean).zip(squares) {
-            let step = p - *m;
-            *m += step * part;
-            *s += step * (p - *m);
-        }
     }
 }
 

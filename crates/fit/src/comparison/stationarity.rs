@@ -5,7 +5,7 @@ use super::morlet::{LevelGroup, Morlet, RowBuffer, WaveletParameters};
 use super::scalogram::{Moments, Scalogram};
 use super::surrogates::{Gamma, phase_randomised};
 use super::{Metric, SignalPair};
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, ensure, non_negative};
 use crate::signal::{Complex64, mean_and_deviation};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -108,20 +108,18 @@ pub fn stationarity(
 }
 
 fn check(parameters: &StationarityParameters) -> Result<()> {
-    if parameters.surrogate_count < 2 {
-        return Err(Error::input(
-            "number of surrogates",
-            "at least 2",
-            parameters.surrogate_count.to_string(),
-        ));
-    }
-    if !(parameters.confidence > 0.0 && parameters.confidence < 1.0) {
-        return Err(Error::input(
-            "confidence of the stationarity test",
-            "a number between 0 and 1",
-            parameters.confidence.to_string(),
-        ));
-    }
+    ensure(
+        parameters.surrogate_count >= 2,
+        "number of surrogates",
+        "at least 2",
+        parameters.surrogate_count,
+    )?;
+    ensure(
+        parameters.confidence > 0.0 && parameters.confidence < 1.0,
+        "confidence of the stationarity test",
+        "a number between 0 and 1",
+        parameters.confidence,
+    )?;
     non_negative(
         "threshold of non-stationary content",
         parameters.threshold_deviations,

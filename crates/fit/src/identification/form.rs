@@ -4,7 +4,7 @@ mod feed_through;
 
 pub use feed_through::FeedThrough;
 
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Error, Result, counted, ensure, positive};
 use serde::{Deserialize, Serialize};
 
 /// Fewest filters of a form that leaves their number to the data: those of the thesis.
@@ -261,16 +261,15 @@ impl Form {
 
     /// Checks the form for a fit to records.
     pub(super) fn validate_for_records(&self) -> Result<()> {
-        if matches!(
-            self,
-            Self::RationalPerForce { .. } | Self::MinimumState { .. }
-        ) {
-            return Err(Error::input(
-                "form.kind",
-                "laguerre, takenaka_malmquist or rational for a fit to records",
-                format!("{}, which is fitted to tables", self.describe()),
-            ));
-        }
+        ensure(
+            !matches!(
+                self,
+                Self::RationalPerForce { .. } | Self::MinimumState { .. }
+            ),
+            "form.kind",
+            "laguerre, takenaka_malmquist or rational for a fit to records",
+            format_args!("{}, which is fitted to tables", self.describe()),
+        )?;
         self.validate()
     }
 }
@@ -320,19 +319,21 @@ impl PoleSearch {
     pub(crate) fn validate(&self, form: &Form) -> Result<()> {
         for (key, list) in [("fixed", &self.fixed), ("start", &self.start)] {
             let Some(list) = list else { continue };
-            let place = format!("poles.{key}");
+            let place = format_args!("poles.{key}");
             let several = key == "fixed" && form.poles_per_force();
             let fits = if several {
                 !list.is_empty() && list.len().is_multiple_of(form.free_poles())
             } else {
                 list.len() == form.free_poles()
             };
-            if !fits {
-                let expected = format!("{} number(s) for {}", form.free_poles(), form.describe());
-                return Err(Error::input(place, expected, list.len().to_string()));
-            }
+            ensure(
+                fits,
+                place,
+                format_args!("{} number(s) for {}", form.free_poles(), form.describe()),
+                list.len(),
+            )?;
             for p in list {
-                positive(&place, *p)?;
+                positive(place, *p)?;
             }
         }
         for (key, bound) in [("poles.min", self.min), ("poles.max", self.max)] {
@@ -349,20 +350,18 @@ impl PoleSearch {
                 max.to_string(),
             ));
         }
-        if !(self.min_ratio > 1.0 && self.min_ratio.is_finite()) {
-            return Err(Error::input(
-                "poles.min_ratio",
-                "more than 1",
-                self.min_ratio.to_string(),
-            ));
-        }
-        if self.grid_points < 5 {
-            return Err(Error::input(
-                "poles.grid_points",
-                "at least 5",
-                self.grid_points.to_string(),
-            ));
-        }
+        ensure(
+            self.min_ratio > 1.0 && self.min_ratio.is_finite(),
+            "poles.min_ratio",
+            "more than 1",
+            self.min_ratio,
+        )?;
+        ensure(
+            self.grid_points >= 5,
+            "poles.grid_points",
+            "at least 5",
+            self.grid_points,
+        )?;
         Ok(())
     }
 }
@@ -375,13 +374,14 @@ const MOST_FILTERS: usize = 100;
 /// # Errors
 /// [`Error::Input`] naming `place` for none, and for more than any data could support.
 pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
-    if (1..=MOST_FILTERS).contains(&count) {
-        return Ok(());
-    }
-    let expected = if count == 0 {
-        "at least 1".into()
-    } else {
-        format!("at most {MOST_FILTERS}")
-    };
-    Err(Error::input(place, expected, count.to_string()))
+    ensure(
+        (1..=MOST_FILTERS).contains(&count),
+        place,
+        if count == 0 {
+            "at least 1".into()
+        } else {
+            format!("at most {MOST_FILTERS}")
+        },
+        count,
+    )
 }

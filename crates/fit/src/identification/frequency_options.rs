@@ -5,7 +5,7 @@ use super::dissipative::Constraints;
 use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, ensure, non_negative};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -26,18 +26,24 @@ pub struct QuasiSteadyLimit {
 /// Checks what can be checked without the data.
 pub(super) fn validate_limits(limits: &[QuasiSteadyLimit]) -> Result<()> {
     for (i, limit) in limits.iter().enumerate() {
-        let place = format!("limits[{i}]");
+        let place = format_args!("limits[{i}]");
         let stated = [limit.value, limit.slope];
-        if stated.iter().all(Option::is_none) {
-            return Err(Error::input(place, "a value, a slope or both", "neither"));
-        }
+        ensure(
+            stated.iter().any(Option::is_some),
+            place,
+            "a value, a slope or both",
+            "neither",
+        )?;
         if let Some(x) = stated.iter().flatten().find(|x| !x.is_finite()) {
             return Err(Error::input(place, "finite numbers", x.to_string()));
         }
         let same = |l: &&QuasiSteadyLimit| (l.force, l.motion) == (limit.force, limit.motion);
-        if limits[..i].iter().any(|l| same(&l)) {
-            return Err(Error::input(place, "each entry once", "it twice"));
-        }
+        ensure(
+            !limits[..i].iter().any(|l| same(&l)),
+            place,
+            "each entry once",
+            "it twice",
+        )?;
     }
     Ok(())
 }

@@ -16,7 +16,7 @@ use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -77,13 +77,12 @@ impl Grid {
         filters_max: usize,
         progress: OnProgress<'_>,
     ) -> Result<Self> {
-        if axis.values().is_empty() || filters_max == 0 {
-            return Err(Error::input(
-                "grid",
-                "at least one value and one filter",
-                "none",
-            ));
-        }
+        ensure(
+            !axis.values().is_empty() && filters_max != 0,
+            "grid",
+            "at least one value and one filter",
+            "none",
+        )?;
         number_of_filters("grid.filters", filters_max)?;
         let records = Records::read(records, StaticTerm::None)?;
         let tested = records.tested_range()?;
@@ -95,13 +94,12 @@ impl Grid {
                 frequency_hz: s.segment.map(|i| record.segments()[i].frequency_hz),
             }
         };
-        if pass.stretches.iter().any(|s| s.set.len() > 1) {
-            return Err(Error::input(
-                "records",
-                "one moving degree of freedom a record",
-                "several that move at once",
-            ));
-        }
+        ensure(
+            pass.stretches.iter().all(|s| s.set.len() <= 1),
+            "records",
+            "one moving degree of freedom a record",
+            "several that move at once",
+        )?;
         Ok(Self {
             labels: pass.stretches.iter().map(label).collect(),
             axis,

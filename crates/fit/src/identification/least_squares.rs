@@ -6,6 +6,7 @@
 //! every leading subset of the columns.
 
 use crate::error::{Error, Result};
+use aerodeck_core::vectorised;
 use nalgebra::DMatrix;
 
 /// Rows that are factored together: a block of a dozen columns stays in the first-level cache.
@@ -118,7 +119,7 @@ impl StreamingQr {
     /// Reflects the pending rows into `R`, one column after the other, with the widest vectors of the processor: they add in the
     /// order of any other.
     fn factor_pending(&mut self) {
-        pulp::Arch::new().dispatch(Reflections(self));
+        reflect_pending(self);
     }
 
     #[inline(always)]
@@ -158,15 +159,10 @@ impl StreamingQr {
     }
 }
 
-/// What [`StreamingQr::factor_pending`] does.
-struct Reflections<'a>(&'a mut StreamingQr);
-
-impl pulp::NullaryFnOnce for Reflections<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.0.reflect_pending();
+vectorised! {
+    /// Reflects the pending rows into `R`.
+    fn reflect_pending<'a>(qr: &'a mut StreamingQr) -> () {
+        qr.reflect_pending();
     }
 }
 

@@ -6,7 +6,7 @@
 use super::basis::index_of;
 use super::form::Form;
 use super::form::PoleSearch;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -75,17 +75,16 @@ pub(crate) fn describe_own(count: usize) -> String {
 pub(crate) fn each_once(named: impl Iterator<Item = (Dof, Dof)>) -> Result<()> {
     let mut seen = Vec::new();
     for (force, motion) in named {
-        if seen.contains(&(force, motion)) {
-            return Err(Error::input(
-                "own",
-                "every transfer function at most once",
-                format!(
-                    "{} force due to {} motion twice",
-                    force.name(),
-                    motion.name()
-                ),
-            ));
-        }
+        ensure(
+            !seen.contains(&(force, motion)),
+            "own",
+            "every transfer function at most once",
+            format_args!(
+                "{} force due to {} motion twice",
+                force.name(),
+                motion.name()
+            ),
+        )?;
         seen.push((force, motion));
     }
     Ok(())

@@ -4,7 +4,7 @@ use super::dissipative::ConstraintReport;
 use super::entry_report::EntryReport;
 use super::form::{Form, PoleSearch};
 use super::own::OwnFilters;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -269,12 +269,11 @@ pub(crate) fn relative_noise(
 
 /// Fewer equations than unknowns cannot be fitted.
 pub(crate) fn enough_rows(place: &str, rows: usize, unknowns: usize) -> Result<()> {
-    if rows < unknowns {
-        return Err(Error::input(
-            place,
-            format!("at least {unknowns} numbers for {unknowns} coefficients"),
-            rows.to_string(),
-        ));
-    }
+    ensure(
+        rows >= unknowns,
+        place,
+        format_args!("at least {unknowns} numbers for {unknowns} coefficients"),
+        rows,
+    )?;
     Ok(())
 }

@@ -5,7 +5,7 @@ use super::constrained::{LinearProblem, LinearSolution};
 use super::frequency_options::{FrequencyFit, FrequencyWeights, limits_by_entry};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
@@ -145,7 +145,7 @@ impl EntrySamples {
 /// Samples by entry, row by row of the matrix, with their weights; the second value says what had to be assumed.
 ///
 /// # Errors
-/// [`Error::Input`] for a sample that is not finite, whose `K` is not positive, or an entry without any.
+/// [`Error::Input`](crate::error::Error::Input) for a sample that is not finite, whose `K` is not positive, or an entry without any.
 pub(crate) fn sort_by_entry(
     samples: &[TransferSample],
     dofs: &[Dof],
@@ -168,9 +168,7 @@ pub(crate) fn sort_by_entry(
         let i = index_of(dofs, s.force, &place)?;
         let j = index_of(dofs, s.motion, &place)?;
         let k = crate::error::positive(format!("{place}: K"), s.k.full_width())?;
-        if !s.value.is_finite() {
-            return Err(Error::input(place, "a finite value", s.value.to_string()));
-        }
+        ensure(s.value.is_finite(), place, "a finite value", s.value)?;
         entries[i * dofs.len() + j].rows.push(EntrySample {
             k,
             part: s.part,
@@ -182,9 +180,7 @@ pub(crate) fn sort_by_entry(
     }
     let mut notes = Vec::new();
     for entry in &mut entries {
-        if entry.rows.is_empty() {
-            return Err(Error::input(entry.name(), "at least one", "none"));
-        }
+        ensure(!entry.rows.is_empty(), entry.name(), "at least one", "none")?;
         let unpaired = pair(&mut entry.rows);
         if unpaired > 0 && weights == FrequencyWeights::Relative {
             notes.push(format!(
@@ -200,7 +196,7 @@ pub(crate) fn sort_by_entry(
 /// Gives the entries what `fit` says of single ones: weights, ridge, limits.
 ///
 /// # Errors
-/// [`Error::Input`] for weights of another shape and limits of degrees of freedom that are not there.
+/// [`Error::Input`](crate::error::Error::Input) for weights of another shape and limits of degrees of freedom that are not there.
 pub(crate) fn state_wishes(
     entries: &mut [EntrySamples],
     dofs: &[Dof],

@@ -8,7 +8,7 @@
 
 use super::form::PoleSearch;
 use super::report::{SearchPoint, SearchReport};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::state_space::golden_section;
 use crate::units::ReducedFrequencyRange;
@@ -44,16 +44,15 @@ impl Bounds {
             max: options.max.unwrap_or(2.0 * tested.max.full_width()),
             min_ratio: options.min_ratio,
         };
-        if bounds.slack(count) <= 0.0 {
-            return Err(Error::input(
-                "poles.min, poles.max",
-                format!(
-                    "room for {count} pole(s) a factor {} apart",
-                    bounds.min_ratio
-                ),
-                format!("{} to {}", bounds.min, bounds.max),
-            ));
-        }
+        ensure(
+            bounds.slack(count) > 0.0,
+            "poles.min, poles.max",
+            format_args!(
+                "room for {count} pole(s) a factor {} apart",
+                bounds.min_ratio
+            ),
+            format_args!("{} to {}", bounds.min, bounds.max),
+        )?;
         Ok(bounds)
     }
 

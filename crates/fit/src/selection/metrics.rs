@@ -8,7 +8,7 @@ use crate::aerodynamics::Transfer;
 use crate::comparison::{
     PhaseParameters, SignalPair, WarpingParameters, magnitude, magnitude_warped, peak, phase,
 };
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::identification::Grid;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -85,13 +85,12 @@ pub fn metric_grid(
             cells: cells.into_iter().flatten().collect(),
         });
     }
-    if grids.is_empty() {
-        return Err(Error::input(
-            "records",
-            "segments of harmonic motion",
-            "none",
-        ));
-    }
+    ensure(
+        !grids.is_empty(),
+        "records",
+        "segments of harmonic motion",
+        "none",
+    )?;
     Ok(grids)
 }
 

@@ -7,7 +7,7 @@ use super::speed_groups::speed_groups;
 use super::speed_prior::SpeedPrior;
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::identification::basis::assemble;
 use crate::identification::report::FitReport;
 use crate::section::Dof;
@@ -85,7 +85,7 @@ impl CoefficientUncertainty {
     /// The same without what an embedded measured deck says of the scatter between mean speeds: for that deck itself.
     ///
     /// # Errors
-    /// [`Error::Numerical`] when the covariance cannot be made again.
+    /// [`Error::Numerical`](crate::error::Error::Numerical) when the covariance cannot be made again.
     pub fn leaving_out(mut self, deck: &str) -> Result<Self> {
         let (Some(design), Some(speeds), Some(tested)) =
             (self.design.take(), &self.speeds, self.tested)
@@ -213,14 +213,16 @@ impl CoefficientUncertainty {
     /// The model with other parameters.
     ///
     /// # Errors
-    /// [`Error::Input`] for another number of parameters or a pole that is not positive.
+    /// [`Error::Input`](crate::error::Error::Input) for another number of parameters or a pole that is not positive.
     pub fn model_at(&self, values: &[f64]) -> Result<Model> {
         let n = self.dofs.len();
         let expected = self.parameters.len();
-        if values.len() != expected {
-            let found = values.len().to_string();
-            return Err(Error::input("parameters", expected.to_string(), found));
-        }
+        ensure(
+            values.len() == expected,
+            "parameters",
+            expected,
+            values.len(),
+        )?;
         match &self.coordinates {
             Coordinates::Continuous {
                 form,
@@ -278,15 +280,14 @@ impl CoefficientUncertainty {
     /// Standard error of `gradient · parameters`.
     ///
     /// # Errors
-    /// [`Error::Input`] for a gradient of another length.
+    /// [`Error::Input`](crate::error::Error::Input) for a gradient of another length.
     pub fn standard_error(&self, gradient: &[f64]) -> Result<f64> {
-        if gradient.len() != self.parameters.len() {
-            return Err(Error::input(
-                "gradient",
-                self.parameters.len().to_string(),
-                gradient.len().to_string(),
-            ));
-        }
+        ensure(
+            gradient.len() == self.parameters.len(),
+            "gradient",
+            self.parameters.len(),
+            gradient.len(),
+        )?;
         let g = DVector::from_column_slice(gradient);
         Ok(g.dot(&(&self.covariance * &g)).max(0.0).sqrt())
     }
@@ -317,7 +318,7 @@ impl CoefficientUncertainty {
     /// Gauss–Newton step for searched poles, along what active constraints leave free. `None` for an estimate that was read from a file.
     ///
     /// # Errors
-    /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
+    /// [`Error::Numerical`](crate::error::Error::Numerical) when the weighted blocks do not determine all parameters.
     pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<Option<Vec<f64>>> {
         let Some(design) = &self.design else {
             return Ok(None);

@@ -8,7 +8,7 @@ use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::{
     Constraints, FeedThrough, Fitted, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
@@ -80,10 +80,12 @@ impl Default for CoveragePlan {
 
 impl CoveragePlan {
     fn validate(&self) -> Result<()> {
-        if self.repetitions < 2 {
-            let found = self.repetitions.to_string();
-            return Err(Error::input("repetitions", "at least 2", found));
-        }
+        ensure(
+            self.repetitions >= 2,
+            "repetitions",
+            "at least 2",
+            self.repetitions,
+        )?;
         self.poles
             .iter()
             .try_for_each(|p| positive("poles", *p).map(drop))?;

@@ -15,7 +15,7 @@ use super::forms::{FormEnsemble, interval_with_forms};
 use super::onset::onset_error;
 use super::table_covariance::table_uncertainty;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::flutter::{FlutterSearch, OnsetInterval, OnsetSearch, find_onset};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
 use deck::{SEARCHED, SyntheticDeck};
@@ -94,11 +94,9 @@ pub struct FamilyReport {
 /// `done` is called after each deck with the number of those that are through.
 ///
 /// # Errors
-/// [`Error::Input`] for a family without decks; [`Error::Numerical`] when no deck that flutters can be drawn.
+/// [`Error::Input`](crate::error::Error::Input) for a family without decks; [`Error::Numerical`](crate::error::Error::Numerical) when no deck that flutters can be drawn.
 pub fn family_coverage(plan: &FamilyPlan, done: &(dyn Fn(usize) + Sync)) -> Result<FamilyReport> {
-    if plan.decks == 0 {
-        return Err(Error::input("decks", "at least 1", "0"));
-    }
+    ensure(plan.decks != 0, "decks", "at least 1", "0")?;
     let finished = AtomicUsize::new(0);
     let decks: Vec<DeckOutcome> = (0..plan.decks)
         .into_par_iter()

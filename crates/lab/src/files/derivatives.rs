@@ -20,7 +20,7 @@ pub use workbook_writer::{template_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use std::path::Path;
 use xlsx_cells::CheckedWorkbook;
 
@@ -96,13 +96,12 @@ impl TableWords<'_> {
             };
             return Ok(read_table_with(self.directory.join(self.name), &options)?.table);
         }
-        if !self.convention.is_empty() {
-            return Err(Error::input(
-                place,
-                "a table in a file (.csv, .xlsx, .xls, .ods)",
-                format!("`{}`, whose convention is known", self.name),
-            ));
-        }
+        ensure(
+            self.convention.is_empty(),
+            place,
+            "a table in a file (.csv, .xlsx, .xls, .ods)",
+            format_args!("`{}`, whose convention is known", self.name),
+        )?;
         embedded::deck(self.name)
     }
 }

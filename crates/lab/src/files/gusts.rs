@@ -13,7 +13,7 @@
 //! Times start at zero and are equally spaced.
 
 use crate::aerodynamics::GustSeries;
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Result, ensure, finite};
 use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
 use crate::files::text::read_text;
 use std::io::Write;
@@ -34,7 +34,7 @@ pub(crate) const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
 /// Reads a series of gusts.
 ///
 /// # Errors
-/// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
+/// [`Error::Io`](crate::error::Error::Io) when the file cannot be read; [`Error::Input`](crate::error::Error::Input) with file and line, what was expected and what was found.
 pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
     let path = path.as_ref();
     let text = read_text(path)?;
@@ -44,7 +44,7 @@ pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
 /// The series in `text`, the content of such a file.
 ///
 /// # Errors
-/// [`Error::Input`] naming the line: wrong header or columns, text or NaN in numbers, times that do not start at zero or
+/// [`Error::Input`](crate::error::Error::Input) naming the line: wrong header or columns, text or NaN in numbers, times that do not start at zero or
 /// are not equally spaced, fewer than two samples.
 pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
     let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
@@ -60,33 +60,28 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
         let cell = |i: usize| -> Result<f64> {
             let place = Place::line(line).column(GUST_COLUMNS[i]);
             let value = number(&place, record.get(columns[i]).unwrap_or(""))?;
-            if value.is_finite() {
-                return Ok(value);
-            }
-            Err(Error::input(place, "a finite number", value.to_string()))
+            finite(place, value)
         };
         let time = cell(0)?;
         if along.len() == 1 {
             step = crate::error::positive(Place::line(line).column("time_s"), time)?;
         }
         let expected = step * along.len() as f64;
-        if (time - expected).abs() > JITTER * step {
-            return Err(Error::input(
-                Place::line(line).column("time_s"),
-                format!("{expected} (equal steps from zero)"),
-                time.to_string(),
-            ));
-        }
+        ensure(
+            (time - expected).abs() <= JITTER * step,
+            Place::line(line).column("time_s"),
+            format_args!("{expected} (equal steps from zero)"),
+            time,
+        )?;
         along.push(cell(1)?);
         vertical.push(cell(2)?);
     }
-    if along.len() < 2 {
-        return Err(Error::input(
-            Place::line(header.lines() + 1 + along.len()),
-            "at least 2 samples",
-            along.len().to_string(),
-        ));
-    }
+    ensure(
+        along.len() >= 2,
+        Place::line(header.lines() + 1 + along.len()),
+        "at least 2 samples",
+        along.len(),
+    )?;
     GustSeries::new(step, along, vertical)
 }
 

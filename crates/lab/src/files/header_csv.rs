@@ -1,6 +1,6 @@
 //! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
-use crate::error::{Error, Place, Result, counted, without_control_characters};
+use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
 use std::io::Write;
 
 /// Reader of the table below the header of `text`.
@@ -84,9 +84,12 @@ impl CommentHeader {
             let expected = format!("one of the header keys {}", self.keys.join(", "));
             Error::input(&place, expected, format!("`{}`", key.trim()))
         })?;
-        if self.optional(key).is_some() && !self.repeated.contains(&key) {
-            return Err(Error::input(place, format!("`{key}` once"), "it twice"));
-        }
+        ensure(
+            self.optional(key).is_none() || self.repeated.contains(&key),
+            place,
+            format_args!("`{key}` once"),
+            "it twice",
+        )?;
         self.entries.push(HeaderLine {
             line: self.lines,
             key,

@@ -25,7 +25,7 @@ pub(crate) use channels::Channel;
 pub use channels::ChannelSet;
 pub(crate) use matlab5::matlab_array;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use std::path::Path;
 
 /// Bytes of one file at most.
@@ -57,9 +57,12 @@ impl ChannelSet {
     /// The kind is told by the first bytes; CSV, which has none of its own, by the end of the name.
     fn parse(bytes: Vec<u8>, extension: &str, group: Option<&str>) -> Result<Self> {
         let is_mat = extension == "mat";
-        if bytes.is_empty() {
-            return Err(Error::input("", "a file with samples", "an empty file"));
-        }
+        ensure(
+            !bytes.is_empty(),
+            "",
+            "a file with samples",
+            "an empty file",
+        )?;
         if hdf5_file::is_hdf5(&bytes) {
             hdf5_file::parse(bytes, group, if is_mat { "." } else { "/" })
         } else if bytes.starts_with(b"TDSm") {

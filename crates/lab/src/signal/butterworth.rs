@@ -5,7 +5,7 @@
 //! Each section has unit gain for a constant, and its `1 − z_k` is computed as `−2s_k/(4 − s_k)`, without the
 //! cancellation that ruins the polynomial form at low cut-offs.
 
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Result, counted, ensure, positive};
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
@@ -68,25 +68,26 @@ impl ButterworthLowPass {
     /// The low-pass of `order` with the cut-off `cutoff_hz` for signals sampled at `sampling_hz`.
     ///
     /// # Errors
-    /// [`Error::Input`] for an order that is not 1 to 12, frequencies that are not positive, and a cut-off that is not
+    /// [`Error::Input`](crate::error::Error::Input) for an order that is not 1 to 12, frequencies that are not positive, and a cut-off that is not
     /// below half the sampling frequency.
     pub(crate) fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
         positive("sampling_hz", sampling_hz)?;
         positive("low-pass cutoff_hz", cutoff_hz)?;
-        if !(1..=ORDER_AT_MOST).contains(&order) {
-            let expected = format!("1 to {ORDER_AT_MOST}");
-            return Err(Error::input("low-pass order", expected, order.to_string()));
-        }
-        if cutoff_hz >= 0.5 * sampling_hz {
-            return Err(Error::input(
-                "low-pass cutoff_hz",
-                format!(
-                    "below the Nyquist frequency, {} Hz at {sampling_hz} Hz",
-                    0.5 * sampling_hz
-                ),
-                format!("{cutoff_hz} Hz"),
-            ));
-        }
+        ensure(
+            (1..=ORDER_AT_MOST).contains(&order),
+            "low-pass order",
+            format_args!("1 to {ORDER_AT_MOST}"),
+            order,
+        )?;
+        ensure(
+            cutoff_hz < 0.5 * sampling_hz,
+            "low-pass cutoff_hz",
+            format_args!(
+                "below the Nyquist frequency, {} Hz at {sampling_hz} Hz",
+                0.5 * sampling_hz
+            ),
+            format_args!("{cutoff_hz} Hz"),
+        )?;
         let warped = 4.0 * (PI * cutoff_hz / sampling_hz).tan();
         let away_from_one = |k: usize| {
             let angle = PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
@@ -126,16 +127,15 @@ impl ButterworthLowPass {
     /// start). The numbers are those of `scipy.signal.sosfiltfilt` with its default padding.
     ///
     /// # Errors
-    /// [`Error::Input`] for a signal not longer than [`Self::padding`].
+    /// [`Error::Input`](crate::error::Error::Input) for a signal not longer than [`Self::padding`].
     pub(crate) fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
         let (n, pad) = (signal.len(), self.padding());
-        if n <= pad {
-            return Err(Error::input(
-                "signal to be filtered",
-                format!("more than {}", counted(pad, "sample")),
-                n.to_string(),
-            ));
-        }
+        ensure(
+            n > pad,
+            "signal to be filtered",
+            format_args!("more than {}", counted(pad, "sample")),
+            n,
+        )?;
         let (first, last) = (signal[0], signal[n - 1]);
         let before = (1..=pad).rev().map(|k| 2.0 * first - signal[k]);
         let after = (1..=pad).map(|k| 2.0 * last - signal[n - 1 - k]);

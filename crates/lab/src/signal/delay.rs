@@ -6,7 +6,7 @@
 
 use super::Complex64;
 use super::correlation::{CrossCorrelation, cross_spectrum};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -30,7 +30,7 @@ pub(crate) struct Delay {
 /// Delay of `compared` against `reference`; the shorter signal is continued by zeros, so both should begin and end near zero.
 ///
 /// # Errors
-/// [`Error::Input`] when a signal is zero throughout, or nowhere like the other.
+/// [`Error::Input`](crate::error::Error::Input) when a signal is zero throughout, or nowhere like the other.
 pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
     let count = reference.len().max(compared.len());
     let padded = |x: &[f64]| {
@@ -44,13 +44,12 @@ pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
     let correlation = CrossCorrelation::new(&first, &second);
     let whole = correlation.largest();
     let at = |lag| correlation.at(lag);
-    if scale == 0.0 || at(whole) <= 0.0 {
-        return Err(Error::input(
-            "signals to be aligned",
-            "two that are alike up to a delay",
-            "no positive correlation at any delay",
-        ));
-    }
+    ensure(
+        scale != 0.0 && at(whole) > 0.0,
+        "signals to be aligned",
+        "two that are alike up to a delay",
+        "no positive correlation at any delay",
+    )?;
     let curvature = at(whole - 1) - 2.0 * at(whole) + at(whole + 1);
     let vertex = if curvature < 0.0 {
         0.5 * (at(whole - 1) - at(whole + 1)) / curvature

@@ -1,6 +1,6 @@
 //! Harmonics in a stretch of a signal: least squares for constant, trend and amplitudes at a frequency and its multiples.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -76,13 +76,12 @@ pub fn fit_harmonics(
     harmonics: usize,
     used: &dyn Fn(usize) -> bool,
 ) -> Result<HarmonicFit> {
-    if range.end > signal.len() || range.is_empty() {
-        return Err(Error::input(
-            "stretch of a signal",
-            format!("samples within 0 to {}", signal.len()),
-            format!("{} to {}", range.start, range.end),
-        ));
-    }
+    ensure(
+        range.end <= signal.len() && !range.is_empty(),
+        "stretch of a signal",
+        format_args!("samples within 0 to {}", signal.len()),
+        format_args!("{} to {}", range.start, range.end),
+    )?;
     let mut regressors = HarmonicRegressors {
         centre: 0.5 * (range.start + range.end - 1) as f64,
         half: (0.5 * range.len() as f64).max(1.0),

@@ -10,7 +10,7 @@ use super::virtual_tunnel::TunnelPlan;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
 use crate::signal::random_stream;
 use nalgebra::Complex;
@@ -45,26 +45,24 @@ impl TrainingMotion {
             } => {
                 positive("motion.min_hz", *min_hz)?;
                 let highest = 0.2 * timing.sampling_hz;
-                if !(*max_hz > *min_hz && *max_hz <= highest) {
-                    return Err(Error::input(
-                        "motion.max_hz",
-                        format!(
-                            "more than min_hz and at most a fifth of sampling_hz ({highest} Hz)"
-                        ),
-                        max_hz.to_string(),
-                    ));
-                }
+                ensure(
+                    *max_hz > *min_hz && *max_hz <= highest,
+                    "motion.max_hz",
+                    format_args!(
+                        "more than min_hz and at most a fifth of sampling_hz ({highest} Hz)"
+                    ),
+                    max_hz,
+                )?;
                 *duration_s
             }
         };
         positive("motion.duration_s", duration)?;
-        if 2.0 * timing.ramp_s > duration {
-            return Err(Error::input(
-                "motion.duration_s",
-                format!("at least two ramps ({} s)", 2.0 * timing.ramp_s),
-                duration.to_string(),
-            ));
-        }
+        ensure(
+            2.0 * timing.ramp_s <= duration,
+            "motion.duration_s",
+            format_args!("at least two ramps ({} s)", 2.0 * timing.ramp_s),
+            duration,
+        )?;
         Ok(())
     }
 }
@@ -105,14 +103,13 @@ impl TunnelPlan {
         speed_m_s: f64,
         delay_s: f64,
     ) -> Result<Vec<Record>> {
-        if !self.interpolate_table {
-            return Err(Error::input(
-                "motion",
-                "harmonic motions, since a table knows its test points only, or interpolate_table = true to have its \
+        ensure(
+            self.interpolate_table,
+            "motion",
+            "harmonic motions, since a table knows its test points only, or interpolate_table = true to have its \
                  derivatives interpolated",
-                self.motion.describe(),
-            ));
-        }
+            self.motion.describe(),
+        )?;
         // as the plan's key says
         let by = Interpolation::LinearVHat;
         let model = InterpolatedTable::by(by, group, dofs, Extrapolation::Hold)?;

@@ -1,7 +1,7 @@
 //! What a plan of the virtual tunnel must be, and what of it was likely meant otherwise.
 
 use super::TunnelPlan;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::plausibility::{Finding, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond};
 
 /// Faster than any load cell of a wind tunnel is read, Hz.
@@ -18,13 +18,13 @@ impl TunnelPlan {
             ("frequencies_hz", &self.frequencies_hz),
             ("speeds_m_s", &self.speeds_m_s),
         ] {
-            if list.is_empty() {
-                return Err(Error::input(key, "at least one number", "none"));
-            }
-            if list.len() > MOST_TESTS {
-                let expected = format!("at most {MOST_TESTS} numbers");
-                return Err(Error::input(key, expected, list.len().to_string()));
-            }
+            ensure(!list.is_empty(), key, "at least one number", "none")?;
+            ensure(
+                list.len() <= MOST_TESTS,
+                key,
+                format_args!("at most {MOST_TESTS} numbers"),
+                list.len(),
+            )?;
             list.iter().try_for_each(|x| positive(key, *x).map(drop))?;
         }
         self.check_size()?;
@@ -38,10 +38,12 @@ impl TunnelPlan {
         non_negative("noise_fraction", self.noise_fraction)?;
         non_negative("noise_correlation_s", self.noise_correlation_s)?;
         self.motion.validate(self.timing(0.0))?;
-        if 2.0 * self.ramp_s > self.segment_s {
-            let expected = format!("at most half of segment_s ({} s)", self.segment_s);
-            return Err(Error::input("ramp_s", expected, self.ramp_s.to_string()));
-        }
+        ensure(
+            2.0 * self.ramp_s <= self.segment_s,
+            "ramp_s",
+            format_args!("at most half of segment_s ({} s)", self.segment_s),
+            self.ramp_s,
+        )?;
         self.check_sampling(&self.frequencies_hz)
     }
 
@@ -60,23 +62,20 @@ impl TunnelPlan {
     /// Refuses plans that no tunnel carries out and no memory holds.
     fn check_size(&self) -> Result<()> {
         positive("sampling_hz", self.sampling_hz)?;
-        if self.sampling_hz > MOST_HERTZ {
-            let expected = format!("at most {MOST_HERTZ} Hz");
-            return Err(Error::input(
-                "sampling_hz",
-                expected,
-                self.sampling_hz.to_string(),
-            ));
-        }
+        ensure(
+            self.sampling_hz <= MOST_HERTZ,
+            "sampling_hz",
+            format_args!("at most {MOST_HERTZ} Hz"),
+            self.sampling_hz,
+        )?;
         let seconds = self.still_s + self.segment_s * self.frequencies_hz.len() as f64;
         let samples = self.sampling_hz * seconds;
-        if samples > MOST_SAMPLES {
-            return Err(Error::input(
-                "segment_s",
-                format!("records of at most {MOST_SAMPLES:e} samples"),
-                format!("{samples:e}: {seconds} s at {} Hz", self.sampling_hz),
-            ));
-        }
+        ensure(
+            samples <= MOST_SAMPLES,
+            "segment_s",
+            format_args!("records of at most {MOST_SAMPLES:e} samples"),
+            format_args!("{samples:e}: {seconds} s at {} Hz", self.sampling_hz),
+        )?;
         Ok(())
     }
 

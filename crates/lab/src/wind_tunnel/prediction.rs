@@ -3,7 +3,7 @@
 use super::records::Record;
 use super::virtual_forces::response;
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::section::Dof;
 
 /// Self-excited forces (N/m, N·m/m; one vector per force, one number per sample) that `model` predicts for the motion of
@@ -17,13 +17,12 @@ use crate::section::Dof;
 pub fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<Vec<Vec<f64>>> {
     let h = &record.header;
     let place = |what: &str| format!("record {}: {what}", h.name);
-    if model.dofs() != h.dofs {
-        return Err(Error::input(
-            place("dofs"),
-            format!("those of the model, {}", Dof::names(model.dofs())),
-            Dof::names(&h.dofs),
-        ));
-    }
+    ensure(
+        model.dofs() == h.dofs,
+        place("dofs"),
+        format_args!("those of the model, {}", Dof::names(model.dofs())),
+        Dof::names(&h.dofs),
+    )?;
     let width = positive(place("width_m"), h.width_m)?;
     let speed = positive(place("mean_speed_m_s"), h.mean_speed_m_s)?;
     let sampling = positive(place("sampling_hz"), h.sampling_hz)?;

@@ -41,7 +41,7 @@ pub use run::StageSignals;
 pub use signals::{HarmonicSegment, SectionSignals, index};
 
 use super::{RawCampaign, Record};
-use crate::error::{Error, Result, all_or_errors};
+use crate::error::{Result, all_or_errors, ensure};
 use crate::section::Dof;
 use prepare::PreparedRun;
 use rayon::prelude::*;
@@ -61,7 +61,7 @@ pub struct Processed {
 /// Processes every run of a campaign; `progress` is called with the number of runs done.
 ///
 /// # Errors
-/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
+/// [`Error::Input`](crate::error::Error::Input) naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
 /// order.
 pub fn process(
     campaign: &RawCampaign,
@@ -70,9 +70,12 @@ pub fn process(
 ) -> Result<Processed> {
     options.validate()?;
     campaign.rig.validate()?;
-    if campaign.runs.is_empty() {
-        return Err(Error::input("campaign", "at least one run", "none"));
-    }
+    ensure(
+        !campaign.runs.is_empty(),
+        "campaign",
+        "at least one run",
+        "none",
+    )?;
     let prepared = campaign
         .runs
         .par_iter()

@@ -10,7 +10,7 @@
 //! ones: `v_global = axes · v_local`. The sign of a channel is that of the force **on the cell by the model**, so
 //! that inertia of an accelerating model of mass m shows as −m ẍ.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -54,7 +54,7 @@ impl Rig {
     /// Checks lengths and axes.
     ///
     /// # Errors
-    /// [`Error::Input`] naming the key: no cell, a length that is not positive, axes that are no rotation.
+    /// [`Error::Input`](crate::error::Error::Input) naming the key: no cell, a length that is not positive, axes that are no rotation.
     pub(crate) fn validate(&self) -> Result<()> {
         positive("rig.model_length_m", self.model_length_m)?;
         positive("rig.model_width_m", self.model_width_m)?;
@@ -64,9 +64,12 @@ impl Rig {
         ] {
             stated.map_or(Ok(0.0), |x| positive(key, x))?;
         }
-        if self.cells.is_empty() {
-            return Err(Error::input("rig.cells", "at least one load cell", "none"));
-        }
+        ensure(
+            !self.cells.is_empty(),
+            "rig.cells",
+            "at least one load cell",
+            "none",
+        )?;
         self.cells.iter().try_for_each(LoadCell::validate)
     }
 }
@@ -100,15 +103,12 @@ impl LoadCell {
             .iter()
             .all(|e| e.abs() <= 1e-4)
             && axes.determinant() > 0.0;
-        if is_rotation {
-            Ok(())
-        } else {
-            Err(Error::input(
-                format!("rig.cells `{}`.axes", self.name),
-                "a rotation (orthonormal rows, right-handed)",
-                format!("{:?}", self.axes),
-            ))
-        }
+        ensure(
+            is_rotation,
+            format_args!("rig.cells `{}`.axes", self.name),
+            "a rotation (orthonormal rows, right-handed)",
+            format_args!("{:?}", self.axes),
+        )
     }
 }
 

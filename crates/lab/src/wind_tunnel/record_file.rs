@@ -6,7 +6,7 @@
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
-use crate::error::{Error, Place, Result, counted, without_control_characters};
+use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
@@ -271,23 +271,19 @@ impl<'a> RecordRows<'a> {
 
     /// What can only be known at the end.
     fn check_length(&self) -> Result<()> {
-        if self.read < SAMPLES_AT_LEAST {
-            let expected = format!("at least {SAMPLES_AT_LEAST} samples");
-            return Err(Error::input(
-                "end of the file",
-                expected,
-                self.read.to_string(),
-            ));
-        }
+        ensure(
+            self.read >= SAMPLES_AT_LEAST,
+            "end of the file",
+            format_args!("at least {SAMPLES_AT_LEAST} samples"),
+            self.read,
+        )?;
         let mean = (self.read - 1) as f64 / (self.last_time - self.first_time);
-        if (mean / self.header.sampling_hz - 1.0).abs() > DRIFT {
-            let expected = format!("samples at {} Hz as in the header", self.header.sampling_hz);
-            return Err(Error::input(
-                "column time_s",
-                expected,
-                format!("{mean:.4} Hz"),
-            ));
-        }
+        ensure(
+            (mean / self.header.sampling_hz - 1.0).abs() <= DRIFT,
+            "column time_s",
+            format_args!("samples at {} Hz as in the header", self.header.sampling_hz),
+            format_args!("{mean:.4} Hz"),
+        )?;
         Ok(())
     }
 }

@@ -17,7 +17,7 @@
 //! ```
 
 use super::records::{RecordHeader, Segment};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use crate::files::header_csv::{CommentHeader, HeaderLine};
 use crate::section::Dof;
 use std::io::{BufRead, Write};
@@ -118,13 +118,12 @@ pub(super) fn read_head(
         start += read as u64;
         let place = || Place::line(head.lines() + 1);
         let text = text(&line).map_err(|found| Error::input(place(), "a line of text", found))?;
-        if read == 0 {
-            return Err(Error::input(
-                place(),
-                "a line of column names",
-                "the end of the file",
-            ));
-        }
+        ensure(
+            read != 0,
+            place(),
+            "a line of column names",
+            "the end of the file",
+        )?;
         if !head.take(text)? {
             break text
                 .split(',')

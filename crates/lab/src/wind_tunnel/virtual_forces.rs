@@ -5,7 +5,7 @@ use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Part,
 };
 use crate::aerodynamics::{Transfer, TransferMatrix};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::signal::Fourier;
 use crate::units::ReducedFrequency;
@@ -29,7 +29,7 @@ impl TransferColumn {
     /// The column of `motion` from a table of one speed group.
     ///
     /// # Errors
-    /// [`Error::Input`] when derivatives of the column were tested in ranges of `K` that share no test point.
+    /// [`Error::Input`](crate::error::Error::Input) when derivatives of the column were tested in ranges of `K` that share no test point.
     pub(crate) fn new(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
         let column = |part| {
             dofs.iter()
@@ -79,13 +79,12 @@ impl TransferColumn {
         let first = Derivative::of(dofs[0], motion, Part::Real);
         let points = group.points(first).iter().map(DerivativePoint::k);
         let k: Vec<ReducedFrequency> = points.filter(|k| range.contains(*k)).collect();
-        if k.is_empty() {
-            return Err(Error::input(
-                format!("table {}", group.name),
-                format!("a test point of {first} in the range of all other derivatives"),
-                "none: no record can show all of them",
-            ));
-        }
+        ensure(
+            !k.is_empty(),
+            format_args!("table {}", group.name),
+            format_args!("a test point of {first} in the range of all other derivatives"),
+            "none: no record can show all of them",
+        )?;
         let j = dofs.iter().position(|d| *d == motion).unwrap_or(0);
         let at: Vec<_> = k
             .iter()

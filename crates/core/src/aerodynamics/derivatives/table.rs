@@ -2,7 +2,7 @@
 
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Place, Result, positive, without_control_characters};
+use crate::error::{Error, Place, Result, ensure, positive, without_control_characters};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
@@ -18,11 +18,12 @@ const POINTS_AT_MOST: usize = 10_000;
 
 /// Refuses more test points than a table can have.
 pub fn check_point_count(place: impl Into<Place>, count: usize) -> Result<()> {
-    if count <= POINTS_AT_MOST {
-        return Ok(());
-    }
-    let expected = format!("at most {POINTS_AT_MOST} test points of a derivative");
-    Err(Error::input(place, expected, count.to_string()))
+    ensure(
+        count <= POINTS_AT_MOST,
+        place,
+        format_args!("at most {POINTS_AT_MOST} test points of a derivative"),
+        count,
+    )
 }
 
 /// One test point of one derivative.
@@ -71,10 +72,12 @@ impl TableHeader {
         let Some(stated) = angle_deg else {
             return Ok(());
         };
-        if stated.is_nan() || stated.abs() > 90.0 {
-            let expected = "an angle between -90 and 90 degrees";
-            return Err(Error::input(key, expected, stated.to_string()));
-        }
+        ensure(
+            !stated.is_nan() && stated.abs() <= 90.0,
+            key,
+            "an angle between -90 and 90 degrees",
+            stated,
+        )?;
         match self.angle_deg.filter(|own| *own != stated) {
             Some(own) => {
                 let expected = format!("{own}, which the table states");
@@ -335,27 +338,23 @@ fn check_complete(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Result
         .filter(|d| is_missing(d))
         .map(|d| d.name())
         .collect();
-    if missing.is_empty() {
-        return Ok(());
-    }
-    Err(Error::input(
+    ensure(
+        missing.is_empty(),
         "derivatives",
         "points for H1 to H4 and A1 to A4, and for both members of every other pair",
-        format!("none for {}", missing.join(", ")),
-    ))
+        format_args!("none for {}", missing.join(", ")),
+    )
 }
 
 fn check_speeds_agree(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Result<()> {
     let all: Vec<_> = points.values().flatten().collect();
     let with_speed = all.iter().filter(|p| p.mean_speed_m_s.is_some()).count();
-    if with_speed == 0 || with_speed == all.len() {
-        return Ok(());
-    }
-    Err(Error::input(
+    ensure(
+        with_speed == 0 || with_speed == all.len(),
         "mean speeds",
         "a mean speed at every point, or at none",
-        format!("one at {with_speed} of {} points", all.len()),
-    ))
+        format_args!("one at {with_speed} of {} points", all.len()),
+    )
 }
 
 /// The first point of one derivative that cannot be right, if any.

@@ -1,6 +1,6 @@
 //! One chain of orthonormal filters with real poles, continuous in dimensionless time.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -41,9 +41,12 @@ impl FilterBank {
     /// # Errors
     /// [`Error::Input`] when a pole is not positive or there is none.
     pub fn new(poles: Vec<f64>) -> Result<Self> {
-        if poles.is_empty() {
-            return Err(Error::input("filter bank: poles", "at least one", "none"));
-        }
+        ensure(
+            !poles.is_empty(),
+            "filter bank: poles",
+            "at least one",
+            "none",
+        )?;
         for p in &poles {
             positive("filter bank: poles", *p)?;
         }

@@ -5,7 +5,7 @@ use super::bank::{FilterBank, side_by_side};
 use crate::aerodynamics::{
     ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::state_space::complex;
 use crate::units::ReducedFrequency;
@@ -77,39 +77,36 @@ impl LaguerreModel {
         let n = self.dofs.len();
         let finite = |m: &DMatrix<f64>| m.iter().all(|x| x.is_finite());
         for (name, m) in [("e0", &self.e0), ("e1", &self.e1), ("e2", &self.e2)] {
-            if m.shape() != (n, n) || !finite(m) {
-                return Err(Error::input(
-                    format!("Laguerre model: {name}"),
-                    format!("a finite {n}x{n} matrix"),
-                    format!(
-                        "{}x{}, or a number that is not finite",
-                        m.nrows(),
-                        m.ncols()
-                    ),
-                ));
-            }
+            ensure(
+                m.shape() == (n, n) && finite(m),
+                format_args!("Laguerre model: {name}"),
+                format_args!("a finite {n}x{n} matrix"),
+                format_args!(
+                    "{}x{}, or a number that is not finite",
+                    m.nrows(),
+                    m.ncols()
+                ),
+            )?;
         }
         for (i, term) in self.terms.iter().enumerate() {
             // the poles of a file have not passed through the constructor yet
             FilterBank::new(term.poles.poles().to_vec())?;
-            if term.input >= n
-                || term.coefficients.shape() != (n, term.poles.count())
-                || !finite(&term.coefficients)
-            {
-                return Err(Error::input(
-                    format!("Laguerre model: terms[{i}]"),
-                    format!(
-                        "an input below {n} and finite {n}x{} coefficients",
-                        term.poles.count()
-                    ),
-                    format!(
-                        "input {}, {}x{} coefficients, or one that is not finite",
-                        term.input,
-                        term.coefficients.nrows(),
-                        term.coefficients.ncols()
-                    ),
-                ));
-            }
+            ensure(
+                term.input < n
+                    && term.coefficients.shape() == (n, term.poles.count())
+                    && finite(&term.coefficients),
+                format_args!("Laguerre model: terms[{i}]"),
+                format_args!(
+                    "an input below {n} and finite {n}x{} coefficients",
+                    term.poles.count()
+                ),
+                format_args!(
+                    "input {}, {}x{} coefficients, or one that is not finite",
+                    term.input,
+                    term.coefficients.nrows(),
+                    term.coefficients.ncols()
+                ),
+            )?;
         }
         Ok(())
     }

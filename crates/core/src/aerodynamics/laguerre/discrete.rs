@@ -2,7 +2,7 @@
 
 use super::bank::side_by_side;
 use crate::aerodynamics::{DiscreteRealization, Realizable, Realization, Transfer, TransferMatrix};
-use crate::error::{Error, Result, finite_numbers, positive};
+use crate::error::{Result, ensure, finite_numbers, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -150,37 +150,34 @@ impl DiscreteLaguerre {
         let n = self.dofs.len();
         for (i, term) in self.terms.iter().enumerate() {
             let place = |field: &str| place(&format!("terms[{i}].{field}"));
-            if !(term.alpha > 0.0 && term.alpha < 1.0) {
-                return Err(Error::input(
-                    place("alpha"),
-                    "0 < alpha < 1",
-                    term.alpha.to_string(),
-                ));
-            }
+            ensure(
+                term.alpha > 0.0 && term.alpha < 1.0,
+                place("alpha"),
+                "0 < alpha < 1",
+                term.alpha,
+            )?;
             let c = &term.coefficients;
             let fits = c.nrows() == n && c.ncols() > 0 && c.iter().all(|x| x.is_finite());
-            if term.input >= n || !fits {
-                return Err(Error::input(
-                    place("coefficients"),
-                    format!(
-                        "an input below {n} and {n} rows of finite numbers, at least one filter"
-                    ),
-                    format!(
-                        "input {}, {}x{} coefficients, or one that is not finite",
-                        term.input,
-                        c.nrows(),
-                        c.ncols()
-                    ),
-                ));
-            }
+            ensure(
+                term.input < n && fits,
+                place("coefficients"),
+                format_args!(
+                    "an input below {n} and {n} rows of finite numbers, at least one filter"
+                ),
+                format_args!(
+                    "input {}, {}x{} coefficients, or one that is not finite",
+                    term.input,
+                    c.nrows(),
+                    c.ncols()
+                ),
+            )?;
         }
-        if !(0..n).all(|j| self.terms.iter().any(|t| t.input == j)) {
-            return Err(Error::input(
-                place("terms"),
-                "filters for every motion",
-                "a motion without any",
-            ));
-        }
+        ensure(
+            (0..n).all(|j| self.terms.iter().any(|t| t.input == j)),
+            place("terms"),
+            "filters for every motion",
+            "a motion without any",
+        )?;
         finite_numbers(place("static_term"), &self.static_term, n)
     }
 }

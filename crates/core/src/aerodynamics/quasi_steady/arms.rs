@@ -1,7 +1,7 @@
 //! Reference points of the corrected quasi-steady theory.
 
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result, ensure, finite};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
@@ -39,10 +39,12 @@ impl Arms {
     pub fn validate(&self, place: &str) -> Result<()> {
         for dof in Dof::THREE {
             let (key, arm) = (format!("{place}arms.{}", dof.name()), self.of(dof));
-            if finite(key.as_str(), arm)?.abs() > LARGEST {
-                let expected = format!("a part of the width, {LARGEST} at most");
-                return Err(Error::input(key, expected, format!("{arm:e}")));
-            }
+            ensure(
+                finite(key.as_str(), arm)?.abs() <= LARGEST,
+                key,
+                format_args!("a part of the width, {LARGEST} at most"),
+                format_args!("{arm:e}"),
+            )?;
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use super::{RationalModel, check_square};
 use crate::aerodynamics::{
     ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
 use crate::state_space::complex;
 use crate::units::ReducedFrequency;
@@ -48,17 +48,16 @@ impl MinimumStateModel {
         check_square(PLACE, n, &[&self.a1, &self.a2, &self.a3])?;
         let finite = |x: &DMatrix<f64>| x.iter().all(|x| x.is_finite());
         for (name, matrix, shape) in [("d", &self.d, (n, m)), ("e", &self.e, (m, n))] {
-            if matrix.shape() != shape || !finite(matrix) {
-                return Err(Error::input(
-                    format!("{PLACE}: {name}"),
-                    format!("a finite {}x{} matrix", shape.0, shape.1),
-                    format!(
-                        "{}x{}, or a number that is not finite",
-                        matrix.nrows(),
-                        matrix.ncols()
-                    ),
-                ));
-            }
+            ensure(
+                matrix.shape() == shape && finite(matrix),
+                format_args!("{PLACE}: {name}"),
+                format_args!("a finite {}x{} matrix", shape.0, shape.1),
+                format_args!(
+                    "{}x{}, or a number that is not finite",
+                    matrix.nrows(),
+                    matrix.ncols()
+                ),
+            )?;
         }
         for d in &self.lags {
             positive(format!("{PLACE}: lags"), *d)?;

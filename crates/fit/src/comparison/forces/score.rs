@@ -6,7 +6,7 @@ use crate::comparison::{
     DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
     magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::files::text::csv_cell;
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -91,13 +91,12 @@ impl Scoring {
         let length = positive("window_s", self.window_s)?;
         let (start, end) = (segment.start_s + ramp_s, segment.end_s - ramp_s);
         let periods = ((end - start).min(length) * segment.frequency_hz + 1e-6).floor();
-        if periods < 1.0 {
-            return Err(Error::input(
-                format!("record {}, {} Hz", record.header.name, segment.frequency_hz),
-                "a window and a steady motion of at least one period",
-                format!("{:.2} s", (end - start).min(length)),
-            ));
-        }
+        ensure(
+            periods >= 1.0,
+            format_args!("record {}, {} Hz", record.header.name, segment.frequency_hz),
+            "a window and a steady motion of at least one period",
+            format_args!("{:.2} s", (end - start).min(length)),
+        )?;
         let half = 0.5 * periods / segment.frequency_hz;
         let at = |t: f64| (t * record.header.sampling_hz).round() as usize;
         let middle = 0.5 * (start + end);

@@ -1,7 +1,7 @@
 //! Identified derivatives with their standard errors, and the table made of them.
 
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::units::{SAME_SPEED, group_of, near_groups};
 use serde::{Deserialize, Serialize};
@@ -32,17 +32,17 @@ impl Default for DerivativeOptions {
 impl DerivativeOptions {
     pub(super) fn validate(&self) -> Result<()> {
         let share = self.full_amplitude;
-        if !(share > 0.0 && share < 1.0) {
-            let found = share.to_string();
-            return Err(Error::input("full_amplitude", "between 0 and 1", found));
-        }
+        ensure(
+            share > 0.0 && share < 1.0,
+            "full_amplitude",
+            "between 0 and 1",
+            share,
+        )?;
         for (key, ratio) in [
             ("same_speed", self.same_speed),
             ("same_frequency", self.same_frequency),
         ] {
-            if !(ratio.is_finite() && ratio >= 1.0) {
-                return Err(Error::input(key, "at least 1", ratio.to_string()));
-            }
+            ensure(ratio.is_finite() && ratio >= 1.0, key, "at least 1", ratio)?;
         }
         Ok(())
     }
@@ -102,7 +102,7 @@ impl IdentifiedDerivatives {
     /// The table, without standard errors; the header says how it was made.
     ///
     /// # Errors
-    /// [`Error::Input`] when the runs did not drive both heave and rotation.
+    /// [`Error::Input`](crate::error::Error::Input) when the runs did not drive both heave and rotation.
     pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
         let header = TableHeader {
             rotation_amplitude_deg: self.rotation_amplitude_deg,

@@ -1,7 +1,7 @@
 //! Steady harmonic stretches of records, sorted into test points.
 
 use super::result::DerivativeOptions;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::identification::time::signals::Signals;
 use crate::section::Dof;
 use crate::signal::{
@@ -132,10 +132,12 @@ pub(super) fn collect(
             }
         }
     }
-    if points.groups.is_empty() {
-        let expected = "stretches of harmonic motion (`segment` lines)";
-        return Err(Error::input("records", expected, "none"));
-    }
+    ensure(
+        !points.groups.is_empty(),
+        "records",
+        "stretches of harmonic motion (`segment` lines)",
+        "none",
+    )?;
     Ok(points)
 }
 
@@ -149,16 +151,18 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
     ] {
         positive(place(key), value)?;
     }
-    if header.dofs != first.dofs {
-        let expected = format!("{}, as in the first record", Dof::names(&first.dofs));
-        let found = Dof::names(&header.dofs);
-        return Err(Error::input(place("dofs"), expected, found));
-    }
-    if (header.width_m / first.width_m - 1.0).abs() > 1e-6 {
-        let expected = format!("{} m, as in the first record", first.width_m);
-        let found = format!("{} m", header.width_m);
-        return Err(Error::input(place("width_m"), expected, found));
-    }
+    ensure(
+        header.dofs == first.dofs,
+        place("dofs"),
+        format_args!("{}, as in the first record", Dof::names(&first.dofs)),
+        Dof::names(&header.dofs),
+    )?;
+    ensure(
+        (header.width_m / first.width_m - 1.0).abs() <= 1e-6,
+        place("width_m"),
+        format_args!("{} m, as in the first record", first.width_m),
+        format_args!("{} m", header.width_m),
+    )?;
     Ok(())
 }
 

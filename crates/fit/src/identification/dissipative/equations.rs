@@ -2,7 +2,7 @@
 
 use super::report::{ActiveConstraint, ConstraintKind};
 use super::tangent::{LinearEntry, take_away};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::{LEAST_CHOSEN, MOST_CHOSEN};
 use crate::section::Dof;
@@ -140,7 +140,7 @@ impl Equation {
 /// Orthonormal gradients of the equations, and the shortest free numbers that satisfy them.
 ///
 /// # Errors
-/// [`Error::Input`] for limits that the columns of the model cannot meet.
+/// [`Error::Input`](crate::error::Error::Input) for limits that the columns of the model cannot meet.
 pub(super) fn satisfy(
     equations: &[Equation],
     entries: &[LinearEntry],
@@ -157,13 +157,12 @@ pub(super) fn satisfy(
         let short = equation.target - equation.value(&at_start);
         let left = gradient.norm();
         if left <= RANK_TOLERANCE * norm {
-            if short.abs() > AGREEMENT * equation.target.abs().max(norm) {
-                return Err(Error::input(
-                    "limits",
-                    "limits at K → 0 that the columns of the model can meet",
-                    "a feed-through is missing, or one limit repeats another",
-                ));
-            }
+            ensure(
+                short.abs() <= AGREEMENT * equation.target.abs().max(norm),
+                "limits",
+                "limits at K → 0 that the columns of the model can meet",
+                "a feed-through is missing, or one limit repeats another",
+            )?;
             continue;
         }
         gradient.unscale_mut(left);

@@ -1,7 +1,7 @@
 //! Poles of fits to tables: of every group of entries that shares them, by itself and under constraints.
 
 use super::joint::Joint;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
 use crate::identification::form::PoleSearch;
@@ -120,13 +120,12 @@ fn state_lags_of_forces(forms: &mut [EntryForm], fit: &FrequencyFit, n: usize) -
     };
     let count = fit.form.free_poles();
     let lists: Vec<&[f64]> = fixed.chunks(count).collect();
-    if lists.len() != 1 && lists.len() != n {
-        return Err(Error::input(
-            "poles.fixed",
-            format!("{count} number(s), or {} for the {n} forces", n * count),
-            fixed.len().to_string(),
-        ));
-    }
+    ensure(
+        lists.len() == 1 || lists.len() == n,
+        "poles.fixed",
+        format_args!("{count} number(s), or {} for the {n} forces", n * count),
+        fixed.len(),
+    )?;
     for (e, form) in forms.iter_mut().enumerate() {
         let list = lists[if lists.len() == 1 { 0 } else { e / n }];
         form.fixed = Some(list.to_vec());

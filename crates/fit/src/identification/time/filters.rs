@@ -10,10 +10,11 @@
 use super::low_pass::{Filtered, Hold, LowPassStep, ORDER, low_pass};
 use super::pass::{Columns, Piece};
 use super::record::DimensionlessRecord;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::FeedThrough;
 use crate::identification::least_squares::BLOCK_ROWS;
+use aerodeck_core::vectorised;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -32,11 +33,7 @@ impl FilterStep {
     /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole piece; `out` holds one stretch of
     /// [`BLOCK_ROWS`] per filter.
     fn advance(&self, input: &Filtered, state: &mut [f64], out: &mut [f64]) {
-        pulp::Arch::new().dispatch(DrivenFilters {
-            step: self,
-            input,
-            out: &mut *out,
-        });
+        drive(self, input, out);
         let rows = input.input.len() - 1;
         match self.count {
             1 => self.recur::<1>(rows, state, out),
@@ -102,19 +99,10 @@ impl FilterStep {
     }
 }
 
-/// What [`FilterStep::advance`] does first.
-struct DrivenFilters<'a> {
-    step: &'a FilterStep,
-    input: &'a Filtered,
-    out: &'a mut [f64],
-}
-
-impl pulp::NullaryFnOnce for DrivenFilters<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.step.drive(self.input, self.out);
+vectorised! {
+    /// What [`FilterStep::advance`] does first.
+    fn drive<'a>(step: &'a FilterStep, input: &'a Filtered, out: &'a mut [f64]) -> () {
+        step.drive(input, out);
     }
 }
 
@@ -145,16 +133,15 @@ impl<'a> ContinuousColumns<'a> {
         cutoff_hz: f64,
         constant: bool,
     ) -> Result<Self> {
-        if cutoff_hz * record.step_s >= 0.5 {
-            return Err(Error::input(
-                "low_pass_hz",
-                format!(
-                    "less than half the sampling frequency of record {}",
-                    record.name()
-                ),
-                cutoff_hz.to_string(),
-            ));
-        }
+        ensure(
+            cutoff_hz * record.step_s < 0.5,
+            "low_pass_hz",
+            format_args!(
+                "less than half the sampling frequency of record {}",
+                record.name()
+            ),
+            cutoff_hz,
+        )?;
         let step = record.delta_s();
         let (a, b) = low_pass(TAU * cutoff_hz / record.rate);
         let hold = Hold::new(&a, &b, step)?;

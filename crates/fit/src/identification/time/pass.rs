@@ -3,7 +3,7 @@
 
 use super::record::DimensionlessRecord;
 use super::signals::SignalBlock;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::identification::least_squares::{BLOCK_ROWS, Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
 use crate::wind_tunnel::Segment;
@@ -223,13 +223,12 @@ fn one_record<C: Columns>(
     })?;
     open.close(index, &mut closed);
     let least = plan.order.width(1).max(16) * plan.stride;
-    if rows < least {
-        return Err(Error::input(
-            format!("record {}", record.name()),
-            format!("at least {least} samples after discard_s"),
-            rows.to_string(),
-        ));
-    }
+    ensure(
+        rows >= least,
+        format_args!("record {}", record.name()),
+        format_args!("at least {least} samples after discard_s"),
+        rows,
+    )?;
     weigh(&mut closed, record, plan.weights);
     Ok(closed)
 }

@@ -1,7 +1,7 @@
 //! A record without dimensions.
 
 use super::signals::{SignalWriter, Signals};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
 use crate::identification::own::StaticTerm;
@@ -118,13 +118,12 @@ fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
     for dof in dofs {
         index_of(&header.dofs, *dof, &place("dofs"))?;
     }
-    if header.dofs.len() != dofs.len() || dofs.is_empty() {
-        return Err(Error::input(
-            place("dofs"),
-            format!("{}, each once, as in the first record", Dof::names(dofs)),
-            Dof::names(&header.dofs),
-        ));
-    }
+    ensure(
+        header.dofs.len() == dofs.len() && !dofs.is_empty(),
+        place("dofs"),
+        format_args!("{}, each once, as in the first record", Dof::names(dofs)),
+        Dof::names(&header.dofs),
+    )?;
     Ok(())
 }
 
@@ -245,13 +244,12 @@ impl DimensionlessRecord {
 fn check_lengths(name: &str, block: &RecordBlock<'_>, n: usize, read: usize) -> Result<()> {
     let rows = block.motion.first().map_or(0, Vec::len);
     let mut channels = block.motion.iter().chain(block.force);
-    if block.motion.len() != n || block.force.len() != n || channels.any(|c| c.len() != rows) {
-        return Err(Error::input(
-            format!("record {name}, from sample {read}"),
-            format!("{n} motions and {n} forces of one length"),
-            "channels of another number or length",
-        ));
-    }
+    ensure(
+        block.motion.len() == n && block.force.len() == n && channels.all(|c| c.len() == rows),
+        format_args!("record {name}, from sample {read}"),
+        format_args!("{n} motions and {n} forces of one length"),
+        "channels of another number or length",
+    )?;
     Ok(())
 }
 

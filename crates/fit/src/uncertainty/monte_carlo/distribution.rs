@@ -1,6 +1,6 @@
 //! Distributions of single parameters, as they stand in the file.
 
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, ensure, finite, positive};
 use crate::uncertainty::statistics::{normal_cdf, normal_quantile};
 use serde::Deserialize;
 
@@ -75,14 +75,12 @@ impl Distribution {
         let at = |key: &str| format!("{place}.{key}");
         match self {
             Self::Uniform { lower, upper } => {
-                if !(lower.is_finite() && upper.is_finite() && lower < upper) {
-                    let found = format!("{lower} to {upper}");
-                    return Err(Error::input(
-                        at("lower"),
-                        "a finite number below `upper`",
-                        found,
-                    ));
-                }
+                ensure(
+                    lower.is_finite() && upper.is_finite() && lower < upper,
+                    at("lower"),
+                    "a finite number below `upper`",
+                    format_args!("{lower} to {upper}"),
+                )?;
                 let (lower, width) = (*lower, upper - lower);
                 Ok(Transform::Uniform { lower, width })
             }

@@ -1,7 +1,7 @@
 //! The file of a Monte Carlo analysis.
 
 use super::distribution::Distribution;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::files::toml_lines;
 use crate::section::{SectionModel, Translation};
 use serde::{Deserialize, Serialize};
@@ -174,39 +174,36 @@ impl MonteCarloPlan {
 
     fn validate_parameters(&self) -> Result<()> {
         for (i, random) in self.parameters.iter().enumerate() {
-            if self.parameters[..i].iter().any(|p| p.name == random.name) {
-                return Err(Error::input(
-                    format!("parameter[{i}].name"),
-                    "every parameter once",
-                    format!("`{}` a second time", random.name.name()),
-                ));
-            }
+            ensure(
+                self.parameters[..i].iter().all(|p| p.name != random.name),
+                format_args!("parameter[{i}].name"),
+                "every parameter once",
+                format_args!("`{}` a second time", random.name.name()),
+            )?;
         }
         for (i, c) in self.correlations.iter().enumerate() {
             let key = format!("correlation[{i}]");
-            if !(c.coefficient > -1.0 && c.coefficient < 1.0) {
-                return Err(Error::input(
-                    format!("{key}.coefficient"),
-                    "a number between -1 and 1",
-                    c.coefficient.to_string(),
-                ));
-            }
+            ensure(
+                c.coefficient > -1.0 && c.coefficient < 1.0,
+                format_args!("{key}.coefficient"),
+                "a number between -1 and 1",
+                c.coefficient,
+            )?;
             let random = |p: &SectionProperty| self.parameters.iter().any(|r| r.name == *p);
             let missing = c.between.iter().find(|p| !random(p));
             let pair = |o: &Correlation| {
                 o.between == c.between || o.between == [c.between[1], c.between[0]]
             };
             let twice = c.between[0] == c.between[1] || self.correlations[..i].iter().any(pair);
-            if missing.is_some() || twice {
-                return Err(Error::input(
-                    format!("{key}.between"),
-                    "two different random parameters, every pair once",
-                    match missing {
-                        Some(p) => format!("`{}`, which is not random", p.name()),
-                        None => "a pair of one parameter, or a pair a second time".into(),
-                    },
-                ));
-            }
+            ensure(
+                missing.is_none() && !twice,
+                format_args!("{key}.between"),
+                "two different random parameters, every pair once",
+                match missing {
+                    Some(p) => format!("`{}`, which is not random", p.name()),
+                    None => "a pair of one parameter, or a pair a second time".into(),
+                },
+            )?;
         }
         Ok(())
     }
@@ -216,13 +213,12 @@ impl AerodynamicScatter {
     fn validate(&self) -> Result<()> {
         if let Some(scatter) = self.relative_scatter {
             positive("aerodynamics.relative_scatter", scatter)?;
-            if self.covariance.is_some() {
-                return Err(Error::input(
-                    "aerodynamics.covariance",
-                    "either `relative_scatter` or `covariance`",
-                    "both",
-                ));
-            }
+            ensure(
+                self.covariance.is_none(),
+                "aerodynamics.covariance",
+                "either `relative_scatter` or `covariance`",
+                "both",
+            )?;
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
 use super::scatter::{CovarianceFactor, drawn_model};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, all_or_errors};
+use crate::error::{Error, Result, all_or_errors, ensure};
 use crate::flutter::{
     FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
 };
@@ -59,10 +59,12 @@ pub fn tally(
     samples: Range<usize>,
     progress: OnSamples<'_>,
 ) -> Result<Tally> {
-    if samples.start > samples.end || samples.end > plan.samples {
-        let expected = format!("numbers of samples up to {}", plan.samples);
-        return Err(Error::input("samples", expected, format!("{samples:?}")));
-    }
+    ensure(
+        samples.start <= samples.end && samples.end <= plan.samples,
+        "samples",
+        format_args!("numbers of samples up to {}", plan.samples),
+        format_args!("{samples:?}"),
+    )?;
     let (limit, model, covariance) = drawn(plan, model)?;
     let finder = Finder::new(&model, limit)?;
     let (values, _) = coefficients::of(&model.model);
@@ -113,10 +115,12 @@ pub fn summarise(
     let (values, _) = coefficients::of(&model.model);
     let (nominal, _) = Finder::new(&model, limit)?.onset(&model.section, &values)?;
     let total = Tally::joined(tallies.into_iter().collect());
-    if total.len() != plan.samples {
-        let expected = format!("answers of {} samples", plan.samples);
-        return Err(Error::input("samples", expected, total.len().to_string()));
-    }
+    ensure(
+        total.len() == plan.samples,
+        "samples",
+        format_args!("answers of {} samples", plan.samples),
+        total.len(),
+    )?;
     Ok(total.summarise(plan, limit, &model.name, nominal))
 }
 

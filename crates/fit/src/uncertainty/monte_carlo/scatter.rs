@@ -7,7 +7,7 @@
 
 use super::coefficients;
 use super::plan::MonteCarloPlan;
-use crate::error::{Error, Place, Result, counted};
+use crate::error::{Error, Place, Result, counted, ensure};
 use crate::json;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
@@ -105,13 +105,12 @@ fn follow(
         None => estimate.model_at(values),
     };
     let model = at(&values)?;
-    if !estimate.makes(&trained.model, trained.tested_range.min)? {
-        return Err(Error::input(
-            "covariance",
-            format!("that of the training of {}", trained.name),
-            "that of another model",
-        ));
-    }
+    ensure(
+        estimate.makes(&trained.model, trained.tested_range.min)?,
+        "covariance",
+        format_args!("that of the training of {}", trained.name),
+        "that of another model",
+    )?;
     let (base, _) = coefficients::of(&model);
     let mut slopes = DMatrix::zeros(base.len(), values.len());
     for p in 0..values.len() {
@@ -173,13 +172,12 @@ fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
     for entry in &report.entries {
         let (at, n) = (names.len(), entry.coefficients.len());
         let place = format!("{}.{}", entry.force.name(), entry.motion.name());
-        if entry.covariance.len() != n || entry.covariance.iter().any(|row| row.len() != n) {
-            return Err(Error::input(
-                format!("covariance of {place}"),
-                format!("a {n}x{n} matrix"),
-                counted(entry.covariance.len(), "row"),
-            ));
-        }
+        ensure(
+            entry.covariance.len() == n && entry.covariance.iter().all(|row| row.len() == n),
+            format_args!("covariance of {place}"),
+            format_args!("a {n}x{n} matrix"),
+            counted(entry.covariance.len(), "row"),
+        )?;
         names.extend(
             entry
                 .coefficients
@@ -214,25 +212,27 @@ fn from_csv(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
     let mut rows = 0;
     for (line, number) in lines {
         let row = cells(line);
-        let place = Place::line(number);
-        if row.len() != names.len() || rows == names.len() {
-            let expected = format!("{0} rows of {0} numbers", names.len());
-            let found = format!("{} numbers in row {}", row.len(), rows + 1);
-            return Err(Error::input(place, expected, found));
-        }
+        let place = || Place::line(number);
+        ensure(
+            row.len() == names.len() && rows != names.len(),
+            place(),
+            format_args!("{0} rows of {0} numbers", names.len()),
+            format_args!("{} numbers in row {}", row.len(), rows + 1),
+        )?;
         for (cell, name) in row.iter().zip(&names) {
             let value = cell.parse::<f64>().ok().filter(|v| v.is_finite());
             values.push(value.ok_or_else(|| {
-                let place = format!("{place}, column {name}");
-                Error::input(place, "a finite number", format!("`{cell}`"))
+                Error::input(place().column(name), "a finite number", format!("`{cell}`"))
             })?);
         }
         rows += 1;
     }
-    if rows != names.len() {
-        let expected = counted(names.len(), "row");
-        return Err(Error::input("covariance", expected, rows.to_string()));
-    }
+    ensure(
+        rows == names.len(),
+        "covariance",
+        counted(names.len(), "row"),
+        rows,
+    )?;
     let matrix = DMatrix::from_row_slice(rows, rows, &values);
     Ok((names, matrix))
 }
@@ -244,14 +244,12 @@ fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<C
             let expected = format!("coefficients of the model: {}", names.join(", "));
             Error::input("name of a coefficient", expected, format!("`{name}`"))
         })?;
-        if places.contains(&place) {
-            let found = format!("`{name}` a second time");
-            return Err(Error::input(
-                "name of a coefficient",
-                "every name once",
-                found,
-            ));
-        }
+        ensure(
+            !places.contains(&place),
+            "name of a coefficient",
+            "every name once",
+            format_args!("`{name}` a second time"),
+        )?;
         places.push(place);
     }
     Ok(CovarianceFactor {
@@ -262,24 +260,28 @@ fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<C
 
 /// A factor `S` with `C = S Sᵀ`.
 fn factor_of(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>> {
-    if !matrix.iter().all(|x| x.is_finite()) {
-        return Err(Error::input("covariance", "finite numbers", "others"));
-    }
+    ensure(
+        matrix.iter().all(|x| x.is_finite()),
+        "covariance",
+        "finite numbers",
+        "others",
+    )?;
     let asymmetry = (matrix - matrix.transpose()).amax();
-    if asymmetry > INDEFINITE * matrix.amax() {
-        let found = format!("a difference of {asymmetry:e} between mirrored entries");
-        return Err(Error::input("covariance", "a symmetric matrix", found));
-    }
+    ensure(
+        asymmetry <= INDEFINITE * matrix.amax(),
+        "covariance",
+        "a symmetric matrix",
+        format_args!("a difference of {asymmetry:e} between mirrored entries"),
+    )?;
     let symmetric = (matrix + matrix.transpose()) * 0.5;
     let (factor, [low, high]) = covariance_root(symmetric)
         .ok_or_else(|| Error::Numerical("covariance: no eigenvalues".into()))?;
-    if low < -INDEFINITE * high || high <= 0.0 {
-        return Err(Error::input(
-            "covariance",
-            "a positive semidefinite matrix that is not zero",
-            format!("eigenvalues from {low:e} to {high:e}"),
-        ));
-    }
+    ensure(
+        low >= -INDEFINITE * high && high > 0.0,
+        "covariance",
+        "a positive semidefinite matrix that is not zero",
+        format_args!("eigenvalues from {low:e} to {high:e}"),
+    )?;
     Ok(factor)
 }
 

@@ -1,6 +1,6 @@
 //! Which way is up and which way the wind blows, in the axes of a finite-element model.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use serde::{Deserialize, Serialize};
 
 /// Directions closer to one line than this (cosine) are no two axes.
@@ -56,14 +56,13 @@ impl Direction {
             }
         };
         let length = dot(vector, vector).sqrt();
-        if length > 0.0 && length.is_finite() {
-            return Ok(vector.map(|x| x / length));
-        }
-        Err(Error::input(
+        ensure(
+            length > 0.0 && length.is_finite(),
             place,
             "a direction of three finite numbers, not all zero",
-            format!("{vector:?}"),
-        ))
+            format_args!("{vector:?}"),
+        )?;
+        Ok(vector.map(|x| x / length))
     }
 }
 
@@ -76,13 +75,12 @@ impl WindAxes {
         let up = self.up.unit("modes.axes.up")?;
         let downwind = self.downwind.unit("modes.axes.downwind")?;
         let cosine = dot(up, downwind);
-        if cosine.abs() > SQUARE {
-            return Err(Error::input(
-                "modes.axes.downwind",
-                "a direction square to `up`",
-                format!("an angle with the cosine {cosine:.4}"),
-            ));
-        }
+        ensure(
+            cosine.abs() <= SQUARE,
+            "modes.axes.downwind",
+            "a direction square to `up`",
+            format_args!("an angle with the cosine {cosine:.4}"),
+        )?;
         // about a, the windward edge -d moves along a × (-d); that is up for a = up × d
         let nose_up = [
             up[1] * downwind[2] - up[2] * downwind[1],

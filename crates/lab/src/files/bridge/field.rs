@@ -1,7 +1,7 @@
 //! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres.
 
 use super::table::Table;
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use std::path::Path;
 
 /// Nodes and columns this close are at one place, m: places are written with a few digits.
@@ -52,13 +52,12 @@ impl FieldTable {
             ));
         }
         let covered = (own[0] - SAME_PLACE)..=(own[own.len() - 1] + SAME_PLACE);
-        if !wanted.iter().all(|x| covered.contains(x)) {
-            return Err(Error::input(
-                "places of the turbulence",
-                format!("{first} to {last} m, where the nodes of the bridge are"),
-                format!("{} to {} m", own[0], own[own.len() - 1]),
-            ));
-        }
+        ensure(
+            wanted.iter().all(|x| covered.contains(x)),
+            "places of the turbulence",
+            format_args!("{first} to {last} m, where the nodes of the bridge are"),
+            format_args!("{} to {} m", own[0], own[own.len() - 1]),
+        )?;
         let of = |rows: &Vec<Vec<f64>>| wanted.iter().map(|x| between(&own, rows, *x)).collect();
         Ok(Self {
             step_s: self.step_s,
@@ -101,14 +100,12 @@ fn parse(table: &Table) -> Result<FieldTable> {
     };
     let (u, w) = (columns("u")?, columns("w")?);
     let places = |columns: &[(usize, f64)]| -> Vec<f64> { columns.iter().map(|c| c.1).collect() };
-    if u.is_empty() || places(&u) != places(&w) {
-        let found = format!("{} columns u[…] and {} columns w[…]", u.len(), w.len());
-        return Err(Error::input(
-            "heading",
-            "columns u[x] and w[x] at the same places",
-            found,
-        ));
-    }
+    ensure(
+        !u.is_empty() && places(&u) == places(&w),
+        "heading",
+        "columns u[x] and w[x] at the same places",
+        format_args!("{} columns u[…] and {} columns w[…]", u.len(), w.len()),
+    )?;
     let times: Vec<f64> = table
         .rows
         .iter()
@@ -128,13 +125,7 @@ fn parse(table: &Table) -> Result<FieldTable> {
 }
 
 fn step(times: &[f64], table: &Table) -> Result<f64> {
-    if times.len() < 3 {
-        return Err(Error::input(
-            "",
-            "three samples or more",
-            times.len().to_string(),
-        ));
-    }
+    ensure(times.len() >= 3, "", "three samples or more", times.len())?;
     let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let wrong = |t: &[f64]| (t[1] - t[0] - mean).abs() > SAME_STEP * mean.abs().max(t[1].abs());
     match times.windows(2).position(wrong) {

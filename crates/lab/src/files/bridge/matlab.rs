@@ -5,7 +5,7 @@
 
 use super::modal_data::BridgeModes;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::lab::matlab_array;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -39,14 +39,12 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
         let found = format!("wn {wn_size:?}, phi {phi_size:?}");
         return Err(Error::input("", "wn (3×m) and phi (3×m×n)", found));
     };
-    if of_phi != modes || points < 2 {
-        let expected = format!("phi of {modes} modes at two points or more");
-        return Err(Error::input(
-            "phi",
-            expected,
-            format!("{of_phi} modes at {points} points"),
-        ));
-    }
+    ensure(
+        of_phi == modes && points >= 2,
+        "phi",
+        format_args!("phi of {modes} modes at two points or more"),
+        format_args!("{of_phi} modes at {points} points"),
+    )?;
     let along: Vec<f64> = (0..points)
         .map(|i| span.span_m * i as f64 / (points as f64 - 1.0))
         .collect();
@@ -56,19 +54,20 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
         for (row, motion) in ROWS.into_iter().enumerate() {
             let at = row + 3 * mode;
             let omega = wn[at];
-            if omega <= 0.0 || !omega.is_finite() {
-                let place = format!("wn({}, {})", row + 1, mode + 1);
-                let expected = "a positive frequency, rad/s";
-                return Err(Error::input(place, expected, omega.to_string()));
-            }
+            ensure(
+                omega > 0.0 && omega.is_finite(),
+                format_args!("wn({}, {})", row + 1, mode + 1),
+                "a positive frequency, rad/s",
+                omega,
+            )?;
             let values = phi.iter().skip(at).step_by(3 * modes).take(points);
             let found = mode_of(omega, motion, values.copied().collect(), &lengths, span);
-            if !(found.generalised_mass > 0.0 && found.generalised_mass.is_finite()) {
-                let place = format!("phi({}, {}, :)", row + 1, mode + 1);
-                let expected = "a shape with a finite mass, m ∫φ² dx > 0";
-                let mass = found.generalised_mass.to_string();
-                return Err(Error::input(place, expected, mass));
-            }
+            ensure(
+                found.generalised_mass > 0.0 && found.generalised_mass.is_finite(),
+                format_args!("phi({}, {}, :)", row + 1, mode + 1),
+                "a shape with a finite mass, m ∫φ² dx > 0",
+                found.generalised_mass,
+            )?;
             all.push(found);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::axes::MotionDirections;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::plausibility::{Finding, FindingKind, Girder, of_modes};
 
 /// A mode with displacements and rotations along the axes of its program.
@@ -91,17 +91,16 @@ impl ModalData {
 /// Refuses nodes that do not rise along the girder, before the tributary lengths complain of it.
 pub(super) fn check_order(nodes: &[Node]) -> Result<()> {
     for pair in nodes.windows(2) {
-        if pair[1].along_m <= pair[0].along_m {
-            return Err(Error::input(
-                format!("node {}", pair[1].name),
-                format!(
-                    "a place along the girder beyond {} m, that of node {} before it (nodes in the order of the girder, \
+        ensure(
+            pair[1].along_m > pair[0].along_m,
+            format_args!("node {}", pair[1].name),
+            format_args!(
+                "a place along the girder beyond {} m, that of node {} before it (nodes in the order of the girder, \
                      along up × downwind)",
-                    pair[0].along_m, pair[0].name
-                ),
-                format!("{} m", pair[1].along_m),
-            ));
-        }
+                pair[0].along_m, pair[0].name
+            ),
+            format_args!("{} m", pair[1].along_m),
+        )?;
     }
     Ok(())
 }

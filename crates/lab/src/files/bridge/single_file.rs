@@ -18,7 +18,7 @@
 use super::modal_data::{BridgeModes, check_order};
 use super::table::{Table, TableRow};
 use crate::bridge::{BridgeMode, Node};
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::files::header_csv::CommentHeader;
 use crate::files::text::{csv_cell, of_csv_cell, read_text};
 use std::io::Write;
@@ -38,10 +38,12 @@ pub(super) fn read(path: &Path) -> Result<BridgeModes> {
 }
 
 pub(super) fn parse(text: &str) -> Result<BridgeModes> {
-    if text.lines().next().map(str::trim) != Some(&format!("# {FORMAT}")) {
-        let found = format!("`{}`", text.lines().next().unwrap_or(""));
-        return Err(Error::input("line 1", format!("`# {FORMAT}`"), found));
-    }
+    ensure(
+        text.lines().next().map(str::trim) == Some(&format!("# {FORMAT}")),
+        "line 1",
+        format_args!("`# {FORMAT}`"),
+        format_args!("`{}`", text.lines().next().unwrap_or("")),
+    )?;
     let header = CommentHeader::read(text, &[FORMAT], KEYS, &[MODE])?;
     header.must_say("axes", AXES)?;
     header.must_say("units", UNITS)?;

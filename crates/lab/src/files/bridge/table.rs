@@ -1,6 +1,6 @@
 //! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
 
-use crate::error::{Error, Place, Result, without_control_characters};
+use crate::error::{Error, Place, Result, ensure, without_control_characters};
 use crate::files::text::read_text;
 use std::path::Path;
 
@@ -58,19 +58,16 @@ impl Table {
                 table.heading = cells;
                 continue;
             }
-            if table.rows.len() == ROWS_AT_MOST {
-                return Err(Error::input(
-                    Place::line(i + 1),
-                    format!("at most {ROWS_AT_MOST} rows"),
-                    "more",
-                ));
-            }
+            ensure(
+                table.rows.len() != ROWS_AT_MOST,
+                Place::line(i + 1),
+                format_args!("at most {ROWS_AT_MOST} rows"),
+                "more",
+            )?;
             let line = i + 1;
             table.rows.push(TableRow { line, cells });
         }
-        if table.rows.is_empty() {
-            return Err(Error::input("", "rows of numbers", "none"));
-        }
+        ensure(!table.rows.is_empty(), "", "rows of numbers", "none")?;
         Ok(table)
     }
 
@@ -123,23 +120,20 @@ impl TableRow {
     /// The whole number in a cell.
     pub(super) fn count(&self, column: usize) -> Result<usize> {
         let x = self.number(column)?;
-        if x >= 0.0 && x.fract() == 0.0 {
-            return Ok(x as usize);
-        }
-        Err(Error::input(
+        ensure(
+            x >= 0.0 && x.fract() == 0.0,
             self.place(column),
             "a whole number",
-            format!("`{}`", self.cell(column)),
-        ))
+            format_args!("`{}`", self.cell(column)),
+        )?;
+        Ok(x as usize)
     }
 
     /// The positive number in a cell.
     pub(super) fn positive(&self, column: usize, expected: &str) -> Result<f64> {
         let x = self.number(column)?;
-        if x > 0.0 {
-            return Ok(x);
-        }
-        Err(Error::input(self.place(column), expected, x.to_string()))
+        ensure(x > 0.0, self.place(column), expected, x)?;
+        Ok(x)
     }
 
     /// The name in a cell; numbers lose what a spreadsheet added to them (`12.0`).

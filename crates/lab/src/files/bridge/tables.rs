@@ -8,7 +8,7 @@
 
 use super::modal_data::{ModalData, RawMode};
 use super::table::{Table, TableRow};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -39,14 +39,12 @@ pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
     };
     let nodes: Vec<(String, [f64; 3])> = table.rows.iter().map(one).collect::<Result<_>>()?;
     for (i, (name, _)) in nodes.iter().enumerate() {
-        if nodes[..i].iter().any(|n| n.0 == *name) {
-            let place = Place::line(table.rows[i].line);
-            return Err(Error::input(
-                place,
-                "each node once",
-                format!("node {name} twice"),
-            ));
-        }
+        ensure(
+            nodes[..i].iter().all(|n| n.0 != *name),
+            Place::line(table.rows[i].line),
+            "each node once",
+            format_args!("node {name} twice"),
+        )?;
     }
     Ok(nodes)
 }

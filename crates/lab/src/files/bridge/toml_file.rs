@@ -9,7 +9,7 @@ use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::bridge::{BridgeMode, Dampers};
-use crate::error::{Error, Result, non_negative, of_schema, positive};
+use crate::error::{Error, Result, ensure, non_negative, of_schema, positive};
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
 use crate::section::Dof;
@@ -284,9 +284,12 @@ impl BridgeFile {
         if let Some(required) = self.flutter.required_speed_m_s {
             positive("flutter.required_speed_m_s", required)?;
         }
-        if self.sections.is_empty() {
-            return Err(Error::input("section", "at least one [[section]]", "none"));
-        }
+        ensure(
+            !self.sections.is_empty(),
+            "section",
+            "at least one [[section]]",
+            "none",
+        )?;
         for (i, section) in self.sections.iter().enumerate() {
             section.validate(&format!("section[{i}]"))?;
         }

@@ -5,7 +5,7 @@
 //! The grid stands across the wind, so that the girder is taken along its width, at the height of the hub.
 
 use super::field::FieldTable;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure, finite};
 use std::path::Path;
 
 /// The ending of such files.
@@ -55,14 +55,7 @@ impl TurbSimBytes<'_> {
     fn number(&mut self, what: &str) -> Result<f64> {
         let place = self.at;
         let number = f64::from(f32::from_le_bytes(self.take(what)?));
-        if number.is_finite() {
-            return Ok(number);
-        }
-        Err(Error::input(
-            format!("byte {place}, {what}"),
-            "a finite number",
-            number.to_string(),
-        ))
+        finite(format_args!("byte {place}, {what}"), number)
     }
 }
 
@@ -84,10 +77,12 @@ impl TurbSimHeader {
     fn of(all: &[u8]) -> Result<Self> {
         let mut bytes = TurbSimBytes { all, at: 0 };
         let kind = bytes.short("the kind of file")?;
-        if !KINDS.contains(&kind) {
-            let expected = "7 or 8, a full-field file of TurbSim";
-            return Err(Error::input("byte 0", expected, kind.to_string()));
-        }
+        ensure(
+            KINDS.contains(&kind),
+            "byte 0",
+            "7 or 8, a full-field file of TurbSim",
+            kind,
+        )?;
         let counts = [
             bytes.count("points upwards", 1)?,
             bytes.count("points across", 2)?,
@@ -129,21 +124,21 @@ impl TurbSimHeader {
         positive("distance across", self.steps[1])?;
         positive("time step", self.steps[2])?;
         for c in ALONG_AND_UP {
-            if self.scales[c][0] == 0.0 {
-                let place = format!("slope of component {}", c + 1);
-                return Err(Error::input(place, "a number other than 0", "0"));
-            }
+            ensure(
+                self.scales[c][0] != 0.0,
+                format_args!("slope of component {}", c + 1),
+                "a number other than 0",
+                "0",
+            )?;
         }
         let samples = self.record().saturating_mul(self.counts[3]);
         let expected = self.end.saturating_add(samples);
-        if length == expected {
-            return Ok(());
-        }
-        Err(Error::input(
+        ensure(
+            length == expected,
             "",
-            format!("{expected} bytes, as the head of the file says"),
-            length.to_string(),
-        ))
+            format_args!("{expected} bytes, as the head of the file says"),
+            length,
+        )
     }
 
     /// Bytes of one time.

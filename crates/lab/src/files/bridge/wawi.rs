@@ -3,7 +3,7 @@
 //! `phi.full` has six rows per node, in the order of `node_matrix`, and one column per mode; axes are those of the nodes.
 
 use super::modal_data::{ModalData, RawMode};
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Result, counted, ensure};
 use crate::files::text::read_text;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -45,13 +45,12 @@ fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
 }
 
 fn data(element: WawiElement, modal: Modal) -> Result<ModalData> {
-    if modal.local {
-        return Err(Error::input(
-            "local",
-            "shapes along global axes (`false`)",
-            "`true`",
-        ));
-    }
+    ensure(
+        !modal.local,
+        "local",
+        "shapes along global axes (`false`)",
+        "`true`",
+    )?;
     let mut nodes = Vec::new();
     for (i, row) in element.node_matrix.iter().enumerate() {
         let [name, x, y, z] = row[..] else {
@@ -66,17 +65,16 @@ fn data(element: WawiElement, modal: Modal) -> Result<ModalData> {
     }
     let omega = frequencies(&modal)?;
     let rows = modal.phi.full;
-    if rows.len() != 6 * nodes.len() {
-        return Err(Error::input(
-            "phi.full",
-            format!(
-                "{} rows, six for each of the {} nodes",
-                6 * nodes.len(),
-                nodes.len()
-            ),
-            counted(rows.len(), "row"),
-        ));
-    }
+    ensure(
+        rows.len() == 6 * nodes.len(),
+        "phi.full",
+        format_args!(
+            "{} rows, six for each of the {} nodes",
+            6 * nodes.len(),
+            nodes.len()
+        ),
+        counted(rows.len(), "row"),
+    )?;
     if let Some(i) = rows.iter().position(|r| r.len() != modal.m.len()) {
         return Err(Error::input(
             format!("phi.full[{i}]"),
@@ -99,24 +97,21 @@ fn data(element: WawiElement, modal: Modal) -> Result<ModalData> {
 fn frequencies(modal: &Modal) -> Result<Vec<f64>> {
     let count = modal.m.len();
     let of = |name: &str, values: &[f64], square: bool| {
-        if values.len() != count {
-            return Err(Error::input(
-                name,
-                format!("{count} values, one per mode of `m`"),
-                values.len().to_string(),
-            ));
-        }
+        ensure(
+            values.len() == count,
+            name,
+            format_args!("{count} values, one per mode of `m`"),
+            values.len(),
+        )?;
         let one = |(i, x): (usize, &f64)| {
             let omega = if square { (x / modal.m[i]).sqrt() } else { *x };
-            if omega > 0.0 && omega.is_finite() && modal.m[i] > 0.0 {
-                return Ok(omega);
-            }
-            let found = format!("mass {}, {name} {x}", modal.m[i]);
-            Err(Error::input(
-                format!("mode {}", i + 1),
+            ensure(
+                omega > 0.0 && omega.is_finite() && modal.m[i] > 0.0,
+                format_args!("mode {}", i + 1),
                 "a positive mass and frequency",
-                found,
-            ))
+                format_args!("mass {}, {name} {x}", modal.m[i]),
+            )?;
+            Ok(omega)
         };
         values.iter().enumerate().map(one).collect()
     };

@@ -28,7 +28,7 @@ use crate::aerodynamics::derivatives::notation::{
 };
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, write_head};
 use crate::files::derivatives::csv_wide;
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
@@ -229,10 +229,12 @@ fn read_rows(
             .map_err(|e| e.at(place(0)))?;
         let (points, lines) = rows.entry(derivative).or_default();
         let expected = (points.len() + 1).to_string();
-        if cell(1) != expected {
-            let expected = format!("point {expected} of {}", cell(0));
-            return Err(Error::input(place(1), expected, format!("`{}`", cell(1))));
-        }
+        ensure(
+            cell(1) == expected,
+            place(1),
+            format_args!("point {expected} of {}", cell(0)),
+            format_args!("`{}`", cell(1)),
+        )?;
         let mean_speed_m_s = match cell(2) {
             "" => None,
             text => Some(number(place(2), text)?),

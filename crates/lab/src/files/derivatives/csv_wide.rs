@@ -16,7 +16,7 @@ use crate::aerodynamics::derivatives::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint, Notation};
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
-use crate::error::{Error, Place, Result, counted, positive};
+use crate::error::{Error, Place, Result, counted, ensure, positive};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, WIDTH_ASSUMED};
 use crate::files::header_csv::number;
 use std::collections::BTreeMap;
@@ -125,11 +125,12 @@ impl WideRow<'_> {
 
     /// Adds the points of this line.
     fn enter(&self, columns: &WideColumns, convention: &Convention, rows: &mut Rows) -> Result<()> {
-        if self.cells.len() != self.names.len() {
-            let expected = counted(self.names.len(), "column");
-            let found = self.cells.len().to_string();
-            return Err(Error::input(Place::line(self.line), expected, found));
-        }
+        ensure(
+            self.cells.len() == self.names.len(),
+            Place::line(self.line),
+            counted(self.names.len(), "column"),
+            self.cells.len(),
+        )?;
         let argument = self.number(columns.argument)?.unwrap_or(f64::NAN);
         positive(self.place(columns.argument), argument)?;
         let speed = columns.speed.map(|column| self.number(column));
@@ -241,10 +242,12 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
     for (i, name) in names.iter().enumerate() {
         let plain = plain_name(name, convention.notation);
         if let Ok(derivative) = convention.notation.derivative(&plain) {
-            if columns.derivatives.iter().any(|(_, d)| *d == derivative) {
-                let place = Place::line(line);
-                return Err(Error::input(place, format!("`{name}` once"), "it twice"));
-            }
+            ensure(
+                columns.derivatives.iter().all(|(_, d)| *d != derivative),
+                Place::line(line),
+                format_args!("`{name}` once"),
+                "it twice",
+            )?;
             columns.derivatives.push((i, derivative));
         } else if is_argument(name, convention.argument) {
             columns.argument = i;
@@ -269,11 +272,12 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
         columns.argument = only;
         unnamed.clear();
     }
-    if columns.derivatives.is_empty() {
-        let expected = format!("columns of derivatives, {}", convention.notation.names());
-        let found = format!("`{}`", names.join(","));
-        return Err(Error::input(Place::line(line), expected, found));
-    }
+    ensure(
+        !columns.derivatives.is_empty(),
+        Place::line(line),
+        format_args!("columns of derivatives, {}", convention.notation.names()),
+        format_args!("`{}`", names.join(",")),
+    )?;
     columns.others = unnamed.into_iter().map(|i| names[i].to_owned()).collect();
     Ok(columns)
 }

@@ -17,7 +17,7 @@ use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::files::derivatives::csv_header::{TableInConvention, WIDTH_ASSUMED};
 use crate::files::derivatives::xlsx_cells::{CellContent, CheckedWorkbook, Sheet};
 use std::collections::BTreeMap;
@@ -184,14 +184,12 @@ fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Po
         sheets.iter().any(|s| column(s).is_some())
     };
     let held: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_held).collect();
-    if held.is_empty() {
-        let expected = format!("columns named {}", convention.notation.names());
-        return Err(Error::input(
-            format!("sheet {}, first row", DERIVATIVES.0),
-            expected,
-            sheets[2].0.title_words(),
-        ));
-    }
+    ensure(
+        !held.is_empty(),
+        format_args!("sheet {}, first row", DERIVATIVES.0),
+        format_args!("columns named {}", convention.notation.names()),
+        sheets[2].0.title_words(),
+    )?;
     let columns = |i: usize| {
         let (sheet, (name, prefix)) = &sheets[i];
         read_columns(sheet, name, prefix, &held, convention)
@@ -200,11 +198,12 @@ fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Po
     let points = held.iter().map(|&d| {
         let (speeds, arguments, values) = (&speeds[&d], &arguments[&d], &values[&d]);
         for (sheet, column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
-            if column.len() != speeds.len() {
-                let expected = format!("{} test points as in sheet {}", speeds.len(), SPEEDS.0);
-                let found = column.len().to_string();
-                return Err(Error::input(format!("sheet {}", sheet.0), expected, found));
-            }
+            ensure(
+                column.len() == speeds.len(),
+                format_args!("sheet {}", sheet.0),
+                format_args!("{} test points as in sheet {}", speeds.len(), SPEEDS.0),
+                column.len(),
+            )?;
         }
         let point = |((speed, argument), value): ((&f64, &f64), &f64)| {
             let point = ExpressedPoint {
@@ -335,17 +334,15 @@ fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Re
     let mut widths = Vec::new();
     for derivative in table.derivatives() {
         let points = table.points(derivative);
-        if frequencies_hz.is_empty() || !points.len().is_multiple_of(frequencies_hz.len()) {
-            let expected = format!(
+        ensure(
+            !frequencies_hz.is_empty() && points.len().is_multiple_of(frequencies_hz.len()),
+            derivative.name(),
+            format_args!(
                 "{} test points per speed, one per frequency (or the width stated)",
                 frequencies_hz.len()
-            );
-            return Err(Error::input(
-                derivative.name(),
-                expected,
-                points.len().to_string(),
-            ));
-        }
+            ),
+            points.len(),
+        )?;
         for (p, f) in points.iter().zip(frequencies_hz.iter().cycle()) {
             let speed = p.mean_speed_m_s.unwrap_or(f64::NAN);
             widths.push(speed / (TAU * f * p.v_hat));
@@ -354,16 +351,15 @@ fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Re
     widths.sort_by(f64::total_cmp);
     let median = widths[widths.len() / 2];
     let (low, high) = (widths[0], widths[widths.len() - 1]);
-    if low > median * (1.0 - WIDTH_TOLERANCE) && high < median * (1.0 + WIDTH_TOLERANCE) {
-        return Ok(median);
-    }
-    Err(Error::input(
+    ensure(
+        low > median * (1.0 - WIDTH_TOLERANCE) && high < median * (1.0 + WIDTH_TOLERANCE),
         "width B = V/(2πf V̂)",
-        format!(
+        format_args!(
             "one width from all points at the frequencies {frequencies_hz:?} Hz (or the width or other frequencies stated)"
         ),
-        format!("{low:.4} m to {high:.4} m"),
-    ))
+        format_args!("{low:.4} m to {high:.4} m"),
+    )?;
+    Ok(median)
 }
 
 #[cfg(test)]

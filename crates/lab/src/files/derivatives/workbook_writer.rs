@@ -6,7 +6,7 @@
 
 use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, ExpressedTable};
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::workbook::{DERIVATIVES, NOTES, REDUCED_VELOCITIES, SPEEDS};
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 
@@ -26,13 +26,12 @@ pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
 pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Result<Vec<u8>> {
     let place = |d: Derivative| format!("table {}, {d}", table.name);
     for d in table.derivatives() {
-        if table.points(d).iter().any(|p| p.mean_speed_m_s.is_none()) {
-            return Err(Error::input(
-                place(d),
-                "the mean speed of every point",
-                "a point without",
-            ));
-        }
+        ensure(
+            table.points(d).iter().all(|p| p.mean_speed_m_s.is_some()),
+            place(d),
+            "the mean speed of every point",
+            "a point without",
+        )?;
     }
     let failed = |e: XlsxError| Error::Numerical(format!("workbook: {e}"));
     let mut book = Workbook::new();

@@ -1,7 +1,7 @@
 //! Cells of a workbook, read one by one and within bounds: a workbook of a few kilobytes can unpack to gigabytes or name
 //! a cell whose dense range fills the memory.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use calamine::{Data, DataRef, Reader, Sheets, XlsxError, open_workbook_auto};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -85,10 +85,12 @@ impl Sheet {
             return Ok(());
         }
         self.cells.insert((row, column), content);
-        if self.cells.len() > CELLS_AT_MOST {
-            let expected = format!("at most {CELLS_AT_MOST} cells with a content");
-            return Err(Error::input(place(), expected, "more"));
-        }
+        ensure(
+            self.cells.len() <= CELLS_AT_MOST,
+            place(),
+            format_args!("at most {CELLS_AT_MOST} cells with a content"),
+            "more",
+        )?;
         Ok(())
     }
 
@@ -117,10 +119,12 @@ impl CheckedWorkbook {
             .is_some_and(|e| e.eq_ignore_ascii_case("xls"));
         if is_old {
             let size = file.metadata().map_err(|e| Error::io(path, e))?.len();
-            if size > OLD_BYTES_AT_MOST {
-                let expected = format!("a workbook of at most {} MiB", OLD_BYTES_AT_MOST >> 20);
-                return Err(Error::input("", expected, format!("{} MiB", size >> 20)));
-            }
+            ensure(
+                size <= OLD_BYTES_AT_MOST,
+                "",
+                format_args!("a workbook of at most {} MiB", OLD_BYTES_AT_MOST >> 20),
+                format_args!("{} MiB", size >> 20),
+            )?;
         } else {
             check_size(file)?;
         }
@@ -186,11 +190,12 @@ fn no_workbook(error: &dyn std::fmt::Display) -> Error {
 /// Unpacks every part into nothing, up to the bounds: what the directory of the file says about sizes may be wrong.
 fn check_size(file: File) -> Result<()> {
     let mut archive = zip::ZipArchive::new(BufReader::new(file)).map_err(|e| no_workbook(&e))?;
-    if archive.len() > PARTS_AT_MOST {
-        let found = archive.len().to_string();
-        let expected = format!("a workbook of at most {PARTS_AT_MOST} parts");
-        return Err(Error::input("", expected, found));
-    }
+    ensure(
+        archive.len() <= PARTS_AT_MOST,
+        "",
+        format_args!("a workbook of at most {PARTS_AT_MOST} parts"),
+        archive.len(),
+    )?;
     let mut total = 0;
     for i in 0..archive.len() {
         let part = archive.by_index(i).map_err(|e| no_workbook(&e))?;
@@ -198,14 +203,16 @@ fn check_size(file: File) -> Result<()> {
         let bytes = std::io::copy(&mut part.take(PART_BYTES_AT_MOST + 1), &mut std::io::sink())
             .map_err(|e| no_workbook(&e))?;
         total += bytes;
-        if bytes > PART_BYTES_AT_MOST || total > BYTES_AT_MOST {
-            let expected = format!(
+        ensure(
+            bytes <= PART_BYTES_AT_MOST && total <= BYTES_AT_MOST,
+            format_args!("part {name}"),
+            format_args!(
                 "parts of at most {} MiB, {} MiB in all, when unpacked",
                 PART_BYTES_AT_MOST >> 20,
                 BYTES_AT_MOST >> 20
-            );
-            return Err(Error::input(format!("part {name}"), expected, "more"));
-        }
+            ),
+            "more",
+        )?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What a laboratory file holds: channels, single values and what was left out.
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use std::collections::BTreeMap;
 
 /// What one file, or one group of it, holds.
@@ -44,13 +44,14 @@ const NAMES_AT_MOST: usize = 60;
 
 /// Refuses more numbers than a recording has.
 pub(super) fn check_count(place: impl Into<Place>, numbers: u64) -> Result<()> {
-    if numbers <= NUMBERS_AT_MOST {
-        return Ok(());
-    }
-    let expected = format!(
-        "at most {NUMBERS_AT_MOST} numbers in a file or group (cut the recording, or give each run a group)"
-    );
-    Err(Error::input(place, expected, numbers.to_string()))
+    ensure(
+        numbers <= NUMBERS_AT_MOST,
+        place,
+        format_args!(
+            "at most {NUMBERS_AT_MOST} numbers in a file or group (cut the recording, or give each run a group)"
+        ),
+        numbers,
+    )
 }
 
 /// Names under which files state their sampling frequency in Hz, in lower case.

@@ -8,7 +8,7 @@
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::tdms_bytes::{Bytes, STRING, TIME_STAMP, property, sample, size_of};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use std::collections::{BTreeMap, HashMap};
 
 const LEAD_IN_BYTES: usize = 28;
@@ -136,13 +136,12 @@ impl TdmsFile {
                     let kind = bytes.u32()?;
                     let _dimension = bytes.u32()?;
                     let count = usize::try_from(bytes.u64()?).unwrap_or(usize::MAX);
-                    if kind == STRING {
-                        return Err(Error::input(
-                            format!("{at}, {}", object.path),
-                            "samples that are numbers",
-                            format!("texts (index of {length} bytes)"),
-                        ));
-                    }
+                    ensure(
+                        kind != STRING,
+                        format_args!("{at}, {}", object.path),
+                        "samples that are numbers",
+                        format_args!("texts (index of {length} bytes)"),
+                    )?;
                     object.layout = Some(SampleLayout { kind, count });
                     true
                 }
@@ -170,10 +169,12 @@ impl TdmsFile {
         if let Some(place) = self.places.get(&path) {
             return Ok(*place);
         }
-        if self.objects.len() == OBJECTS_AT_MOST {
-            let expected = format!("at most {OBJECTS_AT_MOST} channels and groups");
-            return Err(Error::input(at, expected, "more"));
-        }
+        ensure(
+            self.objects.len() != OBJECTS_AT_MOST,
+            at,
+            format_args!("at most {OBJECTS_AT_MOST} channels and groups"),
+            "more",
+        )?;
         self.objects.push(Object {
             path: path.clone(),
             ..Object::default()
@@ -194,10 +195,12 @@ impl TdmsFile {
             return Ok(());
         }
         self.looks += self.active.len();
-        if self.looks > LOOKS_AT_MOST {
-            let expected = "fewer segments of so many channels (have the file defragmented)";
-            return Err(Error::input(format!("byte {}", bytes.at), expected, "more"));
-        }
+        ensure(
+            self.looks <= LOOKS_AT_MOST,
+            format_args!("byte {}", bytes.at),
+            "fewer segments of so many channels (have the file defragmented)",
+            "more",
+        )?;
         let layout = |place: &usize| Some((*place, self.objects[*place].layout?));
         let layouts: Vec<(usize, SampleLayout)> = self.active.iter().filter_map(layout).collect();
         if layouts.is_empty() {
@@ -205,11 +208,12 @@ impl TdmsFile {
         }
         let blocks = self.count_blocks(&layouts, raw, bytes.at)?;
         let rows = layouts[0].1.count;
-        if is_interleaved && layouts.iter().any(|(_, l)| l.count != rows) {
-            let place = format!("byte {}", bytes.at);
-            let expected = "interleaved channels of one length";
-            return Err(Error::input(place, expected, "others"));
-        }
+        ensure(
+            !is_interleaved || layouts.iter().all(|(_, l)| l.count == rows),
+            format_args!("byte {}", bytes.at),
+            "interleaved channels of one length",
+            "others",
+        )?;
         // row by row, or channel by channel
         let (rows, each) = if is_interleaved {
             (rows, 1)
@@ -243,15 +247,16 @@ impl TdmsFile {
                 .unwrap_or(usize::MAX);
             samples = samples.saturating_add(layout.count);
         }
-        let place = format!("byte {at}");
-        if block == 0 || !raw.is_multiple_of(block) {
-            let expected = format!("whole blocks of {block} bytes");
-            let found = format!("{raw} bytes of samples");
-            return Err(Error::input(place, expected, found));
-        }
+        let place = format_args!("byte {at}");
+        ensure(
+            block != 0 && raw.is_multiple_of(block),
+            place,
+            format_args!("whole blocks of {block} bytes"),
+            format_args!("{raw} bytes of samples"),
+        )?;
         let blocks = raw / block;
         self.samples += samples.saturating_mul(blocks) as u64;
-        check_count(&place, self.samples)?;
+        check_count(place, self.samples)?;
         Ok(blocks)
     }
 

@@ -1,6 +1,6 @@
 //! Density of the air: stated, or by the gas law.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -89,11 +89,13 @@ impl Air {
 }
 
 fn within(place: &str, value: f64, range: RangeInclusive<f64>) -> Result<f64> {
-    if range.contains(&value) {
-        return Ok(value);
-    }
-    let expected = format!("a number from {} to {}", range.start(), range.end());
-    Err(Error::input(place, expected, value.to_string()))
+    ensure(
+        range.contains(&value),
+        place,
+        format_args!("a number from {} to {}", range.start(), range.end()),
+        value,
+    )?;
+    Ok(value)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! One channel of the files: its name, its unit and its sign.
 
 use super::quantity::{Quantity, is_known, unit_in_name};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure, finite};
 use crate::files::lab::ChannelSet;
 use crate::signal::mean;
 use serde::{Deserialize, Serialize};
@@ -60,15 +60,12 @@ impl ChannelRef {
         if let Some(unit) = &self.unit {
             quantity.factor(&format!("{place}.unit"), unit)?;
         }
-        if self.scale.is_finite() && self.scale != 0.0 {
-            return Ok(());
-        }
-        let place = format!("{place}.scale");
-        Err(Error::input(
-            place,
+        ensure(
+            self.scale.is_finite() && self.scale != 0.0,
+            format_args!("{place}.scale"),
             "a number other than zero",
-            self.scale.to_string(),
-        ))
+            self.scale,
+        )
     }
 
     /// The samples in SI units.
@@ -86,14 +83,12 @@ impl ChannelRef {
             .channel(&self.name)
             .ok_or_else(|| self.missing(place, set))?;
         let of_the_name = set.channels.iter().filter(|c| c.name == self.name).count();
-        if of_the_name > 1 {
-            let expected = format!("one channel `{}`", self.name);
-            return Err(Error::input(
-                place,
-                expected,
-                format!("{of_the_name} of that name"),
-            ));
-        }
+        ensure(
+            of_the_name <= 1,
+            place,
+            format_args!("one channel `{}`", self.name),
+            format_args!("{of_the_name} of that name"),
+        )?;
         let factor = self.factor(place, quantity, channel.unit.as_deref())?;
         Ok(channel.samples.iter().map(|x| factor * x).collect())
     }
@@ -104,11 +99,7 @@ impl ChannelRef {
             Some(number) => number * self.factor(place, quantity, None)?,
             None => mean(&self.samples(place, quantity, set)?),
         };
-        if value.is_finite() {
-            return Ok(value);
-        }
-        let place = format!("{place}, `{}`", self.name);
-        Err(Error::input(place, "a finite number", value.to_string()))
+        finite(format_args!("{place}, `{}`", self.name), value)
     }
 
     fn missing(&self, place: &str, set: &ChannelSet) -> Error {

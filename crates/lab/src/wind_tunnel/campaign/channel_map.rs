@@ -3,7 +3,7 @@
 use super::channel::{CellChannel, ChannelRef};
 use super::quantity::Quantity;
 use super::section_forces::SectionForces;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::lab::Channel;
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, Rig};
@@ -84,10 +84,12 @@ impl ChannelMap {
         for (key, channel, quantity) in self.single() {
             channel.validate(&key, quantity)?;
         }
-        if self.section.as_ref().is_some_and(|s| s.dofs().is_empty()) {
-            let expected = "at least one of lift, drag, moment";
-            return Err(Error::input("channels.section", expected, "none"));
-        }
+        ensure(
+            !self.section.as_ref().is_some_and(|s| s.dofs().is_empty()),
+            "channels.section",
+            "at least one of lift, drag, moment",
+            "none",
+        )?;
         self.each_once()?;
         let names: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
         if let Some(unknown) = self.cells.keys().find(|n| !names.contains(&n.as_str())) {
@@ -173,9 +175,7 @@ pub(super) fn cell_quantity(key: &str) -> Quantity {
 /// The time channel as a sampling frequency, Hz.
 pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
     let n = time_s.len();
-    if n < 2 {
-        return Err(Error::input(place, "at least two samples", n.to_string()));
-    }
+    ensure(n >= 2, place, "at least two samples", n)?;
     let step = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
     // stamps are often rounded: a sample may stand off its place by a quarter of a step
     let uneven = (1..n).find(|i| {

@@ -5,7 +5,7 @@ use super::channel::ChannelRef;
 use super::channel_map::ChannelMap;
 use super::ntnu;
 use super::section_forces::{self, SectionForces};
-use crate::error::{Error, Result, at_most, of_schema, positive};
+use crate::error::{Error, Result, at_most, ensure, of_schema, positive};
 use crate::files::toml_lines;
 use crate::section::Dof;
 use crate::wind_tunnel::Rig;
@@ -243,9 +243,12 @@ impl Campaign {
 
     fn validate(&self) -> Result<()> {
         of_schema(CAMPAIGN_SCHEMA, self.schema)?;
-        if self.section.name.trim().is_empty() {
-            return Err(Error::input("section.name", "a name", "none"));
-        }
+        ensure(
+            !self.section.name.trim().is_empty(),
+            "section.name",
+            "a name",
+            "none",
+        )?;
         let rig = self.rig()?;
         self.validate_cells(&rig)?;
         if let Some(hz) = self.recording.sampling_hz {
@@ -255,9 +258,7 @@ impl Campaign {
         at_most("run", self.runs.len() as f64, RUNS_AT_MOST)?;
         let map = self.channel_map();
         map.validate(&rig)?;
-        if self.runs.is_empty() {
-            return Err(Error::input("run", "at least one [[run]]", "none"));
-        }
+        ensure(!self.runs.is_empty(), "run", "at least one [[run]]", "none")?;
         for (i, run) in self.runs.iter().enumerate() {
             let mut before = self.runs[..i].iter();
             if before.any(|r| r.name == run.name) {
@@ -277,10 +278,12 @@ impl Campaign {
                 return Err(second_time(&key, "cell", &cell.name));
             }
         }
-        if self.recording.layout.is_some() && cells.len() > ntnu::CELLS {
-            let expected = format!("at most {} cells in this layout", ntnu::CELLS);
-            return Err(Error::input("rig.cells", expected, cells.len().to_string()));
-        }
+        ensure(
+            self.recording.layout.is_none() || cells.len() <= ntnu::CELLS,
+            "rig.cells",
+            format_args!("at most {} cells in this layout", ntnu::CELLS),
+            cells.len(),
+        )?;
         Ok(())
     }
 }
@@ -308,20 +311,19 @@ impl RunBlock {
     fn validate(&self, place: &str, map: &ChannelMap, common: Air) -> Result<()> {
         let key = |name: &str| format!("{place}.{name}");
         let of_run = format!("(run `{}`)", self.name);
-        if self.name.trim().is_empty() {
-            return Err(Error::input(key("name"), "a name", "none"));
-        }
-        if self.still_air.is_none() && map.section.is_none() {
-            return Err(Error::input(
-                key("still_air"),
-                format!("the recording of the same motion in still air {of_run}"),
-                "none",
-            ));
-        }
-        if self.motion.is_empty() {
-            let expected = format!("what moves {of_run}: vertical, lateral, torsion");
-            return Err(Error::input(key("motion"), expected, "nothing"));
-        }
+        ensure(!self.name.trim().is_empty(), key("name"), "a name", "none")?;
+        ensure(
+            self.still_air.is_some() || map.section.is_some(),
+            key("still_air"),
+            format_args!("the recording of the same motion in still air {of_run}"),
+            "none",
+        )?;
+        ensure(
+            !self.motion.is_empty(),
+            key("motion"),
+            format_args!("what moves {of_run}: vertical, lateral, torsion"),
+            "nothing",
+        )?;
         for dof in &self.motion {
             self.validate_motion(*dof, map).map_err(|expected| {
                 let expected = format!("{expected} {of_run}");

@@ -6,7 +6,7 @@ use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
 use super::recording::{LoadedRecording, SAME_RATE};
 use super::section_forces::SectionForces;
-use crate::error::{Error, Result, all_or_errors, positive};
+use crate::error::{Result, all_or_errors, ensure, positive};
 use crate::section::Dof;
 use crate::signal::mean;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
@@ -66,7 +66,7 @@ pub struct LoadedCampaign {
 /// All recordings that a campaign file names.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Input`] naming file, run, recording, channel and sample.
+/// [`Error::Io`](crate::error::Error::Io); [`Error::Input`](crate::error::Error::Input) naming file, run, recording, channel and sample.
 pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<LoadedCampaign> {
     let reading = Campaign::read(path)?.load()?;
     let findings = reading.findings.iter().map(ToString::to_string);
@@ -80,7 +80,7 @@ impl Campaign {
     /// Reads all recordings.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Input`] naming run, recording, channel and sample: a channel that the file does not
+    /// [`Error::Io`](crate::error::Error::Io); [`Error::Input`](crate::error::Error::Input) naming run, recording, channel and sample: a channel that the file does not
     /// hold (with those that it does), channels of unequal length or rate, samples that are no numbers, a unit that
     /// does not fit, a mean speed that is not positive, air of unknown density. The errors of all runs, in their order.
     pub fn load(&self) -> Result<CampaignReading> {
@@ -136,13 +136,12 @@ impl Campaign {
         };
         let wind_hz = wind.recording.sampling_hz;
         let still_hz = still.as_ref().map_or(wind_hz, |s| s.recording.sampling_hz);
-        if (wind_hz / still_hz - 1.0).abs() > SAME_RATE {
-            return Err(Error::input(
-                place,
-                "one sampling frequency in wind and in still air",
-                format!("{wind_hz} Hz and {still_hz} Hz"),
-            ));
-        }
+        ensure(
+            (wind_hz / still_hz - 1.0).abs() <= SAME_RATE,
+            place,
+            "one sampling frequency in wind and in still air",
+            format_args!("{wind_hz} Hz and {still_hz} Hz"),
+        )?;
         let mean_speed_m_s = mean_speed(run, &wind.recording)?;
         let air_density_kg_m3 = self.density(map, run, &wind)?;
         let summary = RunSummary {

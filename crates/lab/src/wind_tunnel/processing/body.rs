@@ -4,7 +4,7 @@
 //! rotation `I = m (r² + e²)` in the moment and `m e` in the lift. So `|e| < B` bounds the one, and `e/(r² + e²) ≤ 1/(2r)` with a
 //! radius of gyration r of no less than `B/20` the other, whatever the model: beyond them the motion is not the one that its channel says.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::wind_tunnel::Rig;
 use serde::{Deserialize, Serialize};
@@ -71,17 +71,15 @@ pub(super) fn check_motion(
         ),
         _ => return Ok(()),
     };
-    if !(exchanged && across.is_certain()) {
-        return Ok(());
-    }
-    Err(Error::input(
-        format!("run {run}, still air"),
-        format!(
+    ensure(
+        !(exchanged && across.is_certain()),
+        format_args!("run {run}, still air"),
+        format_args!(
             "inertia of the {} motion mostly in the {} force",
             own.dof.name(),
             own.dof.name()
         ),
-        format!(
+        format_args!(
             "{:.4} {} there and {:.4} {} in the {} force, which no body has: the channels of rotation and displacement are \
              exchanged",
             own.inertia,
@@ -90,7 +88,7 @@ pub(super) fn check_motion(
             unit.1,
             across.dof.name()
         ),
-    ))
+    )
 }
 
 /// Compares the inertia with that of the rig, if it states one: a warning with the figures, or nothing.
@@ -129,15 +127,14 @@ pub(super) fn compare(
         "{:.4} ± {:.4} {unit}",
         found.inertia, found.inertia_standard_error
     );
-    if beyond <= ANOTHER_BODY * stated + error {
-        return Ok(Some(format!(
-            "still air shows {shown} in {} motion, `{key}` states {stated} {unit}",
-            found.dof.name()
-        )));
-    }
-    Err(Error::input(
-        format!("run {run}, still air, {} motion", found.dof.name()),
-        format!("about the {stated:.4} {unit} that `{key}` states"),
-        format!("{shown}: a load-cell channel is missing, taken twice, or in another unit"),
-    ))
+    ensure(
+        beyond <= ANOTHER_BODY * stated + error,
+        format_args!("run {run}, still air, {} motion", found.dof.name()),
+        format_args!("about the {stated:.4} {unit} that `{key}` states"),
+        format_args!("{shown}: a load-cell channel is missing, taken twice, or in another unit"),
+    )?;
+    Ok(Some(format!(
+        "still air shows {shown} in {} motion, `{key}` states {stated} {unit}",
+        found.dof.name()
+    )))
 }

@@ -1,6 +1,6 @@
 //! What a raw run must be before anything is computed from it.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::section::Dof;
 use crate::signal::clipped_stretches;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, SAMPLES_AT_LEAST};
@@ -79,13 +79,12 @@ pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<RunCheck> {
 fn check_pair(run: &str, wind: &RawRecording, still: &RawRecording) -> Result<()> {
     let place = |what: &str| format!("run {run}, {what}");
     let (f1, f2) = (wind.sampling_hz, still.sampling_hz);
-    if (f1 / f2 - 1.0).abs() > SAME_RATE {
-        return Err(Error::input(
-            place("still air"),
-            format!("the sampling frequency of the recording in wind, {f1} Hz"),
-            format!("{f2} Hz"),
-        ));
-    }
+    ensure(
+        (f1 / f2 - 1.0).abs() <= SAME_RATE,
+        place("still air"),
+        format_args!("the sampling frequency of the recording in wind, {f1} Hz"),
+        format_args!("{f2} Hz"),
+    )?;
     for dof in Dof::THREE {
         let recorded = |r: &RawRecording| !r.motion[super::index(dof)].is_empty();
         if recorded(wind) != recorded(still) {
@@ -125,30 +124,32 @@ fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<(
         format!("{place}, sampling frequency"),
         recording.sampling_hz,
     )?;
-    if recording.cells.len() != rig.cells.len() || rig.cells.is_empty() {
-        let expected = format!("{} load cells, at least one", rig.cells.len());
-        return Err(Error::input(
-            place,
-            expected,
-            recording.cells.len().to_string(),
-        ));
-    }
-    if recording.motion.iter().all(Vec::is_empty) {
-        return Err(Error::input(place, "a motion channel", "none"));
-    }
+    ensure(
+        recording.cells.len() == rig.cells.len() && !rig.cells.is_empty(),
+        place,
+        format_args!("{} load cells, at least one", rig.cells.len()),
+        recording.cells.len(),
+    )?;
+    ensure(
+        recording.motion.iter().any(|c| !c.is_empty()),
+        place,
+        "a motion channel",
+        "none",
+    )?;
     let count = recording.sample_count();
-    if count < SAMPLES_AT_LEAST {
-        let expected = format!("at least {SAMPLES_AT_LEAST} samples");
-        return Err(Error::input(place, expected, count.to_string()));
-    }
+    ensure(
+        count >= SAMPLES_AT_LEAST,
+        place,
+        format_args!("at least {SAMPLES_AT_LEAST} samples"),
+        count,
+    )?;
     for (name, samples) in channels(recording, rig) {
-        if samples.len() != count {
-            return Err(Error::input(
-                format!("{place}, {name}"),
-                format!("{count} samples, as the first force channel"),
-                samples.len().to_string(),
-            ));
-        }
+        ensure(
+            samples.len() == count,
+            format_args!("{place}, {name}"),
+            format_args!("{count} samples, as the first force channel"),
+            samples.len(),
+        )?;
         if let Some(k) = samples.iter().position(|x| !x.is_finite()) {
             return Err(Error::input(
                 format!("{place}, {name}, sample {k}"),
@@ -168,16 +169,15 @@ fn clipped(place: &str, recording: &RawRecording, rig: &Rig) -> Result<Vec<Clipp
             continue;
         };
         let total: usize = stretches.iter().map(|s| s.1).sum();
-        if total as f64 > CLIPPED_PART * samples.len() as f64 {
-            return Err(Error::input(
-                format!("{place}, {name}, sample {first}"),
-                "a channel that is not clipped",
-                format!(
-                    "{total} samples at its limit in {} stretches",
-                    stretches.len()
-                ),
-            ));
-        }
+        ensure(
+            total as f64 <= CLIPPED_PART * samples.len() as f64,
+            format_args!("{place}, {name}, sample {first}"),
+            "a channel that is not clipped",
+            format_args!(
+                "{total} samples at its limit in {} stretches",
+                stretches.len()
+            ),
+        )?;
         found.extend(stretches.iter().map(|(first, samples)| ClippedStretch {
             channel: format!("{place}, {name}"),
             first: *first,

@@ -7,7 +7,7 @@ use super::options::ProcessingOptions;
 use super::segmentation::{find_segments, moving_dof, whole_periods};
 use super::signals::HarmonicSegment;
 use super::{body, index, still_air};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::wind_tunnel::{RawRecording, RawRun, Rig};
 use std::ops::Range;
@@ -47,13 +47,12 @@ impl<'a> PreparedRun<'a> {
         let mut still_air = None;
         if let Some(still) = &run.still_air {
             let in_still_air = moving(still, "still air")?;
-            if in_still_air != dof {
-                return Err(Error::input(
-                    format!("run {}, still air", run.name),
-                    format!("the {} motion of the recording in wind", dof.name()),
-                    format!("a {} motion", in_still_air.name()),
-                ));
-            }
+            ensure(
+                in_still_air == dof,
+                format_args!("run {}, still air", run.name),
+                format_args!("the {} motion of the recording in wind", dof.name()),
+                format_args!("a {} motion", in_still_air.name()),
+            )?;
             still_segments = find(still);
             still_air = still_air_inertia(&run.name, still, rig, dof, &still_segments)?;
             if let Some(inertia) = &still_air {
@@ -82,19 +81,18 @@ impl<'a> PreparedRun<'a> {
             .iter()
             .map(|s| {
                 let p = s.plateau.range();
-                if p.start < covered.start || p.end > covered.end {
-                    return Err(Error::input(
-                        format!("run {}, still air", self.run.name),
-                        format!(
-                            "a recording as long as the motion at {:.3} Hz (samples {} to {})",
-                            s.segment.frequency_hz, p.start, p.end
-                        ),
-                        format!(
-                            "one that covers samples {} to {}",
-                            covered.start, covered.end
-                        ),
-                    ));
-                }
+                ensure(
+                    p.start >= covered.start && p.end <= covered.end,
+                    format_args!("run {}, still air", self.run.name),
+                    format_args!(
+                        "a recording as long as the motion at {:.3} Hz (samples {} to {})",
+                        s.segment.frequency_hz, p.start, p.end
+                    ),
+                    format_args!(
+                        "one that covers samples {} to {}",
+                        covered.start, covered.end
+                    ),
+                )?;
                 let mut moved = *s;
                 moved.plateau.first -= covered.start;
                 moved.segment.start_s = (s.segment.start_s - shift_s).max(0.0);

@@ -10,7 +10,7 @@
 //! still air leaves with it: the derivatives are those of wind against still air, as in every such test.
 
 use super::signals::{SectionSignals, level};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::signal::{delay, delayed};
 use crate::wind_tunnel::RawRecording;
@@ -81,13 +81,12 @@ pub(crate) fn align(
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
     // over what both cover: a recording that ends early is alike, and reported as short where it matters
     let correlation = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
-    if !correlation.is_finite() || correlation < ALIKE {
-        return Err(Error::input(
-            place(),
-            format!("the motion of the recording in wind, correlation at least {ALIKE}"),
-            format!("correlation {correlation:.3}"),
-        ));
-    }
+    ensure(
+        correlation.is_finite() && correlation >= ALIKE,
+        place(),
+        format_args!("the motion of the recording in wind, correlation at least {ALIKE}"),
+        format_args!("correlation {correlation:.3}"),
+    )?;
     let difference: f64 = a.iter().zip(&b).map(|(p, q)| (p - q).powi(2)).sum();
     Ok(Aligned {
         still_air: moved_still,

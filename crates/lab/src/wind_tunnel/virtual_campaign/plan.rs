@@ -1,6 +1,6 @@
 //! What a virtual campaign consists of; every part can be switched off.
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::wind_tunnel::{LoadCell, Rig, TunnelPlan};
 use serde::{Deserialize, Serialize};
 
@@ -297,10 +297,12 @@ impl Support {
     }
 
     fn validate(&self) -> Result<()> {
-        if self.cells.len() != 2 {
-            let found = self.cells.len().to_string();
-            return Err(Error::input("support.cells", "two load cells", found));
-        }
+        ensure(
+            self.cells.len() == 2,
+            "support.cells",
+            "two load cells",
+            self.cells.len(),
+        )?;
         // the width is the deck's and checked with it
         self.rig(1.0).validate()?;
         finite("support.share_of_first", &[self.share_of_first])?;

@@ -4,6 +4,7 @@ use super::cone::Cone;
 use super::second_order::{Scaling, Vector, determinant, dot, product, quotient, reach, tail};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::subtract;
+use aerodeck_core::vectorised;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::array::from_fn;
 
@@ -207,7 +208,7 @@ struct Weighted<'a> {
 
 impl<'a> Weighted<'a> {
     fn new(rows: &'a DMatrix<f64>) -> Option<Self> {
-        let factor = pulp::Arch::new().dispatch(OnePlusGram(rows)).cholesky()?;
+        let factor = one_plus_gram(rows).cholesky()?;
         Some(Self { rows, factor })
     }
 
@@ -245,27 +246,30 @@ fn write(rows: &mut [f64], v: &Vector) {
     }
 }
 
-/// `rows w`.
-fn times(rows: &DMatrix<f64>, w: &DVector<f64>) -> DVector<f64> {
-    pulp::Arch::new().dispatch(RowsTimes { rows, w })
-}
+vectorised! {
+    /// `rows w`.
+    fn times<'a>(rows: &'a DMatrix<f64>, w: &'a DVector<f64>) -> DVector<f64> {
+        let mut sum = DVector::zeros(rows.nrows());
+        for (column, w) in rows.as_slice().chunks_exact(rows.nrows().max(1)).zip(w) {
+            subtract(sum.as_mut_slice(), -w, column);
+        }
+        sum
+    }
 
-/// `rowsᵀ y`.
-fn transposed_times(rows: &DMatrix<f64>, y: &DVector<f64>) -> DVector<f64> {
-    pulp::Arch::new().dispatch(TransposedTimes { rows, y })
-}
+    /// `rowsᵀ y`.
+    fn transposed_times<'a>(rows: &'a DMatrix<f64>, y: &'a DVector<f64>) -> DVector<f64> {
+        let columns = rows.as_slice().chunks_exact(rows.nrows().max(1));
+        let mut products = DVector::zeros(rows.ncols());
+        for (product, column) in products.iter_mut().zip(columns) {
+            *product = in_eight_parts(column, y.as_slice());
+        }
+        products
+    }
 
-/// `I + rowsᵀ rows`.
-struct OnePlusGram<'a>(&'a DMatrix<f64>);
-
-impl pulp::NullaryFnOnce for OnePlusGram<'_> {
-    type Output = DMatrix<f64>;
-
-    #[inline(always)]
-    fn call(self) -> DMatrix<f64> {
-        let n = self.0.ncols();
-        let columns = self.0.as_slice().chunks_exact(self.0.nrows().max(1));
-        let mut gram = DMatrix::identity(n, n);
+    /// `I + rowsᵀ rows`.
+    fn one_plus_gram<'a>(rows: &'a DMatrix<f64>) -> DMatrix<f64> {
+        let columns = rows.as_slice().chunks_exact(rows.nrows().max(1));
+        let mut gram = DMatrix::identity(rows.ncols(), rows.ncols());
         for (i, one) in columns.clone().enumerate() {
             for (j, other) in columns.clone().enumerate().take(i + 1) {
                 gram[(i, j)] += in_eight_parts(one, other);
@@ -290,45 +294,6 @@ fn in_eight_parts(a: &[f64], b: &[f64]) -> f64 {
     let sum = (0..4).fold(0.0, |sum, i| sum + (parts[i] + parts[i + 4]));
     let rest = a_rest.iter().zip(b_rest);
     rest.fold(sum, |sum, (x, y)| sum + x * y)
-}
-
-struct RowsTimes<'a> {
-    rows: &'a DMatrix<f64>,
-    w: &'a DVector<f64>,
-}
-
-struct TransposedTimes<'a> {
-    rows: &'a DMatrix<f64>,
-    y: &'a DVector<f64>,
-}
-
-impl pulp::NullaryFnOnce for RowsTimes<'_> {
-    type Output = DVector<f64>;
-
-    #[inline(always)]
-    fn call(self) -> DVector<f64> {
-        let rows = self.rows.nrows();
-        let mut sum = DVector::zeros(rows);
-        let columns = self.rows.as_slice().chunks_exact(rows.max(1));
-        for (column, w) in columns.zip(self.w) {
-            subtract(sum.as_mut_slice(), -w, column);
-        }
-        sum
-    }
-}
-
-impl pulp::NullaryFnOnce for TransposedTimes<'_> {
-    type Output = DVector<f64>;
-
-    #[inline(always)]
-    fn call(self) -> DVector<f64> {
-        let columns = self.rows.as_slice().chunks_exact(self.rows.nrows().max(1));
-        let mut products = DVector::zeros(self.rows.ncols());
-        for (product, column) in products.iter_mut().zip(columns) {
-            *product = in_eight_parts(column, self.y.as_slice());
-        }
-        products
-    }
 }
 
 pub(super) fn contradiction() -> Error {

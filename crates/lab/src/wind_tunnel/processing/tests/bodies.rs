@@ -1,6 +1,7 @@
 //! Inertia in still air against the rig; exchanged channels; records that are too short; drift of cells.
 
 use super::*;
+use crate::error::Error;
 
 fn made() -> VirtualCampaign {
     campaign(&short(VirtualCampaignPlan::default()))
