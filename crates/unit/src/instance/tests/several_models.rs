@@ -299,9 +299,8 @@ fn strips_depend_on_nothing_of_one_another() {
     };
     let mut count = 0;
     for v in variables {
-        let initial = v.initial_dependencies.iter().map(|d| d.on);
-        for on in v.direct_inputs.iter().copied().chain(initial) {
-            let Some(other) = node(&variables[on].name) else {
+        for of in v.direct_inputs.iter().chain(&v.initial_dependencies) {
+            let Some(other) = node(&variables[of.on].name) else {
                 continue;
             };
             assert_eq!(Some(other), node(&v.name), "{}", v.name);
