@@ -65,7 +65,7 @@ fn target_is_there() -> bool {
 
 /// Builds the component, in a folder that cargo has not locked, and lays it out as releases do.
 fn place(folder: &Path) {
-    let target = crate::python::target_directory().with_file_name("component");
+    let target = crate::python::target_directory().join("component");
     let built = Command::new(env!("CARGO"))
         .args(["build", "--locked", "--package", "aerodeck-component"])
         .args(["--profile", "component", "--target", TARGET, "--target-dir"])
