@@ -30,9 +30,7 @@ mod three_dof;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, write_fmu,
-};
+use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
@@ -155,15 +153,8 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     };
     for (name, options) in [("force", single), ("force_strips", strips)] {
         let export = Export {
-            reference_runs: true,
-            growing: GrowthPolicy::Refuse,
             force: Some(options),
-            gusts: None,
-            bounds: None,
-            verdict: None,
-            listing: Listing::All,
-            label: Label::default(),
-            version: FmiVersion::Two,
+            ..GrowthPolicy::Refuse.into()
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -185,15 +176,9 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
     let forces = ForceOptions::single(model.section.width_m);
     for (name, force) in [("gusts_section", None), ("gusts_force", Some(forces))] {
         let export = Export {
-            reference_runs: true,
-            growing: GrowthPolicy::Refuse,
             force,
             gusts: Some(gusts.clone()),
-            bounds: None,
-            verdict: None,
-            listing: Listing::All,
-            label: Label::default(),
-            version: FmiVersion::Two,
+            ..GrowthPolicy::Refuse.into()
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -235,15 +220,9 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
         let forces = ForceOptions::single(model.section.width_m);
         for (unit, force) in [("section", None), ("force", Some(forces))] {
             let export = Export {
-                reference_runs: true,
-                growing: GrowthPolicy::Allow,
                 force,
-                gusts: None,
-                bounds: None,
-                verdict: None,
                 listing: Listing::Reals,
-                label: Label::default(),
-                version: FmiVersion::Two,
+                ..GrowthPolicy::Allow.into()
             };
             let fmu = folder.join(format!("reals_{unit}_{kind}.fmu"));
             write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();

@@ -1,8 +1,7 @@
 //! Fits to records: of one short record, of a full set, of hours, of a grid.
 
-use super::growth::finding;
 use super::models::{POLE, folder, full_set, laguerre, records, records_as_json, sources};
-use crate::entry::Job;
+use crate::entry::{Job, finding};
 use aerodeck::flutter::OnsetSearch;
 use aerodeck::identification::{
     Constraints, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights, fit_records,

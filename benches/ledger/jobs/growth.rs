@@ -5,7 +5,7 @@ use super::fits;
 use super::models::{POLE, laguerre, sources};
 use super::samples;
 use crate::bridges::coupled;
-use crate::entry::Job;
+use crate::entry::{Job, finding};
 use aerodeck::Result;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::buffeting::{span_record, turbulence_field};
@@ -14,12 +14,8 @@ use aerodeck::identification::{Constraints, PoleSearch, TimeFit, TimeWeights, fi
 use aerodeck::response::{Inputs, Stepper};
 use aerodeck::section::Dof;
 use aerodeck::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
-use std::cell::Cell;
 use std::f64::consts::TAU;
-use std::fmt::Debug;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::hint::black_box;
-use std::rc::Rc;
 
 const STEP_S: f64 = 0.05;
 const NODES: usize = 63;
@@ -141,31 +137,6 @@ pub(crate) fn sweep_by_threads(_: u64) -> Job {
 
 pub(crate) fn buffeting_by_threads(_: u64) -> Job {
     buffeting(60)
-}
-
-/// Work whose result, to the last bit, is the answer.
-pub(crate) fn finding<T: 'static, R: Debug>(
-    of: T,
-    work: impl Fn(&T) -> Result<R> + 'static,
-) -> Job {
-    let found = Rc::new(Cell::new(f64::NAN));
-    let answer = Rc::clone(&found);
-    let mut hashed = false;
-    Job::new(move || {
-        let result = work(&of).expect("an answer");
-        if !hashed {
-            found.set(digest(&result));
-            hashed = true;
-        }
-    })
-    .finding(move || vec![answer.get()])
-}
-
-/// A number that differs when a bit of the result does: numbers are written so that they read back the same.
-fn digest(result: &impl Debug) -> f64 {
-    let mut hasher = DefaultHasher::new();
-    format!("{result:?}").hash(&mut hasher);
-    (hasher.finish() >> 12) as f64
 }
 
 /// A record of any length that is made while it is read: one motion at eight frequencies, one after the other.

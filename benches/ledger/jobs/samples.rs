@@ -1,8 +1,7 @@
 //! Onsets of many random sections.
 
-use super::growth::finding;
 use super::models::{SPEED_MAX_M_S, by_filters, rows};
-use crate::entry::Job;
+use crate::entry::{Job, finding};
 use aerodeck::aerodynamics::{LaguerreModel, Realizable, Realization};
 use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
 use aerodeck::identification::LEAST_CHOSEN;
