@@ -291,6 +291,39 @@ fn what_is_missing_is_named() {
     );
 }
 
+/// The forces on all sections are one unit, and those on one that is named another.
+#[test]
+fn the_forces_of_all_sections_are_one_archive() {
+    let folder = folder();
+    let at = folder.path();
+    let one = fs::read_to_string(at.join("bridge.toml")).unwrap();
+    let (before, after) = one.split_once("[[section]]").unwrap();
+    let (section, rest) = after.split_once("\n[").unwrap();
+    let west = section.replace("\"girder\"", "\"west\"\nto = \"1151\"");
+    let east = section.replace("\"girder\"", "\"east\"\nfrom = \"1156\"\nfilters = 2");
+    let two = format!("{before}[[section]]{west}\n[[section]]{east}\n[{rest}");
+    fs::write(at.join("two.toml"), two).unwrap();
+    let export = ["fmu", "export", "two.toml", "--bridge", "--kind", "force"];
+    for (more, file, strips) in [
+        (
+            &[][..],
+            "bridge_force.fmu",
+            "63 strips of Langenuen LN21-5200, wind forces, at the nodes 1001 to 1311",
+        ),
+        (
+            &["--section", "east", "--out", "east.fmu"],
+            "east.fmu",
+            "32 strips of Langenuen LN21-5200, east, at the nodes 1156 to 1311",
+        ),
+    ] {
+        let text = flowing(&succeeds(at, &[&export[..], more].concat()));
+        assert!(text.contains(strips), "{text}");
+        for command in ["check", "replay"] {
+            succeeds(at, &["fmu", command, file]);
+        }
+    }
+}
+
 /// The parts of a bridge, and what they do not have.
 #[test]
 fn a_bridge_is_exported_in_parts() {
