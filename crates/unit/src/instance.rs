@@ -8,7 +8,6 @@
 mod access;
 mod bridge_built;
 mod bridge_followed;
-mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
 mod calculated;
@@ -28,7 +27,6 @@ mod memory;
 mod resizing;
 mod saving;
 mod section;
-mod section_places;
 mod section_trust;
 mod section_unit;
 mod sensitivity;

@@ -5,7 +5,7 @@
 
 use super::bridge_built::Built;
 use super::bridge_followed::SearchedOnset;
-use super::coupled::{Coupled, CoupledKind, CoupledPlaces};
+use super::coupled::{Coupled, CoupledKind};
 use super::damping::PresentDamping;
 use super::memory::Memory;
 use super::section::OnsetCard;
@@ -61,7 +61,7 @@ impl BridgeUnit {
             searched: None,
             warned: false,
         };
-        Self::new(own, CoupledPlaces::of_bridge(table, options)?, resources)
+        Self::new(own, resources)
     }
 
     /// Makes the start that came with the archive one to follow, as long as the bridge is the one that was exported.

@@ -2,7 +2,7 @@
 
 use super::calculated::CalculatedNumbers;
 use super::damping::PresentDamping;
-use super::layout::Source;
+use super::layout::{Source, place};
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, check_finite, finite};
@@ -13,7 +13,8 @@ use crate::lifecycle::State;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
-use crate::variables::Role;
+use crate::section::Dof;
+use crate::variables::{Causality, Response, Role, Variable, VariableTable};
 use std::fmt::Debug;
 
 /// Places in the table.
@@ -34,6 +35,38 @@ pub(super) struct CoupledPlaces {
 }
 
 impl CoupledPlaces {
+    /// Those of a section or bridge, whose inputs stand first in the table, in this order.
+    pub(super) fn new(table: &VariableTable) -> Result<Self> {
+        let all = |wanted: &dyn Fn(&Variable) -> bool| -> Vec<usize> {
+            let variables = table.variables().iter().enumerate();
+            let wanted = variables.filter(|(_, v)| wanted(v));
+            wanted.map(|(place, _)| place).collect()
+        };
+        let inputs = all(&|v| v.causality == Causality::Input);
+        let gusts = all(&|v| matches!(v.role, Role::Gust(..))).len();
+        let displacements =
+            |v: &Variable| matches!(v.role, Role::InitialDisplacement(_) | Role::InitialMode(_));
+        let mut initial = all(&displacements);
+        initial.extend(all(&|v| matches!(v.role, Role::InitialRate(_))));
+        // the state begins with all displacements, then all rates; on a bridge every entry is numbered
+        let dofs = table.dofs();
+        let of = |dof: Dof| dofs.iter().position(|d| *d == dof);
+        let entries = table.variables().iter().map(|v| match v.role {
+            Role::Filter(i) => Some(2 * dofs.len() + i),
+            Role::Response(Response::Displacement, dof) => of(dof),
+            Role::Response(Response::Rate, dof) => of(dof).map(|i| dofs.len() + i),
+            _ => None,
+        });
+        Ok(Self {
+            first_gust: inputs.len() - gusts,
+            inputs,
+            initial,
+            limit: place(table, Role::OnsetSearchLimit)?,
+            turbulence_factor: table.find(Role::TurbulenceFactor),
+            state_entry: entries.collect(),
+        })
+    }
+
     pub(super) fn wind_speed(&self, memory: &Memory) -> f64 {
         memory.values[self.inputs[0]]
     }
@@ -296,13 +329,13 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
 }
 
 impl<S: CoupledKind> Coupled<S> {
-    pub(super) fn new(own: S, places: CoupledPlaces, resources: &Resources) -> Result<Self> {
+    pub(super) fn new(own: S, resources: &Resources) -> Result<Self> {
         let table = &resources.table;
         let built = own.build(resources, &starts(table))?;
         let coordinates = S::stepper(&built).section().structure().dofs.len();
         Ok(Self {
             own,
-            places,
+            places: CoupledPlaces::new(table)?,
             built,
             stale: false,
             release_pending: true,

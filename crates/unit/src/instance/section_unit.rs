@@ -1,11 +1,11 @@
 //! The coupled section: a structure in self-excited wind forces. Onset and divergence are searched for when first asked
 //! for after a change of parameters.
 
-use super::coupled::{Coupled, CoupledKind, CoupledPlaces};
+use super::coupled::{Coupled, CoupledKind};
 use super::damping::PresentDamping;
+use super::layout::place;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
-use super::section_places::{ResponsePlaces, response_places};
 use super::sensitivity::SectionValues;
 use super::trust::tested_winds;
 use crate::aerodynamics::{Realizable, Realization};
@@ -13,11 +13,14 @@ use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::resources::Resources;
 use crate::response::{Outputs, RepeatableStep, SectionState, Stepper};
-use crate::variables::Role;
+use crate::variables::{Response, Role, VariableTable};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.
 const GROWTH_SEARCHES: usize = 32;
+
+/// Displacement, rate, acceleration and self-excited force of each degree of freedom.
+type ResponsePlaces = Vec<[usize; 4]>;
 
 /// What is known of the inputs.
 #[derive(Debug, Clone, Copy)]
@@ -65,8 +68,6 @@ impl SectionUnit {
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub(super) fn of_section(resources: &Resources) -> Result<Self> {
         let responses = response_places(&resources.table)?;
-        let places = CoupledPlaces::of_section(&resources.table, &responses)?;
-        let gusts = places.gusts().len();
         let own = SuspendedSection {
             responses,
             aerodynamics: resources.model.model.realize(),
@@ -77,7 +78,8 @@ impl SectionUnit {
             rotation_left: false,
             loaded: LoadedInputs::Stale,
         };
-        let mut unit = Self::new(own, places, resources)?;
+        let mut unit = Self::new(own, resources)?;
+        let gusts = unit.places.gusts().len();
         unit.inputs.gust_m_s = vec![0.0; gusts];
         unit.inputs.gust_rate_m_s2 = vec![0.0; gusts];
         Ok(unit)
@@ -287,6 +289,18 @@ impl CoupledKind for SuspendedSection {
             memory,
         );
     }
+}
+
+fn response_places(table: &VariableTable) -> Result<ResponsePlaces> {
+    let dofs = table.dofs().into_iter();
+    dofs.map(|dof| {
+        let mut places = [0; 4];
+        for (slot, response) in places.iter_mut().zip(Response::ALL) {
+            *slot = place(table, Role::Response(response, dof))?;
+        }
+        Ok(places)
+    })
+    .collect()
 }
 
 #[inline(always)]
