@@ -187,28 +187,36 @@ pub(super) fn number(x: f64) -> Result<String> {
 }
 
 fn scalar(reference: usize, v: &Variable) -> Result<Element> {
-    Ok(Element::new("ScalarVariable")
-        .with("name", &v.name)
-        .with("valueReference", reference)
-        .with("description", &v.description)
+    let scalar = Element::new("ScalarVariable").with("name", &v.name);
+    Ok(with_role(scalar, reference, &v.description, v).containing([typed(v)?]))
+}
+
+/// Adds what both versions say of a variable of any type, behind its name.
+pub(super) fn with_role(of: Element, reference: usize, description: &str, v: &Variable) -> Element {
+    of.with("valueReference", reference)
+        .with("description", description)
         .with("causality", v.causality.word())
         .with("variability", v.variability.word())
         .with_any("initial", v.initial.map(FmiTerm::word))
-        .containing([typed(v)?]))
+}
+
+/// Adds what both versions say of a real variable.
+pub(super) fn with_unit(of: Element, v: &Variable) -> Result<Element> {
+    let text = |x: Option<f64>| x.map(number).transpose();
+    Ok(of
+        .with_any("quantity", v.quantity)
+        .with_any("unit", v.unit.map(|u| u.name))
+        .with_any("displayUnit", v.display_unit)
+        .with_any("min", text(v.min)?)
+        .with_any("max", text(v.max)?)
+        .with_any("nominal", text(v.nominal)?))
 }
 
 fn typed(v: &Variable) -> Result<Element> {
     let element = Element::new(v.value.type_name());
-    let text = |x: Option<f64>| x.map(number).transpose();
     Ok(match &v.value {
-        StartValue::Real(start) => element
-            .with_any("quantity", v.quantity)
-            .with_any("unit", v.unit.map(|u| u.name))
-            .with_any("displayUnit", v.display_unit)
-            .with_any("min", text(v.min)?)
-            .with_any("max", text(v.max)?)
-            .with_any("nominal", text(v.nominal)?)
-            .with_any("start", text(*start)?)
+        StartValue::Real(start) => with_unit(element, v)?
+            .with_any("start", start.map(number).transpose()?)
             .with_any("derivative", v.derivative_of.map(|state| state + 1)),
         StartValue::Integer(start) => element.with_any("start", *start),
         StartValue::Boolean(start) => element.with_any("start", *start),

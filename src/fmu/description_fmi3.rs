@@ -1,12 +1,13 @@
 //! `modelDescription.xml` of FMI 3.0, made from the same variable table: strips, modes and nodes are arrays, and the time has a variable.
 
-use super::description::{depending, described, experiment, log_categories, number, units};
+use super::description::{
+    depending, described, experiment, log_categories, number, units, with_role, with_unit,
+};
 use super::force_options::MAX_STRIPS;
 use super::groups::{Groups, array_of};
 use super::identity::MODEL_IDENTIFIER;
 use super::package::label::Label;
 use super::resources::Resources;
-use super::standard::FmiTerm;
 use super::variables::{Causality, Dependency, StartValue, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::Result;
@@ -99,7 +100,6 @@ impl GroupedVariables<'_> {
             StartValue::Boolean(_) => "Boolean",
             StartValue::String(_) => "String",
         };
-        let text = |x: Option<f64>| x.map(number).transpose();
         let array = array_of(v.role, &v.name);
         let description = match places.len() {
             1 => v.description.clone(),
@@ -109,13 +109,8 @@ impl GroupedVariables<'_> {
                 self.named(reference)
             ),
         };
-        let element = Element::new(kind)
-            .with("name", array.as_deref().unwrap_or(&v.name))
-            .with("valueReference", reference)
-            .with("description", description)
-            .with("causality", v.causality.word())
-            .with("variability", v.variability.word())
-            .with_any("initial", v.initial.map(FmiTerm::word));
+        let element = Element::new(kind).with("name", array.as_deref().unwrap_or(&v.name));
+        let element = with_role(element, reference, &description, v);
         let element = match &v.value {
             StartValue::Real(_) => {
                 let starts = places.iter().filter_map(|p| match self.at(*p).value {
@@ -124,13 +119,7 @@ impl GroupedVariables<'_> {
                 });
                 let starts = starts.collect::<Result<Vec<_>>>()?;
                 let state = v.derivative_of.and_then(|s| self.groups.reference_of(s));
-                element
-                    .with_any("quantity", v.quantity)
-                    .with_any("unit", v.unit.map(|u| u.name))
-                    .with_any("displayUnit", v.display_unit)
-                    .with_any("min", text(v.min)?)
-                    .with_any("max", text(v.max)?)
-                    .with_any("nominal", text(v.nominal)?)
+                with_unit(element, v)?
                     .with_any("start", (!starts.is_empty()).then(|| starts.join(" ")))
                     .with_any("derivative", state)
             }

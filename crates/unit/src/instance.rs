@@ -8,12 +8,12 @@
 mod access;
 mod bridge_built;
 mod bridge_followed;
-mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
 mod calculated;
 mod coupled;
 mod coupled_derivatives;
+mod coupled_present;
 mod damping;
 mod dependencies;
 pub(crate) mod derivatives;
@@ -28,7 +28,6 @@ mod memory;
 mod resizing;
 mod saving;
 mod section;
-mod section_places;
 mod section_trust;
 mod section_unit;
 mod sensitivity;
@@ -80,9 +79,9 @@ impl Instance {
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
         let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
-            (Some(options), _) => Box::new(BridgeUnit::new(&resources, options)?),
+            (Some(options), _) => Box::new(BridgeUnit::of_bridge(&resources, options)?),
             (None, Some(_)) => Box::new(ForceUnit::new(&resources)?),
-            (None, None) => Box::new(SectionUnit::new(&resources)?),
+            (None, None) => Box::new(SectionUnit::of_section(&resources)?),
         };
         let layout = VariablePlaces::new(&resources.table, |place| unit.held_output(place))?;
         let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());

@@ -155,165 +155,75 @@ impl StateSet {
     }
 }
 
-/// What an importer may ask of an instance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)] // the names are those of the standard
-pub enum Call {
-    SetDebugLogging,
-    FreeInstance,
-    SetupExperiment,
-    EnterInitializationMode,
-    ExitInitializationMode,
-    Terminate,
-    Reset,
-    GetReal,
-    GetInteger,
-    GetBoolean,
-    GetString,
-    SetReal,
-    SetInteger,
-    SetBoolean,
-    SetString,
-    GetFMUstate,
-    SetFMUstate,
-    FreeFMUstate,
-    SerializedFMUstateSize,
-    SerializeFMUstate,
-    DeSerializeFMUstate,
-    GetDirectionalDerivative,
-    SetRealInputDerivatives,
-    GetRealOutputDerivatives,
-    DoStep,
-    EnterEventMode,
-    NewDiscreteStates,
-    EnterContinuousTimeMode,
-    CompletedIntegratorStep,
-    SetTime,
-    SetContinuousStates,
-    GetDerivatives,
-    GetEventIndicators,
-    GetContinuousStates,
-    GetNominalsOfContinuousStates,
-    GetStatus,
-    GetRealStatus,
-    GetIntegerStatus,
-    GetBooleanStatus,
-    GetStringStatus,
+/// Declares the calls and, in the same order, their names without the prefix of the standard's version and where each is legal.
+macro_rules! calls {
+    ($($name:ident: $legal:expr;)*) => {
+        /// What an importer may ask of an instance.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(missing_docs)] // the names are those of the standard
+        pub enum Call {
+            $($name,)*
+        }
+
+        /// Every [`Call`] with its name and where it is legal.
+        pub(crate) const LEGAL_CALLS: [(Call, &str, StateSet); [$(Call::$name),*].len()] =
+            [$((Call::$name, stringify!($name), $legal),)*];
+    };
 }
 
-/// The calls of [`Call`] in its order, their names without the prefix of the standard's version, and where each is
-/// legal. Cancelling a step is missing: no step is ever left pending.
-pub(crate) const LEGAL_CALLS: [(Call, &str, StateSet); 40] = {
-    use Call as C;
-    use StateSet as S;
-    let stepping = S::of(&[State::StepComplete, State::StepFailed]);
-    let status = stepping.and(State::Terminated);
-    let setting = S::SETTING.and(State::ContinuousTimeMode);
-    let integrated = S::INTEGRATING
-        .and(State::Initialization)
-        .and(State::Terminated)
-        .and(State::Error);
-    [
-        (C::SetDebugLogging, "SetDebugLogging", S::ANY),
-        (C::FreeInstance, "FreeInstance", S::ANY),
-        (
-            C::SetupExperiment,
-            "SetupExperiment",
-            S::of(&[State::Instantiated]),
-        ),
-        (
-            C::EnterInitializationMode,
-            "EnterInitializationMode",
-            S::of(&[State::Instantiated]),
-        ),
-        (
-            C::ExitInitializationMode,
-            "ExitInitializationMode",
-            S::of(&[State::Initialization]),
-        ),
-        (
-            C::Terminate,
-            "Terminate",
-            stepping
-                .and(State::EventMode)
-                .and(State::ContinuousTimeMode),
-        ),
-        (C::Reset, "Reset", S::ANY),
-        (C::GetReal, "GetReal", S::ANY),
-        (C::GetInteger, "GetInteger", S::ANY),
-        (C::GetBoolean, "GetBoolean", S::ANY),
-        (C::GetString, "GetString", S::ANY),
-        (C::SetReal, "SetReal", setting),
-        (C::SetInteger, "SetInteger", setting),
-        (C::SetBoolean, "SetBoolean", setting),
-        (C::SetString, "SetString", setting),
-        (C::GetFMUstate, "GetFMUstate", S::ANY),
-        (C::SetFMUstate, "SetFMUstate", S::ANY),
-        (C::FreeFMUstate, "FreeFMUstate", S::ANY),
-        (C::SerializedFMUstateSize, "SerializedFMUstateSize", S::ANY),
-        (C::SerializeFMUstate, "SerializeFMUstate", S::ANY),
-        (C::DeSerializeFMUstate, "DeSerializeFMUstate", S::ANY),
-        (
-            C::GetDirectionalDerivative,
-            "GetDirectionalDerivative",
-            S::INITIALIZED,
-        ),
-        (
-            C::SetRealInputDerivatives,
-            "SetRealInputDerivatives",
-            S::of(&[
-                State::Instantiated,
-                State::Initialization,
-                State::StepComplete,
-            ]),
-        ),
-        (
-            C::GetRealOutputDerivatives,
-            "GetRealOutputDerivatives",
-            status.and(State::Error),
-        ),
-        (C::DoStep, "DoStep", S::of(&[State::StepComplete])),
-        (
-            C::EnterEventMode,
-            "EnterEventMode",
-            S::of(&[State::ContinuousTimeMode]),
-        ),
-        (
-            C::NewDiscreteStates,
-            "NewDiscreteStates",
-            S::of(&[State::EventMode]),
-        ),
-        (
-            C::EnterContinuousTimeMode,
-            "EnterContinuousTimeMode",
-            S::of(&[State::EventMode]),
-        ),
-        (
-            C::CompletedIntegratorStep,
-            "CompletedIntegratorStep",
-            S::of(&[State::ContinuousTimeMode]),
-        ),
-        (C::SetTime, "SetTime", S::INTEGRATING),
-        (
-            C::SetContinuousStates,
-            "SetContinuousStates",
-            S::of(&[State::ContinuousTimeMode]),
-        ),
-        (C::GetDerivatives, "GetDerivatives", integrated),
-        (C::GetEventIndicators, "GetEventIndicators", integrated),
-        (C::GetContinuousStates, "GetContinuousStates", integrated),
-        (
-            C::GetNominalsOfContinuousStates,
-            "GetNominalsOfContinuousStates",
-            integrated.and(State::Instantiated),
-        ),
-        (C::GetStatus, "GetStatus", status),
-        (C::GetRealStatus, "GetRealStatus", status),
-        (C::GetIntegerStatus, "GetIntegerStatus", status),
-        (C::GetBooleanStatus, "GetBooleanStatus", status),
-        (C::GetStringStatus, "GetStringStatus", status),
-    ]
-};
+/// Between communication steps.
+const STEPPING: StateSet = StateSet::of(&[State::StepComplete, State::StepFailed]);
+const STATUS: StateSet = STEPPING.and(State::Terminated);
+const SETTING: StateSet = StateSet::SETTING.and(State::ContinuousTimeMode);
+/// Where states and their rates are read.
+const INTEGRATED: StateSet = StateSet::INTEGRATING
+    .and(State::Initialization)
+    .and(State::Terminated)
+    .and(State::Error);
+
+// cancelling a step is missing: no step is ever left pending
+calls! {
+    SetDebugLogging: StateSet::ANY;
+    FreeInstance: StateSet::ANY;
+    SetupExperiment: StateSet::of(&[State::Instantiated]);
+    EnterInitializationMode: StateSet::of(&[State::Instantiated]);
+    ExitInitializationMode: StateSet::of(&[State::Initialization]);
+    Terminate: STEPPING.and(State::EventMode).and(State::ContinuousTimeMode);
+    Reset: StateSet::ANY;
+    GetReal: StateSet::ANY;
+    GetInteger: StateSet::ANY;
+    GetBoolean: StateSet::ANY;
+    GetString: StateSet::ANY;
+    SetReal: SETTING;
+    SetInteger: SETTING;
+    SetBoolean: SETTING;
+    SetString: SETTING;
+    GetFMUstate: StateSet::ANY;
+    SetFMUstate: StateSet::ANY;
+    FreeFMUstate: StateSet::ANY;
+    SerializedFMUstateSize: StateSet::ANY;
+    SerializeFMUstate: StateSet::ANY;
+    DeSerializeFMUstate: StateSet::ANY;
+    GetDirectionalDerivative: StateSet::INITIALIZED;
+    SetRealInputDerivatives: StateSet::of(&[State::Instantiated, State::Initialization, State::StepComplete]);
+    GetRealOutputDerivatives: STATUS.and(State::Error);
+    DoStep: StateSet::of(&[State::StepComplete]);
+    EnterEventMode: StateSet::of(&[State::ContinuousTimeMode]);
+    NewDiscreteStates: StateSet::of(&[State::EventMode]);
+    EnterContinuousTimeMode: StateSet::of(&[State::EventMode]);
+    CompletedIntegratorStep: StateSet::of(&[State::ContinuousTimeMode]);
+    SetTime: StateSet::INTEGRATING;
+    SetContinuousStates: StateSet::of(&[State::ContinuousTimeMode]);
+    GetDerivatives: INTEGRATED;
+    GetEventIndicators: INTEGRATED;
+    GetContinuousStates: INTEGRATED;
+    GetNominalsOfContinuousStates: INTEGRATED.and(State::Instantiated);
+    GetStatus: STATUS;
+    GetRealStatus: STATUS;
+    GetIntegerStatus: STATUS;
+    GetBooleanStatus: STATUS;
+    GetStringStatus: STATUS;
+}
 
 impl Call {
     /// Name without the prefix of the standard's version.

@@ -2,11 +2,47 @@
 
 use super::Slave;
 use crate::error::{Error, Result};
-use crate::library::{Int, Text};
+use crate::library::{Component, Fmi2Functions, Int, Text, ValueReference};
 use crate::log::text;
 use std::ffi::CString;
 
+/// A function of FMI 2.0 that reads values of one type.
+type Reader<T> = unsafe extern "C" fn(Component, *const ValueReference, usize, *mut T) -> Int;
+/// One that sets them.
+type Writer<T> = unsafe extern "C" fn(Component, *const ValueReference, usize, *const T) -> Int;
+
 impl Slave {
+    fn read<T>(
+        &self,
+        suffix: &str,
+        references: &[u32],
+        values: &mut [T],
+        function: fn(&Fmi2Functions) -> Reader<T>,
+    ) -> Result<()> {
+        // SAFETY: the component lives, and the slices have the length that is passed
+        self.good_two(suffix, |f, c| unsafe {
+            function(f)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        })
+    }
+
+    fn write<T>(
+        &self,
+        suffix: &str,
+        references: &[u32],
+        values: &[T],
+        function: fn(&Fmi2Functions) -> Writer<T>,
+    ) -> Result<()> {
+        // SAFETY: the component lives, and the slices have the length that is passed
+        self.good_two(suffix, |f, c| unsafe {
+            function(f)(c, references.as_ptr(), references.len(), values.as_ptr())
+        })
+    }
+
     /// `fmi2GetReal`.
     pub fn get_real(&self, references: &[u32]) -> Result<Vec<f64>> {
         let mut values = vec![0.0; references.len()];
@@ -24,15 +60,7 @@ impl Slave {
             values.copy_from_slice(&three.numbers(references)?);
             return Ok(());
         }
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("GetReal", |f, c| unsafe {
-            (f.get_real)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_mut_ptr(),
-            )
-        })
+        self.read("GetReal", references, values, |f| f.get_real)
     }
 
     /// `fmi2GetInteger`.
@@ -42,15 +70,7 @@ impl Slave {
             return Ok(numbers.into_iter().map(|v| v as i32).collect());
         }
         let mut values = vec![0; references.len()];
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("GetInteger", |f, c| unsafe {
-            (f.get_integer)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_mut_ptr(),
-            )
-        })?;
+        self.read("GetInteger", references, &mut values, |f| f.get_integer)?;
         Ok(values)
     }
 
@@ -61,15 +81,7 @@ impl Slave {
             return Ok(numbers.into_iter().map(|v| v != 0.0).collect());
         }
         let mut values: Vec<Int> = vec![0; references.len()];
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("GetBoolean", |f, c| unsafe {
-            (f.get_boolean)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_mut_ptr(),
-            )
-        })?;
+        self.read("GetBoolean", references, &mut values, |f| f.get_boolean)?;
         Ok(values.into_iter().map(|v| v != 0).collect())
     }
 
@@ -79,15 +91,7 @@ impl Slave {
             return three.texts(references);
         }
         let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("GetString", |f, c| unsafe {
-            (f.get_string)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_mut_ptr(),
-            )
-        })?;
+        self.read("GetString", references, &mut values, |f| f.get_string)?;
         // SAFETY: strings of the FMU, copied before the next call, which may free them
         Ok(values.into_iter().map(|v| unsafe { text(v) }).collect())
     }
@@ -101,10 +105,7 @@ impl Slave {
         if self.three().is_some() {
             return self.set_numbers(references, values);
         }
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("SetReal", |f, c| unsafe {
-            (f.set_real)(c, references.as_ptr(), references.len(), values.as_ptr())
-        })
+        self.write("SetReal", references, values, |f| f.set_real)
     }
 
     /// `fmi2SetInteger`.
@@ -114,10 +115,7 @@ impl Slave {
             let numbers: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
             return self.set_numbers(references, &numbers);
         }
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("SetInteger", |f, c| unsafe {
-            (f.set_integer)(c, references.as_ptr(), references.len(), values.as_ptr())
-        })
+        self.write("SetInteger", references, values, |f| f.set_integer)
     }
 
     /// `fmi2SetBoolean`.
@@ -128,10 +126,7 @@ impl Slave {
             return self.set_numbers(references, &numbers);
         }
         let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("SetBoolean", |f, c| unsafe {
-            (f.set_boolean)(c, references.as_ptr(), references.len(), values.as_ptr())
-        })
+        self.write("SetBoolean", references, &values, |f| f.set_boolean)
     }
 
     /// `fmi2SetString`.
@@ -140,21 +135,16 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ, and for a text with a zero byte.
     pub(crate) fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
         same_length(references, values.len())?;
-        let owned: Vec<CString> = values
+        let wrong = |text: &str| Error::input("fmi2SetString", "text without a zero byte", text);
+        let owned = values
             .iter()
-            .map(|v| {
-                CString::new(*v)
-                    .map_err(|_| Error::input("fmi2SetString", "text without a zero byte", *v))
-            })
-            .collect::<Result<_>>()?;
+            .map(|v| CString::new(*v).map_err(|_| wrong(v)));
+        let owned: Vec<CString> = owned.collect::<Result<_>>()?;
         let values: Vec<Text> = owned.iter().map(|v| v.as_ptr()).collect();
-        if let Some(three) = self.three() {
-            return three.set_texts(references, &values);
+        match self.three() {
+            Some(three) => three.set_texts(references, &values),
+            None => self.write("SetString", references, &values, |f| f.set_string),
         }
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("SetString", |f, c| unsafe {
-            (f.set_string)(c, references.as_ptr(), references.len(), values.as_ptr())
-        })
     }
 
     /// `fmi2GetDirectionalDerivative`: change of the unknowns along `seed`, the changes of the knowns.

@@ -3,7 +3,6 @@
 use super::damping::PresentDamping;
 use crate::bridge::{Bridge, GustChannels};
 use crate::bridge_gusts::GustRecord;
-use crate::bridge_options::BridgeOptions;
 use crate::error::{Error, Result};
 use crate::flutter::NearbyOnset;
 use crate::resources::Resources;
@@ -20,11 +19,13 @@ const LAST_PIECE: f64 = 1e-9;
 pub(super) struct Built {
     pub bridge: Bridge,
     pub stepper: Stepper,
+    /// Displacements of the mass-normalised modes: vertical, lateral, rotation of each named node.
+    pub shapes: DMatrix<f64>,
     /// Strokes of the dampers by unit coordinates.
     pub strokes: DMatrix<f64>,
     gusts: Option<GustChannels>,
     turbulence: Option<GustRecord>,
-    damping: PresentDamping,
+    pub damping: PresentDamping,
     /// State before the step at hand, and inputs within it.
     before: SectionState,
     now: Inputs,
@@ -32,11 +33,9 @@ pub(super) struct Built {
 
 impl Built {
     /// The bridge of an export with the parameters in `values`.
-    pub(super) fn new(
-        resources: &Resources,
-        options: &BridgeOptions,
-        values: &[f64],
-    ) -> Result<Self> {
+    pub(super) fn new(resources: &Resources, values: &[f64]) -> Result<Self> {
+        let options = resources.bridge.as_ref();
+        let options = options.ok_or_else(|| Error::Numerical("bridge: there is none".into()))?;
         let mut bridge = options.bridge()?;
         let mut as_exported = true;
         let all = resources.table.variables().iter().zip(values);
@@ -56,6 +55,7 @@ impl Built {
         };
         Ok(Self {
             strokes: bridge.strokes(),
+            shapes: bridge.shapes_at(&options.named),
             bridge,
             stepper,
             gusts,
@@ -74,15 +74,6 @@ impl Built {
     /// The mode that has it where it was asked for last; `None` where modes are not followed.
     pub(super) fn least_damped(&self) -> Option<NearbyOnset> {
         self.damping.least()
-    }
-
-    /// Nothing moves.
-    pub(super) fn at_rest(&self) -> SectionState {
-        SectionState {
-            values: vec![0.0; self.stepper.section().states()],
-            gusts: vec![0.0; self.stepper.gust_states()],
-            ..SectionState::default()
-        }
     }
 
     /// Loads gusts of the strips and their rates.

@@ -1,34 +1,21 @@
-//! What a section and a bridge share: a structure coupled with its self-excited forces, and numbers of its present moment.
+//! What a section and a bridge share: a structure coupled with its self-excited forces.
 
-use super::memory::Memory;
-use super::sensitivity::SectionValues;
-use super::unit::Prepared;
+use super::calculated::CalculatedNumbers;
+use super::damping::PresentDamping;
+use super::layout::{Source, place};
+use super::memory::{Memory, starts};
+use super::section::OnsetCard;
+use super::sensitivity::{SectionValues, check_finite, finite};
+use super::unit::{Differentiable, Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::flutter::smallest_damping;
+use crate::lifecycle::State;
+use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
-use crate::variables::{ComputedNumber, Known, OnsetNumbers, Present, Role};
-
-/// Relative step of a difference over the wind speed.
-const WIND_STEP: f64 = 1e-5;
-
-/// Derivative of the smallest damping ratio with respect to the wind speed, per m/s.
-fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
-    let step = WIND_STEP * wind.max(1.0);
-    let low = (wind - step).max(0.0);
-    let rise = smallest_damping(section, wind + step)? - smallest_damping(section, low)?;
-    Ok(rise / (wind + step - low))
-}
-
-/// How the present changes with what is asked for.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PresentSlopes {
-    pub wind: f64,
-    pub rotation: f64,
-    /// Of the upper end of the search for the onset.
-    pub limit: f64,
-}
+use crate::section::Dof;
+use crate::variables::{Causality, Response, Role, Variable, VariableTable};
+use std::fmt::Debug;
 
 /// Places in the table.
 #[derive(Debug)]
@@ -48,6 +35,38 @@ pub(super) struct CoupledPlaces {
 }
 
 impl CoupledPlaces {
+    /// Those of a section or bridge, whose inputs stand first in the table, in this order.
+    pub(super) fn new(table: &VariableTable) -> Result<Self> {
+        let all = |wanted: &dyn Fn(&Variable) -> bool| -> Vec<usize> {
+            let variables = table.variables().iter().enumerate();
+            let wanted = variables.filter(|(_, v)| wanted(v));
+            wanted.map(|(place, _)| place).collect()
+        };
+        let inputs = all(&|v| v.causality == Causality::Input);
+        let gusts = all(&|v| matches!(v.role, Role::Gust(..))).len();
+        let displacements =
+            |v: &Variable| matches!(v.role, Role::InitialDisplacement(_) | Role::InitialMode(_));
+        let mut initial = all(&displacements);
+        initial.extend(all(&|v| matches!(v.role, Role::InitialRate(_))));
+        // the state begins with all displacements, then all rates; on a bridge every entry is numbered
+        let dofs = table.dofs();
+        let of = |dof: Dof| dofs.iter().position(|d| *d == dof);
+        let entries = table.variables().iter().map(|v| match v.role {
+            Role::Filter(i) => Some(2 * dofs.len() + i),
+            Role::Response(Response::Displacement, dof) => of(dof),
+            Role::Response(Response::Rate, dof) => of(dof).map(|i| dofs.len() + i),
+            _ => None,
+        });
+        Ok(Self {
+            first_gust: inputs.len() - gusts,
+            inputs,
+            initial,
+            limit: place(table, Role::OnsetSearchLimit)?,
+            turbulence_factor: table.find(Role::TurbulenceFactor),
+            state_entry: entries.collect(),
+        })
+    }
+
     pub(super) fn wind_speed(&self, memory: &Memory) -> f64 {
         memory.values[self.inputs[0]]
     }
@@ -66,161 +85,300 @@ impl CoupledPlaces {
 }
 
 /// Gusts have blown as they do now until the release: `gusts` for every group of lags.
-pub(super) fn blow_until_release(state: &mut SectionState, gusts: &[f64]) {
+fn blow_until_release(state: &mut SectionState, gusts: &[f64]) {
     let lags = state.gusts.len() / gusts.len().max(1);
     for (lagging, gust) in state.gusts.chunks_mut(lags.max(1)).zip(gusts) {
         lagging.fill(*gust);
     }
 }
 
-/// See the module.
-pub(super) trait CoupledUnit: Prepared {
-    fn places(&self) -> &CoupledPlaces;
+/// What a section and a bridge do each in their own way.
+pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
+    /// What follows from the parameters.
+    type Built: Debug + Send;
 
-    /// Onset and divergence as they were calculated last.
-    fn onset(&self) -> OnsetNumbers;
+    /// The same for the parameters in `values`.
+    ///
+    /// # Errors
+    /// When they give nothing that can be simulated.
+    fn build(&self, resources: &Resources, values: &[f64]) -> Result<Self::Built>;
 
-    /// What steps it, and the inputs that are loaded.
-    fn parts(&mut self) -> (&mut Stepper, &mut Inputs);
+    fn stepper(built: &Self::Built) -> &Stepper;
 
-    fn section(&self) -> &CoupledSection;
+    fn parts(built: &mut Self::Built) -> (&mut Stepper, &mut PresentDamping);
+
+    /// The parameters have changed, and what was built is replaced.
+    fn replaces(_unit: &mut Coupled<Self>) {}
+
+    /// Parameters or the limit of the search have changed.
+    fn parameters_changed(&mut self) {}
+
+    /// Inputs, or what is made of them, may have changed.
+    fn inputs_changed(&mut self) {}
+
+    /// Nothing has been said yet.
+    fn forget_warnings(&mut self);
 
     /// Loads the inputs of a memory.
-    fn load_inputs(&mut self, memory: &Memory);
+    fn load_inputs(unit: &mut Coupled<Self>, memory: &Memory);
 
-    /// State at release with the initial values in `values` and the gusts that are loaded.
-    fn release(&self, values: &[f64]) -> Result<SectionState>;
+    /// The same of the memory of the unit, which may know them.
+    fn load_own_inputs(unit: &mut Coupled<Self>, memory: &Memory) {
+        Self::load_inputs(unit, memory);
+    }
+
+    /// Displacements and rates of the coordinates at release with the initial values in `values`.
+    fn motion_at_release(unit: &Coupled<Self>, values: &[f64]) -> [Vec<f64>; 2];
 
     /// What a variable that is no computed number stands for.
-    fn pick(&self, instant: &SectionValues, role: Role) -> f64;
+    fn pick(unit: &Coupled<Self>, instant: &SectionValues, role: Role) -> f64;
 
     /// Of outputs of the coordinates, or their derivatives, the rotation that is greatest in `state`, rad.
-    fn turn(&self, state: &SectionState, outputs: &Outputs) -> f64;
+    fn turn(unit: &Coupled<Self>, state: &SectionState, outputs: &Outputs) -> f64;
 
     /// Greatest rotation, rad.
-    fn rotation(&self, memory: &Memory) -> f64;
-
-    /// Smallest damping ratio at a wind speed, m/s.
-    fn damping_at(&mut self, wind: f64) -> Result<f64>;
+    fn rotation(unit: &Coupled<Self>, memory: &Memory) -> f64;
 
     fn wind_is_tested(
-        &mut self,
+        unit: &mut Coupled<Self>,
         resources: &Resources,
         memory: &mut Memory,
         notices: &mut Vec<String>,
     ) -> bool;
 
-    /// Onset and divergence for the parameters that it has been made with, by a search.
-    fn searched(&self, resources: &Resources, memory: &Memory) -> OnsetNumbers;
+    /// Onset and divergence for the parameters that it has been built with, by a search.
+    fn searched(unit: &Coupled<Self>, resources: &Resources, memory: &Memory) -> OnsetCard;
+
+    /// The same by the shortest way that is known to be right.
+    fn found(unit: &mut Coupled<Self>, resources: &Resources, memory: &Memory) -> OnsetCard {
+        Self::searched(unit, resources, memory)
+    }
+
+    /// See [`Unit::watch`].
+    fn watch(
+        unit: &mut Coupled<Self>,
+        resources: &Resources,
+        memory: &Memory,
+        notices: &mut Vec<String>,
+    );
+
+    /// See [`Prepared::advance`].
+    fn advance(unit: &mut Coupled<Self>, memory: &mut Memory, step: f64) -> Result<()>;
+
+    /// See [`Unit::repeat`].
+    fn repeat(_unit: &mut Coupled<Self>, _memory: &mut Memory, _step: f64) -> Option<bool> {
+        None
+    }
+
+    /// See [`Unit::repeat_outputs`].
+    fn repeat_outputs(_unit: &mut Coupled<Self>, _memory: &mut Memory) -> bool {
+        false
+    }
+
+    /// Writes outputs into the memory.
+    fn write_outputs(unit: &Coupled<Self>, memory: &mut Memory);
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Coupled<S: CoupledKind> {
+    pub own: S,
+    pub places: CoupledPlaces,
+    /// Of the parameters as they are.
+    pub built: S::Built,
+    /// Whether they have changed since.
+    stale: bool,
+    /// While initialising: the state has to be made anew from the values at release.
+    release_pending: bool,
+    pub calculated: CalculatedNumbers,
+    pub inputs: Inputs,
+    pub outputs: Outputs,
+}
+
+impl<S: CoupledKind> Unit for Coupled<S> {
+    fn inputs(&self) -> &[usize] {
+        &self.places.inputs
+    }
+
+    fn at_rest(&self) -> SectionState {
+        SectionState {
+            values: vec![0.0; self.section().states()],
+            gusts: vec![0.0; S::stepper(&self.built).gust_states()],
+            ..SectionState::default()
+        }
+    }
+
+    fn changed(&mut self, source: Source) {
+        match source {
+            Source::Input => self.own.inputs_changed(),
+            Source::Section => {
+                self.stale = true;
+                self.own.inputs_changed();
+                self.calculated.forget();
+                self.own.parameters_changed();
+                self.release_pending = true;
+            }
+            Source::Release => self.release_pending = true,
+            Source::Limit => {
+                self.calculated.forget();
+                self.own.parameters_changed();
+            }
+            Source::Constant
+            | Source::Response
+            | Source::Calculated
+            | Source::Status
+            | Source::State
+            | Source::Rate => {}
+        }
+    }
+
+    fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
+        if memory.state == State::Initialization && self.places.gusts().contains(&place) {
+            self.release_pending = true;
+        }
+        false
+    }
+
+    fn begin_initialization(&mut self) {
+        self.own.forget_warnings();
+        self.release_pending = true;
+    }
+
+    fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
+        self.own.inputs_changed();
+    }
+
+    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool) {
+        self.own.inputs_changed();
+        let same_system = same(Source::Section);
+        self.stale |= !same_system;
+        let same = same_system && same(Source::Limit);
+        self.calculated.carry_over(new, same);
+        self.release_pending = true;
+    }
+
+    fn prepared(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+    ) -> Result<&mut dyn Differentiable> {
+        if self.stale {
+            let built = self.own.build(resources, &memory.values)?;
+            S::replaces(self);
+            self.built = built;
+            self.stale = false;
+        }
+        if self.release_pending && memory.state == State::Initialization {
+            S::load_inputs(self, memory);
+            memory.system = self.release(&memory.values)?;
+            self.release_pending = false;
+        }
+        Ok(self)
+    }
+
+    fn calculated(&mut self) -> Option<&mut CalculatedNumbers> {
+        Some(&mut self.calculated)
+    }
+
+    fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+        S::watch(self, resources, memory, notices);
+    }
+
+    fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
+        S::repeat(self, memory, step)
+    }
+
+    fn repeat_outputs(&mut self, memory: &mut Memory) -> bool {
+        S::repeat_outputs(self, memory)
+    }
+
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.places.state_entry[place]
+    }
+}
+
+impl<S: CoupledKind> Prepared for Coupled<S> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
+        S::advance(self, memory, step)?;
+        Ok(false)
+    }
+
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
+        S::load_inputs(self, memory);
+        let (stepper, _) = S::parts(&mut self.built);
+        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
+        finite(rates)
+    }
+
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
+        S::load_own_inputs(self, memory);
+        let (stepper, _) = S::parts(&mut self.built);
+        stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
+        check_finite(&self.outputs)?;
+        S::write_outputs(self, memory);
+        Ok(())
+    }
+
+    /// Onset and divergence. A search that fails is no reason to end a run.
+    fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
+        if !self.calculated.are_known() {
+            let card = S::found(self, resources, memory);
+            self.calculated.enter(card, memory, notices);
+        }
+    }
+}
+
+impl<S: CoupledKind> Coupled<S> {
+    pub(super) fn new(own: S, resources: &Resources) -> Result<Self> {
+        let table = &resources.table;
+        let built = own.build(resources, &starts(table))?;
+        let coordinates = S::stepper(&built).section().structure().dofs.len();
+        Ok(Self {
+            own,
+            places: CoupledPlaces::new(table)?,
+            built,
+            stale: false,
+            release_pending: true,
+            calculated: CalculatedNumbers::new(table),
+            inputs: Inputs::steady(0.0, coordinates),
+            outputs: Outputs::default(),
+        })
+    }
+
+    /// What steps it, and the inputs that are loaded.
+    pub(super) fn parts(&mut self) -> (&mut Stepper, &mut Inputs) {
+        (S::parts(&mut self.built).0, &mut self.inputs)
+    }
+
+    pub(super) fn section(&self) -> &CoupledSection {
+        S::stepper(&self.built).section()
+    }
+
+    /// State at release with the initial values in `values` and the gusts that are loaded.
+    pub(super) fn release(&self, values: &[f64]) -> Result<SectionState> {
+        let [displacement, rate] = S::motion_at_release(self, values);
+        let mut state = S::stepper(&self.built).released(&displacement, &rate)?;
+        blow_until_release(&mut state, &self.inputs.gust_m_s);
+        Ok(state)
+    }
 
     /// `result` with the parameters of another memory.
-    fn with_parameters(
+    pub(super) fn with_parameters(
         &mut self,
         resources: &Resources,
         other: &Memory,
         result: &mut dyn FnMut(&mut Self) -> Result<Vec<f64>>,
-    ) -> Result<Vec<f64>>;
+    ) -> Result<Vec<f64>> {
+        let of_other = self.own.build(resources, &other.values)?;
+        let present = std::mem::replace(&mut self.built, of_other);
+        let found = result(self);
+        self.built = present;
+        found
+    }
 
     /// All that there is in a state, with the inputs that are loaded.
-    fn instant(&mut self, state: &SectionState) -> Result<SectionValues> {
+    pub(super) fn instant(&mut self, state: &SectionState) -> Result<SectionValues> {
         let (stepper, inputs) = self.parts();
         SectionValues::of(stepper, state, inputs)
-    }
-
-    /// What a number reads of the present.
-    fn read(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        number: &ComputedNumber,
-        notices: &mut Vec<String>,
-    ) -> Present {
-        let wind = self.places().wind_speed(memory);
-        let mut present = Present {
-            wind_m_s: wind.into(),
-            ..Present::default()
-        };
-        for known in number.reads {
-            match known {
-                Known::Onset => {
-                    self.calculate(resources, memory, notices);
-                    present.onset = self.onset();
-                }
-                Known::Wind => {}
-                Known::Damping => present.damping_ratio = self.damping(wind, notices).into(),
-                Known::TestedWind => {
-                    present.wind_is_tested = self.wind_is_tested(resources, memory, notices);
-                }
-                Known::Rotation => present.rotation_rad = self.rotation(memory).into(),
-            }
-        }
-        present
-    }
-
-    /// Smallest damping ratio; 0, with the reason, where it is not known.
-    fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
-        self.damping_at(wind).unwrap_or_else(|why| {
-            notices.push(format!("damping_now is not known: {why}"));
-            0.0
-        })
-    }
-
-    /// Derivative of such a number.
-    fn slope(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        number: &ComputedNumber,
-        by: PresentSlopes,
-        notices: &mut Vec<String>,
-    ) -> Result<f64> {
-        if number.is_flag() {
-            return Ok(0.0);
-        }
-        let mut present = self.read(resources, memory, number, notices);
-        present.wind_m_s.slope = by.wind;
-        present.rotation_rad.slope = by.rotation;
-        present.onset.follow_limit(by.limit);
-        if by.wind != 0.0 && number.reads(Known::Damping) {
-            let wind = self.places().wind_speed(memory);
-            present.damping_ratio.slope = by.wind * damping_slope(self.section(), wind)?;
-        }
-        Ok(number.of(&present).slope)
-    }
-
-    /// The unknowns of what is released with the values in `memory`, with the parameters that it has been made with.
-    fn unknowns(
-        &mut self,
-        resources: &Resources,
-        memory: &Memory,
-        unknowns: &[Role],
-    ) -> Result<Vec<f64>> {
-        self.load_inputs(memory);
-        let state = self.release(&memory.values)?;
-        let instant = self.instant(&state)?;
-        let wind = self.places().wind_speed(memory);
-        let mut present = Present {
-            wind_m_s: wind.into(),
-            rotation_rad: self.turn(&state, &instant.outputs).into(),
-            ..Present::default()
-        };
-        let read = |known: Known| {
-            unknowns
-                .iter()
-                .any(|u| matches!(u, Role::Computed(n) if !n.is_flag() && n.reads(known)))
-        };
-        if read(Known::Onset) {
-            present.onset = self.searched(resources, memory);
-        }
-        if read(Known::Damping) {
-            present.damping_ratio = smallest_damping(self.section(), wind)?.into();
-        }
-        let value = |unknown: &Role| match unknown {
-            // flags have no derivative
-            Role::Computed(number) if number.is_flag() => 0.0,
-            Role::Computed(number) => number.of(&present).value,
-            other => self.pick(&instant, *other),
-        };
-        Ok(unknowns.iter().map(value).collect())
     }
 }

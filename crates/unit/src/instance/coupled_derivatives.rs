@@ -2,7 +2,8 @@
 //! `ż = A(V) z + E w`, so their derivatives are what one of each does; those with respect to the wind speed are closed too. Only
 //! parameters are differenced.
 
-use super::coupled::{CoupledUnit, PresentSlopes};
+use super::coupled::{Coupled, CoupledKind};
+use super::coupled_present::PresentSlopes;
 use super::layout::Source;
 use super::memory::Memory;
 use super::sensitivity::{SectionValues, add, central_difference, check_finite, parameter_step};
@@ -13,7 +14,7 @@ use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::variables::{ComputedNumber, Role};
 
-impl<T: CoupledUnit> Differentiable for T {
+impl<S: CoupledKind> Differentiable for Coupled<S> {
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
     fn output_rates(
         &mut self,
@@ -22,7 +23,7 @@ impl<T: CoupledUnit> Differentiable for T {
         outputs: &[Role],
         notices: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
-        self.load_inputs(memory);
+        S::load_inputs(self, memory);
         let (stepper, inputs) = self.parts();
         let velocity = stepper.state_derivative(&memory.system, inputs)?;
         let velocity = memory.system.with_all(&velocity);
@@ -36,12 +37,12 @@ impl<T: CoupledUnit> Differentiable for T {
         check_finite(&rates.outputs)?;
         let by = PresentSlopes {
             wind: wind_rate,
-            rotation: self.turn(&memory.system, &rates.outputs),
+            rotation: S::turn(self, &memory.system, &rates.outputs),
             ..PresentSlopes::default()
         };
         let rate = |role: &Role| match role {
             Role::Computed(number) => Ok(self.slope(resources, memory, number, by, notices)?),
-            response => Ok(self.pick(&rates, *response)),
+            response => Ok(S::pick(self, &rates, *response)),
         };
         outputs.iter().map(rate).collect()
     }
@@ -59,13 +60,13 @@ impl<T: CoupledUnit> Differentiable for T {
             (Source::Section, _) => {
                 let step = parameter_step(memory.values[known]);
                 return central_difference(resources, memory, known, step, |other| {
-                    let mut found = |unit: &mut T| unit.unknowns(resources, other, unknowns);
+                    let mut found = |unit: &mut Self| unit.unknowns(resources, other, unknowns);
                     Ok(self.with_parameters(resources, other, &mut found)?)
                 });
             }
             (Source::Limit, _) => None,
             (_, Role::WindSpeed) => {
-                self.load_inputs(memory);
+                S::load_inputs(self, memory);
                 let (stepper, inputs) = self.parts();
                 Some(SectionValues::by_speed(stepper, &memory.system, inputs))
             }
@@ -75,12 +76,12 @@ impl<T: CoupledUnit> Differentiable for T {
             wind: f64::from(u8::from(role == Role::WindSpeed)),
             rotation: instant
                 .as_ref()
-                .map_or(0.0, |i| self.turn(&memory.system, &i.outputs)),
+                .map_or(0.0, |i| S::turn(self, &memory.system, &i.outputs)),
             limit: f64::from(u8::from(instant.is_none())),
         };
         let derivative = |unknown: &Role| match unknown {
             Role::Computed(number) => self.slope(resources, memory, number, by, notices),
-            other => Ok(instant.as_ref().map_or(0.0, |i| self.pick(i, *other))),
+            other => Ok(instant.as_ref().map_or(0.0, |i| S::pick(self, i, *other))),
         };
         Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
     }
@@ -99,9 +100,13 @@ impl<T: CoupledUnit> Differentiable for T {
 }
 
 /// What a force, a gust, a state or a number at release of one does.
-fn by_unit(unit: &mut impl CoupledUnit, memory: &Memory, known: usize) -> Result<SectionValues> {
+fn by_unit<S: CoupledKind>(
+    unit: &mut Coupled<S>,
+    memory: &Memory,
+    known: usize,
+) -> Result<SectionValues> {
     let mut of_one = memory.clone();
-    let places = unit.places();
+    let places = &unit.places;
     for place in places.inputs[1..].iter().chain(&places.initial) {
         of_one.values[*place] = f64::from(u8::from(*place == known));
     }
@@ -110,7 +115,7 @@ fn by_unit(unit: &mut impl CoupledUnit, memory: &Memory, known: usize) -> Result
     }
     let entry = places.state_entry[known];
     of_one.input_rates.fill(0.0);
-    unit.load_inputs(&of_one);
+    S::load_inputs(unit, &of_one);
     // while initialising the state follows from what is stated, and lags stand where the gusts are
     let mut state = if memory.state == State::Initialization {
         unit.release(&of_one.values)?

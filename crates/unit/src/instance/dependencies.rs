@@ -5,7 +5,7 @@ mod pattern;
 
 use super::Instance;
 use super::bridge_unit::BridgeUnit;
-use super::coupled::CoupledUnit;
+use super::coupled::{Coupled, CoupledKind};
 use super::section_unit::SectionUnit;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -31,8 +31,8 @@ impl Resources {
     pub fn described_table(&self) -> Result<VariableTable> {
         let mut table = self.table.clone();
         match (&self.bridge, &self.force) {
-            (Some(options), _) => enter(&mut table, self, BridgeUnit::new(self, options)?)?,
-            (None, None) => enter(&mut table, self, SectionUnit::new(self)?)?,
+            (Some(options), _) => enter(&mut table, self, BridgeUnit::of_bridge(self, options)?)?,
+            (None, None) => enter(&mut table, self, SectionUnit::of_section(self)?)?,
             // strips do nothing to one another: their rows say it
             (None, Some(_)) => {}
         }
@@ -55,13 +55,17 @@ impl Instance {
 }
 
 /// Enters the dependencies of a section or bridge.
-fn enter(table: &mut VariableTable, resources: &Resources, unit: impl CoupledUnit) -> Result<()> {
+fn enter<S: CoupledKind>(
+    table: &mut VariableTable,
+    resources: &Resources,
+    unit: Coupled<S>,
+) -> Result<()> {
     let mut pattern = Pattern::of(unit, resources)?;
     let variables = table.variables_mut();
     let at_once = set_while_moving(&mut pattern, variables);
     let at_release = set_at_release(&mut pattern, variables, &at_once);
     let motion = 2 * pattern.unit.section().structure().dofs.len();
-    let entries = &pattern.unit.places().state_entry;
+    let entries = &pattern.unit.places.state_entry;
     for (row, place) in pattern.responses.iter().enumerate() {
         let variable = &mut variables[*place];
         // dampers go along with the girder until the release, and the flow has settled
@@ -98,27 +102,27 @@ fn through(row: &[Option<DependencyKind>], sources: &Sources) -> Vec<Dependency>
 }
 
 /// Adds a number to the columns of what it loads.
-fn add_loading(pattern: &mut Pattern<impl CoupledUnit>, place: usize, sources: &mut Sources) {
+fn add_loading<S: CoupledKind>(pattern: &mut Pattern<S>, place: usize, sources: &mut Sources) {
     let mut one = pattern.calm.clone();
     one.values[place] = 1.0;
-    pattern.unit.load_inputs(&one);
+    S::load_inputs(&mut pattern.unit, &one);
     let (_, loaded) = pattern.unit.parts();
     let loaded = loaded.force.iter().chain(&loaded.gust_m_s);
-    let columns = sources[pattern.columns.forces..].iter_mut().zip(loaded);
+    let columns = sources[pattern.forces..].iter_mut().zip(loaded);
     for (list, _) in columns.filter(|(_, number)| **number != 0.0) {
         list.push(Dependency::constant(place));
     }
 }
 
 /// Inputs and the states that importers see.
-fn set_while_moving(pattern: &mut Pattern<impl CoupledUnit>, table: &[Variable]) -> Sources {
-    let mut sources = vec![Vec::new(); pattern.columns.air + 1];
-    let inputs = pattern.unit.inputs().to_vec();
-    sources[pattern.columns.air].push(Dependency::constant(inputs[0]));
+fn set_while_moving<S: CoupledKind>(pattern: &mut Pattern<S>, table: &[Variable]) -> Sources {
+    let mut sources = vec![Vec::new(); pattern.air + 1];
+    let inputs = pattern.unit.places.inputs.clone();
+    sources[pattern.air].push(Dependency::constant(inputs[0]));
     for place in &inputs[1..] {
         add_loading(pattern, *place, &mut sources);
     }
-    let entries = &pattern.unit.places().state_entry;
+    let entries = &pattern.unit.places.state_entry;
     for place in table.iter().filter_map(|v| v.derivative_of) {
         if let Some(entry) = entries[place] {
             sources[entry].push(Dependency::constant(place));
@@ -129,17 +133,17 @@ fn set_while_moving(pattern: &mut Pattern<impl CoupledUnit>, table: &[Variable])
 
 /// Inputs, parameters, and what is stated of the release.
 fn set_at_release(
-    pattern: &mut Pattern<impl CoupledUnit>,
+    pattern: &mut Pattern<impl CoupledKind>,
     table: &[Variable],
     inputs: &Sources,
 ) -> Sources {
-    let columns = pattern.columns;
+    let (forces, gusts, air) = (pattern.forces, pattern.gusts, pattern.air);
     let mut sources = inputs.clone();
-    sources[..columns.forces].iter_mut().for_each(Vec::clear);
-    if let Some(factor) = pattern.unit.places().turbulence_factor {
+    sources[..forces].iter_mut().for_each(Vec::clear);
+    if let Some(factor) = pattern.unit.places.turbulence_factor {
         add_loading(pattern, factor, &mut sources);
     }
-    let initial = &pattern.unit.places().initial;
+    let initial = &pattern.unit.places.initial;
     for (entry, place) in initial.iter().enumerate() {
         sources[entry].push(Dependency::constant(*place));
     }
@@ -164,13 +168,10 @@ fn set_at_release(
         }
     }
     // lags stand where their gusts are
-    let (lagging, gusts) = (
-        section.states()..columns.forces,
-        columns.air - columns.gusts,
-    );
-    let lags = lagging.len() / gusts.max(1);
+    let lagging = section.states()..forces;
+    let lags = lagging.len() / (air - gusts).max(1);
     for lag in lagging.clone() {
-        sources[lag] = sources[columns.gusts + (lag - lagging.start) / lags].clone();
+        sources[lag] = sources[gusts + (lag - lagging.start) / lags].clone();
     }
     sources
 }
@@ -178,13 +179,13 @@ fn set_at_release(
 /// The columns through which a parameter acts at the release, where springs are bent and nothing but what is stated moves.
 fn columns_of(
     variable: &Variable,
-    pattern: &Pattern<impl CoupledUnit>,
+    pattern: &Pattern<impl CoupledKind>,
     filters: &[Vec<usize>],
 ) -> Vec<usize> {
-    let columns = pattern.columns;
+    let air = pattern.air;
     let dofs = &pattern.unit.section().structure().dofs;
     let forces = |on: &[Dof]| -> Vec<usize> {
-        let acted_on = dofs.iter().zip(columns.forces..);
+        let acted_on = dofs.iter().zip(pattern.forces..);
         acted_on
             .filter(|(dof, _)| on.contains(dof))
             .map(|(_, column)| column)
@@ -194,12 +195,12 @@ fn columns_of(
         let driven = dofs.iter().zip(filters).filter(|(dof, _)| of.contains(dof));
         driven
             .flat_map(|(_, filters)| filters.iter().copied())
-            .chain([columns.air])
+            .chain([air])
             .collect()
     };
     match variable.role {
         Role::Section(parameter) => match parameter {
-            SectionParameter::AirDensity => vec![columns.air],
+            SectionParameter::AirDensity => vec![air],
             SectionParameter::Width => air_and_filters(&[Dof::Vertical, Dof::Lateral]),
             SectionParameter::AxisOffset => air_and_filters(&[Dof::Vertical]),
             SectionParameter::MassOffset => forces(&[Dof::Vertical, Dof::Torsion]),
@@ -208,12 +209,12 @@ fn columns_of(
             | SectionParameter::DampingRatio(dof) => forces(&[dof]),
         },
         Role::ModeParameter(mode, parameter) => match parameter {
-            ModeParameter::Frequency => vec![columns.forces + mode],
+            ModeParameter::Frequency => vec![pattern.forces + mode],
             ModeParameter::DampingRatio => Vec::new(),
         },
         // springs and dashpots of dampers are at rest
         Role::DamperParameter(i) if variable.quantity == Some("Mass") => {
-            vec![pattern.unit.places().initial.len() + i / 3]
+            vec![pattern.unit.places.initial.len() + i / 3]
         }
         _ => Vec::new(),
     }

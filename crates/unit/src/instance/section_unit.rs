@@ -1,29 +1,26 @@
 //! The coupled section: a structure in self-excited wind forces. Onset and divergence are searched for when first asked
 //! for after a change of parameters.
 
-use super::calculated::CalculatedNumbers;
-use super::coupled::{CoupledPlaces, CoupledUnit, blow_until_release};
+use super::coupled::{Coupled, CoupledKind};
 use super::damping::PresentDamping;
-use super::layout::Source;
-use super::memory::{Memory, starts};
+use super::layout::place;
+use super::memory::Memory;
 use super::section::{self, OnsetCard};
-use super::section_places::{ResponsePlaces, response_places};
-use super::sensitivity::{SectionValues, check_finite, finite};
-use super::trust::{TrustWarnings, tested_winds};
-use super::unit::{Differentiable, Prepared, Unit};
+use super::sensitivity::SectionValues;
+use super::trust::tested_winds;
 use crate::aerodynamics::{Realizable, Realization};
-use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
-use crate::lifecycle::State;
-use crate::refusal::CallResult;
 use crate::resources::Resources;
-use crate::response::{Inputs, Outputs, RepeatableStep, SectionState, Stepper};
-use crate::variables::{OnsetNumbers, Role};
+use crate::response::{Outputs, RepeatableStep, SectionState, Stepper};
+use crate::variables::{Response, Role, VariableTable};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.
 const GROWTH_SEARCHES: usize = 32;
+
+/// Displacement, rate, acceleration and self-excited force of each degree of freedom.
+type ResponsePlaces = Vec<[usize; 4]>;
 
 /// What is known of the inputs.
 #[derive(Debug, Clone, Copy)]
@@ -38,82 +35,62 @@ enum LoadedInputs {
 
 /// See the module.
 #[derive(Debug)]
-pub(super) struct SectionUnit {
-    places: CoupledPlaces,
+pub(super) struct SuspendedSection {
     responses: ResponsePlaces,
     aerodynamics: Realization,
-    /// Of the current parameters.
-    stepper: Stepper,
-    /// Whether they have changed since.
-    stale: bool,
-    /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
-    pub tested_winds: Option<[f64; 2]>,
-    /// With that stepper.
-    damping: PresentDamping,
-    /// While initialising: the state has to be made anew from the values at release.
-    release_pending: bool,
-    calculated: CalculatedNumbers,
     /// Whether growth below the onset has been looked for with the current parameters.
     growth_known: bool,
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
-    pub warned: TrustWarnings,
-    inputs: Inputs,
+    /// Whether the wind was in the tested range after the last step.
+    pub wind_was_tested: bool,
+    /// What has been said since the initialisation: a gust may cross a limit at every step.
+    pub wind_left: bool,
+    pub rotation_left: bool,
     loaded: LoadedInputs,
-    outputs: Outputs,
 }
+
+/// What follows from the parameters of a section.
+#[derive(Debug)]
+pub(super) struct BuiltSection {
+    stepper: Stepper,
+    damping: PresentDamping,
+    /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
+    pub tested_winds: Option<[f64; 2]>,
+}
+
+pub(super) type SectionUnit = Coupled<SuspendedSection>;
 
 impl SectionUnit {
     /// The section of a trained model.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
-    pub(super) fn new(resources: &Resources) -> Result<Self> {
+    pub(super) fn of_section(resources: &Resources) -> Result<Self> {
         let responses = response_places(&resources.table)?;
-        let places = CoupledPlaces::of_section(&resources.table, &responses)?;
-        let gusts = places.gusts().len();
-        let aerodynamics = resources.model.model.realize();
-        let stepper = stepper(resources, &aerodynamics, &starts(&resources.table))?;
-        Ok(Self {
-            inputs: Inputs {
-                gust_m_s: vec![0.0; gusts],
-                gust_rate_m_s2: vec![0.0; gusts],
-                ..Inputs::steady(0.0, responses.len())
-            },
-            places,
+        let own = SuspendedSection {
             responses,
-            aerodynamics,
-            tested_winds: tested_winds(&stepper, resources),
-            stepper,
-            stale: false,
-            damping: PresentDamping::default(),
-            release_pending: true,
-            calculated: CalculatedNumbers::new(&resources.table),
+            aerodynamics: resources.model.model.realize(),
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
-            warned: TrustWarnings::default(),
+            wind_was_tested: false,
+            wind_left: false,
+            rotation_left: false,
             loaded: LoadedInputs::Stale,
-            outputs: Outputs::default(),
-        })
-    }
-
-    /// The inputs of the memory of this unit, which are loaded once until one is set.
-    fn load_own_inputs(&mut self, memory: &Memory) {
-        if matches!(self.loaded, LoadedInputs::Stale) {
-            self.load_inputs(memory);
-            // with a rate, a step carries them on
-            if memory.input_rates.iter().all(|rate| *rate == 0.0) {
-                self.loaded = LoadedInputs::Current;
-            }
-        }
+        };
+        let mut unit = Self::new(own, resources)?;
+        let gusts = unit.places.gusts().len();
+        unit.inputs.gust_m_s = vec![0.0; gusts];
+        unit.inputs.gust_rate_m_s2 = vec![0.0; gusts];
+        Ok(unit)
     }
 
     /// Growth below the onset for the parameters in `values`.
     fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
         let Resources { model, table, .. } = resources;
         let limit = values[self.places.limit];
-        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        let forces = &self.aerodynamics;
+        let section = section::coupled_section(model, table, &self.own.aerodynamics, values)?;
+        let forces = &self.own.aerodynamics;
         if let Some(speed) = section::plainly_stable_to(model, table, forces, values, limit) {
             return Ok(UnwantedGrowth::none_up_to(speed));
         }
@@ -122,8 +99,8 @@ impl SectionUnit {
 
     #[cold]
     fn watch_growth(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        self.growth_known = true;
-        self.growth_searches_left -= 1;
+        self.own.growth_known = true;
+        self.own.growth_searches_left -= 1;
         match self.growth(resources, &memory.values) {
             Ok(growth) if growth.is_none() => {}
             Ok(growth) => notices.push(format!(
@@ -133,276 +110,204 @@ impl SectionUnit {
             // no reason to end a run
             Err(e) => notices.push(format!("growth below the onset could not be judged: {e}")),
         }
-        if self.growth_searches_left == 0 {
+        if self.own.growth_searches_left == 0 {
             notices.push(format!(
                 "growth below the onset is no longer looked for after {GROWTH_SEARCHES} changes of parameters"
             ));
         }
     }
-
-    pub(super) fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
-        let Resources { model, table, .. } = resources;
-        let limit = values[self.places.limit];
-        match section::coupled_section(model, table, &self.aerodynamics, values) {
-            Ok(section) => {
-                let plain = section::plain_onset(model, table, &self.aerodynamics, values, limit);
-                OnsetCard::search(model, &section, limit, plain)
-            }
-            Err(why) => OnsetCard::unknown(&why),
-        }
-    }
 }
 
-impl Unit for SectionUnit {
-    fn inputs(&self) -> &[usize] {
-        &self.places.inputs
-    }
+impl CoupledKind for SuspendedSection {
+    type Built = BuiltSection;
 
-    fn at_rest(&self) -> SectionState {
-        SectionState {
-            values: vec![0.0; self.stepper.section().states()],
-            gusts: vec![0.0; self.stepper.gust_states()],
-            ..SectionState::default()
-        }
-    }
-
-    fn changed(&mut self, source: Source) {
-        match source {
-            Source::Input => self.loaded = LoadedInputs::Stale,
-            Source::Section => {
-                self.stale = true;
-                self.loaded = LoadedInputs::Stale;
-                self.calculated.forget();
-                self.growth_known = false;
-                self.release_pending = true;
-            }
-            Source::Release => self.release_pending = true,
-            Source::Limit => {
-                self.calculated.forget();
-                self.growth_known = false;
-            }
-            _ => {}
-        }
-    }
-
-    fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
-        if memory.state == State::Initialization && self.places.gusts().contains(&place) {
-            self.release_pending = true;
-        }
-        false
-    }
-
-    fn begin_initialization(&mut self) {
-        self.warned = TrustWarnings::default();
-        self.release_pending = true;
-    }
-
-    fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
-        self.loaded = LoadedInputs::Stale;
-    }
-
-    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool) {
-        self.loaded = LoadedInputs::Stale;
-        let same_section = same(Source::Section);
-        self.stale |= !same_section;
-        let same_limit = same(Source::Limit);
-        self.calculated.carry_over(new, same_section && same_limit);
-        self.release_pending = true;
-    }
-
-    fn prepared(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-    ) -> Result<&mut dyn Differentiable> {
-        if self.stale {
-            self.stepper = stepper(resources, &self.aerodynamics, &memory.values)?;
-            self.stale = false;
-            self.tested_winds = tested_winds(&self.stepper, resources);
-            self.damping = PresentDamping::default();
-        }
-        if self.release_pending && memory.state == State::Initialization {
-            self.load_inputs(memory);
-            memory.system = self.release(&memory.values)?;
-            self.release_pending = false;
-        }
-        Ok(self)
-    }
-
-    fn calculated(&mut self) -> Option<&mut CalculatedNumbers> {
-        Some(&mut self.calculated)
-    }
-
-    /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
-    fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        if self.trust_changes(memory) {
-            self.watch_trust(memory, notices);
-        }
-        if !self.growth_known && self.growth_searches_left > 0 {
-            self.watch_growth(resources, memory, notices);
-        }
-    }
-
-    fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        let LoadedInputs::Repeatable(last) = &self.loaded else {
-            return None;
-        };
-        let (stepper, system) = (&mut self.stepper, &mut memory.system);
-        let taken = last.step_s == step && stepper.repeat(system, &self.inputs, last.columns);
-        taken.then(|| self.rotation_news(memory))
-    }
-
-    fn repeat_outputs(&mut self, memory: &mut Memory) -> bool {
-        let LoadedInputs::Repeatable(last) = &self.loaded else {
-            return false;
-        };
-        let found = self
-            .stepper
-            .repeat_outputs(&memory.system, &self.inputs, last.columns);
-        if !found.iter().all(|x| x.is_finite()) {
-            return false;
-        }
-        let (accelerations, forces) = found.split_at(self.responses.len());
-        let each = self.responses.iter().zip(accelerations.iter().zip(forces));
-        for (places, (acceleration, force)) in each {
-            memory.values[places[2]] = *acceleration;
-            memory.values[places[3]] = *force;
-        }
-        true
-    }
-
-    fn held_output(&self, place: usize) -> Option<usize> {
-        self.places.state_entry[place]
-    }
-}
-
-impl Prepared for SectionUnit {
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
-        self.load_own_inputs(memory);
-        let stepper = &mut self.stepper;
-        stepper.advance(&mut memory.system, &self.inputs, step)?;
-        if !matches!(self.loaded, LoadedInputs::Stale) {
-            let repeatable = stepper.repeatable(&memory.system, &self.inputs, step);
-            self.loaded = repeatable.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
-        }
-        Ok(false)
-    }
-
-    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
-        self.load_inputs(memory);
-        let stepper = &mut self.stepper;
-        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
-        finite(rates)
-    }
-
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
-        self.load_own_inputs(memory);
-        let (stepper, inputs) = (&mut self.stepper, &self.inputs);
-        stepper.outputs(&memory.system, inputs, &mut self.outputs)?;
-        check_finite(&self.outputs)?;
-        let Outputs {
-            acceleration,
-            self_excited_force,
+    fn build(&self, resources: &Resources, values: &[f64]) -> Result<BuiltSection> {
+        let Resources {
+            model,
+            table,
+            gusts,
             ..
-        } = &self.outputs;
-        for (i, places) in self.responses.iter().enumerate() {
-            memory.values[places[2]] = acceleration[i];
-            memory.values[places[3]] = self_excited_force[i];
-        }
-        Ok(())
+        } = resources;
+        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
+        let stepper = Stepper::in_gusts(section, gusts.as_ref());
+        Ok(BuiltSection {
+            tested_winds: tested_winds(&stepper, resources),
+            stepper,
+            damping: PresentDamping::default(),
+        })
     }
 
-    /// Onset and divergence. A search that fails is no reason to end a run.
-    fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
-        if self.calculated.are_known() {
-            return;
-        }
-        let card = self.onset_card(resources, &memory.values);
-        self.calculated.enter(card, memory, notices);
-    }
-}
-
-impl CoupledUnit for SectionUnit {
-    fn places(&self) -> &CoupledPlaces {
-        &self.places
+    fn stepper(built: &BuiltSection) -> &Stepper {
+        &built.stepper
     }
 
-    fn onset(&self) -> OnsetNumbers {
-        self.calculated.onset()
+    fn parts(built: &mut BuiltSection) -> (&mut Stepper, &mut PresentDamping) {
+        (&mut built.stepper, &mut built.damping)
     }
 
-    fn parts(&mut self) -> (&mut Stepper, &mut Inputs) {
-        (&mut self.stepper, &mut self.inputs)
+    fn parameters_changed(&mut self) {
+        self.growth_known = false;
     }
 
-    fn section(&self) -> &CoupledSection {
-        self.stepper.section()
-    }
-
-    fn load_inputs(&mut self, memory: &Memory) {
+    fn inputs_changed(&mut self) {
         self.loaded = LoadedInputs::Stale;
-        let (inputs, rates) = (&mut self.inputs, &memory.input_rates);
-        inputs.wind_speed_m_s = self.places.wind_speed(memory);
+    }
+
+    fn forget_warnings(&mut self) {
+        (self.wind_was_tested, self.wind_left) = (false, false);
+        self.rotation_left = false;
+    }
+
+    fn load_inputs(unit: &mut SectionUnit, memory: &Memory) {
+        unit.own.loaded = LoadedInputs::Stale;
+        let (inputs, rates) = (&mut unit.inputs, &memory.input_rates);
+        inputs.wind_speed_m_s = unit.places.wind_speed(memory);
         inputs.wind_speed_rate_m_s2 = rates[0];
-        for (i, place) in self.places.forces().iter().enumerate() {
+        for (i, place) in unit.places.forces().iter().enumerate() {
             inputs.force[i] = memory.values[*place];
             inputs.force_rate[i] = rates[i + 1];
         }
-        let of_gusts = &rates[self.places.first_gust..];
-        for (i, place) in self.places.gusts().iter().enumerate() {
+        let of_gusts = &rates[unit.places.first_gust..];
+        for (i, place) in unit.places.gusts().iter().enumerate() {
             inputs.gust_m_s[i] = memory.values[*place];
             inputs.gust_rate_m_s2[i] = of_gusts[i];
         }
     }
 
-    fn release(&self, values: &[f64]) -> Result<SectionState> {
-        let initial: Vec<f64> = self.places.initial.iter().map(|i| values[*i]).collect();
-        let (displacements, rates) = initial.split_at(self.responses.len());
-        let mut state = self.stepper.released(displacements, rates)?;
-        blow_until_release(&mut state, &self.inputs.gust_m_s);
-        Ok(state)
+    /// They are loaded once until one is set.
+    fn load_own_inputs(unit: &mut SectionUnit, memory: &Memory) {
+        if matches!(unit.own.loaded, LoadedInputs::Stale) {
+            Self::load_inputs(unit, memory);
+            // with a rate, a step carries them on
+            if memory.input_rates.iter().all(|rate| *rate == 0.0) {
+                unit.own.loaded = LoadedInputs::Current;
+            }
+        }
     }
 
-    fn pick(&self, instant: &SectionValues, role: Role) -> f64 {
+    fn motion_at_release(unit: &SectionUnit, values: &[f64]) -> [Vec<f64>; 2] {
+        let initial: Vec<f64> = unit.places.initial.iter().map(|i| values[*i]).collect();
+        let (displacements, rates) = initial.split_at(unit.own.responses.len());
+        [displacements.to_vec(), rates.to_vec()]
+    }
+
+    fn pick(_: &SectionUnit, instant: &SectionValues, role: Role) -> f64 {
         instant.pick(role)
     }
 
-    fn turn(&self, _: &SectionState, outputs: &Outputs) -> f64 {
+    fn turn(_: &SectionUnit, _: &SectionState, outputs: &Outputs) -> f64 {
         outputs.displacement.last().copied().unwrap_or(0.0)
     }
 
-    fn rotation(&self, memory: &Memory) -> f64 {
-        memory.system.values[self.responses.len() - 1]
+    fn rotation(unit: &SectionUnit, memory: &Memory) -> f64 {
+        memory.system.values[unit.own.responses.len() - 1]
     }
 
-    fn damping_at(&mut self, wind: f64) -> Result<f64> {
-        self.damping.at(&mut self.stepper, wind)
+    fn wind_is_tested(
+        unit: &mut SectionUnit,
+        _: &Resources,
+        memory: &mut Memory,
+        _: &mut Vec<String>,
+    ) -> bool {
+        unit.in_tested_winds(memory)
     }
 
-    fn wind_is_tested(&mut self, _: &Resources, memory: &mut Memory, _: &mut Vec<String>) -> bool {
-        self.in_tested_winds(memory)
+    fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
+        let Resources { model, table, .. } = resources;
+        let (values, forces) = (&memory.values, &unit.own.aerodynamics);
+        let limit = unit.places.limit(memory);
+        match section::coupled_section(model, table, forces, values) {
+            Ok(section) => {
+                let plain = section::plain_onset(model, table, forces, values, limit);
+                OnsetCard::search(model, &section, limit, plain)
+            }
+            Err(why) => OnsetCard::unknown(&why),
+        }
     }
 
-    fn searched(&self, resources: &Resources, memory: &Memory) -> OnsetNumbers {
-        self.onset_card(resources, &memory.values).numbers
-    }
-
-    fn with_parameters(
-        &mut self,
+    /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
+    fn watch(
+        unit: &mut SectionUnit,
         resources: &Resources,
-        other: &Memory,
-        result: &mut dyn FnMut(&mut Self) -> Result<Vec<f64>>,
-    ) -> Result<Vec<f64>> {
-        let of_other = stepper(resources, &self.aerodynamics, &other.values)?;
-        let present = std::mem::replace(&mut self.stepper, of_other);
-        let found = result(self);
-        self.stepper = present;
-        found
+        memory: &Memory,
+        notices: &mut Vec<String>,
+    ) {
+        if unit.trust_changes(memory) {
+            unit.watch_trust(memory, notices);
+        }
+        if !unit.own.growth_known && unit.own.growth_searches_left > 0 {
+            unit.watch_growth(resources, memory, notices);
+        }
+    }
+
+    fn advance(unit: &mut SectionUnit, memory: &mut Memory, step: f64) -> Result<()> {
+        Self::load_own_inputs(unit, memory);
+        let (stepper, inputs) = (&mut unit.built.stepper, &unit.inputs);
+        stepper.advance(&mut memory.system, inputs, step)?;
+        if !matches!(unit.own.loaded, LoadedInputs::Stale) {
+            let repeatable = stepper.repeatable(&memory.system, inputs, step);
+            unit.own.loaded = repeatable.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn repeat(unit: &mut SectionUnit, memory: &mut Memory, step: f64) -> Option<bool> {
+        let LoadedInputs::Repeatable(last) = &unit.own.loaded else {
+            return None;
+        };
+        let (stepper, system) = (&mut unit.built.stepper, &mut memory.system);
+        let taken = last.step_s == step && stepper.repeat(system, &unit.inputs, last.columns);
+        taken.then(|| unit.rotation_news(memory))
+    }
+
+    #[inline]
+    fn repeat_outputs(unit: &mut SectionUnit, memory: &mut Memory) -> bool {
+        let LoadedInputs::Repeatable(last) = &unit.own.loaded else {
+            return false;
+        };
+        let stepper = &mut unit.built.stepper;
+        let found = stepper.repeat_outputs(&memory.system, &unit.inputs, last.columns);
+        if !found.iter().all(|x| x.is_finite()) {
+            return false;
+        }
+        let (accelerations, forces) = found.split_at(unit.own.responses.len());
+        write(&unit.own.responses, accelerations, forces, memory);
+        true
+    }
+
+    fn write_outputs(unit: &SectionUnit, memory: &mut Memory) {
+        let Outputs {
+            acceleration,
+            self_excited_force,
+            ..
+        } = &unit.outputs;
+        write(
+            &unit.own.responses,
+            acceleration,
+            self_excited_force,
+            memory,
+        );
     }
 }
 
-/// With the parameters in `values`.
-fn stepper(resources: &Resources, forces: &Realization, values: &[f64]) -> Result<Stepper> {
-    let section = section::coupled_section(&resources.model, &resources.table, forces, values)?;
-    Ok(Stepper::in_gusts(section, resources.gusts.as_ref()))
+fn response_places(table: &VariableTable) -> Result<ResponsePlaces> {
+    let dofs = table.dofs().into_iter();
+    dofs.map(|dof| {
+        let mut places = [0; 4];
+        for (slot, response) in places.iter_mut().zip(Response::ALL) {
+            *slot = place(table, Role::Response(response, dof))?;
+        }
+        Ok(places)
+    })
+    .collect()
+}
+
+#[inline(always)]
+fn write(responses: &ResponsePlaces, accelerations: &[f64], forces: &[f64], memory: &mut Memory) {
+    let each = responses.iter().zip(accelerations.iter().zip(forces));
+    for (places, (acceleration, force)) in each {
+        memory.values[places[2]] = *acceleration;
+        memory.values[places[3]] = *force;
+    }
 }

@@ -1,4 +1,4 @@
-//! The winds in which a section was tested, and what has been said of it.
+//! The winds in which a section was tested, and what is said of rotations.
 
 use crate::resources::Resources;
 use crate::response::Stepper;
@@ -20,13 +20,4 @@ pub(super) fn tested_winds(stepper: &Stepper, resources: &Resources) -> Option<[
 pub(super) fn beyond_linear(rotation: f64) -> String {
     let degrees = rotation.to_degrees();
     format!("the rotation, {degrees:.1} degrees, is beyond linear theory (about 10 degrees)")
-}
-
-/// What has been said since the initialisation: a gust may cross a limit at every step.
-#[derive(Debug, Default)]
-pub(super) struct TrustWarnings {
-    /// Whether the wind was in the tested range after the last step.
-    pub wind_was_tested: bool,
-    pub wind_left: bool,
-    pub rotation_left: bool,
 }

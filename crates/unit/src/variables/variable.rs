@@ -154,11 +154,6 @@ pub enum GustDirection {
     Vertical,
 }
 
-impl GustDirection {
-    /// Both, in the order of the columns of coefficients.
-    pub(crate) const BOTH: [GustDirection; 2] = [Self::Along, Self::Vertical];
-}
-
 /// A property of a strip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StripParameter {

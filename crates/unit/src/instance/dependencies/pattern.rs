@@ -1,10 +1,11 @@
 //! The pattern of the matrices of a unit: which response follows what acts, and by what kind of factor.
 
 use crate::error::Result;
-use crate::instance::coupled::CoupledUnit;
+use crate::instance::coupled::{Coupled, CoupledKind};
 use crate::instance::layout::Source;
 use crate::instance::memory::Memory;
 use crate::instance::sensitivity::SectionValues;
+use crate::instance::unit::Unit;
 use crate::resources::Resources;
 use crate::variables::{DependencyKind, Role, Variable};
 
@@ -18,25 +19,17 @@ const CHANGE: f64 = 1e-3;
 /// Kinds of factors by column; `None` for zeros.
 type PatternRow = Vec<Option<DependencyKind>>;
 
-/// What acts on a unit at an instant, a column each: the entries of its state with lagging gusts behind, forces on its coordinates,
+/// What acts on a unit at an instant has a column each: the entries of its state with lagging gusts behind, forces on its coordinates,
 /// channels of the gusts, and last the wind, with what else scales all that the air does.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ActingColumns {
-    /// Where the forces begin.
-    pub forces: usize,
-    /// Where the gusts begin.
-    pub gusts: usize,
-    /// The last one.
-    pub air: usize,
-}
-
-/// See the module.
-pub(super) struct Pattern<T> {
+pub(super) struct Pattern<S: CoupledKind> {
     /// With generic parameters.
-    pub unit: T,
+    pub unit: Coupled<S>,
     /// The same at rest, every input zero.
     pub calm: Memory,
-    pub columns: ActingColumns,
+    /// Where forces and gusts begin, and the last one.
+    pub forces: usize,
+    pub gusts: usize,
+    pub air: usize,
     /// Places of the responses, which are the rows.
     pub responses: Vec<usize>,
     /// While it moves.
@@ -45,8 +38,8 @@ pub(super) struct Pattern<T> {
     pub released: Vec<PatternRow>,
 }
 
-impl<T: CoupledUnit> Pattern<T> {
-    pub(super) fn of(mut unit: T, resources: &Resources) -> Result<Self> {
+impl<S: CoupledKind> Pattern<S> {
+    pub(super) fn of(mut unit: Coupled<S>, resources: &Resources) -> Result<Self> {
         let table = resources.table.variables();
         let start = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
         let with = |value: fn(usize, &Variable) -> f64| {
@@ -64,12 +57,11 @@ impl<T: CoupledUnit> Pattern<T> {
         });
         unit.changed(Source::Section);
         unit.prepared(resources, &mut calm)?;
-        unit.load_inputs(&calm);
+        S::load_inputs(&mut unit, &calm);
         let (_, inputs) = unit.parts();
         let forces = calm.system.all().len();
         let gusts = forces + inputs.force.len();
         let air = gusts + inputs.gust_m_s.len();
-        let columns = ActingColumns { forces, gusts, air };
         let is_response = |place: &usize| {
             let source = Source::of(table[*place].role);
             matches!(source, Source::Response | Source::State | Source::Rate)
@@ -78,11 +70,11 @@ impl<T: CoupledUnit> Pattern<T> {
         let roles: Vec<Role> = responses.iter().map(|place| table[*place].role).collect();
         let mut entries = |of: &Memory, wind: f64| {
             unit.with_parameters(resources, of, &mut |unit| {
-                unit.load_inputs(of);
-                let mut all = Vec::with_capacity(roles.len() * (columns.air + 1));
-                for column in 0..=columns.air {
-                    let values = response(unit, of, columns, column, wind)?;
-                    all.extend(roles.iter().map(|role| unit.pick(&values, *role)));
+                S::load_inputs(unit, of);
+                let mut all = Vec::with_capacity(roles.len() * (air + 1));
+                for column in 0..=air {
+                    let values = response(unit, of, [forces, gusts, air], column, wind)?;
+                    all.extend(roles.iter().map(|role| S::pick(unit, &values, *role)));
                 }
                 Ok(all)
             })
@@ -93,7 +85,7 @@ impl<T: CoupledUnit> Pattern<T> {
         let rows = |present: &[f64]| -> Vec<PatternRow> {
             let entry = |row, column| {
                 let at = column * roles.len() + row;
-                let kind = if column == columns.air || in_more_wind[at] != usual[at] {
+                let kind = if column == air || in_more_wind[at] != usual[at] {
                     DependencyKind::Dependent
                 } else if changed[at] != usual[at] {
                     DependencyKind::Tunable
@@ -102,7 +94,7 @@ impl<T: CoupledUnit> Pattern<T> {
                 };
                 (present[at] != 0.0).then_some(kind)
             };
-            let row = |row| (0..=columns.air).map(|column| entry(row, column)).collect();
+            let row = |row| (0..=air).map(|column| entry(row, column)).collect();
             (0..roles.len()).map(row).collect()
         };
         Ok(Self {
@@ -110,7 +102,9 @@ impl<T: CoupledUnit> Pattern<T> {
             released: rows(&slack),
             unit,
             calm,
-            columns,
+            forces,
+            gusts,
+            air,
             responses,
         })
     }
@@ -126,35 +120,33 @@ fn generic(variable: &Variable, start: f64) -> f64 {
 }
 
 /// What one of something does to a unit at rest, and what more wind does to one in motion.
-fn response(
-    unit: &mut impl CoupledUnit,
+fn response<S: CoupledKind>(
+    unit: &mut Coupled<S>,
     rest: &Memory,
-    columns: ActingColumns,
+    [forces, gusts, air]: [usize; 3],
     column: usize,
     wind: f64,
 ) -> Result<SectionValues> {
     // sines of whole numbers have nothing to do with one another
     let uneven = |count: usize| (1..=count).map(|i| (i as f64).sin());
-    let (air, mut on) = (column == columns.air, rest.clone());
+    let (is_air, mut on) = (column == air, rest.clone());
     for (place, value) in unit.inputs().iter().zip(uneven(unit.inputs().len())) {
-        on.values[*place] = if air { value } else { 0.0 };
+        on.values[*place] = if is_air { value } else { 0.0 };
     }
-    unit.load_inputs(&on);
+    S::load_inputs(unit, &on);
     let (stepper, inputs) = unit.parts();
     inputs.wind_speed_m_s = wind;
-    if air {
-        let state = rest
-            .system
-            .with_all(&uneven(columns.forces).collect::<Vec<_>>());
+    if is_air {
+        let state = rest.system.with_all(&uneven(forces).collect::<Vec<_>>());
         return Ok(SectionValues::by_speed(stepper, &state, inputs));
     }
     let mut state = rest.system.clone();
-    if column < columns.forces {
+    if column < forces {
         state.set_number(column, 1.0);
-    } else if column < columns.gusts {
-        inputs.force[column - columns.forces] = 1.0;
+    } else if column < gusts {
+        inputs.force[column - forces] = 1.0;
     } else {
-        inputs.gust_m_s[column - columns.gusts] = 1.0;
+        inputs.gust_m_s[column - gusts] = 1.0;
     }
     unit.instant(&state)
 }

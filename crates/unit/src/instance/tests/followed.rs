@@ -16,7 +16,7 @@ fn built(resources: &Resources, changed: &[(&str, f64)]) -> Built {
     for (name, value) in changed {
         values[resources.table.find_name(name).unwrap()] = *value;
     }
-    Built::new(resources, resources.bridge.as_ref().unwrap(), &values).unwrap()
+    Built::new(resources, &values).unwrap()
 }
 
 fn searched(built: &Built) -> (OnsetCard, SearchedOnset) {

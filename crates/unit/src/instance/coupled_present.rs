@@ -1,0 +1,130 @@
+//! Numbers of the present moment of a section or bridge.
+
+use super::coupled::{Coupled, CoupledKind};
+use super::memory::Memory;
+use super::unit::Prepared;
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
+use crate::flutter::smallest_damping;
+use crate::resources::Resources;
+use crate::variables::{ComputedNumber, Known, Present, Role};
+
+/// Relative step of a difference over the wind speed.
+const WIND_STEP: f64 = 1e-5;
+
+/// Derivative of the smallest damping ratio with respect to the wind speed, per m/s.
+fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
+    let step = WIND_STEP * wind.max(1.0);
+    let low = (wind - step).max(0.0);
+    let rise = smallest_damping(section, wind + step)? - smallest_damping(section, low)?;
+    Ok(rise / (wind + step - low))
+}
+
+/// How the present changes with what is asked for.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct PresentSlopes {
+    pub wind: f64,
+    pub rotation: f64,
+    /// Of the upper end of the search for the onset.
+    pub limit: f64,
+}
+
+impl<S: CoupledKind> Coupled<S> {
+    /// What a number reads of the present.
+    pub(super) fn read(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        number: &ComputedNumber,
+        notices: &mut Vec<String>,
+    ) -> Present {
+        let wind = self.places.wind_speed(memory);
+        let mut present = Present {
+            wind_m_s: wind.into(),
+            ..Present::default()
+        };
+        for known in number.reads {
+            match known {
+                Known::Onset => {
+                    self.calculate(resources, memory, notices);
+                    present.onset = self.calculated.onset();
+                }
+                Known::Wind => {}
+                Known::Damping => present.damping_ratio = self.damping(wind, notices).into(),
+                Known::TestedWind => {
+                    present.wind_is_tested = S::wind_is_tested(self, resources, memory, notices);
+                }
+                Known::Rotation => present.rotation_rad = S::rotation(self, memory).into(),
+            }
+        }
+        present
+    }
+
+    /// Smallest damping ratio; 0, with the reason, where it is not known.
+    fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
+        let (stepper, damping) = S::parts(&mut self.built);
+        damping.at(stepper, wind).unwrap_or_else(|why| {
+            notices.push(format!("damping_now is not known: {why}"));
+            0.0
+        })
+    }
+
+    /// Derivative of such a number.
+    pub(super) fn slope(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        number: &ComputedNumber,
+        by: PresentSlopes,
+        notices: &mut Vec<String>,
+    ) -> Result<f64> {
+        if number.is_flag() {
+            return Ok(0.0);
+        }
+        let mut present = self.read(resources, memory, number, notices);
+        present.wind_m_s.slope = by.wind;
+        present.rotation_rad.slope = by.rotation;
+        present.onset.follow_limit(by.limit);
+        if by.wind != 0.0 && number.reads(Known::Damping) {
+            let wind = self.places.wind_speed(memory);
+            present.damping_ratio.slope = by.wind * damping_slope(self.section(), wind)?;
+        }
+        Ok(number.of(&present).slope)
+    }
+
+    /// The unknowns of what is released with the values in `memory`, with the parameters that it has been made with.
+    pub(super) fn unknowns(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        unknowns: &[Role],
+    ) -> Result<Vec<f64>> {
+        S::load_inputs(self, memory);
+        let state = self.release(&memory.values)?;
+        let instant = self.instant(&state)?;
+        let wind = self.places.wind_speed(memory);
+        let mut present = Present {
+            wind_m_s: wind.into(),
+            rotation_rad: S::turn(self, &state, &instant.outputs).into(),
+            ..Present::default()
+        };
+        let read = |known: Known| {
+            unknowns
+                .iter()
+                .any(|u| matches!(u, Role::Computed(n) if !n.is_flag() && n.reads(known)))
+        };
+        if read(Known::Onset) {
+            present.onset = S::searched(self, resources, memory).numbers;
+        }
+        if read(Known::Damping) {
+            present.damping_ratio = smallest_damping(self.section(), wind)?.into();
+        }
+        let value = |unknown: &Role| match unknown {
+            // flags have no derivative
+            Role::Computed(number) if number.is_flag() => 0.0,
+            Role::Computed(number) => number.of(&present).value,
+            other => S::pick(self, &instant, *other),
+        };
+        Ok(unknowns.iter().map(value).collect())
+    }
+}
