@@ -25,7 +25,7 @@ pub use derivative::{Derivative, Part};
 pub use interpolated::{Extrapolation, InterpolatedTable};
 pub use interpolation::Interpolation;
 pub use missing::Missing;
-pub use table::{DerivativePoint, DerivativeTable, TableHeader, TableProblem};
+pub use table::{DerivativePoint, DerivativeTable, TableHeader};
 pub use table::{SIGN_CONVENTION, UNITS};
 
 use crate::section::Dof;

@@ -18,7 +18,7 @@ pub use basis::LinearForces;
 pub use samples::at_samples;
 pub use samples::stands_at_samples;
 
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::{Dof, SectionModel, Structure};
 use crossing::{Crossing, refine};
 use nalgebra::Complex;
@@ -104,18 +104,18 @@ impl OnsetSweep {
     /// A sweep up to `speed_max_m_s` for sections like `nominal`.
     ///
     /// # Errors
-    /// [`Error::Input`] for a speed that is not positive, and for other degrees of freedom than two or three.
+    /// [`Error::Input`](crate::error::Error::Input) for a speed that is not positive, and for other degrees of freedom than two or three.
     pub fn new(forces: LinearForces, nominal: &Structure, speed_max_m_s: f64) -> Result<Self> {
         let speed_max = positive("speed_max_m_s", speed_max_m_s)?;
-        if !matches!(forces.dofs.len(), 2 | 3) || forces.dofs != nominal.dofs {
-            let nominal = Dof::names(&nominal.dofs);
-            let expected = format!("two or three degrees of freedom, {nominal}");
-            return Err(Error::input(
-                "onset sweep",
-                expected,
-                Dof::names(&forces.dofs),
-            ));
-        }
+        ensure(
+            matches!(forces.dofs.len(), 2 | 3) && forces.dofs == nominal.dofs,
+            "onset sweep",
+            format_args!(
+                "two or three degrees of freedom, {}",
+                Dof::names(&nominal.dofs)
+            ),
+            Dof::names(&forces.dofs),
+        )?;
         let slowest = nominal.still_air_rad_s().fold(f64::INFINITY, f64::min);
         let k_min = (LOWEST_PART * slowest * nominal.width_m / speed_max).clamp(1e-3, 0.5 * K_MAX);
         let tested = forces.tested.iter();
@@ -145,7 +145,7 @@ impl OnsetSweep {
     /// The onset of `section` with these coefficients (as many as [`LinearForces::coefficients`]).
     ///
     /// # Errors
-    /// [`Error::Input`] for a section that cannot be and coefficients of another number.
+    /// [`Error::Input`](crate::error::Error::Input) for a section that cannot be and coefficients of another number.
     pub fn onset(&self, section: &SectionModel, coefficients: &[f64]) -> Result<SweepOutcome> {
         let (expected, found) = (self.forces.coefficients().len(), coefficients.len());
         ensure(

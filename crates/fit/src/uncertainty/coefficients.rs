@@ -133,10 +133,7 @@ impl CoefficientUncertainty {
 
     /// Transfer functions with their slopes at points over a range, logarithmic.
     fn slopes_over(&self, range: ReducedFrequencyRange) -> Result<Vec<Slopes>> {
-        let (low, high) = (range.min.full_width(), range.max.full_width());
-        let step = (high / low).ln() / (POINTS as f64 - 1.0);
-        let k = |i: usize| ReducedFrequency::from_full_width(low * (step * i as f64).exp());
-        let ks: Vec<_> = (0..POINTS).map(k).collect();
+        let ks = spread_over(range, POINTS);
         let all = self.transfer_slopes(&ks)?;
         let of = |(k, (value, slopes)): (&ReducedFrequency, _)| Slopes {
             k: k.full_width(),
@@ -187,10 +184,8 @@ impl CoefficientUncertainty {
             };
             (0..coefficients).filter(is_own).collect()
         };
-        let pairs = self
-            .dofs
-            .iter()
-            .flat_map(|f| self.dofs.iter().map(move |m| (*f, *m)));
+        let dofs = &self.dofs;
+        let pairs = dofs.iter().flat_map(|f| dofs.iter().map(|m| (*f, *m)));
         pairs.map(|(f, m)| of(f, m)).collect()
     }
 
@@ -216,13 +211,8 @@ impl CoefficientUncertainty {
     /// [`Error::Input`](crate::error::Error::Input) for another number of parameters or a pole that is not positive.
     pub fn model_at(&self, values: &[f64]) -> Result<Model> {
         let n = self.dofs.len();
-        let expected = self.parameters.len();
-        ensure(
-            values.len() == expected,
-            "parameters",
-            expected,
-            values.len(),
-        )?;
+        let (expected, found) = (self.parameters.len(), values.len());
+        ensure(found == expected, "parameters", expected, found)?;
         match &self.coordinates {
             Coordinates::Continuous {
                 form,
@@ -282,12 +272,8 @@ impl CoefficientUncertainty {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) for a gradient of another length.
     pub fn standard_error(&self, gradient: &[f64]) -> Result<f64> {
-        ensure(
-            gradient.len() == self.parameters.len(),
-            "gradient",
-            self.parameters.len(),
-            gradient.len(),
-        )?;
+        let (expected, found) = (self.parameters.len(), gradient.len());
+        ensure(found == expected, "gradient", expected, found)?;
         let g = DVector::from_column_slice(gradient);
         Ok(g.dot(&(&self.covariance * &g)).max(0.0).sqrt())
     }
@@ -295,12 +281,10 @@ impl CoefficientUncertainty {
     /// Degrees of freedom of that standard error; `None` for an estimate that was read from a file, which no longer knows
     /// its data.
     pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
-        let design = self.design.as_ref()?;
+        let (design, effects) = (self.design.as_ref()?, &self.effects);
         let gradient = DVector::from_column_slice(gradient);
         Some(speed_scatter::degrees_of_freedom(
-            design,
-            &self.effects,
-            &gradient,
+            design, effects, &gradient,
         ))
     }
 

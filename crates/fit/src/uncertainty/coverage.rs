@@ -1,5 +1,9 @@
 //! Are the intervals reliable? Virtual campaigns whose truth is known, fitted many times over.
 
+mod report;
+
+pub use report::{CoverageReport, IntervalCoverage};
+
 use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
 use super::onset::onset_error;
@@ -24,9 +28,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const SPEED_MAX_M_S: f64 = 80.0;
 /// Reduced frequencies at which derivatives are compared.
 const DERIVATIVE_POINTS: usize = 8;
-
-/// Shares of held truths with which 95 % intervals count as reliable, percent.
-const KEPT_PERCENT: std::ops::RangeInclusive<f64> = 93.0..=97.0;
 
 /// What the forces of the virtual tunnel follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,98 +115,6 @@ impl CoveragePlan {
             },
             weights: self.weights,
             ..TimeFit::default()
-        }
-    }
-}
-
-/// How often intervals held the truth.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct IntervalCoverage {
-    /// Intervals that held it.
-    pub inside: usize,
-    /// All intervals.
-    pub of: usize,
-    /// Their ratio, percent.
-    pub percent: f64,
-}
-
-impl IntervalCoverage {
-    pub(super) fn count(verdicts: impl Iterator<Item = bool>) -> Self {
-        let (inside, of) =
-            verdicts.fold((0, 0), |(inside, of), v| (inside + usize::from(v), of + 1));
-        Self {
-            inside,
-            of,
-            percent: 100.0 * inside as f64 / (of as f64).max(1.0),
-        }
-    }
-}
-
-/// What the repetitions came to; speeds in m/s.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CoverageReport {
-    /// What was repeated.
-    pub plan: CoveragePlan,
-    /// Onset of the truth.
-    pub true_onset_m_s: f64,
-    /// Onset of the fit to records without noise, minus the truth: what the form of the model cannot follow.
-    pub bias_m_s: f64,
-    /// Mean of the onsets minus the truth.
-    pub mean_error_m_s: f64,
-    /// Standard error of that mean.
-    pub standard_error_of_mean_m_s: f64,
-    /// Standard deviation of the onsets: the scatter from repetition to repetition.
-    pub scatter_m_s: f64,
-    /// Root mean square of the stated standard errors.
-    pub stated_standard_error_m_s: f64,
-    /// Mean half width of the stated intervals.
-    pub mean_half_width_m_s: f64,
-    /// Mean degrees of freedom.
-    pub mean_degrees_of_freedom: f64,
-    /// Degrees of freedom that the scatter of the stated variances shows, `2 mean²/variance`.
-    pub observed_degrees_of_freedom: f64,
-    /// Intervals of the onset that hold the true one.
-    pub holds_truth: IntervalCoverage,
-    /// Intervals of the onset that hold that of the fit without noise: coverage with the bias taken away.
-    pub holds_fit_without_noise: IntervalCoverage,
-    /// The same as the first for all derivatives at eight `K` over the tested range.
-    pub derivatives_hold_truth: IntervalCoverage,
-    /// Repetitions in which the speeds differed by more than chance, so that their scatter was counted.
-    pub speeds_differ: IntervalCoverage,
-    /// Repetitions without an onset.
-    pub without_onset: usize,
-    /// Warnings about the intervals; empty if they are reliable.
-    pub warnings: Vec<String>,
-}
-
-impl CoverageReport {
-    /// Says where intervals do not hold the truth as often as 95 % promise.
-    fn judge(&mut self) {
-        let biased = self.bias_m_s.abs() > self.scatter_m_s;
-        let reason = if biased {
-            format!(
-                "the form of the model cannot follow the truth (bias {:.3} m/s, scatter {:.3} m/s), and an interval holds \
-                 scatter, not bias",
-                self.bias_m_s, self.scatter_m_s
-            )
-        } else {
-            "the stated scatter is not that of the repetitions".to_owned()
-        };
-        for (what, share) in [
-            ("the onset", &self.holds_truth),
-            ("the derivatives", &self.derivatives_hold_truth),
-        ] {
-            if !KEPT_PERCENT.contains(&share.percent) {
-                self.warnings.push(format!(
-                    "the 95 % intervals of {what} hold the truth in {:.1} %: {}",
-                    share.percent,
-                    match (share.percent > 95.0, biased) {
-                        (true, true) => "what the form cannot follow counts as scatter",
-                        (true, false) => "wider than they need be",
-                        (false, _) => &reason,
-                    }
-                ));
-            }
         }
     }
 }

@@ -1,10 +1,15 @@
 //! A table of measured derivatives, each with its own reduced velocities.
 
+mod checks;
+
+pub use checks::{check_point_count, check_points};
+
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Place, Result, ensure, positive, without_control_characters};
+use crate::error::{Error, Result, ensure, positive, without_control_characters};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
+use checks::{check_complete, check_speeds_agree};
 use std::collections::BTreeMap;
 
 /// Sign convention and scaling of every table of this project, as written in the header of its files.
@@ -12,19 +17,6 @@ pub const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x an
 
 /// Units of the columns, as written in the header of the files.
 pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
-
-/// Test points of one derivative: more than any tunnel measures, few enough for every reader and fit.
-const POINTS_AT_MOST: usize = 10_000;
-
-/// Refuses more test points than a table can have.
-pub fn check_point_count(place: impl Into<Place>, count: usize) -> Result<()> {
-    ensure(
-        count <= POINTS_AT_MOST,
-        place,
-        format_args!("at most {POINTS_AT_MOST} test points of a derivative"),
-        count,
-    )
-}
 
 /// One test point of one derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,17 +83,6 @@ impl TableHeader {
     }
 }
 
-/// What is wrong with one point of a table; the reader adds where it stands.
-#[derive(Debug, PartialEq)]
-pub struct TableProblem {
-    /// Position of the point in the table, from 0.
-    pub index: usize,
-    /// What should be there.
-    pub expected: String,
-    /// What is there.
-    pub found: String,
-}
-
 /// Measured derivatives of one deck.
 ///
 /// ```
@@ -148,10 +129,7 @@ impl DerivativeTable {
         check_complete(&points)?;
         for (derivative, of_one) in &points {
             check_point_count(derivative.name(), of_one.len())?;
-            if let Some(problem) = check_points(of_one) {
-                let place = format!("{derivative}, point {}", problem.index + 1);
-                return Err(Error::input(place, problem.expected, problem.found));
-            }
+            check_points(of_one, |i| format!("{derivative}, point {}", i + 1))?;
         }
         check_speeds_agree(&points)?;
         Ok(Self {
@@ -319,100 +297,6 @@ fn sample(derivative: Derivative, point: &DerivativePoint) -> TransferSample {
         value: point.value / (point.v_hat * point.v_hat),
         mean_speed_m_s: point.mean_speed_m_s,
     }
-}
-
-fn check_complete(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Result<()> {
-    let has = |d: &Derivative| points.get(d).is_some_and(|p| !p.is_empty());
-    let is_missing = |d: &Derivative| {
-        let other = match d.part() {
-            Part::Real => Part::Imaginary,
-            Part::Imaginary => Part::Real,
-        };
-        let needed = d.force() != Dof::Lateral && d.motion() != Dof::Lateral
-            || has(&Derivative::of(d.force(), d.motion(), other))
-            || points.contains_key(d);
-        needed && !has(d)
-    };
-    let missing: Vec<&str> = Derivative::ALL
-        .iter()
-        .filter(|d| is_missing(d))
-        .map(|d| d.name())
-        .collect();
-    ensure(
-        missing.is_empty(),
-        "derivatives",
-        "points for H1 to H4 and A1 to A4, and for both members of every other pair",
-        format_args!("none for {}", missing.join(", ")),
-    )
-}
-
-fn check_speeds_agree(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Result<()> {
-    let all: Vec<_> = points.values().flatten().collect();
-    let with_speed = all.iter().filter(|p| p.mean_speed_m_s.is_some()).count();
-    ensure(
-        with_speed == 0 || with_speed == all.len(),
-        "mean speeds",
-        "a mean speed at every point, or at none",
-        format_args!("one at {with_speed} of {} points", all.len()),
-    )
-}
-
-/// The first point of one derivative that cannot be right, if any.
-pub fn check_points(points: &[DerivativePoint]) -> Option<TableProblem> {
-    let problem = |index: usize, expected: &str, found: String| {
-        Some(TableProblem {
-            index,
-            expected: expected.to_owned(),
-            found,
-        })
-    };
-    for (i, p) in points.iter().enumerate() {
-        if !(p.v_hat.is_finite() && p.v_hat > 0.0) {
-            return problem(i, "a positive reduced velocity V̂", p.v_hat.to_string());
-        }
-        if !p.value.is_finite() {
-            return problem(i, "a finite value of the derivative", p.value.to_string());
-        }
-        if let Some(v) = p.mean_speed_m_s
-            && !(v.is_finite() && v > 0.0)
-        {
-            return problem(i, "a positive mean wind speed, m/s", v.to_string());
-        }
-    }
-    check_monotone(points)
-}
-
-/// Within a speed group the frequencies are tested in rising or falling order, each once.
-fn check_monotone(points: &[DerivativePoint]) -> Option<TableProblem> {
-    let speeds = points.iter().filter_map(|p| p.mean_speed_m_s);
-    let mut groups = near_groups(speeds, SAME_SPEED);
-    if groups.is_empty() {
-        groups.push(vec![0.0, f64::INFINITY]);
-    }
-    groups.iter().find_map(|group| {
-        let (low, high) = (group[0], group[group.len() - 1]);
-        let inside = |p: &DerivativePoint| {
-            let v = p.mean_speed_m_s.unwrap_or(1.0);
-            low <= v && v <= high
-        };
-        let own: Vec<usize> = (0..points.len()).filter(|i| inside(&points[*i])).collect();
-        let falling = own.len() > 1 && points[own[1]].v_hat < points[own[0]].v_hat;
-        let broken = own.windows(2).find(|w| {
-            let (a, b) = (points[w[0]].v_hat, points[w[1]].v_hat);
-            a == b || (b < a) != falling
-        })?;
-        let (before, after) = (points[broken[0]].v_hat, points[broken[1]].v_hat);
-        Some(TableProblem {
-            index: broken[1],
-            expected: if before == after {
-                "every reduced velocity V̂ once in a speed group".to_owned()
-            } else {
-                let direction = if falling { "falling" } else { "rising" };
-                format!("reduced velocities V̂ {direction} steadily in a speed group")
-            },
-            found: format!("V̂ = {after} after {before}"),
-        })
-    })
 }
 
 #[cfg(test)]

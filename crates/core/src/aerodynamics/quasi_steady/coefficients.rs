@@ -1,8 +1,7 @@
 //! Static coefficients of a deck over the angle of attack, smooth between the tested angles.
 
-use crate::aerodynamics::derivatives::TableProblem;
 use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
-use crate::error::{Error, Result};
+use crate::error::{Place, Result, ensure};
 use crate::section::Dof;
 
 /// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
@@ -87,10 +86,7 @@ impl StaticCoefficients {
         header: CoefficientsHeader,
         rows: Vec<CoefficientRow>,
     ) -> Result<Self> {
-        if let Some(problem) = check_rows(&rows) {
-            let place = format!("row {}", problem.index + 1);
-            return Err(Error::input(place, problem.expected, problem.found));
-        }
+        check_rows(&rows, |i| format!("row {}", i + 1))?;
         let spline = |pick: fn(&CoefficientRow) -> f64| {
             let angles = rows.iter().map(|r| r.angle_deg.to_radians()).collect();
             Spline::new(angles, rows.iter().map(pick).collect())
@@ -135,14 +131,13 @@ impl StaticCoefficients {
     /// Coefficients and slopes at an angle of attack (rad).
     pub fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
         let (low, high) = self.range_rad();
-        if !(low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad) {
-            let (low, high) = self.range_deg();
-            return Err(Error::input(
-                format!("static coefficients {}", self.name),
-                format!("an angle of attack from {low} to {high} deg"),
-                format!("{:.4} deg", angle_rad.to_degrees()),
-            ));
-        }
+        let (low_deg, high_deg) = self.range_deg();
+        ensure(
+            (low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad),
+            format_args!("static coefficients {}", self.name),
+            format_args!("an angle of attack from {low_deg} to {high_deg} deg"),
+            format_args!("{:.4} deg", angle_rad.to_degrees()),
+        )?;
         let (drag, drag_slope) = self.drag.at(angle_rad);
         let (lift, lift_slope) = self.lift.at(angle_rad);
         let (moment, moment_slope) = self.moment.at(angle_rad);
@@ -157,35 +152,33 @@ impl StaticCoefficients {
     }
 }
 
-/// The first thing that is wrong with the rows.
-pub fn check_rows(rows: &[CoefficientRow]) -> Option<TableProblem> {
-    let problem = |index, expected: &str, found: String| {
-        Some(TableProblem {
-            index,
-            expected: expected.to_owned(),
-            found,
-        })
+/// Refuses the first row that cannot be right, and too few of them; `place` is where each stands, by its position from 0.
+pub fn check_rows<P: Into<Place>>(
+    rows: &[CoefficientRow],
+    place: impl Fn(usize) -> P,
+) -> Result<()> {
+    let check = |before: f64, row: &CoefficientRow| {
+        let angle = row.angle_deg;
+        for value in [angle, row.drag, row.lift, row.moment] {
+            ensure(value.is_finite(), "", "finite numbers", value)?;
+        }
+        let (within, found) = (angle.abs() <= ANGLE_LIMIT_DEG, format_args!("{angle} deg"));
+        ensure(within, "", "an angle within ±180 deg", found)?;
+        let (rises, found) = (angle > before, format_args!("{angle} after {before}"));
+        ensure(rises, "", "angles that rise from row to row", found)
     };
-    for (index, row) in rows.iter().enumerate() {
-        let values = [row.angle_deg, row.drag, row.lift, row.moment];
-        if let Some(bad) = values.iter().find(|v| !v.is_finite()) {
-            return problem(index, "finite numbers", bad.to_string());
-        }
-        if row.angle_deg.abs() > ANGLE_LIMIT_DEG {
-            let found = format!("{} deg", row.angle_deg);
-            return problem(index, "an angle within ±180 deg", found);
-        }
-        if index > 0 && row.angle_deg <= rows[index - 1].angle_deg {
-            let found = format!("{} after {}", row.angle_deg, rows[index - 1].angle_deg);
-            return problem(index, "angles that rise from row to row", found);
-        }
+    let mut before = f64::NEG_INFINITY;
+    for (i, row) in rows.iter().enumerate() {
+        check(before, row).map_err(|e| e.at(place(i)))?;
+        before = row.angle_deg;
     }
-    if rows.len() < POINTS_AT_LEAST {
-        let index = rows.len().saturating_sub(1);
-        let found = rows.len().to_string();
-        return problem(index, "at least 4 rows of the table", found);
-    }
-    None
+    let (count, last) = (rows.len(), rows.len().saturating_sub(1));
+    ensure(
+        count >= POINTS_AT_LEAST,
+        place(last),
+        "at least 4 rows of the table",
+        count,
+    )
 }
 
 #[cfg(test)]

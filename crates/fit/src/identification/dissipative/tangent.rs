@@ -87,9 +87,15 @@ impl Tangent {
         DMatrix::from_fn(n, left.len(), |i, j| left[j][i])
     }
 
-    /// Covariance of the coefficients of one transfer function, from the variances of the free numbers of each without
-    /// constraints: with the projector `P`, that of `P u`.
-    pub(crate) fn covariance(&self, entry: &LinearEntry, variances: &DVector<f64>) -> DMatrix<f64> {
+    /// Covariance of the coefficients of one transfer function, from how many numbers are free in each without constraints and
+    /// their variance: with the projector `P`, that of `P u`.
+    pub(crate) fn covariance(
+        &self,
+        entry: &LinearEntry,
+        free: impl Iterator<Item = (usize, f64)>,
+    ) -> DMatrix<f64> {
+        let each = free.flat_map(|(count, variance)| std::iter::repeat_n(variance, count));
+        let variances: Vec<f64> = each.collect();
         let width = entry.spread.ncols();
         let mut rows = DMatrix::zeros(width, variances.len());
         for m in 0..width {

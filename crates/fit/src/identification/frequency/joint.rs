@@ -140,16 +140,11 @@ impl JointFit<'_> {
     pub(crate) fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Option<DMatrix<f64>> {
         let held = self.held.as_ref()?;
         variances[e]?;
-        let mut each = Vec::new();
-        for ((linear, share), v) in self.linear.iter().zip(&self.shares).zip(variances) {
-            each.extend(vec![
-                v.unwrap_or(0.0) * share * share;
-                linear.spread.ncols()
-            ]);
-        }
-        Some(
-            held.tangent
-                .covariance(&self.linear[e], &DVector::from_vec(each)),
-        )
+        let all = self.linear.iter().zip(&self.shares).zip(variances);
+        let free = all.map(|((linear, share), v)| {
+            let variance = v.unwrap_or(0.0) * share * share;
+            (linear.spread.ncols(), variance)
+        });
+        Some(held.tangent.covariance(&self.linear[e], free))
     }
 }

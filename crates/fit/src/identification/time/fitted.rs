@@ -13,7 +13,7 @@ use crate::identification::report::{
     LEAST_NOISE, OrderReport, StaticReport, enough_rows, relative_noise, variance,
 };
 use crate::section::Dof;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// The solved systems of all forces.
 pub(crate) struct FittedSystems<'a> {
@@ -339,15 +339,12 @@ impl JointTimeFit {
     pub(crate) fn covariance(&self, e: usize, variances: &[f64]) -> Option<DMatrix<f64>> {
         let held = self.held.as_ref()?;
         let per_force = self.whole.len() / variances.len();
-        let mut each = Vec::new();
-        for (w, (linear, share)) in self.whole.iter().zip(&self.shares).enumerate() {
+        let free = |(w, (linear, share)): (usize, (&LinearEntry, &f64))| {
             let variance = variances[w / per_force] * share * share;
-            each.extend(vec![variance; linear.spread.ncols()]);
-        }
-        Some(
-            held.tangent
-                .covariance(&self.entries[e], &DVector::from_vec(each)),
-        )
+            (linear.spread.ncols(), variance)
+        };
+        let all = self.whole.iter().zip(&self.shares).enumerate();
+        Some(held.tangent.covariance(&self.entries[e], all.map(free)))
     }
 }
 

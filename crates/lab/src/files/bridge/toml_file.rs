@@ -113,15 +113,16 @@ impl DampingRatios {
     fn apply(&self, modes: &mut [BridgeMode]) -> Result<()> {
         match self {
             Self::Same(ratio) => modes.iter_mut().for_each(|m| m.damping_ratio = *ratio),
-            Self::Each(all) if all.len() == modes.len() => {
+            Self::Each(all) => {
+                ensure(
+                    all.len() == modes.len(),
+                    "modes.damping_ratio",
+                    format_args!("one number, or {}, one per mode", modes.len()),
+                    format_args!("{} numbers", all.len()),
+                )?;
                 for (mode, ratio) in modes.iter_mut().zip(all) {
                     mode.damping_ratio = *ratio;
                 }
-            }
-            Self::Each(all) => {
-                let expected = format!("one number, or {}, one per mode", modes.len());
-                let found = format!("{} numbers", all.len());
-                return Err(Error::input("modes.damping_ratio", expected, found));
             }
         }
         Ok(())
@@ -284,12 +285,8 @@ impl BridgeFile {
         if let Some(required) = self.flutter.required_speed_m_s {
             positive("flutter.required_speed_m_s", required)?;
         }
-        ensure(
-            !self.sections.is_empty(),
-            "section",
-            "at least one [[section]]",
-            "none",
-        )?;
+        let any = !self.sections.is_empty();
+        ensure(any, "section", "at least one [[section]]", "none")?;
         for (i, section) in self.sections.iter().enumerate() {
             section.validate(&format!("section[{i}]"))?;
         }
@@ -316,12 +313,12 @@ impl BridgeFile {
             positive("modes.span.mass_kg_m", span.mass_kg_m)?;
             positive("modes.span.inertia_kg_m2_m", span.inertia_kg_m2_m)?;
         }
-        match &self.modes.damping_ratio {
-            DampingRatios::Same(ratio) => non_negative("modes.damping_ratio", *ratio).map(|_| ()),
-            DampingRatios::Each(all) => all
-                .iter()
-                .try_for_each(|r| non_negative("modes.damping_ratio", *r).map(|_| ())),
-        }
+        let ratios = match &self.modes.damping_ratio {
+            DampingRatios::Same(ratio) => std::slice::from_ref(ratio),
+            DampingRatios::Each(all) => all,
+        };
+        let check = |ratio: &f64| non_negative("modes.damping_ratio", *ratio).map(drop);
+        ratios.iter().try_for_each(check)
     }
 
     /// The dampers at nodes of these modes.
@@ -383,22 +380,18 @@ impl BridgeFile {
 impl BridgeSectionBlock {
     fn validate(&self, place: &str) -> Result<()> {
         positive(format!("{place}.width_m"), self.width_m)?;
-        if self.derivatives.is_none() && self.model.is_none() && self.statics.is_none() {
-            return Err(Error::input(
-                place,
-                "one of `derivatives`, `model`, `static`",
-                "none",
-            ));
-        }
-        if self.motions != Dof::TWO && self.motions != Dof::THREE {
-            let expected =
-                "[\"vertical\", \"torsion\"] or [\"vertical\", \"lateral\", \"torsion\"]";
-            return Err(Error::input(
-                format!("{place}.motions"),
-                expected,
-                Dof::names(&self.motions),
-            ));
-        }
+        ensure(
+            self.derivatives.is_some() || self.model.is_some() || self.statics.is_some(),
+            place,
+            "one of `derivatives`, `model`, `static`",
+            "none",
+        )?;
+        ensure(
+            self.motions == Dof::TWO || self.motions == Dof::THREE,
+            format_args!("{place}.motions"),
+            "[\"vertical\", \"torsion\"] or [\"vertical\", \"lateral\", \"torsion\"]",
+            Dof::names(&self.motions),
+        )?;
         let statics = self.statics.unwrap_or_default();
         statics.arms.validate(&format!("{place}.static."))
     }

@@ -18,7 +18,7 @@ use crate::aerodynamics::quasi_steady::coefficients::check_rows;
 use crate::aerodynamics::quasi_steady::{
     CoefficientRow, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION, TABLE_UNITS,
 };
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Result};
 use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
 use crate::files::text::read_text;
 use std::io::Write;
@@ -50,20 +50,15 @@ pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoeffici
 /// The table in `text`, the content of such a file.
 ///
 /// # Errors
-/// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, another sign
+/// [`Error::Input`](crate::error::Error::Input) naming line, expectation and finding: missing or unknown header keys and columns, another sign
 /// convention or other units, text or NaN in numbers, angles that do not rise, fewer than four rows.
 pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
     let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
     let (rows, lines) = read_rows(text, header.lines() + 1)?;
-    if let Some(problem) = check_rows(&rows) {
-        let line = lines.get(problem.index).copied();
-        let line = line.unwrap_or(header.lines() as u64 + 1);
-        return Err(Error::input(
-            Place::line(line),
-            problem.expected,
-            problem.found,
-        ));
-    }
+    let no_row = header.lines() as u64 + 1;
+    check_rows(&rows, |i| {
+        Place::line(lines.get(i).copied().unwrap_or(no_row))
+    })?;
     header.must_say("sign_convention", TABLE_SIGN_CONVENTION)?;
     header.must_say("units", TABLE_UNITS)?;
     let provenance = CoefficientsHeader {

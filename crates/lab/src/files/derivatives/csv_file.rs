@@ -80,11 +80,13 @@ pub(crate) fn read_csv_with(
     let size = std::fs::metadata(path)
         .map_err(|e| Error::io(path, e))?
         .len();
-    if size > BYTES_AT_MOST {
-        let expected = format!("a table of at most {} MiB", BYTES_AT_MOST >> 20);
-        let found = format!("{} MiB", size >> 20);
-        return Err(Error::input("", expected, found).in_file(path));
-    }
+    ensure(
+        size <= BYTES_AT_MOST,
+        "",
+        format_args!("a table of at most {} MiB", BYTES_AT_MOST >> 20),
+        format_args!("{} MiB", size >> 20),
+    )
+    .map_err(|e| e.in_file(path))?;
     let text = read_text(path)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let table = if csv_wide::is_wide(&text) {
@@ -124,13 +126,13 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let line = head.lines() + 1;
     let mut in_file = head.stated()?;
     let column = find_argument(&names, line)?;
-    if let Some(said) = in_file.argument.filter(|said| *said != column) {
-        return Err(Error::input(
-            Place::line(line),
-            format!("a column `{said}` as the header says"),
-            format!("`{column}`"),
-        ));
-    }
+    let said = in_file.argument.unwrap_or(column);
+    ensure(
+        said == column,
+        Place::line(line),
+        format_args!("a column `{said}` as the header says"),
+        format_args!("`{column}`"),
+    )?;
     in_file.argument = Some(column);
     let convention = options.convention.with_file(in_file)?;
     let mut wanted = CSV_COLUMNS;
@@ -138,11 +140,8 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let columns = find_columns(&names, wanted, line)?;
     let rows = read_rows(&mut reader, &columns, &convention)?;
     for (derivative, (points, lines)) in &rows {
-        if let Some(problem) = check_points(points) {
-            let name = convention.notation.name_of(*derivative);
-            let place = Place::line(lines[problem.index]).about(name);
-            return Err(Error::input(place, problem.expected, problem.found));
-        }
+        let name = convention.notation.name_of(*derivative);
+        check_points(points, |i| Place::line(lines[i]).about(name))?;
     }
     let mut points = rows
         .into_iter()
@@ -172,13 +171,12 @@ pub fn write_points(
     writeln!(out, "{}", CSV_COLUMNS.join(","))?;
     for (derivative, of_one) in points {
         for (i, p) in of_one.iter().enumerate() {
-            let speed = p.mean_speed_m_s.map_or_else(String::new, |v| v.to_string());
-            writeln!(
+            write_row(
                 out,
-                "{derivative},{},{speed},{},{}",
-                i + 1,
-                p.v_hat,
-                p.value
+                derivative.name(),
+                i,
+                p.mean_speed_m_s,
+                [p.v_hat, p.value],
             )?;
         }
     }
@@ -197,12 +195,28 @@ pub fn write_csv_in(
     writeln!(out, "{}", columns.join(","))?;
     for derivative in convention.express(table).derivatives {
         for (i, p) in derivative.points.iter().enumerate() {
-            let speed = p.mean_speed_m_s.map_or_else(String::new, |v| v.to_string());
-            let (name, argument) = (derivative.name, p.argument);
-            writeln!(out, "{name},{},{speed},{argument},{}", i + 1, p.value)?;
+            write_row(
+                out,
+                derivative.name,
+                i,
+                p.mean_speed_m_s,
+                [p.argument, p.value],
+            )?;
         }
     }
     Ok(())
+}
+
+/// Writes a point, the `i`-th of its derivative from 0: argument and value.
+fn write_row(
+    out: &mut dyn Write,
+    name: &str,
+    i: usize,
+    mean_speed_m_s: Option<f64>,
+    [argument, value]: [f64; 2],
+) -> std::io::Result<()> {
+    let speed = mean_speed_m_s.map_or_else(String::new, |v| v.to_string());
+    writeln!(out, "{name},{},{speed},{argument},{value}", i + 1)
 }
 
 fn read_rows(

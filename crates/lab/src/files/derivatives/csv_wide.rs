@@ -156,11 +156,8 @@ impl WideRow<'_> {
 /// The points, each derivative's own checked.
 fn checked(rows: Rows, convention: &Convention) -> Result<Points> {
     for (derivative, (points, lines)) in &rows {
-        if let Some(problem) = check_points(points) {
-            let name = convention.notation.name_of(*derivative);
-            let place = Place::line(lines[problem.index]).about(name);
-            return Err(Error::input(place, problem.expected, problem.found));
-        }
+        let name = convention.notation.name_of(*derivative);
+        check_points(points, |i| Place::line(lines[i]).about(name))?;
     }
     Ok(rows.into_iter().map(|(d, (p, _))| (d, p)).collect())
 }
