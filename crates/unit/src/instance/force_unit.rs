@@ -399,11 +399,14 @@ impl ForceUnit {
         for part in &self.parts {
             let n = part.forces.dofs().len();
             let own = part.coordinates.clone();
-            let found = self.outputs[own.clone()].iter().zip(&self.work.forces[own]);
-            for (i, ([per_length, total], force)) in found.enumerate() {
-                let length = memory.values[self.strips[part.strips.start + i / n][1]];
-                memory.values[*per_length] = force.force;
-                memory.values[*total] = force.force * length;
+            let places = self.outputs[own.clone()].chunks(n);
+            let found = places.zip(self.work.forces[own].chunks(n));
+            for (strip, (places, found)) in self.strips[part.strips.clone()].iter().zip(found) {
+                let length = memory.values[strip[1]];
+                for ([per_length, total], force) in places.iter().zip(found) {
+                    memory.values[*per_length] = force.force;
+                    memory.values[*total] = force.force * length;
+                }
             }
         }
     }

@@ -46,8 +46,7 @@ pub(super) fn variables(
     if !models.iter().any(sampled) {
         add_states(&mut table, options, &states);
     }
-    let of_state: Vec<usize> = states.iter().map(|state| state.strip).collect();
-    fill_dependencies(&mut table, options.strips.len(), &of_state);
+    fill_dependencies(&mut table, options.strips.len(), &states);
     Ok(table)
 }
 
@@ -241,8 +240,8 @@ struct StripDependencies {
 }
 
 /// Forces follow the wind and the motion of their strip, its states, and everything that is stated of it; a filter's rate
-/// the displacements and all filters, that of a lagging gust the gusts and itself. `of_state` is the strip of each state.
-fn fill_dependencies(table: &mut [Variable], strips: usize, of_state: &[usize]) {
+/// the displacements and all filters, that of a lagging gust the gusts and itself.
+fn fill_dependencies(table: &mut [Variable], strips: usize, states: &[StripState]) {
     let (mut shared, mut of_strip) = (Vec::new(), vec![StripDependencies::default(); strips]);
     for (place, variable) in table.iter().enumerate() {
         match variable.role {
@@ -250,19 +249,19 @@ fn fill_dependencies(table: &mut [Variable], strips: usize, of_state: &[usize]) 
             Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => {
                 of_strip[s].known.push(place);
             }
-            Role::Filter(i) if is_lag(variable) => of_strip[of_state[i]].lags.push(place),
-            Role::Filter(i) => of_strip[of_state[i]].filters.push(place),
+            Role::Filter(i) if is_lag(variable) => of_strip[states[i].strip].lags.push(place),
+            Role::Filter(i) => of_strip[states[i].strip].filters.push(place),
             _ => {}
         }
     }
     let roles: Vec<Role> = table.iter().map(|v| v.role).collect();
     for (place, variable) in table.iter_mut().enumerate() {
-        let (strip, states) = match variable.role {
+        let (strip, inner) = match variable.role {
             Role::Force(s, ..) => (s, [&of_strip[s].filters[..], &of_strip[s].lags].concat()),
-            Role::Filter(i) => (of_state[i], vec![place]),
+            Role::Filter(i) => (states[i].strip, vec![place]),
             // behind its state
-            Role::FilterRate(i) if is_lag(variable) => (of_state[i], vec![place - 1]),
-            Role::FilterRate(i) => (of_state[i], of_strip[of_state[i]].filters.clone()),
+            Role::FilterRate(i) if is_lag(variable) => (states[i].strip, vec![place - 1]),
+            Role::FilterRate(i) => (states[i].strip, of_strip[states[i].strip].filters.clone()),
             _ => continue,
         };
         let known = shared.iter().chain(&of_strip[strip].known).copied();
@@ -280,7 +279,7 @@ fn fill_dependencies(table: &mut [Variable], strips: usize, of_state: &[usize]) 
         }
         variable
             .direct_inputs
-            .extend(states.into_iter().map(Dependency::plain));
+            .extend(inner.into_iter().map(Dependency::plain));
         variable.initial_dependencies = known.into_iter().map(Dependency::plain).collect();
     }
 }
