@@ -6,7 +6,10 @@ use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Label;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::fmu::variables::{Causality, ComputedNumber, Dependency, Formula, Known, Listing};
+use aerodeck::fmu::variables::{
+    Causality, ComputedNumber, Dependency, Formula, Known, Listing, Response,
+};
+use aerodeck::section::Dof;
 use aerodeck::study::bridge::BridgeExportOptions;
 
 /// Reads all that has a derivative.
@@ -17,6 +20,22 @@ static ROW: ComputedNumber = ComputedNumber::new(
     &[Known::Onset, Known::Wind, Known::Damping, Known::Rotation],
     Formula::Real(|p| {
         p.wind_m_s / p.onset.speed_m_s + p.damping_ratio * p.wind_m_s - p.rotation_rad
+    }),
+);
+
+/// Reads the motion and what moves.
+static OF_MOTION: ComputedNumber = ComputedNumber::new(
+    "of_motion",
+    "Made up for a test",
+    Causality::Output,
+    &[
+        Known::Wind,
+        Known::Motion(Response::Acceleration, Dof::Torsion),
+        Known::Motion(Response::Rate, Dof::Vertical),
+    ],
+    Formula::Real(|p| {
+        let acceleration = p.motion(Response::Acceleration, Dof::Torsion);
+        acceleration + p.motion(Response::Rate, Dof::Vertical) * p.wind_m_s
     }),
 );
 
@@ -32,8 +51,8 @@ fn bridge() -> Resources {
     Resources::of_bridge(model.unwrap().as_bytes(), bridge.unwrap().as_bytes(), None).unwrap()
 }
 
-fn with_row(mut resources: Resources) -> Resources {
-    resources.table = resources.table.with_number(&ROW);
+fn with_row(mut resources: Resources, row: &'static ComputedNumber) -> Resources {
+    resources.table = resources.table.with_number(row);
     resources
 }
 
@@ -64,20 +83,20 @@ impl Unit {
         self.0.set_reals(&[place], &[value]).unwrap();
     }
 
-    fn slope(&mut self, known: &str) -> f64 {
+    fn slope(&mut self, unknown: &str, known: &str) -> f64 {
         let mut slope = [f64::NAN];
-        let (unknown, known) = (self.place("of_all"), self.place(known));
+        let (unknown, known) = (self.place(unknown), self.place(known));
         self.0
             .directional_derivative(&[unknown], &[known], &[1.0], &mut slope)
             .unwrap();
         slope[0]
     }
 
-    fn difference(&mut self, known: &str, step: f64) -> f64 {
+    fn difference(&mut self, unknown: &str, known: &str, step: f64) -> f64 {
         let value = self.get(known);
         let mut at = |moved: f64| {
             self.set(known, moved);
-            self.get("of_all")
+            self.get(unknown)
         };
         let rise = at(value + step) - at(value - step);
         self.set(known, value);
@@ -86,7 +105,7 @@ impl Unit {
 }
 
 fn check(resources: Resources, initial: &str, rotations: &[&str]) {
-    let resources = with_row(resources);
+    let resources = with_row(resources, &ROW);
     let described = resources.described_table().unwrap();
     let of_row = described.variables().last().unwrap();
     let names = |on: &[Dependency]| -> Vec<String> {
@@ -123,7 +142,10 @@ fn check(resources: Resources, initial: &str, rotations: &[&str]) {
         "{found}, {expected}"
     );
     for (known, step) in [("wind_speed", 1e-3), (initial, 1e-3), ("air_density", 1e-3)] {
-        let (slope, difference) = (unit.slope(known), unit.difference(known, step));
+        let (slope, difference) = (
+            unit.slope("of_all", known),
+            unit.difference("of_all", known, step),
+        );
         // what differences of damping ratios and of onsets leave
         assert!(
             (slope - difference).abs() <= 1e-5 * difference.abs(),
@@ -154,4 +176,91 @@ fn an_output_of_a_bridge_is_one_row() {
     // a mode that turns the girder
     let last = initial.next_back().unwrap();
     check(bridge(), &last, &rotations);
+}
+
+/// `of` are the acceleration of the rotation and the rate of the heave that it reads; `knowns` what acts on them, with steps.
+fn check_motion(resources: Resources, of: [&str; 2], knowns: &[(&str, f64)]) {
+    let resources = with_row(resources, &OF_MOTION);
+    let described = resources.described_table().unwrap();
+    let all = described.variables();
+    let find = |name: &str| described.find_name(name).unwrap();
+    let of_row = &all[find("of_motion")];
+    for name in of {
+        let stated = |on: &Dependency, list: &[Dependency]| list.iter().any(|d| d.on == on.on);
+        let read = &all[find(name)];
+        assert!(
+            read.direct_inputs
+                .iter()
+                .all(|d| stated(d, &of_row.direct_inputs))
+        );
+        let initial = &of_row.initial_dependencies;
+        assert!(read.initial_dependencies.iter().all(|d| stated(d, initial)));
+    }
+    let mut unit = Unit::new(resources);
+    unit.set("wind_speed", 7.0);
+    for (known, _) in knowns.iter().filter(|(known, _)| *known != "wind_speed") {
+        let value = unit.get(known);
+        unit.set(known, if value == 0.0 { 0.02 } else { value });
+    }
+    let expected = unit.get(of[0]) + 7.0 * unit.get(of[1]);
+    let found = unit.get("of_motion");
+    assert!(
+        (found - expected).abs() <= 1e-12 * expected.abs(),
+        "{found}, {expected}"
+    );
+    for (known, step) in knowns {
+        let slope = unit.slope("of_motion", known);
+        let difference = unit.difference("of_motion", known, *step);
+        assert!(
+            (slope - difference).abs() <= 1e-5 * difference.abs(),
+            "{known}: {slope}, {difference}"
+        );
+    }
+}
+
+#[test]
+fn an_output_of_the_motion_is_one_row() {
+    for kind in models::KINDS {
+        let knowns = [
+            ("wind_speed", 1e-3),
+            ("external_moment", 1e-2),
+            ("initial_heave_rate", 1e-3),
+            ("initial_rotation", 1e-3),
+            ("inertia", 1e-5),
+        ];
+        check_motion(
+            section(kind),
+            ["rotation_acceleration", "heave_rate"],
+            &knowns,
+        );
+    }
+    // the node that is turned most
+    let mut unit = Unit::new(with_row(bridge(), &OF_MOTION));
+    let table = bridge().table;
+    let initial = table
+        .variables()
+        .iter()
+        .rev()
+        .find(|v| v.name.ends_with(".initial_coordinate"));
+    let initial = initial.unwrap().name.clone();
+    unit.set(&initial, 0.02);
+    let nodes = table
+        .variables()
+        .iter()
+        .filter_map(|v| v.name.strip_suffix("].rotation"));
+    let nodes: Vec<String> = nodes.map(str::to_owned).collect();
+    let turned = |unit: &mut Unit, node: &str| unit.get(&format!("{node}].rotation")).abs();
+    let most = nodes
+        .iter()
+        .max_by(|a, b| turned(&mut unit, a).total_cmp(&turned(&mut unit, b)));
+    let most = most.unwrap();
+    let [acceleration, rate, moment] = ["rotation_acceleration", "heave_rate", "external_moment"]
+        .map(|name| format!("{most}].{name}"));
+    let knowns = [
+        ("wind_speed", 1e-3),
+        (initial.as_str(), 1e-4),
+        (moment.as_str(), 1.0),
+        ("air_density", 1e-4),
+    ];
+    check_motion(bridge(), [&acceleration, &rate], &knowns);
 }

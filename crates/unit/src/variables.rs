@@ -15,6 +15,7 @@ mod force;
 mod listing;
 mod parameters;
 mod real;
+mod response;
 mod section;
 #[cfg(test)]
 mod tests;
@@ -27,8 +28,9 @@ pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
 pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
+pub use response::Response;
 pub use variable::{
-    Dependency, DependencyKind, ForceOutput, GustDirection, ModeOutput, Response, Role, StartValue,
+    Dependency, DependencyKind, ForceOutput, GustDirection, ModeOutput, Role, StartValue,
     StripParameter, Variable,
 };
 

@@ -12,13 +12,15 @@ use super::section::OnsetCard;
 use super::sensitivity::SectionValues;
 use super::trust::beyond_linear;
 use super::unit::Prepared;
+use crate::bridge::motion_index;
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::onset_start::OnsetStart;
 use crate::resources::Resources;
 use crate::response::{Outputs, SectionState, Stepper};
+use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::variables::{LINEAR_ROTATION_RAD, ModeOutput, Role};
+use crate::variables::{LINEAR_ROTATION_RAD, ModeOutput, Response, Role};
 use nalgebra::DMatrix;
 
 /// See the module.
@@ -103,7 +105,7 @@ impl BridgeUnit {
     fn pick_modal(&self, modal: &Outputs, role: Role) -> f64 {
         match role {
             Role::NodeMotion(node, response, dof) => {
-                let row = 3 * node + crate::bridge::motion_index(dof);
+                let row = 3 * node + motion_index(dof);
                 self.at_row(row, modal.lists()[response as usize])
             }
             Role::Damper(d, response) => {
@@ -196,10 +198,20 @@ impl CoupledKind for ModalBridge {
         }
     }
 
-    /// Of a named node.
-    fn turn(unit: &BridgeUnit, state: &SectionState, outputs: &Outputs) -> f64 {
-        let row = unit.most_turned(&state.values[..unit.own.roots.len()]);
-        unit.at_row(row, &outputs.displacement)
+    /// Of a named node; forces are those on modes.
+    fn motion(
+        unit: &BridgeUnit,
+        state: &SectionState,
+        outputs: &Outputs,
+        response: Response,
+        dof: Dof,
+    ) -> f64 {
+        if response == Response::SelfExcitedForce {
+            return 0.0;
+        }
+        let rotation = unit.most_turned(&state.values[..unit.own.roots.len()]);
+        let row = rotation - motion_index(Dof::Torsion) + motion_index(dof);
+        unit.at_row(row, outputs.lists()[response as usize])
     }
 
     fn rotation(unit: &BridgeUnit, memory: &Memory) -> f64 {

@@ -133,8 +133,14 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// What a variable that is no computed number stands for.
     fn pick(unit: &Coupled<Self>, instant: &SectionValues, role: Role) -> f64;
 
-    /// Of outputs of the coordinates, or their derivatives, the rotation that is greatest in `state`, rad.
-    fn turn(unit: &Coupled<Self>, state: &SectionState, outputs: &Outputs) -> f64;
+    /// Of outputs of the coordinates, or their derivatives, what [`Known::Motion`](crate::variables::Known::Motion) stands for in `state`.
+    fn motion(
+        unit: &Coupled<Self>,
+        state: &SectionState,
+        outputs: &Outputs,
+        response: Response,
+        dof: Dof,
+    ) -> f64;
 
     /// Greatest rotation, rad.
     fn rotation(unit: &Coupled<Self>, memory: &Memory) -> f64;

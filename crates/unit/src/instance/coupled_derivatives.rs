@@ -37,7 +37,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         check_finite(&rates.outputs)?;
         let by = PresentSlopes {
             wind: wind_rate,
-            rotation: S::turn(self, &memory.system, &rates.outputs),
+            outputs: Some(&rates.outputs),
             ..PresentSlopes::default()
         };
         let rate = |role: &Role| match role {
@@ -74,9 +74,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         };
         let by = PresentSlopes {
             wind: f64::from(u8::from(role == Role::WindSpeed)),
-            rotation: instant
-                .as_ref()
-                .map_or(0.0, |i| S::turn(self, &memory.system, &i.outputs)),
+            outputs: instant.as_ref().map(|i| &i.outputs),
             limit: f64::from(u8::from(instant.is_none())),
         };
         let derivative = |unknown: &Role| match unknown {

@@ -7,7 +7,9 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::smallest_damping;
 use crate::resources::Resources;
-use crate::variables::{ComputedNumber, Known, Present, Role};
+use crate::response::Outputs;
+use crate::section::Dof;
+use crate::variables::{ComputedNumber, Known, Present, Response, Role};
 
 /// Relative step of a difference over the wind speed.
 const WIND_STEP: f64 = 1e-5;
@@ -22,9 +24,10 @@ fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
 
 /// How the present changes with what is asked for.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PresentSlopes {
+pub(super) struct PresentSlopes<'a> {
     pub wind: f64,
-    pub rotation: f64,
+    /// Of the coordinates.
+    pub outputs: Option<&'a Outputs>,
     /// Of the upper end of the search for the onset.
     pub limit: f64,
 }
@@ -55,6 +58,13 @@ impl<S: CoupledKind> Coupled<S> {
                     present.wind_is_tested = S::wind_is_tested(self, resources, memory, notices);
                 }
                 Known::Rotation => present.rotation_rad = S::rotation(self, memory).into(),
+                Known::Motion(response, dof) => match self.outputs(resources, memory) {
+                    Ok(()) => {
+                        let value = S::motion(self, &memory.system, &self.outputs, *response, *dof);
+                        *present.motion_mut(*response, *dof) = value.into();
+                    }
+                    Err(why) => notices.push(format!("{} is not known: {why}", number.name)),
+                },
             }
         }
         present
@@ -75,7 +85,7 @@ impl<S: CoupledKind> Coupled<S> {
         resources: &Resources,
         memory: &mut Memory,
         number: &ComputedNumber,
-        by: PresentSlopes,
+        by: PresentSlopes<'_>,
         notices: &mut Vec<String>,
     ) -> Result<f64> {
         if number.is_flag() {
@@ -83,7 +93,21 @@ impl<S: CoupledKind> Coupled<S> {
         }
         let mut present = self.read(resources, memory, number, notices);
         present.wind_m_s.slope = by.wind;
-        present.rotation_rad.slope = by.rotation;
+        let slope = |response, dof| {
+            let found = |outputs| S::motion(self, &memory.system, outputs, response, dof);
+            by.outputs.map_or(0.0, found)
+        };
+        for known in number.reads {
+            match known {
+                Known::Rotation => {
+                    present.rotation_rad.slope = slope(Response::Displacement, Dof::Torsion);
+                }
+                Known::Motion(response, dof) => {
+                    present.motion_mut(*response, *dof).slope = slope(*response, *dof);
+                }
+                Known::Onset | Known::Wind | Known::Damping | Known::TestedWind => {}
+            }
+        }
         present.onset.follow_limit(by.limit);
         if by.wind != 0.0 && number.reads(Known::Damping) {
             let wind = self.places.wind_speed(memory);
@@ -105,9 +129,15 @@ impl<S: CoupledKind> Coupled<S> {
         let wind = self.places.wind_speed(memory);
         let mut present = Present {
             wind_m_s: wind.into(),
-            rotation_rad: S::turn(self, &state, &instant.outputs).into(),
             ..Present::default()
         };
+        for response in Response::ALL {
+            for dof in Dof::THREE {
+                let value = S::motion(self, &state, &instant.outputs, response, dof);
+                *present.motion_mut(response, dof) = value.into();
+            }
+        }
+        present.rotation_rad = present.motion(Response::Displacement, Dof::Torsion);
         let read = |known: Known| {
             unknowns
                 .iter()

@@ -13,6 +13,7 @@ use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::resources::Resources;
 use crate::response::{Outputs, RepeatableStep, SectionState, Stepper};
+use crate::section::Dof;
 use crate::variables::{Response, Role, VariableTable};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
@@ -195,8 +196,16 @@ impl CoupledKind for SuspendedSection {
         instant.pick(role)
     }
 
-    fn turn(_: &SectionUnit, _: &SectionState, outputs: &Outputs) -> f64 {
-        outputs.displacement.last().copied().unwrap_or(0.0)
+    fn motion(
+        unit: &SectionUnit,
+        _: &SectionState,
+        outputs: &Outputs,
+        response: Response,
+        dof: Dof,
+    ) -> f64 {
+        let mut dofs = unit.built.stepper.section().structure().dofs.iter();
+        let row = dofs.position(|d| *d == dof);
+        row.map_or(0.0, |row| outputs.lists()[response as usize][row])
     }
 
     fn rotation(unit: &SectionUnit, memory: &Memory) -> f64 {

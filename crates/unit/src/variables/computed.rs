@@ -1,6 +1,9 @@
 //! What a number that follows from parameters, wind and motion is made of.
 
 use super::dual::Dual;
+use super::response::Response;
+use crate::bridge::motion_index;
+use crate::section::Dof;
 use crate::si::SiUnit;
 use crate::standard::Causality;
 
@@ -17,6 +20,8 @@ pub enum Known {
     TestedWind,
     /// Rotation of the deck.
     Rotation,
+    /// A motion, or a rate of it, or its force per length; of a bridge that of the named node that is turned most, without forces.
+    Motion(Response, Dof),
 }
 
 /// Flutter onset and divergence for the parameters as they are. A speed up to which none was found is the limit of the search; one
@@ -70,6 +75,18 @@ pub struct Present {
     pub wind_is_tested: bool,
     /// Greatest rotation of the deck, rad.
     pub rotation_rad: Dual,
+    pub(crate) motion: [[Dual; 3]; 4],
+}
+
+impl Present {
+    /// What [`Known::Motion`] stands for, in SI units.
+    pub fn motion(&self, response: Response, dof: Dof) -> Dual {
+        self.motion[response as usize][motion_index(dof)]
+    }
+
+    pub(crate) fn motion_mut(&mut self, response: Response, dof: Dof) -> &mut Dual {
+        &mut self.motion[response as usize][motion_index(dof)]
+    }
 }
 
 /// How a number follows from the present.

@@ -164,18 +164,27 @@ pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
                     direct.insert(place);
                 }
             }
-            let turns = match variable.role {
-                Role::Response(Response::Displacement, dof)
-                | Role::NodeMotion(_, Response::Displacement, dof) => dof == Dof::Torsion,
-                _ => false,
+            let motion = match variable.role {
+                Role::Response(response, dof) | Role::NodeMotion(_, response, dof) => {
+                    Some([Known::Motion(response, dof), turns(response, dof)])
+                }
+                _ => None,
             };
-            if turns && number.reads(Known::Rotation) {
+            if motion.is_some_and(|of| of.into_iter().any(|known| number.reads(known))) {
                 direct.extend(variable.direct_inputs.iter().map(|d| d.on));
                 initial.extend(variable.initial_dependencies.iter().map(|d| d.on));
             }
         }
         let [direct, initial] = on.map(|on| on.into_iter().map(Dependency::plain).collect());
         (table[at].direct_inputs, table[at].initial_dependencies) = (direct, initial);
+    }
+}
+
+/// The rotation by its other name.
+fn turns(response: Response, dof: Dof) -> Known {
+    match (response, dof) {
+        (Response::Displacement, Dof::Torsion) => Known::Rotation,
+        (response, dof) => Known::Motion(response, dof),
     }
 }
 
@@ -193,6 +202,6 @@ fn follows(known: Known, on: Role, of_bridge: bool) -> bool {
             wind || matches!(on, Role::Section(Width | Frequency(_)))
         }
         // as those that are put out
-        Known::Rotation => false,
+        Known::Rotation | Known::Motion(..) => false,
     }
 }
