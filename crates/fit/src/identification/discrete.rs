@@ -11,7 +11,7 @@ use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::aerodynamics::laguerre::{DiscreteTerm, Recursion, alpha_lower_bound, discrete_memory};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -59,12 +59,9 @@ impl DiscreteFit {
             if let Some(filters) = filters {
                 number_of_filters(&format!("{key}filters"), filters)?;
             }
-            if let Some(alpha) = alpha.filter(|a| !(*a > 0.0 && *a < 1.0)) {
-                return Err(Error::input(
-                    format!("{key}alpha"),
-                    "0 < alpha < 1",
-                    alpha.to_string(),
-                ));
+            if let Some(a) = alpha {
+                let place = format_args!("{key}alpha");
+                ensure(a > 0.0 && a < 1.0, place, "0 < alpha < 1", a)?;
             }
         }
         Ok(())

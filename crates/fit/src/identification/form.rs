@@ -4,7 +4,7 @@ mod feed_through;
 
 pub use feed_through::FeedThrough;
 
-use crate::error::{Error, Result, counted, ensure, positive};
+use crate::error::{Result, counted, ensure, positive};
 use serde::{Deserialize, Serialize};
 
 /// Fewest filters of a form that leaves their number to the data: those of the thesis.
@@ -341,14 +341,8 @@ impl PoleSearch {
                 positive(key, bound)?;
             }
         }
-        if let (Some(min), Some(max)) = (self.min, self.max)
-            && min >= max
-        {
-            return Err(Error::input(
-                "poles.max",
-                "more than poles.min",
-                max.to_string(),
-            ));
+        if let (Some(min), Some(max)) = (self.min, self.max) {
+            ensure(min < max, "poles.max", "more than poles.min", max)?;
         }
         ensure(
             self.min_ratio > 1.0 && self.min_ratio.is_finite(),

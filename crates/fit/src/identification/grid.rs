@@ -16,7 +16,7 @@ use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
-use crate::error::{Error, Result, ensure};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -315,8 +315,8 @@ impl GridAxis {
         let inputs = records.dofs.len();
         match self {
             Self::Discrete(alphas, weights) => {
-                if let Some(bad) = alphas.iter().find(|a| !(**a > 0.0 && **a < 1.0)) {
-                    return Err(Error::input("alpha", "0 < alpha < 1", bad.to_string()));
+                for &a in alphas {
+                    ensure(a > 0.0 && a < 1.0, "alpha", "0 < alpha < 1", a)?;
                 }
                 let order = ColumnOrder {
                     inputs,
