@@ -70,7 +70,7 @@ impl DiscreteFit {
     /// Decay factor and number of filters of every transfer function, row by row.
     ///
     /// # Errors
-    /// [`Error::Input`] for degrees of freedom that the records do not have.
+    /// [`Error::Input`](crate::error::Error::Input) for degrees of freedom that the records do not have.
     pub(crate) fn parameters(&self, dofs: &[Dof]) -> Result<Vec<(f64, usize)>> {
         let mut all = vec![(self.alpha, self.filters); dofs.len() * dofs.len()];
         for own in &self.own {
@@ -88,7 +88,7 @@ impl DiscreteFit {
 /// from three motions (3.5), with `α` and `L` of its own for any transfer function.
 ///
 /// # Errors
-/// [`Error::Input`] for impossible options and for records as in [`super::fit_records`].
+/// [`Error::Input`](crate::error::Error::Input) for impossible options and for records as in [`super::fit_records`].
 pub fn fit_discrete(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,

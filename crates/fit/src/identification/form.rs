@@ -355,8 +355,7 @@ impl PoleSearch {
             "poles.grid_points",
             "at least 5",
             self.grid_points,
-        )?;
-        Ok(())
+        )
     }
 }
 
@@ -366,7 +365,7 @@ const MOST_FILTERS: usize = 100;
 /// Checks a number of filters or lags.
 ///
 /// # Errors
-/// [`Error::Input`] naming `place` for none, and for more than any data could support.
+/// [`Error::Input`](crate::error::Error::Input) naming `place` for none, and for more than any data could support.
 pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
     ensure(
         (1..=MOST_FILTERS).contains(&count),

@@ -69,7 +69,7 @@ impl Grid {
     /// One pass over the records.
     ///
     /// # Errors
-    /// [`Error::Input`] for an axis without values, no filters, records that cannot be read, do not fit together or move
+    /// [`Error::Input`](crate::error::Error::Input) for an axis without values, no filters, records that cannot be read, do not fit together or move
     /// several degrees of freedom at once.
     pub fn new(
         records: &[&dyn RecordSource],

@@ -13,7 +13,7 @@ use crate::section::Dof;
 /// step is that of the record, and an ideal resampling of it elsewhere.
 ///
 /// # Errors
-/// [`Error::Input`] for a record of other degrees of freedom or without a positive width, speed or sampling frequency.
+/// [`Error::Input`](crate::error::Error::Input) for a record of other degrees of freedom or without a positive width, speed or sampling frequency.
 pub fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<Vec<Vec<f64>>> {
     let h = &record.header;
     let place = |what: &str| format!("record {}: {what}", h.name);
