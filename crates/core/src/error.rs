@@ -175,6 +175,7 @@ pub fn has_control_characters(text: &str) -> bool {
 ///
 /// # Errors
 /// [`Error::Input`] with what was `expected` and `found` at `place` otherwise.
+#[inline]
 pub fn ensure(
     holds: bool,
     place: impl Into<Place>,

@@ -6,6 +6,10 @@
 //! saved, in the [`json`] that says what it is, [`plausibility`] judges what is given, [`verdict`] what was found.
 #![deny(unsafe_code)]
 
+// the macro in it is known to what stands below
+#[macro_use]
+pub mod threads;
+
 pub mod aerodynamics;
 pub mod aeroelastic;
 pub mod bridge;
@@ -16,10 +20,8 @@ pub mod plausibility;
 pub mod response;
 pub mod section;
 pub mod state_space;
-pub mod threads;
 pub mod trained_model;
 pub mod units;
-mod vectorised;
 pub mod verdict;
 
 pub use error::{Error, Result};

@@ -10,7 +10,7 @@ pub use discretize::{StepMatrices, c2d};
 pub use poles::{RepeatedEigenvalues, eigenvector};
 pub use poles::{balance, eigenvalues};
 pub use roots::golden_section;
-pub use roots::{ValueAt, boundary, root};
+pub use roots::{ValueAt, boundary, root, secant};
 
 use crate::error::{Error, Result};
 use nalgebra::{Complex, ComplexField, DMatrix};

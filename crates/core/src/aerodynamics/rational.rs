@@ -135,8 +135,7 @@ impl RationalModel {
             "rational model: lag_terms",
             format_args!("one matrix per lag, {} in all", self.lags.count()),
             self.lag_terms.len(),
-        )?;
-        Ok(())
+        )
     }
 
     /// The different values of the `l`-th lag, each with the forces (rows) that have it: one for shared lags.

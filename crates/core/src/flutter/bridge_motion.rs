@@ -8,6 +8,7 @@ use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result};
+use crate::state_space::{ValueAt, secant};
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -176,32 +177,22 @@ impl NearbyOnset {
     pub fn follow(&self, other: &CoupledSection) -> Option<Self> {
         let problem = ModalCharacteristic::new(other)?;
         let mut known = (self.lambda, self.shape.clone());
-        let mut at = |speed: f64| {
+        let mut growth = |speed: f64| -> Option<f64> {
             known = problem.at(speed).solve(known.0, &known.1, None)?;
-            Some(known.clone())
+            Some(known.0.re)
         };
-        let (mut before, mut speed) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));
-        let mut value = at(before)?.0;
-        for _ in 0..MOST_STEPS {
-            let (next, shape) = at(speed)?;
-            let slope = (next.re - value.re) / (speed - before);
-            // no further than a tenth at once: beyond, it may be another mode
-            let most = LONGEST_STEP * speed;
-            let step = (-next.re / slope).clamp(-most, most);
-            if !step.is_finite() {
-                return None;
-            }
-            if step.abs() <= SETTLED * speed {
-                return Some(Self {
-                    speed_m_s: speed + step,
-                    lambda: next,
-                    shape,
-                });
-            }
-            (before, value) = (speed, next);
-            speed += step;
-        }
-        None
+        let (from, beside) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));
+        let start = ValueAt::new(from, growth(from)?);
+        // no further than a tenth at once: beyond, it may be another mode
+        let ends = [LONGEST_STEP, SETTLED];
+        let found = secant::<()>(start, beside, ends, MOST_STEPS, |speed| Ok(growth(speed)));
+        let speed_m_s = found.ok()??;
+        let (lambda, shape) = known;
+        Some(Self {
+            speed_m_s,
+            lambda,
+            shape,
+        })
     }
 }
 

@@ -4,7 +4,7 @@
 //! written so that still air is no special case. The filter matrices of this crate are lower triangular, so one
 //! evaluation is a forward substitution: much cheaper than the eigenvalues of the whole state matrix.
 
-use super::dynamic_stiffness::{Complex64, Determinant, Small, ZERO, oscillator};
+use super::dynamic_stiffness::{Complex64, Determinant, Small, ZERO, newton, oscillator};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::section::Suspension;
@@ -14,7 +14,7 @@ use nalgebra::DVector;
 const MAX_DOFS: usize = 3;
 /// Newton steps before a start is given up as too far away.
 const MAX_NEWTON_STEPS: usize = 15;
-/// Relative size of the last Newton step; the next would be its square.
+/// Relative size of the last Newton step.
 const NEWTON_TOLERANCE: f64 = 1e-13;
 
 /// Matrices of the problem, scaled to physical motion and force once.
@@ -33,12 +33,6 @@ pub(super) struct Characteristic {
     b: Vec<f64>,
     /// Scaled output matrix, row by row.
     c: Vec<f64>,
-}
-
-/// Value and derivative of `D` at one `λ`.
-struct Evaluation {
-    value: Small<MAX_DOFS>,
-    derivative: Small<MAX_DOFS>,
 }
 
 impl Characteristic {
@@ -85,7 +79,13 @@ impl Characteristic {
         })
     }
 
-    fn evaluate(&self, lambda: Complex64, speed: f64, work: &mut Vec<Complex64>) -> Evaluation {
+    /// Value and derivative of `D` at one `λ`.
+    fn evaluate(
+        &self,
+        lambda: Complex64,
+        speed: f64,
+        work: &mut Vec<Complex64>,
+    ) -> (Small<MAX_DOFS>, Small<MAX_DOFS>) {
         let (n, b) = (self.n, self.width);
         let mut value = [[ZERO; MAX_DOFS]; MAX_DOFS];
         let mut derivative = value;
@@ -114,7 +114,7 @@ impl Characteristic {
                 }
             }
         }
-        Evaluation { value, derivative }
+        (value, derivative)
     }
 
     /// `x = (λB I − V A)⁻¹ b` and `dx/dλ` by forward substitution.
@@ -150,20 +150,15 @@ impl Characteristic {
         speed: f64,
         work: &mut Vec<Complex64>,
     ) -> Option<(Complex64, DVector<Complex64>)> {
-        let mut lambda = start;
-        for _ in 0..MAX_NEWTON_STEPS {
-            let at = self.evaluate(lambda, speed, work);
-            let determinant = Determinant::of(&at.value, self.n);
-            let step = determinant.value / determinant.along(&at.derivative);
-            if !(step.re.is_finite() && step.im.is_finite()) {
-                return None;
-            }
-            lambda -= step;
-            if step.norm() <= NEWTON_TOLERANCE * lambda.norm() {
-                return Some((lambda, determinant.null_vector()));
-            }
-        }
-        None
+        let mut last = None;
+        let lambda = newton(start, MAX_NEWTON_STEPS, NEWTON_TOLERANCE, |lambda| {
+            let (value, derivative) = self.evaluate(lambda, speed, work);
+            let determinant = Determinant::of(&value, self.n);
+            let step = determinant.value / determinant.along(&derivative);
+            last = Some(determinant);
+            step
+        })?;
+        Some((lambda, last?.null_vector()))
     }
 }
 

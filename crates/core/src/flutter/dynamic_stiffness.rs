@@ -18,6 +18,26 @@ pub(super) fn oscillator(lambda: Complex64, s: Suspension) -> (Complex64, Comple
     )
 }
 
+/// Zero of a function of one complex number next to `start` by Newton's method; `step` is value over derivative. `None` where so many
+/// steps do not end with one of at most `tolerance` of the number; the next would be its square.
+#[inline(always)]
+pub(super) fn newton(
+    start: Complex64,
+    steps: usize,
+    tolerance: f64,
+    mut step: impl FnMut(Complex64) -> Complex64,
+) -> Option<Complex64> {
+    let mut at = start;
+    for _ in 0..steps {
+        let step = step(at);
+        at -= step;
+        if step.norm_sqr() <= tolerance * tolerance * at.norm_sqr() {
+            return at.re.is_finite().then_some(at);
+        }
+    }
+    None
+}
+
 /// Determinant of the leading n×n block of a matrix, n ≤ 3, with its adjugate: `D adj(D) = det(D) I`.
 pub(super) struct Determinant<const M: usize> {
     pub(super) value: Complex64,

@@ -2,7 +2,6 @@
 //! at every wind speed.
 
 use super::columns::{ComplexColumns, EntryBlock, WIDTH, dot, entry};
-use crate::vectorised;
 use nalgebra::{Complex, DMatrix};
 use std::ops::Range;
 

@@ -119,6 +119,9 @@ impl Modes {
     }
 }
 
+/// Modes that clearly go on from those before, or else what is found in their place.
+pub(super) type Continued = std::result::Result<Modes, Modes>;
+
 /// A route that follows the modes of a structure over wind speed.
 pub(super) trait Follower {
     /// The route.
@@ -126,8 +129,49 @@ pub(super) trait Follower {
 
     fn structure(&self) -> &Structure;
 
+    /// Halvings of a step before what is left of the modes goes on.
+    const MAX_HALVINGS: usize;
+
+    /// Whether steps become longer again after they were halved.
+    const LENGTHENS: bool;
+
+    /// The modes at `speed` where each clearly goes on from one before, else what is found there.
+    fn continued(&self, before: &Modes, speed: f64) -> Result<Continued>;
+
+    /// The modes that go on where no step is short enough, `after` being what is found there: at that speed, or at the one before.
+    fn without_lost(&self, before: &Modes, after: Modes) -> Result<Modes>;
+
     /// The modes at `speed`, by as many intermediate speeds as continuity needs.
-    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes>;
+    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
+        let mut at = from.clone();
+        let (mut step, mut halvings) = (speed - at.speed, 0);
+        while at.speed != speed {
+            let beyond = (at.speed + step - speed) * step.signum() >= 0.0;
+            let target = if beyond { speed } else { at.speed + step };
+            match self.continued(&at, target)? {
+                Ok(next) => {
+                    at = next;
+                    // one place that asks for short steps is soon behind
+                    if Self::LENGTHENS && halvings > 0 {
+                        halvings -= 1;
+                        step *= 2.0;
+                    }
+                }
+                Err(_) if halvings < Self::MAX_HALVINGS => {
+                    halvings += 1;
+                    step *= 0.5;
+                }
+                Err(after) => {
+                    let left = self.without_lost(&at, after)?;
+                    if left.speed == at.speed {
+                        (step, halvings) = (speed - at.speed, 0);
+                    }
+                    at = left;
+                }
+            }
+        }
+        Ok(at)
+    }
 
     /// The error for a mode that has ended at `speed`.
     fn lost(speed: f64) -> Error;

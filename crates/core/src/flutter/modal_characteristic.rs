@@ -15,7 +15,6 @@ use super::columns::{ComplexColumns, RealColumns, Term};
 use super::elimination::{Factors, solve_complex};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
-use crate::vectorised;
 use chains::{Chain, chains};
 use nalgebra::{Complex, DMatrix, DVector};
 

@@ -149,31 +149,23 @@ impl OnsetInterval {
     ) -> Self {
         let standard_error_m_s = parts.standard_error_m_s();
         let (low_m_s, high_m_s) = (speed_m_s - half_width_m_s, speed_m_s + half_width_m_s);
-        let ends = format!("its 95 % interval, {low_m_s:.3} to {high_m_s:.3} m/s,");
-        // an error that is not a number is neither, and leaves the speed undetermined
-        let above_zero = low_m_s > 0.0;
-        let narrow = 2.0 * half_width_m_s <= speed_m_s;
-        let why = if !above_zero {
-            "contains zero"
-        } else if !narrow {
-            "is wider than the speed itself"
-        } else {
-            return Self::Known {
-                low_m_s,
-                high_m_s,
-                standard_error_m_s,
-                degrees_of_freedom,
-                parts,
-            };
-        };
-        Self::Undetermined {
+        let known = Self::Known {
             low_m_s,
             high_m_s,
             standard_error_m_s,
             degrees_of_freedom,
             parts,
-            reason: format!("not determined by these data: {ends} {why}"),
-        }
+        };
+        // an error that is not a number is neither, and leaves the speed undetermined
+        let above_zero = low_m_s > 0.0;
+        let narrow = 2.0 * half_width_m_s <= speed_m_s;
+        let why = match (above_zero, narrow) {
+            (true, true) => return known,
+            (false, _) => "contains zero",
+            (true, false) => "is wider than the speed itself",
+        };
+        let ends = format!("{low_m_s:.3} to {high_m_s:.3} m/s");
+        known.undetermined(format!("its 95 % interval, {ends}, {why}"))
     }
 
     /// Lower and upper end, m/s, of the interval or the spread of a speed that is a result.

@@ -3,7 +3,8 @@
 use super::critical_point::OnsetMethod;
 use super::determinant::{StructureInWind, damping_slope};
 use super::following::{
-    EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
+    Continued, EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance,
+    dimensionless,
 };
 use super::judged::{Exit, RangePassages};
 use super::onset::Onset;
@@ -17,8 +18,6 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;
 
-/// A step is halved until every mode changes little, at most this many times.
-const MAX_HALVINGS: usize = 8;
 /// Relative change of an eigenvalue over one step above which the step is halved.
 const MAX_CHANGE: f64 = 0.05;
 /// Modal assurance below which a mode is another one.
@@ -229,32 +228,6 @@ impl StructureInWind<'_> {
         (modes.len() == n).then_some(modes)
     }
 
-    /// Where a step cannot be made smooth: the modes that went on; of two on one root the one that moved less, the first where
-    /// both came on it together, as a mode does that enters a table on the root of another.
-    fn without_lost(&self, before: &Modes, after: Modes) -> Modes {
-        let moved = |mode: &Mode| {
-            before
-                .mode(mode.branch)
-                .map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
-        };
-        let nearest = |(i, m): (usize, &Mode)| {
-            let mut rivals = after.all.iter().enumerate().filter(|r| same_root(r.1, m));
-            rivals.all(|(j, rival)| j == i || (moved(m), i) < (moved(rival), j))
-        };
-        // a mode that would have to change its shape at once is another one: the branch ends here
-        let same = |mode: &Mode| {
-            let old = before.mode(mode.branch);
-            before.speed == 0.0 || old.is_none_or(|old| self.assurance(old, mode) > OTHER_MODE)
-        };
-        let going_on = after.all.iter().enumerate();
-        let going_on = going_on.filter(|(i, m)| nearest((*i, m)) && same(m));
-        let all = going_on.map(|(_, m)| m.clone()).collect();
-        Modes {
-            speed: after.speed,
-            all,
-        }
-    }
-
     /// The modes at `speed` that settle and oscillate.
     fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
         let settled = |mode: &Mode| pk_mode(self.structure, self.model, speed, mode);
@@ -282,37 +255,43 @@ impl StructureInWind<'_> {
 
 impl Follower for StructureInWind<'_> {
     const METHOD: OnsetMethod = OnsetMethod::PkIteration;
+    const MAX_HALVINGS: usize = 8;
+    const LENGTHENS: bool = true;
 
     fn structure(&self) -> &Structure {
         self.structure
     }
 
-    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let mut at = from.clone();
-        let mut step = speed - at.speed;
-        let mut halvings = 0;
-        while at.speed != speed {
-            let target = if at.speed + step >= speed {
-                speed
-            } else {
-                at.speed + step
-            };
-            let next = self.at(&at, target)?;
-            if next.all.len() == at.all.len() && self.continuous(&at, &next) {
-                at = next;
-                // one place that asks for short steps is soon behind
-                if halvings > 0 {
-                    halvings -= 1;
-                    step *= 2.0;
-                }
-            } else if halvings < MAX_HALVINGS {
-                halvings += 1;
-                step *= 0.5;
-            } else {
-                at = self.without_lost(&at, next);
-            }
-        }
-        Ok(at)
+    fn continued(&self, before: &Modes, speed: f64) -> Result<Continued> {
+        let after = self.at(before, speed)?;
+        let clear = after.all.len() == before.all.len() && self.continuous(before, &after);
+        Ok(if clear { Ok(after) } else { Err(after) })
+    }
+
+    /// Where a step cannot be made smooth: the modes that went on; of two on one root the one that moved less, the first where
+    /// both came on it together, as a mode does that enters a table on the root of another.
+    fn without_lost(&self, before: &Modes, after: Modes) -> Result<Modes> {
+        let moved = |mode: &Mode| {
+            before
+                .mode(mode.branch)
+                .map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
+        };
+        let nearest = |(i, m): (usize, &Mode)| {
+            let mut rivals = after.all.iter().enumerate().filter(|r| same_root(r.1, m));
+            rivals.all(|(j, rival)| j == i || (moved(m), i) < (moved(rival), j))
+        };
+        // a mode that would have to change its shape at once is another one: the branch ends here
+        let same = |mode: &Mode| {
+            let old = before.mode(mode.branch);
+            before.speed == 0.0 || old.is_none_or(|old| self.assurance(old, mode) > OTHER_MODE)
+        };
+        let going_on = after.all.iter().enumerate();
+        let going_on = going_on.filter(|(i, m)| nearest((*i, m)) && same(m));
+        let all = going_on.map(|(_, m)| m.clone()).collect();
+        Ok(Modes {
+            speed: after.speed,
+            all,
+        })
     }
 
     fn lost(speed: f64) -> Error {

@@ -7,8 +7,8 @@ use super::characteristic::Characteristic;
 use super::clusters::by_shapes;
 use super::critical_point::OnsetMethod;
 use super::following::{
-    EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
-    oscillates,
+    Continued, EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance,
+    dimensionless, oscillates,
 };
 use super::modal_characteristic::ModalCharacteristic;
 use super::onset::Onset;
@@ -20,8 +20,6 @@ use crate::state_space::{damping_ratio, eigenvector};
 use nalgebra::{Complex, DVector};
 use std::sync::Arc;
 
-/// A step is halved until every mode is clearly nearest to one eigenvalue, at most this many times.
-const MAX_HALVINGS: usize = 14;
 /// "Clearly nearest": the second candidate is this many times farther away.
 const DISTANCE_RATIO: f64 = 3.0;
 /// Relative distance of the second speed of a slope.
@@ -150,36 +148,30 @@ impl<'a> Tracker<'a> {
 
 impl Follower for Tracker<'_> {
     const METHOD: OnsetMethod = OnsetMethod::Eigenvalues;
+    const MAX_HALVINGS: usize = 14;
+    const LENGTHENS: bool = false;
 
     fn structure(&self) -> &Structure {
         self.section.structure()
     }
 
-    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let mut at = from.clone();
-        let mut step = speed - at.speed;
-        let mut halvings = 0;
-        while at.speed != speed {
-            let target = if (at.speed + step - speed) * step.signum() >= 0.0 {
-                speed
-            } else {
-                at.speed + step
-            };
-            if let Some(next) = self.matched(&at, target)? {
-                at = next;
-            } else if halvings < MAX_HALVINGS {
-                halvings += 1;
-                step *= 0.5;
-            } else if drop_overdamped(&mut at.all) {
-                halvings = 0;
-                step = speed - at.speed;
-            } else {
-                return Err(Error::NotDistinct(format!(
-                    "mode tracking: two modes cannot be told apart near {target:.4} m/s"
-                )));
-            }
+    fn continued(&self, before: &Modes, speed: f64) -> Result<Continued> {
+        let nothing = Modes {
+            speed,
+            all: Vec::new(),
+        };
+        Ok(self.matched(before, speed)?.ok_or(nothing))
+    }
+
+    fn without_lost(&self, before: &Modes, after: Modes) -> Result<Modes> {
+        let mut left = before.clone();
+        if drop_overdamped(&mut left.all) {
+            return Ok(left);
         }
-        Ok(at)
+        Err(Error::NotDistinct(format!(
+            "mode tracking: two modes cannot be told apart near {:.4} m/s",
+            after.speed
+        )))
     }
 
     fn lost(speed: f64) -> Error {

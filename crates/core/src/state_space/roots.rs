@@ -55,6 +55,40 @@ pub fn root(low: ValueAt, high: ValueAt, f: impl Fn(f64) -> Result<f64>) -> Resu
     Ok(b)
 }
 
+/// Zero of a function by secants, from a known value and a number beside it.
+///
+/// `most` are the longest step and the last one, as parts of the number, and `steps` how many there are. `None` where `f` gives
+/// none, and where the steps do not end.
+pub fn secant<E>(
+    known: ValueAt,
+    beside: f64,
+    [longest, last]: [f64; 2],
+    steps: usize,
+    mut f: impl FnMut(f64) -> std::result::Result<Option<f64>, E>,
+) -> std::result::Result<Option<f64>, E> {
+    let (mut before, mut at) = (known, beside);
+    for _ in 0..steps {
+        let Some(value) = f(at)? else { return Ok(None) };
+        let slope = (value - before.value) / (at - before.at);
+        let step = if value == 0.0 { 0.0 } else { -value / slope };
+        let most = longest * at.abs();
+        let step = if step.abs() > most {
+            most.copysign(step)
+        } else {
+            step
+        };
+        if step.abs() <= last * at {
+            return Ok(Some(at + step));
+        }
+        if !step.is_finite() {
+            break;
+        }
+        before = ValueAt::new(at, value);
+        at += step;
+    }
+    Ok(None)
+}
+
 /// The last two numbers at which a test was made, on either side of where its answer changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Boundary {

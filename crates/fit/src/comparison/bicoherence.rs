@@ -133,8 +133,7 @@ fn check(parameters: &BicoherenceParameters) -> Result<()> {
         "number of surrogates",
         "at least 2",
         parameters.surrogate_count,
-    )?;
-    Ok(())
+    )
 }
 
 /// The plane of frequency pairs and what all pairs share.

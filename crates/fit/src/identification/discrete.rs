@@ -11,7 +11,7 @@ use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::aerodynamics::laguerre::{DiscreteTerm, Recursion, alpha_lower_bound, discrete_memory};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -59,12 +59,9 @@ impl DiscreteFit {
             if let Some(filters) = filters {
                 number_of_filters(&format!("{key}filters"), filters)?;
             }
-            if let Some(alpha) = alpha.filter(|a| !(*a > 0.0 && *a < 1.0)) {
-                return Err(Error::input(
-                    format!("{key}alpha"),
-                    "0 < alpha < 1",
-                    alpha.to_string(),
-                ));
+            if let Some(a) = alpha {
+                let place = format_args!("{key}alpha");
+                ensure(a > 0.0 && a < 1.0, place, "0 < alpha < 1", a)?;
             }
         }
         Ok(())
@@ -73,7 +70,7 @@ impl DiscreteFit {
     /// Decay factor and number of filters of every transfer function, row by row.
     ///
     /// # Errors
-    /// [`Error::Input`] for degrees of freedom that the records do not have.
+    /// [`Error::Input`](crate::error::Error::Input) for degrees of freedom that the records do not have.
     pub(crate) fn parameters(&self, dofs: &[Dof]) -> Result<Vec<(f64, usize)>> {
         let mut all = vec![(self.alpha, self.filters); dofs.len() * dofs.len()];
         for own in &self.own {
@@ -91,7 +88,7 @@ impl DiscreteFit {
 /// from three motions (3.5), with `α` and `L` of its own for any transfer function.
 ///
 /// # Errors
-/// [`Error::Input`] for impossible options and for records as in [`super::fit_records`].
+/// [`Error::Input`](crate::error::Error::Input) for impossible options and for records as in [`super::fit_records`].
 pub fn fit_discrete(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,

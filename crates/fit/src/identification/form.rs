@@ -4,7 +4,7 @@ mod feed_through;
 
 pub use feed_through::FeedThrough;
 
-use crate::error::{Error, Result, counted, ensure, positive};
+use crate::error::{Result, counted, ensure, positive};
 use serde::{Deserialize, Serialize};
 
 /// Fewest filters of a form that leaves their number to the data: those of the thesis.
@@ -341,14 +341,8 @@ impl PoleSearch {
                 positive(key, bound)?;
             }
         }
-        if let (Some(min), Some(max)) = (self.min, self.max)
-            && min >= max
-        {
-            return Err(Error::input(
-                "poles.max",
-                "more than poles.min",
-                max.to_string(),
-            ));
+        if let (Some(min), Some(max)) = (self.min, self.max) {
+            ensure(min < max, "poles.max", "more than poles.min", max)?;
         }
         ensure(
             self.min_ratio > 1.0 && self.min_ratio.is_finite(),
@@ -361,8 +355,7 @@ impl PoleSearch {
             "poles.grid_points",
             "at least 5",
             self.grid_points,
-        )?;
-        Ok(())
+        )
     }
 }
 
@@ -372,7 +365,7 @@ const MOST_FILTERS: usize = 100;
 /// Checks a number of filters or lags.
 ///
 /// # Errors
-/// [`Error::Input`] naming `place` for none, and for more than any data could support.
+/// [`Error::Input`](crate::error::Error::Input) naming `place` for none, and for more than any data could support.
 pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
     ensure(
         (1..=MOST_FILTERS).contains(&count),

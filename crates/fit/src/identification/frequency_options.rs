@@ -162,15 +162,13 @@ impl FrequencyFit {
         let Some(rows) = &self.entry_weights else {
             return Ok(1.0);
         };
-        if rows.len() != n || rows.iter().any(|r| r.len() != n) {
-            let found = format!("{:?}", rows.iter().map(Vec::len).collect::<Vec<_>>());
-            let expected = format!("{n} rows of {n} numbers");
-            return Err(Error::input(
-                "entry_weights",
-                expected,
-                format!("rows of {found}"),
-            ));
-        }
+        let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
+        ensure(
+            lengths.len() == n && lengths.iter().all(|length| *length == n),
+            "entry_weights",
+            format_args!("{n} rows of {n} numbers"),
+            format_args!("rows of {lengths:?}"),
+        )?;
         Ok(rows[i][j])
     }
 }

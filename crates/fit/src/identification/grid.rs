@@ -16,7 +16,7 @@ use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
-use crate::error::{Error, Result, ensure};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -69,7 +69,7 @@ impl Grid {
     /// One pass over the records.
     ///
     /// # Errors
-    /// [`Error::Input`] for an axis without values, no filters, records that cannot be read, do not fit together or move
+    /// [`Error::Input`](crate::error::Error::Input) for an axis without values, no filters, records that cannot be read, do not fit together or move
     /// several degrees of freedom at once.
     pub fn new(
         records: &[&dyn RecordSource],
@@ -315,8 +315,8 @@ impl GridAxis {
         let inputs = records.dofs.len();
         match self {
             Self::Discrete(alphas, weights) => {
-                if let Some(bad) = alphas.iter().find(|a| !(**a > 0.0 && **a < 1.0)) {
-                    return Err(Error::input("alpha", "0 < alpha < 1", bad.to_string()));
+                for &a in alphas {
+                    ensure(a > 0.0 && a < 1.0, "alpha", "0 < alpha < 1", a)?;
                 }
                 let order = ColumnOrder {
                     inputs,

@@ -274,6 +274,5 @@ pub(crate) fn enough_rows(place: &str, rows: usize, unknowns: usize) -> Result<(
         place,
         format_args!("at least {unknowns} numbers for {unknowns} coefficients"),
         rows,
-    )?;
-    Ok(())
+    )
 }

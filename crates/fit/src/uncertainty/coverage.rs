@@ -1,7 +1,9 @@
 //! Are the intervals reliable? Virtual campaigns whose truth is known, fitted many times over.
 
+mod plan;
 mod report;
 
+pub use plan::{CoveragePlan, Truth};
 pub use report::{CoverageReport, IntervalCoverage};
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
@@ -12,112 +14,19 @@ use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, ensure, non_negative, positive};
+use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
-use crate::identification::{
-    Constraints, FeedThrough, Fitted, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
-};
+use crate::identification::{Fitted, TimeFit, fit_records};
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Highest wind speed at which an onset is looked for, m/s.
 const SPEED_MAX_M_S: f64 = 80.0;
 /// Reduced frequencies at which derivatives are compared.
 const DERIVATIVE_POINTS: usize = 8;
-
-/// What the forces of the virtual tunnel follow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Truth {
-    /// R. T. Jones's rational function: poles 0.091 and 0.6.
-    Jones,
-    /// Theodorsen's function: outside every class of finitely many filters.
-    Theodorsen,
-}
-
-/// A virtual campaign that is repeated.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct CoveragePlan {
-    /// What the forces follow.
-    pub truth: Truth,
-    /// Poles of the fitted Takenaka–Malmquist filters.
-    pub poles: Vec<f64>,
-    /// Whether the poles are searched, from those.
-    pub search_poles: bool,
-    /// Weights of the fit.
-    pub weights: TimeWeights,
-    /// The tunnel; noise and seed among it.
-    pub tunnel: TunnelPlan,
-    /// Standard deviation of every transfer function between mean speeds, relative, in size and in phase.
-    pub speed_scatter: f64,
-    /// The same between runs (one motion at one speed), for all forces of a run together.
-    pub run_scatter: f64,
-    /// Number of repetitions.
-    pub repetitions: usize,
-}
-
-impl Default for CoveragePlan {
-    fn default() -> Self {
-        Self {
-            truth: Truth::Jones,
-            poles: vec![0.091, 0.6],
-            search_poles: false,
-            weights: TimeWeights::default(),
-            tunnel: TunnelPlan {
-                noise_fraction: 0.05,
-                ..TunnelPlan::default()
-            },
-            speed_scatter: 0.0,
-            run_scatter: 0.0,
-            repetitions: 500,
-        }
-    }
-}
-
-impl CoveragePlan {
-    fn validate(&self) -> Result<()> {
-        ensure(
-            self.repetitions >= 2,
-            "repetitions",
-            "at least 2",
-            self.repetitions,
-        )?;
-        self.poles
-            .iter()
-            .try_for_each(|p| positive("poles", *p).map(drop))?;
-        non_negative("speed_scatter", self.speed_scatter)?;
-        non_negative("run_scatter", self.run_scatter).map(drop)
-    }
-
-    /// The fit whose intervals are judged.
-    fn time_fit(&self) -> TimeFit {
-        let given = PoleSearch {
-            start: Some(self.poles.clone()),
-            ..PoleSearch::default()
-        };
-        TimeFit {
-            // −(e₁ + e₁ᵀ) of a flat plate is singular: the truth lies on a constraint, which would bind now and then
-            constraints: Constraints::None,
-            form: Form::TakenakaMalmquist {
-                filters: self.poles.len(),
-                feed_through: FeedThrough::default(),
-                pole_per_transfer_function: false,
-            },
-            poles: if self.search_poles {
-                given
-            } else {
-                PoleSearch::fixed(&self.poles)
-            },
-            weights: self.weights,
-            ..TimeFit::default()
-        }
-    }
-}
 
 /// Runs the campaign over and over, each time with noise of its own, in parallel.
 ///

@@ -15,7 +15,7 @@ use crate::flutter::{
 };
 use crate::section::Structure;
 use crate::signal::{mean_and_deviation, random_stream};
-use crate::state_space::{complex, eigenvector};
+use crate::state_space::{ValueAt, complex, eigenvector, secant};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::{Complex, DMatrix, DVector};
 use rand_distr::{Distribution, Exp1, StandardNormal};
@@ -350,23 +350,16 @@ pub(super) fn onset_nearby(
     omega: f64,
 ) -> Result<Option<f64>> {
     let mut followed = Complex::new(0.0, omega);
-    let (mut v0, mut v1) = (speed_m_s, speed_m_s * 1.001);
-    followed = nearest(&section.at(v0)?, followed)?;
-    let mut f0 = followed.re;
-    for _ in 0..MAX_STEPS {
-        followed = nearest(&section.at(v1)?, followed)?;
-        let f1 = followed.re;
-        if f1 == f0 {
-            return Ok((f1 == 0.0).then_some(v1));
-        }
-        let next = v1 - f1 * (v1 - v0) / (f1 - f0);
-        if !(next.is_finite() && (next / speed_m_s - 1.0).abs() < REACH) {
+    let mut growth = |speed: f64| -> Result<Option<f64>> {
+        if (speed / speed_m_s - 1.0).abs() >= REACH {
             return Ok(None);
         }
-        if (next - v1).abs() <= TOLERANCE * v1 {
-            return Ok(Some(next));
-        }
-        (v0, f0, v1) = (v1, f1, next);
-    }
-    Ok(None)
+        followed = nearest(&section.at(speed)?, followed)?;
+        Ok(Some(followed.re))
+    };
+    let Some(start) = growth(speed_m_s)? else {
+        return Ok(None);
+    };
+    let (start, beside) = (ValueAt::new(speed_m_s, start), speed_m_s * 1.001);
+    secant(start, beside, [f64::INFINITY, TOLERANCE], MAX_STEPS, growth)
 }

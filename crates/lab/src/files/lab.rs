@@ -42,10 +42,8 @@ impl ChannelSet {
         let length = std::fs::metadata(path)
             .map_err(|e| Error::io(path, e))?
             .len();
-        if length > BYTES_AT_MOST {
-            let expected = format!("a file of at most {BYTES_AT_MOST} bytes");
-            return Err(Error::input("", expected, length.to_string()).in_file(path));
-        }
+        let expected = format_args!("a file of at most {BYTES_AT_MOST} bytes");
+        ensure(length <= BYTES_AT_MOST, "", expected, length).map_err(|e| e.in_file(path))?;
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let mut set =

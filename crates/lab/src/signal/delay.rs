@@ -6,7 +6,6 @@
 
 use super::Complex64;
 use super::correlation::{CrossCorrelation, cross_spectrum};
-use crate::error::{Result, ensure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -28,10 +27,8 @@ pub(crate) struct Delay {
 }
 
 /// Delay of `compared` against `reference`; the shorter signal is continued by zeros, so both should begin and end near zero.
-///
-/// # Errors
-/// [`Error::Input`](crate::error::Error::Input) when a signal is zero throughout, or nowhere like the other.
-pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
+/// `None` when a signal is zero throughout, or nowhere like the other.
+pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Option<Delay> {
     let count = reference.len().max(compared.len());
     let padded = |x: &[f64]| {
         let mut x = x.to_vec();
@@ -44,12 +41,9 @@ pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
     let correlation = CrossCorrelation::new(&first, &second);
     let whole = correlation.largest();
     let at = |lag| correlation.at(lag);
-    ensure(
-        scale != 0.0 && at(whole) > 0.0,
-        "signals to be aligned",
-        "two that are alike up to a delay",
-        "no positive correlation at any delay",
-    )?;
+    if scale == 0.0 || at(whole) <= 0.0 {
+        return None;
+    }
     let curvature = at(whole - 1) - 2.0 * at(whole) + at(whole + 1);
     let vertex = if curvature < 0.0 {
         0.5 * (at(whole - 1) - at(whole + 1)) / curvature
@@ -57,7 +51,7 @@ pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
         0.0
     };
     let parabolic_samples = whole as f64 + vertex.clamp(-0.5, 0.5);
-    Ok(Delay {
+    Some(Delay {
         samples: by_phase_slope(&first, &second, parabolic_samples),
         parabolic_samples,
         correlation: at(whole) / scale,
@@ -114,6 +108,6 @@ mod tests {
 
     #[test]
     fn nothing_alike_is_an_error() {
-        assert!(delay(&[0.0; 30], &[1.0; 30]).is_err());
+        assert!(delay(&[0.0; 30], &[1.0; 30]).is_none());
     }
 }

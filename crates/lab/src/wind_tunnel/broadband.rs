@@ -62,8 +62,7 @@ impl TrainingMotion {
             "motion.duration_s",
             format_args!("at least two ramps ({} s)", 2.0 * timing.ramp_s),
             duration,
-        )?;
-        Ok(())
+        )
     }
 }
 

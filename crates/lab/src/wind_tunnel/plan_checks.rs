@@ -75,8 +75,7 @@ impl TunnelPlan {
             "segment_s",
             format_args!("records of at most {MOST_SAMPLES:e} samples"),
             format_args!("{samples:e}: {seconds} s at {} Hz", self.sampling_hz),
-        )?;
-        Ok(())
+        )
     }
 
     /// A fifth of the sampling frequency leaves room for the ramps' side bands.

@@ -3,7 +3,7 @@
 use super::records::Record;
 use super::virtual_forces::response;
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
 
 /// Self-excited forces (N/m, N·m/m; one vector per force, one number per sample) that `model` predicts for the motion of
@@ -13,7 +13,7 @@ use crate::section::Dof;
 /// step is that of the record, and an ideal resampling of it elsewhere.
 ///
 /// # Errors
-/// [`Error::Input`] for a record of other degrees of freedom or without a positive width, speed or sampling frequency.
+/// [`Error::Input`](crate::error::Error::Input) for a record of other degrees of freedom or without a positive width, speed or sampling frequency.
 pub fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<Vec<Vec<f64>>> {
     let h = &record.header;
     let place = |what: &str| format!("record {}: {what}", h.name);
@@ -28,12 +28,12 @@ pub fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<Vec<Vec
     let sampling = positive(place("sampling_hz"), h.sampling_hz)?;
     let density = positive(place("air_density_kg_m3"), h.air_density_kg_m3)?;
     let samples = record.motion.first().map_or(0, Vec::len);
-    if let Some(other) = record.motion.iter().find(|m| m.len() != samples) {
-        return Err(Error::input(
-            place("motion"),
-            format!("{samples} samples in every channel"),
-            other.len().to_string(),
-        ));
+    for channel in &record.motion {
+        let (found, expected) = (
+            channel.len(),
+            format_args!("{samples} samples in every channel"),
+        );
+        ensure(found == samples, place("motion"), expected, found)?;
     }
     let dimensionless = |(d, m): (&Dof, &Vec<f64>)| -> Vec<f64> {
         m.iter().map(|x| d.motion_scale(width) * x).collect()

@@ -283,8 +283,7 @@ impl<'a> RecordRows<'a> {
             "column time_s",
             format_args!("samples at {} Hz as in the header", self.header.sampling_hz),
             format_args!("{mean:.4} Hz"),
-        )?;
-        Ok(())
+        )
     }
 }
 

@@ -1,15 +1,15 @@
 //! A table of measured derivatives, each with its own reduced velocities.
 
-mod checks;
+mod points;
 
-pub use checks::{check_point_count, check_points};
+pub use points::{DerivativePoint, check_point_count, check_points};
 
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, ensure, positive, without_control_characters};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
-use checks::{check_complete, check_speeds_agree};
+use points::{check_complete, check_speeds_agree};
 use std::collections::BTreeMap;
 
 /// Sign convention and scaling of every table of this project, as written in the header of its files.
@@ -17,24 +17,6 @@ pub const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x an
 
 /// Units of the columns, as written in the header of the files.
 pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
-
-/// One test point of one derivative.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DerivativePoint {
-    /// Mean wind speed of the run, m/s; `None` when the source does not say.
-    pub mean_speed_m_s: Option<f64>,
-    /// Reduced velocity `V̂ = V/(ωB) = 1/K`.
-    pub v_hat: f64,
-    /// The derivative, dimensionless.
-    pub value: f64,
-}
-
-impl DerivativePoint {
-    /// Reduced frequency of the point.
-    pub fn k(&self) -> ReducedFrequency {
-        ReducedFrequency::from_v_hat(self.v_hat)
-    }
-}
 
 /// Where a table comes from. Units and sign convention are `UNITS` and `SIGN_CONVENTION` for all tables.
 #[derive(Debug, Clone, PartialEq, Default)]

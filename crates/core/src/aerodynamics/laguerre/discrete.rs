@@ -145,22 +145,25 @@ impl DiscreteLaguerre {
 
     /// Checks ranges and shapes.
     pub fn validate(&self) -> Result<()> {
-        let place = |field: &str| format!("discrete Laguerre model: {field}");
-        positive(place("delta_s"), self.delta_s)?;
+        positive("discrete Laguerre model: delta_s", self.delta_s)?;
         let n = self.dofs.len();
         for (i, term) in self.terms.iter().enumerate() {
-            let place = |field: &str| place(&format!("terms[{i}].{field}"));
-            ensure(
-                term.alpha > 0.0 && term.alpha < 1.0,
-                place("alpha"),
-                "0 < alpha < 1",
+            let (alpha, place) = (
                 term.alpha,
+                format_args!("discrete Laguerre model: terms[{i}]"),
+            );
+            let inside = alpha > 0.0 && alpha < 1.0;
+            ensure(
+                inside,
+                format_args!("{place}.alpha"),
+                "0 < alpha < 1",
+                alpha,
             )?;
             let c = &term.coefficients;
             let fits = c.nrows() == n && c.ncols() > 0 && c.iter().all(|x| x.is_finite());
             ensure(
                 term.input < n && fits,
-                place("coefficients"),
+                format_args!("{place}.coefficients"),
                 format_args!(
                     "an input below {n} and {n} rows of finite numbers, at least one filter"
                 ),
@@ -174,11 +177,11 @@ impl DiscreteLaguerre {
         }
         ensure(
             (0..n).all(|j| self.terms.iter().any(|t| t.input == j)),
-            place("terms"),
+            "discrete Laguerre model: terms",
             "filters for every motion",
             "a motion without any",
         )?;
-        finite_numbers(place("static_term"), &self.static_term, n)
+        finite_numbers("discrete Laguerre model: static_term", &self.static_term, n)
     }
 }
 

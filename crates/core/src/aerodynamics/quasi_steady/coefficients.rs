@@ -1,7 +1,7 @@
 //! Static coefficients of a deck over the angle of attack, smooth between the tested angles.
 
 use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
-use crate::error::{Place, Result, ensure};
+use crate::error::{Error, Place, Result, ensure};
 use crate::section::Dof;
 
 /// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
@@ -131,13 +131,15 @@ impl StaticCoefficients {
     /// Coefficients and slopes at an angle of attack (rad).
     pub fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
         let (low, high) = self.range_rad();
-        let (low_deg, high_deg) = self.range_deg();
-        ensure(
-            (low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad),
-            format_args!("static coefficients {}", self.name),
-            format_args!("an angle of attack from {low_deg} to {high_deg} deg"),
-            format_args!("{:.4} deg", angle_rad.to_degrees()),
-        )?;
+        if !(low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad) {
+            let (low, high) = self.range_deg();
+            // asked for at every step of a run: words only where they are needed
+            return Err(Error::input(
+                format!("static coefficients {}", self.name),
+                format!("an angle of attack from {low} to {high} deg"),
+                format!("{:.4} deg", angle_rad.to_degrees()),
+            ));
+        }
         let (drag, drag_slope) = self.drag.at(angle_rad);
         let (lift, lift_slope) = self.lift.at(angle_rad);
         let (moment, moment_slope) = self.moment.at(angle_rad);

@@ -4,10 +4,15 @@
 //! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal. A static unbalance is an entry of `M`
 //! beside the diagonal; `G` is about the axis of the section ([`Supports::at_axis`]).
 
+use crate::flutter::dynamic_stiffness::newton;
 use crate::section::Suspension;
 use nalgebra::Complex;
 
 type Complex64 = Complex<f64>;
+
+/// Newton steps to a root at most, and the relative size of the last.
+const STEPS: usize = 8;
+const TOLERANCE: f64 = 1e-6;
 
 /// A supported section of `N` degrees of freedom, in units of the rotation (displacements over `B`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,18 +140,9 @@ impl<const N: usize> Pencil<N> {
 
     /// The root next to `start` by Newton's method; `None` when it does not settle.
     pub(super) fn root(&self, start: Complex64) -> Option<Complex64> {
-        const STEPS: usize = 8;
-        // the next step would be the square of this
-        const TOLERANCE_SQUARED: f64 = 1e-12;
-        let mut omega = start;
-        for _ in 0..STEPS {
+        newton(start, STEPS, TOLERANCE, |omega| {
             let (value, slope) = self.at(omega);
-            let step = value / slope;
-            omega -= step;
-            if step.norm_sqr() <= TOLERANCE_SQUARED * omega.norm_sqr() {
-                return omega.re.is_finite().then_some(omega);
-            }
-        }
-        None
+            value / slope
+        })
     }
 }

@@ -3,6 +3,7 @@
 use super::SweptOnset;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
+use crate::state_space::{ValueAt, secant};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -39,33 +40,28 @@ pub fn stands_at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<
 /// The onset to this part of the speed.
 fn moved(section: &CoupledSection, onset: SweptOnset, known: f64) -> Result<Option<SweptOnset>> {
     let begin = onset.speed_m_s;
-    let mode = |speed_m_s, omega| ModeSample::near(section, speed_m_s, omega);
-    let mut before = mode(begin, TAU * onset.frequency_hz)?;
-    let mut speed = begin * (1.0 - FIRST_STEP.copysign(before.lambda.re));
-    for _ in 0..MAX_STEPS {
-        let now = mode(speed, before.lambda.im)?;
-        let slope = (now.lambda.re - before.lambda.re) / (speed - before.speed_m_s);
-        let step = -now.lambda.re / slope;
-        speed += step;
-        let near = (speed / begin - 1.0).abs() < NEAR;
-        if !near || now.others > ROUNDING * now.lambda.norm() {
+    let start = ModeSample::near(section, begin, TAU * onset.frequency_hz)?;
+    let beside = begin * (1.0 - FIRST_STEP.copysign(start.lambda.re));
+    let (growth, mut omega) = (ValueAt::new(begin, start.lambda.re), start.lambda.im);
+    let ends = [f64::INFINITY, known];
+    let found = secant(growth, beside, ends, MAX_STEPS, |speed| -> Result<_> {
+        if (speed / begin - 1.0).abs() >= NEAR {
             return Ok(None);
         }
-        if step.abs() <= known * speed {
-            return Ok(Some(SweptOnset {
-                speed_m_s: speed,
-                frequency_hz: now.lambda.im / TAU,
-                ..onset
-            }));
-        }
-        before = now;
-    }
-    Ok(None)
+        let now = ModeSample::near(section, speed, omega)?;
+        omega = now.lambda.im;
+        let alone = now.others <= ROUNDING * now.lambda.norm();
+        Ok(alone.then_some(now.lambda.re))
+    })?;
+    Ok(found.map(|speed_m_s| SweptOnset {
+        speed_m_s,
+        frequency_hz: omega / TAU,
+        ..onset
+    }))
 }
 
 /// A mode at a wind speed.
 struct ModeSample {
-    speed_m_s: f64,
     /// Its eigenvalue in continuous time, rad/s.
     lambda: Complex<f64>,
     /// Fastest growth of all modes but this one and its conjugate, 1/s.
@@ -88,7 +84,6 @@ impl ModeSample {
         let own = |z: &&Complex<f64>| **z != lambda && **z != lambda.conj();
         let others = modes.iter().filter(own).map(|z| z.re);
         Ok(Self {
-            speed_m_s,
             lambda,
             others: others.fold(f64::NEG_INFINITY, f64::max),
         })

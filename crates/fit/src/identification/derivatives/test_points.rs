@@ -162,8 +162,7 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
         place("width_m"),
         format_args!("{} m, as in the first record", first.width_m),
         format_args!("{} m", header.width_m),
-    )?;
-    Ok(())
+    )
 }
 
 /// The steady part of one segment; `None` when it has no whole period.

@@ -123,8 +123,7 @@ fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
         place("dofs"),
         format_args!("{}, each once, as in the first record", Dof::names(dofs)),
         Dof::names(&header.dofs),
-    )?;
-    Ok(())
+    )
 }
 
 impl DimensionlessRecord {
@@ -249,8 +248,7 @@ fn check_lengths(name: &str, block: &RecordBlock<'_>, n: usize, read: usize) -> 
         format_args!("record {name}, from sample {read}"),
         format_args!("{n} motions and {n} forces of one length"),
         "channels of another number or length",
-    )?;
-    Ok(())
+    )
 }
 
 impl Signals {

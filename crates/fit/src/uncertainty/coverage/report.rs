@@ -1,6 +1,6 @@
 //! What the repetitions of a virtual campaign came to.
 
-use super::CoveragePlan;
+use super::plan::CoveragePlan;
 use serde::Serialize;
 
 /// Shares of held truths with which 95 % intervals count as reliable, percent.

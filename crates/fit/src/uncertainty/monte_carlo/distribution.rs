@@ -148,18 +148,14 @@ fn gaussian(
     let mirrored = low > 0.0;
     let (a, b) = if mirrored { (-high, -low) } else { (low, high) };
     let (from, to) = (normal_cdf(a), normal_cdf(b));
-    let probable = to - from > SMALLEST_PROBABILITY;
-    if !probable {
-        let end = |e: Option<f64>| e.map_or("open".to_owned(), |e| e.to_string());
-        return Err(Error::input(
-            format!(
-                "{place}.{}",
-                if lower.is_some() { "lower" } else { "upper" }
-            ),
-            "bounds between which the distribution has some probability",
-            format!("{} to {}", end(lower), end(upper)),
-        ));
-    }
+    let end = |e: Option<f64>| e.map_or("open".to_owned(), |e| e.to_string());
+    let key = if lower.is_some() { "lower" } else { "upper" };
+    ensure(
+        to - from > SMALLEST_PROBABILITY,
+        format_args!("{place}.{key}"),
+        "bounds between which the distribution has some probability",
+        format_args!("{} to {}", end(lower), end(upper)),
+    )?;
     Ok(transform(Some(Ends { from, to, mirrored })))
 }
 

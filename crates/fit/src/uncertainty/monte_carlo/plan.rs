@@ -1,7 +1,7 @@
 //! The file of a Monte Carlo analysis.
 
 use super::distribution::Distribution;
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Error, Result, ensure, of_schema, positive};
 use crate::files::toml_lines;
 use crate::section::{SectionModel, Translation};
 use serde::{Deserialize, Serialize};
@@ -108,18 +108,9 @@ impl MonteCarloPlan {
 
     /// Checks every value that does not need the model.
     pub(crate) fn validate(&self) -> Result<()> {
-        let wrong =
-            |key: &str, expected: &str, found: String| Err(Error::input(key, expected, found));
-        if self.schema != PLAN_SCHEMA {
-            return wrong("schema", &PLAN_SCHEMA.to_string(), self.schema.to_string());
-        }
-        if self.samples == 0 || self.samples > MAX_SAMPLES {
-            return wrong(
-                "samples",
-                "a number from 1 to 1e8",
-                self.samples.to_string(),
-            );
-        }
+        of_schema(PLAN_SCHEMA, self.schema)?;
+        let samples = (1..=MAX_SAMPLES).contains(&self.samples);
+        ensure(samples, "samples", "a number from 1 to 1e8", self.samples)?;
         if let Some(speed) = self.speed_max_m_s {
             positive("speed_max_m_s", speed)?;
         }
@@ -128,48 +119,34 @@ impl MonteCarloPlan {
             self.check_design_speed(self.speed_max_m_s.unwrap_or(f64::INFINITY))?;
         }
         let inside = |p: f64| p > 0.0 && p < 1.0;
-        if !inside(self.confidence) {
-            return wrong(
-                "confidence",
-                "a number between 0 and 1",
-                self.confidence.to_string(),
-            );
-        }
+        let confidence = self.confidence;
+        let between = "a number between 0 and 1";
+        ensure(inside(confidence), "confidence", between, confidence)?;
         for (i, p) in self.quantiles.iter().enumerate() {
-            if !inside(*p) {
-                return wrong(
-                    &format!("quantiles[{i}]"),
-                    "probabilities between 0 and 1",
-                    p.to_string(),
-                );
-            }
+            let place = format_args!("quantiles[{i}]");
+            ensure(inside(*p), place, "probabilities between 0 and 1", p)?;
         }
         self.validate_parameters()?;
         self.aerodynamics.validate()?;
-        let fixed =
-            self.parameters.is_empty() && self.aerodynamics == AerodynamicScatter::default();
-        if fixed {
-            return wrong(
-                "parameter",
-                "something random: a [[parameter]] or [aerodynamics]",
-                "nothing".into(),
-            );
-        }
-        Ok(())
+        ensure(
+            !self.parameters.is_empty() || self.aerodynamics != AerodynamicScatter::default(),
+            "parameter",
+            "something random: a [[parameter]] or [aerodynamics]",
+            "nothing",
+        )
     }
 
     /// The design speed has to lie where onsets are searched.
     pub(super) fn check_design_speed(&self, speed_max_m_s: f64) -> Result<()> {
-        match self.design_speed_m_s {
-            Some(speed) if speed > speed_max_m_s => Err(Error::input(
-                "design_speed_m_s",
-                format!(
-                    "a speed not above speed_max_m_s ({speed_max_m_s}), up to which onsets are searched"
-                ),
-                speed.to_string(),
-            )),
-            _ => Ok(()),
-        }
+        let speed = self.design_speed_m_s.unwrap_or(0.0);
+        ensure(
+            speed <= speed_max_m_s,
+            "design_speed_m_s",
+            format_args!(
+                "a speed not above speed_max_m_s ({speed_max_m_s}), up to which onsets are searched"
+            ),
+            speed,
+        )
     }
 
     fn validate_parameters(&self) -> Result<()> {

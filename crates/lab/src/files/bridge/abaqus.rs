@@ -10,7 +10,7 @@
 use super::modal_data::{ModalData, RawMode};
 use super::table::Table;
 use super::tables;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -24,10 +24,13 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
     )?;
     let path = folder.join("generalised_masses.csv");
     let masses = column(&path, "a positive generalised mass")?;
-    if masses.len() != frequencies.len() {
-        let expected = format!("{} masses, one per frequency", frequencies.len());
-        return Err(Error::input("", expected, masses.len().to_string()).in_file(path));
-    }
+    ensure(
+        masses.len() == frequencies.len(),
+        "",
+        format_args!("{} masses, one per frequency", frequencies.len()),
+        masses.len(),
+    )
+    .map_err(|e| e.in_file(path))?;
     let mut modes = Vec::with_capacity(masses.len());
     for (i, (frequency_hz, generalised_mass)) in frequencies.into_iter().zip(masses).enumerate() {
         let path = folder.join(format!("mode_{}.csv", i + 1));

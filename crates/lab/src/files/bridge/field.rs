@@ -43,13 +43,10 @@ impl FieldTable {
             0.0
         };
         let own: Vec<f64> = self.along_m.iter().map(|x| x + shift).collect();
-        if let Some(i) = own.windows(2).position(|x| x[1] <= x[0]) {
-            let place = format!("heading, u[{}]", self.along_m[i + 1]);
-            return Err(Error::input(
-                place,
-                "places that rise",
-                format!("after {}", self.along_m[i]),
-            ));
+        for (x, along) in own.windows(2).zip(self.along_m.windows(2)) {
+            let place = format_args!("heading, u[{}]", along[1]);
+            let found = format_args!("after {}", along[0]);
+            ensure(x[1] > x[0], place, "places that rise", found)?;
         }
         let covered = (own[0] - SAME_PLACE)..=(own[own.len() - 1] + SAME_PLACE);
         ensure(

@@ -10,7 +10,7 @@
 
 use super::modal_data::{ModalData, RawMode};
 use super::table::{Table, TableRow};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -25,15 +25,13 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
     let masses = masses(&folder.join("masses.out"), eigenvalues.len())?;
     let mut modes = Vec::with_capacity(masses.len());
     for (i, (square, generalised_mass)) in eigenvalues.into_iter().zip(masses).enumerate() {
-        if square <= 0.0 {
-            let place = format!("eigenvalue {}", i + 1);
-            return Err(Error::input(
-                place,
-                "a positive square of a frequency, rad²/s²",
-                square.to_string(),
-            )
-            .in_file(&path));
-        }
+        ensure(
+            square > 0.0,
+            format_args!("eigenvalue {}", i + 1),
+            "a positive square of a frequency, rad²/s²",
+            square,
+        )
+        .map_err(|e| e.in_file(&path))?;
         let path = folder.join(format!("mode_{}.out", i + 1));
         modes.push(RawMode {
             number: i + 1,

@@ -179,10 +179,8 @@ where
     T: std::str::FromStr<Err = Error> + PartialEq + std::fmt::Display,
 {
     let Some(entry) = entry else { return Ok(known) };
-    let value: T = entry.value.parse().map_err(|e| match e {
-        Error::Input(input) => Error::input(entry.place(), input.expected, input.found),
-        other => other,
-    })?;
+    let parsed = entry.value.parse();
+    let value: T = parsed.map_err(|e: Error| e.at(entry.place()))?;
     match known {
         Some(known) if known != value => {
             Err(entry.wrong(&format!("`{known}` as the line sign_convention says")))

@@ -151,14 +151,8 @@ fn parse_note<T: std::str::FromStr<Err = Error>>(
     notes: &BTreeMap<String, String>,
     key: &str,
 ) -> Result<Option<T>> {
-    let parse = |text: &String| {
-        text.parse().map_err(|e| match e {
-            Error::Input(input) => {
-                Error::input(format!("sheet {NOTES}, {key}"), input.expected, input.found)
-            }
-            other => other,
-        })
-    };
+    let there = |e: Error| e.at(format!("sheet {NOTES}, {key}"));
+    let parse = |text: &String| text.parse().map_err(there);
     notes.get(key).map(parse).transpose()
 }
 

@@ -87,11 +87,11 @@ impl Sheet {
         self.cells.insert((row, column), content);
         ensure(
             self.cells.len() <= CELLS_AT_MOST,
-            place(),
+            "",
             format_args!("at most {CELLS_AT_MOST} cells with a content"),
             "more",
-        )?;
-        Ok(())
+        )
+        .map_err(|e| e.at(place()))
     }
 
     /// The last row in which one of `columns` holds something.

@@ -6,7 +6,7 @@
 use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
 use super::columns::{Order, push_array};
 use super::guarded::guarded;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use matrw::{MatFile, MatVariable, MatlabType};
 use std::io::Read;
 
@@ -72,11 +72,12 @@ fn check_inflated(place: &str, packed: &[u8], before: u64) -> Result<u64> {
     let mut stream = flate2::read::ZlibDecoder::new(packed).take(at_most + 1 - before.min(at_most));
     // what is corrupt is said by the reader proper
     let inflated = std::io::copy(&mut stream, &mut std::io::sink()).unwrap_or(0);
-    if before + inflated > at_most {
-        let expected =
-            format!("compressed variables of at most {at_most} bytes (cut the recording)");
-        return Err(Error::input(place, expected, "more"));
-    }
+    ensure(
+        before + inflated <= at_most,
+        place,
+        format_args!("compressed variables of at most {at_most} bytes (cut the recording)"),
+        "more",
+    )?;
     Ok(before + inflated)
 }
 

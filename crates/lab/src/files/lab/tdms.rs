@@ -81,19 +81,15 @@ impl TdmsFile {
             at: start,
             big_endian: false,
         };
-        let wrong = |expected: &str, found: String| {
-            Error::input(format!("segment at byte {start}"), expected, found)
-        };
-        if bytes.take(4)? != b"TDSm" {
-            return Err(wrong("the mark TDSm", "something else".to_owned()));
-        }
+        let place = format_args!("segment at byte {start}");
+        let mark = bytes.take(4)? == b"TDSm";
+        ensure(mark, place, "the mark TDSm", "something else")?;
         let contents = bytes.u32()?;
         bytes.big_endian = contents & IS_BIG_ENDIAN != 0;
         let _version = bytes.u32()?;
         let (length, metadata) = (bytes.u64()?, bytes.u64()?);
-        if length == u64::MAX {
-            return Err(wrong("a file that was closed", "an open end".to_owned()));
-        }
+        let closed = length != u64::MAX;
+        ensure(closed, place, "a file that was closed", "an open end")?;
         let behind = |offset: u64| {
             let offset = usize::try_from(offset).ok()?;
             (start + LEAD_IN_BYTES).checked_add(offset)
@@ -102,12 +98,11 @@ impl TdmsFile {
             (Some(end), Some(raw)) if raw <= end && end <= data.len() => (end, raw),
             _ => {
                 let found = format!("{} (truncated?)", data.len() - start);
-                return Err(wrong(&format!("{length} more bytes"), found));
+                return Err(Error::input(place, format!("{length} more bytes"), found));
             }
         };
-        if contents & IS_DAQMX != 0 {
-            return Err(wrong("samples", "DAQmx raw data, not read".to_owned()));
-        }
+        let plain = contents & IS_DAQMX == 0;
+        ensure(plain, place, "samples", "DAQmx raw data, not read")?;
         if contents & HAS_METADATA != 0 {
             self.take_metadata(&mut bytes, contents & HAS_NEW_LIST != 0)?;
         }

@@ -87,15 +87,13 @@ fn check_pair(run: &str, wind: &RawRecording, still: &RawRecording) -> Result<()
     )?;
     for dof in Dof::THREE {
         let recorded = |r: &RawRecording| !r.motion[super::index(dof)].is_empty();
-        if recorded(wind) != recorded(still) {
-            let (with, without) = if recorded(wind) {
-                ("in wind", "still air")
-            } else {
-                ("still air", "in wind")
-            };
-            let expected = format!("a {} motion channel, as {with}", dof.name());
-            return Err(Error::input(place(without), expected, "none"));
-        }
+        let (with, without) = match recorded(wind) {
+            true => ("in wind", "still air"),
+            false => ("still air", "in wind"),
+        };
+        let expected = format_args!("a {} motion channel, as {with}", dof.name());
+        let both = recorded(wind) == recorded(still);
+        ensure(both, place(without), expected, "none")?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@
 use super::body::{self, StillAirInertia};
 use super::cells::sum_about_centre;
 use super::signals::HarmonicSegment;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::signal::fit_sine;
 use crate::wind_tunnel::{RawRecording, Rig};
@@ -87,20 +87,18 @@ fn refuse_exchanged(
     across: &StillAirInertia,
     other: Dof,
 ) -> Result<()> {
-    if !across.is_certain() || across.inertia.abs() <= own.inertia.abs() {
-        return Ok(());
-    }
     let name = own.dof.name();
-    Err(Error::input(
-        format!("run {run}, still air"),
-        format!("inertia of the {name} motion in the {name} force"),
-        format!(
+    ensure(
+        !across.is_certain() || across.inertia.abs() <= own.inertia.abs(),
+        format_args!("run {run}, still air"),
+        format_args!("inertia of the {name} motion in the {name} force"),
+        format_args!(
             "{:.4} kg there and {:.4} kg in the {} force: force or motion channels are exchanged",
             own.inertia,
             across.inertia,
             other.name()
         ),
-    ))
+    )
 }
 
 fn wrong_sign(run: &str, what: &str, dof: Dof, found: &StillAirInertia) -> Error {

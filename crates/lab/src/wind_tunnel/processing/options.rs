@@ -1,6 +1,6 @@
 //! What may be chosen in processing, and the defaults with their reasons.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, finite, non_negative, positive};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -127,31 +127,24 @@ const DRIFT_DEGREE_AT_MOST: usize = 12;
 impl ProcessingOptions {
     /// Checks every number.
     pub fn validate(&self) -> Result<()> {
-        let wrong = |key: &str, expected: &str, found: String| {
-            Err(Error::input(format!("processing.{key}"), expected, found))
-        };
         if let Some(dofs) = &self.dofs {
-            let twice = (1..dofs.len()).any(|i| dofs[..i].contains(&dofs[i]));
-            if dofs.is_empty() || twice {
-                return wrong(
-                    "dofs",
-                    "each at most once, at least one",
-                    match dofs.is_empty() {
-                        true => "none".to_owned(),
-                        false => Dof::names(dofs),
-                    },
-                );
-            }
+            let once = (1..dofs.len()).all(|i| !dofs[..i].contains(&dofs[i]));
+            let found = match dofs.is_empty() {
+                true => "none".to_owned(),
+                false => Dof::names(dofs),
+            };
+            let any_once = once && !dofs.is_empty();
+            let expected = "each at most once, at least one";
+            ensure(any_once, "processing.dofs", expected, found)?;
         }
-        if let Some(lag) = self.lag_s
-            && !lag.is_finite()
-        {
-            return wrong("lag_s", "a finite number", lag.to_string());
-        }
-        if self.drift_degree > DRIFT_DEGREE_AT_MOST {
-            let expected = format!("at most {DRIFT_DEGREE_AT_MOST}");
-            return wrong("drift_degree", &expected, self.drift_degree.to_string());
-        }
+        finite("processing.lag_s", self.lag_s.unwrap_or(0.0))?;
+        let degree = self.drift_degree;
+        ensure(
+            degree <= DRIFT_DEGREE_AT_MOST,
+            "processing.drift_degree",
+            format_args!("at most {DRIFT_DEGREE_AT_MOST}"),
+            degree,
+        )?;
         if let Some(cutoff) = self.low_pass.cutoff_hz {
             positive("processing.low_pass.cutoff_hz", cutoff)?;
         }
@@ -159,13 +152,8 @@ impl ProcessingOptions {
             positive("processing.segments.frequencies_hz", *f)?;
         }
         let share = self.segments.full_amplitude;
-        if !(share > 0.0 && share < 1.0) {
-            return wrong(
-                "segments.full_amplitude",
-                "between 0 and 1",
-                share.to_string(),
-            );
-        }
+        let place = "processing.segments.full_amplitude";
+        ensure(share > 0.0 && share < 1.0, place, "between 0 and 1", share)?;
         let s = &self.spikes;
         for (key, value) in [
             ("negligible_motion", self.negligible_motion),
@@ -173,9 +161,7 @@ impl ProcessingOptions {
             ("spikes.least_part", s.least_part),
             ("spikes.guard_s", s.guard_s),
         ] {
-            if !(value.is_finite() && value >= 0.0) {
-                return wrong(key, "zero or a positive number", value.to_string());
-            }
+            non_negative(format_args!("processing.{key}"), value)?;
         }
         Ok(())
     }

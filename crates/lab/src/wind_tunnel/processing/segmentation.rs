@@ -7,7 +7,7 @@
 
 use super::options::SegmentOptions;
 use super::signals::HarmonicSegment;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::signal::{largest_about_mean, median, plateau, refine_frequency};
 use crate::wind_tunnel::{RawRecording, Segment};
@@ -93,18 +93,16 @@ pub(crate) fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> 
     let periods = upward_passages(&motion, HYSTERESIS * amplitude)
         .len()
         .saturating_sub(1);
-    if periods >= PERIODS_AT_LEAST {
-        return Ok(());
-    }
     let seconds = motion.len() as f64 / recording.sampling_hz;
-    Err(Error::input(
+    ensure(
+        periods >= PERIODS_AT_LEAST,
         place,
-        format!(
+        format_args!(
             "a record of at least {PERIODS_AT_LEAST} whole periods of the {} motion",
             dof.name()
         ),
-        format!("{periods} in {} samples ({seconds:.3} s)", motion.len()),
-    ))
+        format_args!("{periods} in {} samples ({seconds:.3} s)", motion.len()),
+    )
 }
 
 /// Places (in samples) at which the motion passes zero upwards between −`level` and `level`.

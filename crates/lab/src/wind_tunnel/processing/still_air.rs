@@ -63,7 +63,7 @@ pub(crate) fn align(
     let of = |r: &RawRecording| from_rest(&r.motion[super::index(dof)]);
     let (reference, compared) = (of(in_wind), of(still_air));
     let place = || format!("run {run}, still air, {} motion", dof.name());
-    let found = delay(&reference, &compared).map_err(|_| {
+    let found = delay(&reference, &compared).ok_or_else(|| {
         let expected = "the motion of the recording in wind";
         Error::input(place(), expected, "one that is nowhere like it")
     })?;

@@ -245,13 +245,9 @@ impl VirtualCampaignPlan {
             ("disturbances.still_air_offset_s", d.still_air_offset_s),
         ] {
             let limit = self.tunnel.still_s.min(self.tunnel.ramp_s) / 2.0;
-            // NaN is not within either
-            let within = value.abs() <= limit;
-            if !within {
-                let expected =
-                    format!("at most half of tunnel.still_s and tunnel.ramp_s ({limit} s)");
-                return Err(Error::input(key, expected, value.to_string()));
-            }
+            let expected =
+                format_args!("at most half of tunnel.still_s and tunnel.ramp_s ({limit} s)");
+            ensure(value.abs() <= limit, key, expected, value)?;
         }
         if let Some(spike) = &d.spike {
             positive("disturbances.spike.frequency_hz", spike.frequency_hz)?;
@@ -312,8 +308,6 @@ impl Support {
 }
 
 fn finite(key: &str, values: &[f64]) -> Result<()> {
-    match values.iter().find(|x| !x.is_finite()) {
-        None => Ok(()),
-        Some(x) => Err(Error::input(key, "finite numbers", x.to_string())),
-    }
+    let check = |x: &f64| ensure(x.is_finite(), key, "finite numbers", x);
+    values.iter().try_for_each(check)
 }

@@ -1,10 +1,28 @@
-//! What the points of a table have to be.
+//! The points of a table, and what they have to be.
 
-use super::{Derivative, DerivativePoint, Part};
+use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Place, Result, ensure};
 use crate::section::Dof;
-use crate::units::{SAME_SPEED, near_groups};
+use crate::units::{ReducedFrequency, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
+
+/// One test point of one derivative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DerivativePoint {
+    /// Mean wind speed of the run, m/s; `None` when the source does not say.
+    pub mean_speed_m_s: Option<f64>,
+    /// Reduced velocity `V̂ = V/(ωB) = 1/K`.
+    pub v_hat: f64,
+    /// The derivative, dimensionless.
+    pub value: f64,
+}
+
+impl DerivativePoint {
+    /// Reduced frequency of the point.
+    pub fn k(&self) -> ReducedFrequency {
+        ReducedFrequency::from_v_hat(self.v_hat)
+    }
+}
 
 /// Test points of one derivative: more than any tunnel measures, few enough for every reader and fit.
 const POINTS_AT_MOST: usize = 10_000;
