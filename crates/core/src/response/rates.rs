@@ -155,6 +155,15 @@ fn output_rows<'a>(
     section: &CoupledSection,
     wind_m_s: f64,
 ) -> &'a Packed {
-    let rows = rows.get_or_insert_with(|| MatrixPolynomial::new(&section.output_rows_by_wind()));
+    let rows = match rows {
+        Some(rows) => rows,
+        None => rows.insert(all_output_rows(section)),
+    };
     rows.at(wind_m_s, POWERS_OF_WIND)
+}
+
+/// The same for every wind speed; once, and apart from the step.
+#[cold]
+fn all_output_rows(section: &CoupledSection) -> MatrixPolynomial {
+    MatrixPolynomial::new(&section.output_rows_by_wind())
 }
