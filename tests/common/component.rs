@@ -1,14 +1,11 @@
 //! The runtime for WebAssembly, built as releases build it, in archives that the program exports.
 
+use crate::bridges::{TWO, langenuen_text};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 const TARGET: &str = "wasm32-wasip2";
-const LANGENUEN: &str = "schema = 1\nname = \"Langenuen\"\nair_density_kg_m3 = 1.25\n\
-    [modes]\nformat = \"embedded\"\npath = \"langenuen\"\ndamping_ratio = 0.002\n\
-    [[section]]\nname = \"girder\"\nwidth_m = 31.0\nderivatives = \"LN21-5200\"\n\
-    [flutter]\nspeed_max_m_s = 100.0\n";
 
 /// Writes `component_section_KIND.fmu`, `component_force.fmu` and `component_bridge.fmu`; nothing, with a word on the terminal, where
 /// Rust has no standard library for that target.
@@ -20,7 +17,8 @@ pub fn export(folder: &Path, models: &[(&str, &Path)]) {
     let runtimes = folder.join("runtimes");
     place(&runtimes.join(TARGET));
     let bridge = folder.join("component_bridge.toml");
-    fs::write(&bridge, LANGENUEN).unwrap();
+    let langenuen = langenuen_text("LN21-5200", TWO, "linear_v_hat");
+    fs::write(&bridge, langenuen).unwrap();
     let pack = |name: &str, options: &[&str], of: &Path| {
         let output = Command::new(env!("CARGO_BIN_EXE_aerodeck"))
             .args([

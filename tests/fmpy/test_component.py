@@ -160,7 +160,7 @@ def test_what_is_wrong_is_said(pair):
 
 
 def test_two_units_do_not_know_each_other(tmp_path):
-    """The bits of a run, whatever another instance of the same module does."""
+    """A run goes on as the library's, whatever becomes of another instance of the same module."""
     pair = Pair(ARCHIVES[-1], tmp_path)
     pair.begin()
     make = pair.component._function(
