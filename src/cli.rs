@@ -1,8 +1,6 @@
 //! The command line: one file per subcommand. Commands compute an [`Answer`]; it is printed here and nowhere else.
 
-mod account;
 mod answer;
-mod apology;
 mod bridge;
 mod buffeting;
 mod buffeting_page;
@@ -12,7 +10,6 @@ mod compare;
 mod coverage;
 mod demo;
 mod derivatives;
-mod evidence;
 mod figures;
 mod flutter;
 mod fmu;
@@ -25,11 +22,13 @@ mod measured_forces;
 mod monte_carlo;
 mod new;
 mod output;
+mod panic_message;
 mod plot;
 mod process;
 mod progress;
 mod quasi_steady;
 mod report;
+mod result_files;
 mod routes;
 mod schemas;
 mod select;
@@ -39,6 +38,7 @@ mod stages;
 mod study;
 mod study_run;
 mod summary;
+mod text;
 mod thesis;
 mod thesis_page;
 mod train;
@@ -75,7 +75,7 @@ const EXIT_CODES: [(u8, &str); 5] = [
         NOT_MET,
         "a wind speed is required, and it is not known to be met: see [the verdict](verdict.md)",
     ),
-    (apology::OWN_FAULT, "a fault of the program itself"),
+    (panic_message::OWN_FAULT, "a fault of the program itself"),
 ];
 
 /// Bridge aeroelasticity from wind-tunnel data to an FMI 2.0 co-simulation FMU.
@@ -159,10 +159,10 @@ pub fn commands_page() -> String {
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
     common::is_program();
-    apology::install();
+    panic_message::install();
     interrupt::install();
     let _temporary = interrupt::own_temporary_folder();
-    let code = apology::guarded(|| {
+    let code = panic_message::guarded(|| {
         if let Err(error) = readable_arguments() {
             return report(&error, std::env::args_os().any(|a| a == "--json"));
         }

@@ -66,8 +66,9 @@ fn errors(made: &VirtualCampaign, found: &IdentifiedDerivatives) -> Errors {
             continue;
         }
         let part = |part| {
-            let derivative =
-                aerodeck::aerodynamics::derivatives::Derivative::of(p.force, p.motion, part);
+            let derivative = aerodeck::aerodynamics::derivatives::Derivative::from_entry(
+                p.force, p.motion, part,
+            );
             let e = found
                 .of(derivative)
                 .find(|e| e.run == p.run && (e.frequency_hz / p.frequency_hz - 1.0).abs() < 0.01)

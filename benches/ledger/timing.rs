@@ -19,7 +19,7 @@ pub(crate) struct Seconds {
 }
 
 impl Seconds {
-    fn of(mut rounds: Vec<f64>) -> Self {
+    fn new(mut rounds: Vec<f64>) -> Self {
         rounds.sort_by(f64::total_cmp);
         Self {
             median: rounds[rounds.len() / 2],
@@ -79,7 +79,7 @@ pub(crate) fn print(entry: &Entry) -> Result<(), String> {
     }
     rival.agrees(&job)?;
     let found = Timed {
-        ours: Seconds::of(ours),
+        ours: Seconds::new(ours),
         baseline: rival.named(theirs),
     };
     println!("{}", serde_json::json!(found));
@@ -155,7 +155,7 @@ impl Opponent {
             Self::Python(running) => (running.name.clone(), Some(running.peak_mib)),
             Self::None => return None,
         };
-        let seconds = Seconds::of(rounds);
+        let seconds = Seconds::new(rounds);
         Some(Rival {
             name,
             seconds,

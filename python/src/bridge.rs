@@ -154,7 +154,7 @@ impl Bridge {
             "search": answer.search, "motion": answer.motion, "left_out": found.left_out,
             "divergence_m_s": found.divergence_m_s, "mean_rotation_deg": found.mean_rotation.map(|mean| mean.rotation_deg), "failed": found.failed,
         });
-        let verdict = Verdict::of(&self.0.evidence(&found, &found.failed));
+        let verdict = Verdict::judge(&self.0.evidence(&found, &found.failed));
         Onset::with_card(&answer.search, method, &verdict, &card)
     }
 

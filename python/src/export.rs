@@ -139,7 +139,7 @@ fn bounds(trained: &TrainedModel, model: &Model) -> PyResult<Option<OnsetBounds>
     };
     let found = of_model(&trained.section, model, &search, "eigenvalues")?;
     let onset = found.onset();
-    Ok(onset.and_then(|onset| OnsetBounds::of(&onset.interval)))
+    Ok(onset.and_then(|onset| OnsetBounds::from_interval(&onset.interval)))
 }
 
 fn version(fmi: u32) -> PyResult<FmiVersion> {

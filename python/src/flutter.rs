@@ -59,7 +59,7 @@ pub fn flutter(
     let against = |mut evidence: Evidence, of_data: &[Finding]| {
         evidence.required = required_speed_m_s.map(|speed_m_s| RequiredSpeed { speed_m_s });
         evidence.implausible = [&of_section(section)[..], of_data].concat();
-        Verdict::of(&evidence)
+        Verdict::judge(&evidence)
     };
     if let Ok(model) = model.cast::<Model>() {
         let method = method.unwrap_or("eigenvalues");

@@ -1,6 +1,5 @@
 //! `aerodeck bridge`: whole bridges.
 
-mod account;
 mod args;
 mod buffeting;
 mod buffeting_page;
@@ -13,6 +12,7 @@ mod page;
 mod response;
 mod show;
 pub(in crate::cli) mod summary;
+mod text;
 
 pub(crate) use args::read;
 

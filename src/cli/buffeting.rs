@@ -38,7 +38,7 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
     // a requirement is judged where it is stated, also beside a response to turbulence
     let required = study.speeds.required();
     let verdict = required.map(|_| study.verdict()).transpose()?;
-    let text = headline::stated(&study.name, verdict.as_ref()) + &account(&study, &results);
+    let text = headline::stated(&study.name, verdict.as_ref()) + &text(&study, &results);
     let value = serde_json::json!({ "verdict": verdict, "buffeting": results, "findings": study.findings() });
     let answer = out.answer(text, value)?;
     Ok(answer.with_outcome_of(verdict.as_ref()))
@@ -99,7 +99,7 @@ fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -
     out.write(PAGE, sections_page(&page)?)
 }
 
-fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
+fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
     let mut text = format!(
         "{}\nself-excited forces: {}\n\n{:>8}",
         study.name, results.aerodynamics, "V m/s"

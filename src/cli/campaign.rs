@@ -1,7 +1,7 @@
 //! `aerodeck campaign`: raw wind-tunnel campaigns.
 
 mod check;
-mod invent;
+mod virtual_campaign;
 
 use super::answer::Answer;
 use super::progress::Progress;
@@ -11,13 +11,13 @@ use crate::error::Result;
 #[derive(clap::Subcommand)]
 pub(crate) enum CampaignCommand {
     Check(check::CampaignCheckArgs),
-    Virtual(invent::VirtualCampaignArgs),
+    Virtual(virtual_campaign::VirtualCampaignArgs),
 }
 
 /// Runs the command.
 pub(crate) fn run(command: &CampaignCommand, progress: &Progress) -> Result<Answer> {
     match command {
         CampaignCommand::Check(args) => check::run(args, progress),
-        CampaignCommand::Virtual(args) => invent::run(args, progress),
+        CampaignCommand::Virtual(args) => virtual_campaign::run(args, progress),
     }
 }

@@ -94,7 +94,7 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
         stage.at(done as u64, args.repetitions as u64)
     })?;
     drop(stage);
-    Answer::new(account(&report), &report)
+    Answer::new(text(&report), &report)
 }
 
 /// The family by where tests lie.
@@ -148,7 +148,7 @@ fn family_row(r: &RangeCount) -> String {
     )
 }
 
-fn account(r: &CoverageReport) -> String {
+fn text(r: &CoverageReport) -> String {
     let mut text = plan(&r.plan);
     let rows = speeds(r).into_iter().chain(shares(r));
     for (what, value) in rows {

@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::{account, evidence, headline, routes, stages};
+use super::{headline, result_files, routes, stages, text};
 use crate::error::Result;
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, OwnModel, RouteTable, StageFailure, Study, attempt,
@@ -51,23 +51,23 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     }
     let figure = stages::flutter_figure(&study, &results, Some(&verdict), &mut out);
     attempt(&mut failed, "figure", figure)?;
-    let curves = evidence::write_curves(&study, &results.curves, &mut out);
+    let curves = result_files::write_curves(&study, &results.curves, &mut out);
     attempt(&mut failed, "curves", curves)?;
     results.failed.splice(0..0, failed);
-    let mut text = headline::account(&study.name, &verdict, &deck.warnings());
+    let mut text = headline::text(&study.name, &verdict, &deck.warnings());
     let _ = writeln!(text, "{}", deck.description());
-    text.push_str(&account::deck_warnings(&deck));
+    text.push_str(&text::deck_warnings(&deck));
     text.push('\n');
-    text.push_str(&account::onsets(
+    text.push_str(&text::onsets(
         &results.onsets,
         &results.undetermined,
         &results.unstable,
         &results.stable,
     ));
-    text.push_str(&account::growths(&results.growth));
-    text.push_str(&account::divergence(&results.divergence));
-    text.push_str(&account::deviations(&results.deviations));
-    text.push_str(&account::failures(&results.failed));
+    text.push_str(&text::growths(&results.growth));
+    text.push_str(&text::divergence(&results.divergence));
+    text.push_str(&text::deviations(&results.deviations));
+    text.push_str(&text::failures(&results.failed));
     let value = serde_json::json!({
         "verdict": verdict, "flutter": results, "warnings": deck.warnings()
     });
@@ -95,7 +95,7 @@ fn verdict(
         moved: place.map_or(Ok(None), |i| saved_moved_onset(&models[i], folder))?,
     };
     let failed = [failed, &results.failed].concat();
-    Ok(Verdict::of(&section_evidence(
+    Ok(Verdict::judge(&section_evidence(
         study, deck, results, &own, &failed,
     )))
 }
@@ -113,12 +113,12 @@ fn all_routes(
     if let Err(e) = stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out) {
         table.left_out.push(format!("figure of all routes: {e}"));
     }
-    let mut text = headline::account(&study.name, verdict, &deck.warnings());
+    let mut text = headline::text(&study.name, verdict, &deck.warnings());
     let _ = writeln!(text, "{}", deck.description());
-    text.push_str(&account::deck_warnings(deck));
+    text.push_str(&text::deck_warnings(deck));
     text.push('\n');
-    text.push_str(&routes::account(&table, study.speeds().speed_max_m_s));
-    text.push_str(&account::failures(failed));
+    text.push_str(&routes::text(&table, study.speeds().speed_max_m_s));
+    text.push_str(&text::failures(failed));
     let value = serde_json::json!({
         "verdict": verdict, "routes": table, "failed": failed, "warnings": deck.warnings()
     });

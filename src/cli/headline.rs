@@ -12,9 +12,9 @@ pub(super) fn own_onset<'a>(results: &'a FlutterStudy, name: &str) -> Option<&'a
     results.onsets.iter().find(own)
 }
 
-/// [`account`] of a verdict where there is one.
+/// [`text`] of a verdict where there is one.
 pub(super) fn stated(name: &str, verdict: Option<&Verdict>) -> String {
-    verdict.map_or(String::new(), |v| account(name, v, &[]))
+    verdict.map_or(String::new(), |v| text(name, v, &[]))
 }
 
 /// The verdict in words: the first line, why, every severe doubt, and how many others there are.
@@ -22,7 +22,7 @@ pub(super) fn short(name: &str, verdict: &Verdict) -> String {
     let severe = |d: &&Doubt| d.severity == Severity::Severe;
     let mut said = verdict.clone();
     said.doubts.retain(|d| severe(&d));
-    let text = account(name, &said, &[]);
+    let text = text(name, &said, &[]);
     match verdict.doubts.len() - said.doubts.len() {
         0 => text,
         more => format!("{text}          {} on the page\n", counted(more, "note")),
@@ -30,7 +30,7 @@ pub(super) fn short(name: &str, verdict: &Verdict) -> String {
 }
 
 /// The verdict in words: the first line, why, and every doubt that is not said elsewhere.
-pub(super) fn account(name: &str, verdict: &Verdict, elsewhere: &[String]) -> String {
+pub(super) fn text(name: &str, verdict: &Verdict, elsewhere: &[String]) -> String {
     let mut text = format!("{name}: {}\n\n", verdict.headline);
     let _ = writeln!(text, "Verdict   {}", verdict.explanation);
     for doubt in &verdict.doubts {

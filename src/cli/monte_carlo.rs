@@ -32,9 +32,9 @@ pub(crate) struct MonteCarloArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> {
-    let text = read_text(&args.plan)?;
+    let plan_text = read_text(&args.plan)?;
     let folder = args.plan.parent().unwrap_or(Path::new(""));
-    let mut plan = MonteCarloPlan::from_toml(&text, folder.to_path_buf())
+    let mut plan = MonteCarloPlan::from_toml(&plan_text, folder.to_path_buf())
         .map_err(|e| e.in_file(&args.plan))?;
     plan.samples = args.samples.unwrap_or(plan.samples);
     plan.seed = args.seed.unwrap_or(plan.seed);
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         stage.at(done as u64, total as u64);
     });
     drop(stage);
-    let result = result.map_err(|e| MonteCarloPlan::locate(&text, e).in_file(&args.plan))?;
+    let result = result.map_err(|e| MonteCarloPlan::locate(&plan_text, e).in_file(&args.plan))?;
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.plan)))?;
     if result.onsets > 1 {
         figures::write("monte_carlo", &mut out, || {
@@ -52,10 +52,10 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         })?;
     }
     out.write_json("monte_carlo.json", "monte-carlo-results", &result)?;
-    out.answer(account(&result), serde_json::json!({ "result": result }))
+    out.answer(text(&result), serde_json::json!({ "result": result }))
 }
 
-fn account(r: &MonteCarloResult) -> String {
+fn text(r: &MonteCarloResult) -> String {
     let parts = [onsets(r), design(r), warnings(r), failures(r)];
     parts.concat().iter().map(|l| format!("{l}\n")).collect()
 }

@@ -1,11 +1,11 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
 use super::answer::Answer;
-use super::evidence::{lines_of, over_v_hat};
 use super::figures;
 use super::laboratory::{laboratory_page, line};
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::result_files::{lines_of, over_v_hat};
 use super::stages::RECORDS;
 use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
@@ -112,7 +112,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let page = laboratory_page(&raw, &processed.report, found, &notes, &out);
     out.write(super::report::folder::REPORT, sections_page(&page)?)?;
     let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
-    let text = account(&raw, &processed, derivatives.as_ref()) + &remarks;
+    let text = text(&raw, &processed, derivatives.as_ref()) + &remarks;
     let value = serde_json::json!({
         "report": processed.report,
         "derivatives": derivatives,
@@ -323,7 +323,7 @@ fn speeds_label(group: &[f64]) -> String {
     }
 }
 
-fn account(
+fn text(
     raw: &RawCampaign,
     processed: &Processed,
     derivatives: Option<&IdentifiedDerivatives>,

@@ -5,7 +5,7 @@ use super::common::motion_columns;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::wind::WindArgs;
-use super::{account, figures, headline};
+use super::{figures, headline, text};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::error::{Error, Result, counted};
@@ -97,14 +97,14 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
 }
 
 fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
-    let mut text = headline::account(&study.name, &results.verdict, &[]);
+    let mut text = headline::text(&study.name, &results.verdict, &[]);
     let _ = writeln!(text, "\nstatic coefficients: {}", results.coefficients);
     if let Some(first) = results.linear.first() {
         let arms = first.arms();
         let arms: Vec<String> = results
             .dofs
             .iter()
-            .map(|d| format!("{} {:+.3}", d.symbol(), arms.of(*d)))
+            .map(|d| format!("{} {:+.3}", d.symbol(), arms.arm(*d)))
             .collect();
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
@@ -131,7 +131,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
-            text.push_str(&account::onsets(
+            text.push_str(&text::onsets(
                 std::slice::from_ref(onset.as_ref()),
                 &[],
                 &[],

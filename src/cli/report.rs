@@ -11,9 +11,9 @@ mod variables;
 use super::answer::Answer;
 use super::bridge::files::BRIDGE_FMU;
 use super::buffeting;
-use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
+use super::result_files::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use super::summary::{FitSummary, Summary};
 use crate::error::{Error, Result};
@@ -237,7 +237,7 @@ fn fit(fit: &FitSummary) -> PageFit {
             k(report.tested_range.min),
             k(report.tested_range.max)
         ),
-        condition: super::account::condition(report.condition),
+        condition: super::text::condition(report.condition),
         entries: report.entries.iter().map(entry).collect(),
         remarks: held.chain(report.notes.iter().cloned()).collect(),
     }

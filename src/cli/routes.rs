@@ -1,12 +1,12 @@
 //! The table of all routes and the onset cards, in words.
 
-use super::account::interval;
+use super::text::interval;
 use crate::flutter::{FlutterSearch, ModeBranch, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
 /// The table, the handbook lines, the cards and what was left out.
-pub(crate) fn account(table: &RouteTable, speed_max_m_s: f64) -> String {
+pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
     let mut text = format!(
         "{:<26} {:<14} {:>8} {:>7} {:>7} {:>6} {:>8} {:>7} {:>9} {:<9} {:>8}  {}\n",
         "Force model",

@@ -1,6 +1,6 @@
 //! `aerodeck select`: how many filters, with which pole or decay factor.
 
-mod account;
+mod text;
 
 use super::answer::Answer;
 use super::common::StudyArgs;
@@ -11,10 +11,10 @@ use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeF
 use crate::selection::{Selection, SelectionPlan, metric_grid, select};
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
-pub(super) use account::parameter_maps;
-use account::{account, figures};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+pub(super) use text::parameter_maps;
+use text::{figures, text};
 
 /// More values of a pole than any figure shows.
 const MOST_VALUES: usize = 2000;
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     }
     let mut written = out.commit()?;
     let head = format!("{}\n{}\n\n", study.name, deck.description());
-    let mut text = head + &account(&selection);
+    let mut text = head + &text(&selection);
     if let Some(name) = &args.write {
         match recommended(&args.choice, &study, &selection) {
             Ok(block) => written.extend(write_study(args, &study, block, name)?),

@@ -282,9 +282,9 @@ pub(crate) fn onset_bounds(
         ..OnsetSearch::default()
     };
     let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
-    Ok(found
-        .onset()
-        .and_then(|onset| OnsetBounds::of(&interval_of(&structure, model, known, onset))))
+    Ok(found.onset().and_then(|onset| {
+        OnsetBounds::from_interval(&interval_of(&structure, model, known, onset))
+    }))
 }
 
 /// What the flag `--allow-unstable` says.

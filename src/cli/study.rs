@@ -8,7 +8,7 @@ use super::report;
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
-use super::{account, buffeting, evidence, figures, headline, measured_forces, select, stages};
+use super::{buffeting, figures, headline, measured_forces, result_files, select, stages, text};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
@@ -208,7 +208,7 @@ impl StudyStages<'_> {
             moved: own.and_then(|t| t.report.constraints.as_ref()?.onset),
         };
         let (study, deck) = (&self.study, &self.deck);
-        Verdict::of(&section_evidence(study, deck, results, &own, &self.failed))
+        Verdict::judge(&section_evidence(study, deck, results, &own, &self.failed))
     }
 
     /// Figures and curves of all models.
@@ -220,8 +220,8 @@ impl StudyStages<'_> {
     ) -> Result<()> {
         let (study, out) = (&self.study, &mut self.out);
         let figure = stages::flutter_figure(study, results, Some(verdict), out);
-        let derivatives = evidence::write_derivatives(study, &self.deck, trained, out);
-        let curves = evidence::write_curves(study, &results.curves, out);
+        let derivatives = result_files::write_derivatives(study, &self.deck, trained, out);
+        let curves = result_files::write_curves(study, &results.curves, out);
         self.attempt("figure", figure)?;
         self.attempt("figure of derivatives", derivatives)?;
         self.attempt("curves", curves)?;
@@ -252,7 +252,7 @@ impl StudyStages<'_> {
             let forces = measured_forces::write(&own.model, records, at, origin, &mut self.out);
             self.attempt("figure of measured forces", forces)?;
         }
-        let response = evidence::write_response(&own.model, at, &mut self.out);
+        let response = result_files::write_response(&own.model, at, &mut self.out);
         self.attempt("figure of the motion", response)?;
         Ok(())
     }
@@ -326,7 +326,7 @@ impl StudyStages<'_> {
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;
         let verbose = self.progress.verbose();
-        let text = account::chain(&self.study, &self.deck, &summary, &written, verbose);
+        let text = text::chain(&self.study, &self.deck, &summary, &written, verbose);
         Ok(Answer::new(text, &summary)?
             .passed_if(summary.failed.is_empty())
             .with_outcome_of(&summary.verdict))

@@ -5,7 +5,7 @@ use super::interrupt::Temporary;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::thesis_page::thesis_page;
-use super::{account, evidence, headline, stages};
+use super::{headline, result_files, stages, text};
 use crate::error::{Error, Result};
 use crate::report::sections_page;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
@@ -46,29 +46,29 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {
-        text.push_str(&account::fit(
+        text.push_str(&text::fit(
             &result.model.name,
             &result.report,
             &result.uncertainty,
         ));
     }
     text.push('\n');
-    text.push_str(&account::onsets(
+    text.push_str(&text::onsets(
         &results.onsets,
         &results.undetermined,
         &results.unstable,
         &results.stable,
     ));
-    text.push_str(&account::deviations(&results.deviations));
-    text.push_str(&account::failures(&failed));
+    text.push_str(&text::deviations(&results.deviations));
+    text.push_str(&text::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
     if let Some(folder) = &args.out {
         stages::flutter_figure(&study, &results, None, &mut out)?;
-        evidence::write_curves(&study, &results.curves, &mut out)?;
+        result_files::write_curves(&study, &results.curves, &mut out)?;
         if let Some(own) = trained.first()
             && let Some(onset) = headline::own_onset(&results, &own.model.name)
         {
-            evidence::write_response(&own.model, &onset.at, &mut out)?;
+            result_files::write_response(&own.model, &onset.at, &mut out)?;
         }
         let page = thesis_page(
             &results,

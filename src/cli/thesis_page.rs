@@ -1,10 +1,10 @@
 //! The figures and tables of the thesis that can be computed, its numbers beside ours.
 
 use super::compare::thesis_comparisons;
-use super::evidence::{RESPONSE, ROOTS};
 use super::laboratory::svg;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::result_files::{RESPONSE, ROOTS};
 use super::select::parameter_maps;
 use super::stages::FIGURE;
 use crate::error::Result;

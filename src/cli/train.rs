@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::{account, stages};
+use super::{stages, text};
 use crate::error::Result;
 use crate::fmu::package::growth_of;
 use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
@@ -40,10 +40,10 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
         progress,
     )?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
-    text.push_str(&account::deck_warnings(&deck));
+    text.push_str(&text::deck_warnings(&deck));
     let mut growths = Vec::new();
     for result in &trained {
-        text.push_str(&account::fit(
+        text.push_str(&text::fit(
             &result.model.name,
             &result.report,
             &result.uncertainty,
@@ -51,14 +51,14 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
         let growth = growth_of(&result.model);
         let stage = format!("scan for growth of {}", result.model.name);
         if let Some(growth) = attempt(&mut failed, stage, growth)? {
-            text.push_str(&account::growth(&result.model.name, &growth));
+            text.push_str(&text::growth(&result.model.name, &growth));
             growths.push(ModelGrowth {
                 model: result.model.name.clone(),
                 growth,
             });
         }
     }
-    text.push_str(&account::failures(&failed));
+    text.push_str(&text::failures(&failed));
     let fits: Vec<_> = trained
         .iter()
         .map(|t| {

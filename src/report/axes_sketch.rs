@@ -58,10 +58,10 @@ fn panel(scene: &mut Scene, axes: Axes) {
         arrow(scene, wind, &[from, from + Px::new(54.0, 0.0)]);
     }
     scene.text(Px::new(18.0, CENTRE.y - 42.0), "wind V", SIZE, wind);
-    scene.polygon(&deck(0.0), "#e8e8e8", Stroke::of(BLACK, 1.4));
+    scene.polygon(&deck(0.0), "#e8e8e8", Stroke::solid(BLACK, 1.4));
     let ghost = Stroke {
         dash: Some("5 4"),
-        ..Stroke::of(GREY, 1.1)
+        ..Stroke::solid(GREY, 1.1)
     };
     scene.polygon(&deck(NOSE_UP_DEG), "none", ghost);
     arrow(scene, motion, &[CENTRE, CENTRE + Px::new(0.0, down * 98.0)]);
@@ -98,7 +98,7 @@ fn deck(turn_deg: f64) -> Vec<Px> {
 
 /// A line with a head at its end, whose tip stands a little beyond.
 fn arrow(scene: &mut Scene, colour: &'static str, way: &[Px]) {
-    scene.polyline(way, Stroke::of(colour, 2.0));
+    scene.polyline(way, Stroke::solid(colour, 2.0));
     let [.., before, end] = way else { return };
     let (dx, dy) = (end.x - before.x, end.y - before.y);
     let length = dx.hypot(dy);
@@ -106,13 +106,13 @@ fn arrow(scene: &mut Scene, colour: &'static str, way: &[Px]) {
     let point =
         |along: f64, aside: f64| *end + Px::new(along * u - aside * v, along * v + aside * u);
     let head = [point(6.0, 0.0), point(-5.0, 4.5), point(-5.0, -4.5)];
-    scene.polygon(&head, colour, Stroke::of("none", 0.0));
+    scene.polygon(&head, colour, Stroke::solid("none", 0.0));
 }
 
 /// Width B and semi-chord b under the deck.
 fn dimension(scene: &mut Scene) {
     let (left, right) = (CENTRE.x - HALF_WIDTH, CENTRE.x + HALF_WIDTH);
-    let thin = Stroke::of(BLACK, 1.0);
+    let thin = Stroke::solid(BLACK, 1.0);
     for (level, from, words) in [(285.0, left, "width B"), (310.0, CENTRE.x, "b = B/2")] {
         for x in [from, right] {
             scene.polyline(&[Px::new(x, level - 7.0), Px::new(x, level + 7.0)], thin);

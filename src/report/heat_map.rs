@@ -156,8 +156,8 @@ impl HeatMap {
         }
         if let Some((column, row)) = self.chosen {
             let frame = self.cell(corner, column, row).grown(1.5);
-            scene.outline(frame, Stroke::of("#ffffff", 4.0));
-            scene.outline(frame, Stroke::of("#d55e00", 2.2));
+            scene.outline(frame, Stroke::solid("#ffffff", 4.0));
+            scene.outline(frame, Stroke::solid("#d55e00", 2.2));
         }
         self.axes(scene, corner);
         let bar = corner + Px::new(WIDTH + 16.0, 0.0);

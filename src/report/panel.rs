@@ -13,7 +13,7 @@ pub(super) const LABEL_SIZE: u32 = 12;
 const NOTE_SIZE: u32 = 11;
 const TICK_LENGTH: f64 = 4.0;
 /// Axes and rules.
-const THIN: Stroke = Stroke::of(BLACK, 0.9);
+const THIN: Stroke = Stroke::solid(BLACK, 0.9);
 /// Curves are drawn with at most this many points per px of the panel's width.
 const POINTS_PER_PX: usize = 4;
 /// Distance of a label from its point from which on a line leads to it, px.
@@ -192,7 +192,7 @@ impl Panel {
             let x = map.x_px(*at);
             let dashed = Stroke {
                 dash: Some("3 3"),
-                ..Stroke::of(colour, 0.9)
+                ..Stroke::solid(colour, 0.9)
             };
             ([Px::new(x, top), Px::new(x, bottom)], dashed)
         };
@@ -282,7 +282,7 @@ impl Map {
             right,
             bottom,
         } = self.area;
-        let (grid, tick) = (Stroke::of(GRID, 1.0), Stroke::of(BLACK, 1.0));
+        let (grid, tick) = (Stroke::solid(GRID, 1.0), Stroke::solid(BLACK, 1.0));
         let size = f64::from(TICK_SIZE);
         for value in self.x.ticks() {
             let x = self.x_px_of_place(value);
@@ -335,7 +335,7 @@ fn draw_note(scene: &mut Scene, labels: &mut Labels, at: Px, note: &Note) {
     if distance > LEADERLESS {
         let outside = 0.5 * LEADERLESS / distance;
         let start = at + Px::new(outside * dx, outside * dy);
-        scene.polyline(&[start, end], Stroke::of(note.colour, 0.7));
+        scene.polyline(&[start, end], Stroke::solid(note.colour, 0.7));
     }
     let baseline = area.bottom - 0.34 * f64::from(NOTE_SIZE);
     let at = Px::new(area.left + 3.0, baseline);

@@ -117,9 +117,9 @@ impl Scene {
     pub(super) fn marker(&mut self, at: Px, marker: Marker) {
         let r = marker.radius;
         let (fill, rim) = if marker.hollow {
-            (WHITE, Stroke::of(marker.colour, 1.6))
+            (WHITE, Stroke::solid(marker.colour, 1.6))
         } else {
-            (marker.colour, Stroke::of(WHITE, 0.8))
+            (marker.colour, Stroke::solid(WHITE, 0.8))
         };
         let around = |corners: &[[f64; 2]]| -> Vec<Px> {
             let corner = |c: &[f64; 2]| at + Px::new(c[0] * r, c[1] * r);
@@ -136,7 +136,7 @@ impl Scene {
                 self.polygon(&corners, fill, rim);
             }
             Shape::Cross => {
-                let ink = Stroke::of(marker.colour, 1.8);
+                let ink = Stroke::solid(marker.colour, 1.8);
                 self.polyline(&around(&[[-1.0, -1.0], [1.0, 1.0]]), ink);
                 self.polyline(&around(&[[-1.0, 1.0], [1.0, -1.0]]), ink);
             }

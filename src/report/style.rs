@@ -84,7 +84,7 @@ pub(super) struct Stroke {
 
 impl Stroke {
     /// A line without dashes.
-    pub(super) const fn of(colour: &'static str, width: f64) -> Self {
+    pub(super) const fn solid(colour: &'static str, width: f64) -> Self {
         Self {
             colour,
             width,

@@ -93,7 +93,7 @@ impl BridgeStudy {
         let mut notes = Vec::new();
         let mut findings = modes.findings();
         let section = |block: &BridgeSectionBlock| {
-            SectionForceModels::of(block, trained(block), &file.directory, &mut findings)
+            SectionForceModels::new(block, trained(block), &file.directory, &mut findings)
         };
         let sections: Vec<SectionForceModels> =
             file.sections.iter().map(section).collect::<Result<_>>()?;

@@ -302,7 +302,7 @@ impl RecordSet {
 
     /// Records in memory.
     pub(crate) fn in_memory(records: Vec<Record>) -> Self {
-        Self::of(records.into_iter().map(|r| Box::new(r) as _).collect())
+        Self::new(records.into_iter().map(|r| Box::new(r) as _).collect())
     }
 
     /// All records of a folder, as `tunnel` writes them; none when no model of the study needs any.
@@ -340,10 +340,10 @@ impl RecordSet {
 
     fn open(paths: Vec<PathBuf>) -> Result<Self> {
         let open = |path| Ok(Box::new(KeptRecord::new(RecordFile::open(path)?)) as _);
-        paths.iter().map(open).collect::<Result<_>>().map(Self::of)
+        paths.iter().map(open).collect::<Result<_>>().map(Self::new)
     }
 
-    fn of(records: Vec<Box<dyn RecordSource>>) -> Self {
+    fn new(records: Vec<Box<dyn RecordSource>>) -> Self {
         let speeds = records.iter().map(|r| r.header().mean_speed_m_s);
         let groups_m_s = near_groups(speeds, SAME_SPEED);
         Self {

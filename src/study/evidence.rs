@@ -147,7 +147,7 @@ fn reach(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Result<
     let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
     let curves = results.curves.iter().find(|c| c.model == model.name);
     let curves = curves.ok_or_else(|| Error::Numerical("no modes".to_owned()))?;
-    Ok(Reach::of(judged, curves, study.section.width_m))
+    Ok(Reach::new(judged, curves, study.section.width_m))
 }
 
 fn of_deck(

@@ -23,7 +23,7 @@ pub(crate) fn derivative_lines(
             for (j, motion) in dofs.iter().enumerate() {
                 let z = g[(i, j)] * v_hat * v_hat;
                 for (part, value) in [(Part::Real, z.re), (Part::Imaginary, z.im)] {
-                    let line = lines.entry(Derivative::of(*force, *motion, part));
+                    let line = lines.entry(Derivative::from_entry(*force, *motion, part));
                     line.or_default().push((v_hat, value));
                 }
             }

@@ -340,7 +340,7 @@ fn scatter_follows_the_onset() {
     other.modes.iter_mut().for_each(|m| m.damping_ratio = 0.004);
     let other = coupled(&other);
     let searched = onset(find_onset("model", &other, &SEARCH, None).unwrap());
-    let nearby = NearbyOnset::of(&study.by_model, &found.at).unwrap();
+    let nearby = NearbyOnset::new(&study.by_model, &found.at).unwrap();
     let found = nearby.find(&other).unwrap();
     near(found.speed_m_s / searched.at.speed_m_s, 1.0, 1e-7);
     near(found.frequency_hz / searched.at.frequency_hz, 1.0, 1e-6);

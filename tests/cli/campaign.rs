@@ -9,7 +9,7 @@ use tempfile::TempDir;
 /// Two short frequencies at one speed; nothing else is stated.
 const PLAN: &str = "[tunnel]\nfrequencies_hz = [0.5, 2.0]\nspeeds_m_s = [8.0]\nstill_s = 2.0\nsegment_s = 6.0\nramp_s = 2.0\nnoise_fraction = 0.05\n";
 
-fn invent(folder: &Path, more: &[&str]) -> String {
+fn virtual_campaign(folder: &Path, more: &[&str]) -> String {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let out = if more.contains(&"--out") {
         &[][..]
@@ -21,9 +21,9 @@ fn invent(folder: &Path, more: &[&str]) -> String {
 }
 
 #[test]
-fn an_invented_campaign_is_sound() {
+fn a_virtual_campaign_is_sound() {
     let folder = TempDir::new().unwrap();
-    let text = invent(folder.path(), &[]);
+    let text = virtual_campaign(folder.path(), &[]);
     assert!(text.contains("Jones-torsion-8.00"), "{text}");
     for name in [
         "c/campaign.toml",
@@ -51,16 +51,16 @@ fn an_invented_campaign_is_sound() {
     // the same seed gives the same files, another one others
     let samples = |c: &Path| fs::read(c.join("c/runs/Jones-vertical-8.00-wind.csv")).unwrap();
     let before = samples(folder.path());
-    invent(folder.path(), &[]);
+    virtual_campaign(folder.path(), &[]);
     assert!(before == samples(folder.path()));
-    invent(folder.path(), &["--seed", "9", "--force"]);
+    virtual_campaign(folder.path(), &["--seed", "9", "--force"]);
     assert!(before != samples(folder.path()));
 }
 
 #[test]
 fn the_layout_of_ntnu_and_json() {
     let folder = TempDir::new().unwrap();
-    let text = invent(
+    let text = virtual_campaign(
         folder.path(),
         &["--format", "ntnu", "--noise", "0", "--json"],
     );
@@ -96,8 +96,8 @@ fn the_tools_of_ntnu_find_what_they_read() {
         return;
     }
     let folder = TempDir::new().unwrap();
-    invent(folder.path(), &["--format", "ntnu"]);
-    invent(folder.path(), &["--out", "csv"]);
+    virtual_campaign(folder.path(), &["--format", "ntnu"]);
+    virtual_campaign(folder.path(), &["--out", "csv"]);
     let output = std::process::Command::new(&python)
         .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lab/read_as_w3t.py"))
         .args([folder.path().join("c/runs.h5"), folder.path().join("csv")])
@@ -116,7 +116,7 @@ fn the_tools_of_ntnu_find_what_they_read() {
 fn wrong_campaigns_are_refused() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    invent(at, &[]);
+    virtual_campaign(at, &[]);
     let file = at.join("c/campaign.toml");
     let text = fs::read_to_string(&file).unwrap();
     let with = |from: &str, to: &str, fragments: &[&str]| {

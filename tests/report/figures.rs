@@ -23,7 +23,7 @@ use std::path::Path;
 /// A verdict against a required speed, which divergence below it does not meet.
 fn required(speed_m_s: f64) -> Verdict {
     let below = DivergenceReading::at("the model", Some(0.9 * speed_m_s));
-    Verdict::of(&Evidence {
+    Verdict::judge(&Evidence {
         required: Some(RequiredSpeed { speed_m_s }),
         divergence: vec![below],
         ..Evidence::default()

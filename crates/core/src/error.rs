@@ -53,13 +53,11 @@ impl fmt::Display for InputError {
 /// let error = Error::input("section.width_m", "a positive number", "-1");
 /// assert_eq!(error.to_string(), "section.width_m: expected a positive number, found -1");
 /// ```
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum Error {
     /// Wrong input: the caller can mend it.
-    #[error("{0}")]
     Input(Box<InputError>),
     /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -67,22 +65,38 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A computation did not reach a usable result.
-    #[error("{0}")]
     Numerical(String),
     /// Modes that are asked for one by one cannot be told apart.
-    #[error("{0}")]
     NotDistinct(String),
     /// The section grows where only a stable one has an answer, or may be exported.
-    #[error("{0}")]
     Unstable(String),
     /// Several of these, in the order of what they are about; one line each.
-    #[error("{}", lines(.0))]
     Several(Vec<Error>),
 }
 
-fn lines(errors: &[Error]) -> String {
-    let each: Vec<String> = errors.iter().map(ToString::to_string).collect();
-    format!("{} errors\n  {}", each.len(), each.join("\n  "))
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(error) => error.fmt(f),
+            Self::Io { path, source } => write!(f, "{}: {source}", path.display()),
+            Self::Numerical(text) | Self::NotDistinct(text) | Self::Unstable(text) => {
+                f.write_str(text)
+            }
+            Self::Several(errors) => {
+                write!(f, "{} errors", errors.len())?;
+                errors.iter().try_for_each(|error| write!(f, "\n  {error}"))
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Io { source, .. } => Some(source),
+            _ => None,
+        }
+    }
 }
 
 impl Error {

@@ -32,7 +32,7 @@ use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use gusts::Gusts;
 use matrix_polynomial::MatrixPolynomial;
 use nalgebra::{DMatrix, DVector};
-use packed::{advanced, settled};
+use packed::{advanced, flush_subnormals};
 use sampling::Sampling;
 use series::{Drive, Moving, PowerSeries};
 use step_cache::{StepCache, active_columns, load};
@@ -114,15 +114,18 @@ impl Stepper {
         Self::with_gusts(section, gusts)
     }
 
-    /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `passing` is the wind factor over the width (1/m) of each group
+    /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `convection_per_width` is the wind factor over the width (1/m) of each group
     /// of strips, so many inputs as there are modes for each.
     pub fn in_modal_gusts(
         section: CoupledSection,
-        passing: &[f64],
+        convection_per_width: &[f64],
         admittance: RationalAdmittance,
     ) -> Self {
         let modes = section.structure().dofs.len();
-        Self::with_gusts(section, Some(Gusts::on_modes(modes, passing, admittance)))
+        Self::with_gusts(
+            section,
+            Some(Gusts::on_modes(modes, convection_per_width, admittance)),
+        )
     }
 
     fn with_gusts(section: CoupledSection, gusts: Option<Gusts>) -> Self {
@@ -136,7 +139,7 @@ impl Stepper {
             now: Outputs::default(),
             sampled: SectionState::default(),
             series: PowerSeries::new(&section, gusts),
-            sampling: Sampling::of(&section),
+            sampling: Sampling::from_section(&section),
             structure: None,
             section,
             cache: StepCache::default(),
@@ -167,13 +170,13 @@ impl Stepper {
         let motion = DVector::from_fn(n, |i, _| {
             displacement[i] * s.dofs[i].motion_scale(s.width_m)
         });
-        let (settle, drive) = match self.section.aerodynamics() {
+        let (steady_flow, drive) = match self.section.aerodynamics() {
             Realization::Continuous(c) => (-&c.a, &c.b),
             Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
         };
         let mut values = [displacement, rate].concat();
-        if !settle.is_empty() {
-            let filters = settle.lu().solve(&(drive * motion)).ok_or_else(|| {
+        if !steady_flow.is_empty() {
+            let filters = steady_flow.lu().solve(&(drive * motion)).ok_or_else(|| {
                 Error::Numerical("released section: a filter does not settle".into())
             })?;
             values.extend(filters.iter());
@@ -367,8 +370,8 @@ impl Stepper {
             gusts: gusts.then_some(&mut state.gusts),
         };
         if self.series.advance(moving, &drive, step, parts) {
-            settled(&mut state.values);
-            settled(&mut state.gusts);
+            flush_subnormals(&mut state.values);
+            flush_subnormals(&mut state.gusts);
             Ok(())
         } else {
             Err(overgrown())

@@ -160,7 +160,7 @@ impl StateSpace<Continuous> {
     /// # Errors
     /// As for [`poles`](Self::poles).
     pub fn damp(&self) -> Result<Vec<Damping>> {
-        Ok(self.poles()?.into_iter().map(Damping::of).collect())
+        Ok(self.poles()?.into_iter().map(Damping::from_pole).collect())
     }
 
     /// `C (iωI − A)⁻¹ B + D`, p×m: exact when the transients have died out, to rounding times the condition of `iωI − A`.
@@ -191,7 +191,7 @@ impl StateSpace<Discrete> {
         let poles = self.poles()?.into_iter();
         let finite = poles.filter(|z| z.norm() > f64::MIN_POSITIVE);
         Ok(finite
-            .map(|z| Damping::of(z.ln() / self.time.step))
+            .map(|z| Damping::from_pole(z.ln() / self.time.step))
             .collect())
     }
 
@@ -240,7 +240,7 @@ pub struct Damping {
 }
 
 impl Damping {
-    fn of(pole: Complex<f64>) -> Self {
+    fn from_pole(pole: Complex<f64>) -> Self {
         Self {
             pole,
             natural_frequency: pole.norm(),

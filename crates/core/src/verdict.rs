@@ -1,6 +1,6 @@
 //! One verdict from everything that is known: is the wind speed that is required below everything critical, judged by data?
 //!
-//! [`Evidence`] is what the searches, fits and checks of a section, a bridge or a wind file have found. [`Verdict::of`] is the
+//! [`Evidence`] is what the searches, fits and checks of a section, a bridge or a wind file have found. [`Verdict::judge`] is the
 //! only place that says what it amounts to; every page, line and colour follows it.
 //!
 //! ```
@@ -10,7 +10,7 @@
 //! let mut evidence = Evidence::default();
 //! evidence.required = Some(RequiredSpeed { speed_m_s: 100.0 });
 //! evidence.divergence.push(DivergenceReading::at("the model", Some(79.9)));
-//! let verdict = Verdict::of(&evidence);
+//! let verdict = Verdict::judge(&evidence);
 //! assert!(!verdict.is_met());
 //! assert!(verdict.headline.starts_with("✗ NOT MET, required 100 m/s: static divergence at 79.9 m/s"));
 //! ```
@@ -66,8 +66,8 @@ pub struct Verdict {
 
 impl Verdict {
     /// What the evidence amounts to.
-    pub fn of(evidence: &Evidence) -> Self {
-        let judgement = Judgement::of(evidence);
+    pub fn judge(evidence: &Evidence) -> Self {
+        let judgement = Judgement::new(evidence);
         Self {
             headline: headline(&judgement, evidence),
             explanation: explanation(&judgement, evidence.required),

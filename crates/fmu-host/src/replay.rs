@@ -62,7 +62,7 @@ pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
     };
     let root = element(&manifest, LS_REF_MANIFEST)?;
     for related in root.children_named("Related").filter(of_experiments) {
-        let file = Referred::of(fmu, related)?;
+        let file = Referred::new(fmu, related)?;
         let experiments = element(&file.path, &file.name)?;
         for experiment in experiments.children_named("Experiment") {
             runs.push(repeated(fmu, &file.name, experiment)?);
@@ -82,7 +82,7 @@ struct Referred {
 
 impl Referred {
     /// What the attribute `source` says, relative to the folder of the files.
-    fn of(fmu: &Fmu, element: &Element) -> Result<Self> {
+    fn new(fmu: &Fmu, element: &Element) -> Result<Self> {
         let name = element.attribute("source").unwrap_or_default().to_owned();
         let inside = !name.is_empty() && !name.contains([':', '\\']) && !name.starts_with('/');
         let path = fmu.folder().join(LS_REF).join(&name);
@@ -118,7 +118,7 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
     let read = |name: &str| -> Result<Option<Referred>> {
         experiment
             .child(name)
-            .map(|e| Referred::of(fmu, e))
+            .map(|e| Referred::new(fmu, e))
             .transpose()
     };
     let expected = match read("References")? {

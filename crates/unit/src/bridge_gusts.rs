@@ -16,7 +16,7 @@ pub struct BridgeGusts {
     pub coefficients: Vec<[[f64; 2]; 3]>,
     /// On both components.
     pub admittance: RationalAdmittance,
-    /// Places of the nodes in one gust; two inputs each.
+    /// Indices of the nodes in one gust; two inputs each.
     pub strips: Vec<Vec<usize>>,
     /// Where the coefficients come from, in words.
     pub source: String,
@@ -86,7 +86,7 @@ impl TurbulenceOptions {
         let strips: Vec<Vec<usize>> = (0..bridge.nodes.len()).map(|n| vec![n]).collect();
         let all = GustChannels::new(bridge, &gusts.coefficients, &strips)?;
         let sample = |i: usize| {
-            let mut channels = vec![0.0; all.passing.len() * bridge.coordinates()];
+            let mut channels = vec![0.0; all.convection_per_width.len() * bridge.coordinates()];
             let nodes = self.u.iter().zip(&self.w);
             all.add(nodes.flat_map(|(u, w)| [u[i], w[i]]), &mut channels);
             channels
@@ -111,7 +111,7 @@ const SAME_SAMPLE: f64 = 1e-9;
 impl GustRecord {
     /// Adds `factor` times the channels at a time, and their rates from there on.
     pub(super) fn add(&self, time: f64, factor: f64, channels: &mut [f64], rates: &mut [f64]) {
-        let (sample, part) = self.place(time);
+        let (sample, part) = self.sample_at(time);
         let count = self.samples.len();
         let (now, next) = (&self.samples[sample], &self.samples[(sample + 1) % count]);
         for (i, (a, b)) in now.iter().zip(next).enumerate() {
@@ -122,7 +122,7 @@ impl GustRecord {
 
     /// Time left at `time` until the next sample, s.
     pub(super) fn to_next(&self, time: f64) -> f64 {
-        (1.0 - self.place(time).1) * self.step_s
+        (1.0 - self.sample_at(time).1) * self.step_s
     }
 
     /// Pieces into which a time is cut.
@@ -131,7 +131,7 @@ impl GustRecord {
     }
 
     /// Sample at or before a time, and the part of a step since.
-    fn place(&self, time: f64) -> (usize, f64) {
+    fn sample_at(&self, time: f64) -> (usize, f64) {
         let steps = time / self.step_s;
         let mut whole = steps.floor();
         let mut part = steps - whole;

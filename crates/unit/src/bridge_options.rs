@@ -29,7 +29,7 @@ pub struct GroupOptions {
     pub width_m: f64,
     /// Wind speed there over the input `wind_speed`.
     pub wind_factor: f64,
-    /// Places of the nodes.
+    /// Indices of the nodes.
     pub nodes: Vec<usize>,
     /// Place of its force model in [`BridgeOptions::forces`].
     pub forces: usize,
@@ -57,7 +57,7 @@ pub struct BridgeOptions {
     pub groups: Vec<GroupOptions>,
     /// Force models of the groups.
     pub forces: Vec<Model>,
-    /// Places of the nodes with inputs and outputs.
+    /// Indices of the nodes with inputs and outputs.
     pub named: Vec<usize>,
     /// Reduced frequencies, of the bridge, in which the force models were tested.
     pub tested_range: Option<ReducedFrequencyRange>,
@@ -74,10 +74,10 @@ pub struct BridgeOptions {
     pub onset: Option<OnsetStart>,
 }
 
-/// Number of a node in the names of variables: its own name where that is a number, else its place from 1 on.
-pub fn node_number(nodes: &[Node], place: usize) -> u32 {
-    let number = nodes[place].name.parse().ok();
-    number.unwrap_or_else(|| u32::try_from(place + 1).unwrap_or(u32::MAX))
+/// Number of a node in the names of variables: its own name where that is a number, else its position from 1 on.
+pub fn node_number(nodes: &[Node], index: usize) -> u32 {
+    let number = nodes[index].name.parse().ok();
+    number.unwrap_or_else(|| u32::try_from(index + 1).unwrap_or(u32::MAX))
 }
 
 impl BridgeOptions {
@@ -126,7 +126,8 @@ impl BridgeOptions {
             return Ok((Stepper::new(coupled), None));
         };
         let channels = GustChannels::new(bridge, &gusts.coefficients, &gusts.strips)?;
-        let stepper = Stepper::in_modal_gusts(coupled, &channels.passing, gusts.admittance);
+        let stepper =
+            Stepper::in_modal_gusts(coupled, &channels.convection_per_width, gusts.admittance);
         Ok((stepper, Some(channels)))
     }
 
@@ -151,13 +152,13 @@ impl BridgeOptions {
         }
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         let mut names: Vec<String> = Vec::with_capacity(self.named.len());
-        for (i, place) in self.named.iter().enumerate() {
-            if *place >= self.nodes.len() {
+        for (i, index) in self.named.iter().enumerate() {
+            if *index >= self.nodes.len() {
                 let expected = format!("a node below {}", self.nodes.len());
                 return Err(Error::input(
                     format!("named[{i}]"),
                     expected,
-                    place.to_string(),
+                    index.to_string(),
                 ));
             }
             names.push(self.node_name(i));

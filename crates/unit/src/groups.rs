@@ -6,14 +6,14 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ffi::CString;
 
-/// Places in the table of each listed variable; the value reference is the place in this list, and the one behind the last is
+/// Indices in the table of each listed variable; the value reference is the index in this list, and the one behind the last is
 /// the time.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Groups {
     groups: Vec<Vec<u32>>,
-    /// Value reference of each place in the table; none of those that are not listed.
+    /// Value reference of each index in the table; none of those that are not listed.
     references: Vec<Option<usize>>,
-    /// Whether references are other numbers than places.
+    /// Whether references are other numbers than indices.
     are_other: bool,
     /// Arrays of the names of nodes and modes, behind the time.
     names: Vec<ElementNames>,
@@ -37,20 +37,20 @@ pub struct ElementNames {
 impl ElementNames {
     /// Of the arrays of this kind: those of all elements first.
     fn of_kind(kind: &'static str, groups: &[Vec<u32>], table: &VariableTable) -> Vec<Self> {
-        let element = |place: u32| {
-            let of = table.variables()[place as usize].name.as_str();
+        let element = |index: u32| {
+            let of = table.variables()[index as usize].name.as_str();
             let number = of.strip_prefix(kind)?.strip_prefix('[')?;
             Some(number.split_once("].")?.0)
         };
         let all = groups.iter().enumerate();
-        let all = all.filter(|(_, places)| element(places[0]).is_some());
-        let most = all.clone().map(|(_, places)| places.len()).max();
+        let all = all.filter(|(_, indices)| element(indices[0]).is_some());
+        let most = all.clone().map(|(_, indices)| indices.len()).max();
         let mut sets: Vec<(Vec<&str>, Vec<usize>)> = Vec::new();
-        for (reference, places) in all {
-            let of = || places.iter().filter_map(|p| element(*p));
+        for (reference, indices) in all {
+            let of = || indices.iter().filter_map(|p| element(*p));
             // as many as there are at most are all, which saves a look
             let same = |(set, _): &&mut (Vec<&str>, Vec<usize>)| {
-                set.len() == places.len()
+                set.len() == indices.len()
                     && (Some(set.len()) == most || of().eq(set.iter().copied()))
             };
             match sets.iter_mut().find(same) {
@@ -79,30 +79,30 @@ impl Groups {
         let mut groups: Vec<Vec<u32>> = Vec::new();
         let mut arrays: HashMap<Cow<'_, str>, usize> = HashMap::new();
         let listed = table.variables().iter().enumerate();
-        for (place, variable) in listed.filter(|(_, v)| v.is_listed) {
-            let place = u32::try_from(place).unwrap_or(u32::MAX);
+        for (index, variable) in listed.filter(|(_, v)| v.is_listed) {
+            let index = u32::try_from(index).unwrap_or(u32::MAX);
             match array_of(variable.role, &variable.name) {
                 Some(name) => match arrays.get(&name) {
-                    Some(group) => groups[*group].push(place),
+                    Some(group) => groups[*group].push(index),
                     None => {
                         arrays.insert(name, groups.len());
-                        groups.push(vec![place]);
+                        groups.push(vec![index]);
                     }
                 },
-                None => groups.push(vec![place]),
+                None => groups.push(vec![index]),
             }
         }
         let mut references = vec![None; table.variables().len()];
-        for (reference, places) in groups.iter().enumerate() {
-            for place in places {
-                references[*place as usize] = Some(reference);
+        for (reference, indices) in groups.iter().enumerate() {
+            for index in indices {
+                references[*index as usize] = Some(reference);
             }
         }
         let kinds = ["node", "mode"].into_iter();
         let names = kinds.flat_map(|kind| ElementNames::of_kind(kind, &groups, table));
         // strips that are counted, not those of nodes
-        let counted = |places: &&Vec<u32>| {
-            let v = &table.variables()[places[0] as usize];
+        let counted = |indices: &&Vec<u32>| {
+            let v = &table.variables()[indices[0] as usize];
             matches!(v.role, Role::Strip(..)) && v.name.starts_with("strip[")
         };
         Self {
@@ -114,7 +114,7 @@ impl Groups {
         }
     }
 
-    /// Places in the table, by value reference.
+    /// Indices in the table, by value reference.
     pub fn all(&self) -> &[Vec<u32>] {
         &self.groups
     }
@@ -152,23 +152,23 @@ impl Groups {
         (self.time() as usize..=last).contains(&(reference as usize))
     }
 
-    /// Value reference of a listed variable, and which of its numbers a place in the table is.
-    pub(crate) fn element_of(&self, place: usize) -> Option<(u32, usize)> {
-        let reference = self.reference_of(place)?;
-        let element = self.groups[reference].binary_search(&u32::try_from(place).ok()?);
+    /// Value reference of a listed variable, and which of its numbers an index in the table is.
+    pub(crate) fn element_of(&self, index: usize) -> Option<(u32, usize)> {
+        let reference = self.reference_of(index)?;
+        let element = self.groups[reference].binary_search(&u32::try_from(index).ok()?);
         Some((u32::try_from(reference).ok()?, element.ok()?))
     }
 
-    /// Value reference of the variable to which a place in the table belongs, if it is listed.
-    pub fn reference_of(&self, place: usize) -> Option<usize> {
-        self.references.get(place).copied().flatten()
+    /// Value reference of the variable to which an index in the table belongs, if it is listed.
+    pub fn reference_of(&self, index: usize) -> Option<usize> {
+        self.references.get(index).copied().flatten()
     }
 
-    /// The places of these references, one number each.
+    /// The indices of these references, one number each.
     ///
     /// # Errors
     /// A reference that is none, or that of the time, where only variables are allowed.
-    pub fn places<'a>(&self, references: &'a [u32]) -> CallResult<Cow<'a, [u32]>> {
+    pub fn indices<'a>(&self, references: &'a [u32]) -> CallResult<Cow<'a, [u32]>> {
         if let Some(wrong) = references.iter().find(|r| **r >= self.time()) {
             return Err(Refusal::error(format!(
                 "value reference {wrong}: there is no such variable to be set or differentiated, the last one is {}",
@@ -178,8 +178,8 @@ impl Groups {
         if !self.are_other {
             return Ok(Cow::Borrowed(references));
         }
-        let places = references.iter().flat_map(|r| &self.groups[*r as usize]);
-        Ok(Cow::Owned(places.copied().collect()))
+        let indices = references.iter().flat_map(|r| &self.groups[*r as usize]);
+        Ok(Cow::Owned(indices.copied().collect()))
     }
 }
 

@@ -49,7 +49,7 @@ use super::variables::VariableTable;
 use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
-use layout::VariablePlaces;
+use layout::VariableLayout;
 use memory::{Memory, RunTimes};
 use section_unit::SectionUnit;
 use unit::Unit;
@@ -59,13 +59,13 @@ use unit::Unit;
 pub struct Instance {
     resources: Resources,
     interface: Interface,
-    layout: VariablePlaces,
+    layout: VariableLayout,
     unit: Box<dyn Unit>,
     memory: Memory,
     /// The memory at the beginning.
     fresh: Memory,
     outputs_current: bool,
-    /// Rates of the states at hand.
+    /// Cached rates of the states.
     rates: Vec<f64>,
     notices: Vec<String>,
     /// The table with its dependencies, once they have been asked for.
@@ -83,7 +83,7 @@ impl Instance {
             (None, Some(_)) => Box::new(ForceUnit::new(&resources)?),
             (None, None) => Box::new(SectionUnit::of_section(&resources)?),
         };
-        let layout = VariablePlaces::new(&resources.table, |place| unit.held_output(place))?;
+        let layout = VariableLayout::new(&resources.table, |index| unit.state_index(index))?;
         let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now

@@ -98,9 +98,9 @@ impl StateSet {
     /// No state.
     pub(crate) const NONE: Self = Self(0);
     /// Every state.
-    pub(crate) const ANY: Self = Self::of(&State::ALL);
+    pub(crate) const ANY: Self = Self::new(&State::ALL);
     /// From the end of initialisation on, whatever has happened.
-    const STARTED: Self = Self::of(&[
+    const STARTED: Self = Self::new(&[
         State::StepComplete,
         State::StepFailed,
         State::EventMode,
@@ -111,17 +111,17 @@ impl StateSet {
     /// From the initialisation mode on.
     const INITIALIZED: Self = Self::STARTED.and(State::Initialization);
     /// States in which parameters may be set.
-    const SETTING: Self = Self::of(&[
+    const SETTING: Self = Self::new(&[
         State::Instantiated,
         State::Initialization,
         State::StepComplete,
         State::EventMode,
     ]);
     /// Where an importer that integrates stands.
-    const INTEGRATING: Self = Self::of(&[State::EventMode, State::ContinuousTimeMode]);
+    const INTEGRATING: Self = Self::new(&[State::EventMode, State::ContinuousTimeMode]);
 
     /// The set of these states.
-    pub const fn of(states: &[State]) -> Self {
+    pub const fn new(states: &[State]) -> Self {
         let mut bits = 0;
         let mut i = 0;
         while i < states.len() {
@@ -172,7 +172,7 @@ macro_rules! calls {
 }
 
 /// Between communication steps.
-const STEPPING: StateSet = StateSet::of(&[State::StepComplete, State::StepFailed]);
+const STEPPING: StateSet = StateSet::new(&[State::StepComplete, State::StepFailed]);
 const STATUS: StateSet = STEPPING.and(State::Terminated);
 const SETTING: StateSet = StateSet::SETTING.and(State::ContinuousTimeMode);
 /// Where states and their rates are read.
@@ -185,9 +185,9 @@ const INTEGRATED: StateSet = StateSet::INTEGRATING
 calls! {
     SetDebugLogging: StateSet::ANY;
     FreeInstance: StateSet::ANY;
-    SetupExperiment: StateSet::of(&[State::Instantiated]);
-    EnterInitializationMode: StateSet::of(&[State::Instantiated]);
-    ExitInitializationMode: StateSet::of(&[State::Initialization]);
+    SetupExperiment: StateSet::new(&[State::Instantiated]);
+    EnterInitializationMode: StateSet::new(&[State::Instantiated]);
+    ExitInitializationMode: StateSet::new(&[State::Initialization]);
     Terminate: STEPPING.and(State::EventMode).and(State::ContinuousTimeMode);
     Reset: StateSet::ANY;
     GetReal: StateSet::ANY;
@@ -205,15 +205,15 @@ calls! {
     SerializeFMUstate: StateSet::ANY;
     DeSerializeFMUstate: StateSet::ANY;
     GetDirectionalDerivative: StateSet::INITIALIZED;
-    SetRealInputDerivatives: StateSet::of(&[State::Instantiated, State::Initialization, State::StepComplete]);
+    SetRealInputDerivatives: StateSet::new(&[State::Instantiated, State::Initialization, State::StepComplete]);
     GetRealOutputDerivatives: STATUS.and(State::Error);
-    DoStep: StateSet::of(&[State::StepComplete]);
-    EnterEventMode: StateSet::of(&[State::ContinuousTimeMode]);
-    NewDiscreteStates: StateSet::of(&[State::EventMode]);
-    EnterContinuousTimeMode: StateSet::of(&[State::EventMode]);
-    CompletedIntegratorStep: StateSet::of(&[State::ContinuousTimeMode]);
+    DoStep: StateSet::new(&[State::StepComplete]);
+    EnterEventMode: StateSet::new(&[State::ContinuousTimeMode]);
+    NewDiscreteStates: StateSet::new(&[State::EventMode]);
+    EnterContinuousTimeMode: StateSet::new(&[State::EventMode]);
+    CompletedIntegratorStep: StateSet::new(&[State::ContinuousTimeMode]);
     SetTime: StateSet::INTEGRATING;
-    SetContinuousStates: StateSet::of(&[State::ContinuousTimeMode]);
+    SetContinuousStates: StateSet::new(&[State::ContinuousTimeMode]);
     GetDerivatives: INTEGRATED;
     GetEventIndicators: INTEGRATED;
     GetContinuousStates: INTEGRATED;
@@ -260,7 +260,7 @@ pub(crate) fn settable_in(causality: Causality, variability: Variability) -> Sta
     match (causality, variability) {
         (Causality::Input, _) => StateSet::SETTING.and(State::ContinuousTimeMode),
         (Causality::Parameter, Variability::Tunable) => StateSet::SETTING,
-        (Causality::Parameter, _) => StateSet::of(&[State::Instantiated, State::Initialization]),
+        (Causality::Parameter, _) => StateSet::new(&[State::Instantiated, State::Initialization]),
         _ => StateSet::NONE,
     }
 }

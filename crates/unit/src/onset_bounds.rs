@@ -19,7 +19,7 @@ pub struct OnsetBounds {
 
 impl OnsetBounds {
     /// Those of an interval that is a statement of probability, also of one that leaves nearly everything open; `None` for any other.
-    pub fn of(interval: &OnsetInterval) -> Option<Self> {
+    pub fn from_interval(interval: &OnsetInterval) -> Option<Self> {
         match *interval {
             OnsetInterval::Known {
                 low_m_s, high_m_s, ..

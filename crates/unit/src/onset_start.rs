@@ -24,7 +24,7 @@ pub struct OnsetStart {
 impl OnsetStart {
     /// That of an onset of `section` of which there is nothing more to say; `None` where there is: it has to be searched for each
     /// time.
-    pub fn of(onset: &Onset, section: &CoupledSection) -> Option<Self> {
+    pub fn from_onset(onset: &Onset, section: &CoupledSection) -> Option<Self> {
         let plain = onset.warnings.is_empty() && onset.spurious_speeds_m_s.is_empty();
         let (speed, hertz) = (onset.at.speed_m_s, onset.at.frequency_hz);
         Self::at(speed, hertz, section).ok().filter(|_| plain)

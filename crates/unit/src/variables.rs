@@ -1,7 +1,7 @@
 //! The one variable table of an exported unit.
 //!
 //! Value references, getters and setters, `modelDescription.xml`, the digest that ties binary and archive together and
-//! the documentation page are all made from it. The value reference of a variable is its place in the table, over all
+//! the documentation page are all made from it. The value reference of a variable is its index in the table, over all
 //! types.
 
 mod bridge;
@@ -94,7 +94,7 @@ impl VariableTable {
         Ok(Self { variables })
     }
 
-    /// The variables; the place of each is its value reference.
+    /// The variables; the index of each is its value reference.
     pub fn variables(&self) -> &[Variable] {
         &self.variables
     }
@@ -104,12 +104,12 @@ impl VariableTable {
         &mut self.variables
     }
 
-    /// Place of the variable with this role.
+    /// Index of the variable with this role.
     pub fn find(&self, role: Role) -> Option<usize> {
         find(&self.variables, role)
     }
 
-    /// Place of the variable with this name.
+    /// Index of the variable with this name.
     pub fn find_name(&self, name: &str) -> Option<usize> {
         self.variables.iter().position(|v| v.name == name)
     }
@@ -133,7 +133,7 @@ impl VariableTable {
 
 /// Displacements come first, then rates, then filters.
 fn state_rates(variables: &[Variable]) -> Vec<usize> {
-    let rank = |place: &usize| match variables[*place].role {
+    let rank = |index: &usize| match variables[*index].role {
         Role::Response(Response::Rate, _) => 0,
         Role::Response(..) => 1,
         _ => 2,

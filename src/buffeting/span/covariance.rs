@@ -24,7 +24,7 @@ impl ModalCovariance {
     ///
     /// # Errors
     /// Those of the spectra.
-    pub(crate) fn of(domain: &SpanFrequency<'_>) -> Result<Self> {
+    pub(crate) fn new(domain: &SpanFrequency<'_>) -> Result<Self> {
         let count = domain.bridge().coordinates();
         let unit = DMatrix::<Complex<f64>>::identity(count, count);
         let zero =

@@ -1,15 +1,15 @@
 //! `aerodeck demo --bridge`: from wind-tunnel records to the flutter of a whole bridge.
 
-use super::super::account::ending;
 use super::super::answer::Answer;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
 use super::super::stages;
-use super::account::{MORE, account};
+use super::super::text::ending;
 use super::files::BRIDGE_FMU;
 use super::flutter::computed;
 use super::page;
 use super::summary::BridgeRun;
+use super::text::{MORE, text};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
@@ -36,13 +36,13 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
     let stage = progress.stage("packing the FMU");
-    let verdict = Verdict::of(&study.evidence(&results, &failed));
+    let verdict = Verdict::judge(&study.evidence(&results, &failed));
     if let Err(e) = packed(&study, &verdict, &mut out) {
         failed.push(format!("FMU: {e}"));
     }
     drop(stage);
-    let verdict = Verdict::of(&study.evidence(&results, &failed));
-    let mut text = account(&study, &results, &verdict, progress.verbose());
+    let verdict = Verdict::judge(&study.evidence(&results, &failed));
+    let mut text = text(&study, &results, &verdict, progress.verbose());
     let ran = BridgeRun {
         text: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),

@@ -1,18 +1,18 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
-use super::super::account::ending;
 use super::super::answer::Answer;
-use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
 use super::super::report::folder::{SUMMARY, is_of_a_study};
+use super::super::result_files::{DerivativesShown, curves_csv};
+use super::super::text::ending;
 use super::args::BridgeArgs;
 use super::files::{
     CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, RESPONSE_FIGURE, ROOTS_FIGURE,
     shown_modes, taking_part,
 };
-use super::{account, inputs, page, response, summary};
+use super::{inputs, page, response, summary, text};
 use crate::error::Result;
 use crate::files::text::csv_cell;
 use crate::flutter::BridgeMotion;
@@ -70,8 +70,8 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
             failed.push(format!("scatter: {e}"));
             None
         });
-    let verdict = Verdict::of(&study.evidence(&results, &failed));
-    let mut text = account::account(&study, &results, &verdict, progress.verbose());
+    let verdict = Verdict::judge(&study.evidence(&results, &failed));
+    let mut text = text::text(&study, &results, &verdict, progress.verbose());
     let mut comparisons = Vec::new();
     if let Some(s) = &scattered {
         let line = scatter_line(s);
@@ -98,7 +98,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
         "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": ran.failed
     });
     let written = out.commit()?;
-    text.push_str(&ending(&written, account::MORE, progress.verbose()));
+    text.push_str(&ending(&written, text::MORE, progress.verbose()));
     json["files"] = serde_json::json!(written);
     Ok(Answer::new(text, &json)?
         .passed_if(ran.failed.is_empty())
@@ -171,7 +171,7 @@ pub(super) fn computed(
     drop(stage);
     let results = results?;
     let mut failed = results.failed.clone();
-    let verdict = Verdict::of(&study.evidence(&results, &failed));
+    let verdict = Verdict::judge(&study.evidence(&results, &failed));
     if let Err(e) = staged(study, &results, &verdict, out) {
         failed.push(format!("figures: {e}"));
     }

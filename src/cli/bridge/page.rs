@@ -19,7 +19,7 @@ pub(super) fn leave(
 ) -> Result<BridgeSummary> {
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
-    let summary = BridgeSummary::of(ran, study, results, verdict, out.targets())?;
+    let summary = BridgeSummary::new(ran, study, results, verdict, out.targets())?;
     out.write_json(SUMMARY, "summary", &summary)?;
     report::leave(out)?;
     Ok(summary)

@@ -1,6 +1,6 @@
 //! `summary.json` of a bridge.
 
-use super::account::beside_the_onset;
+use super::text::beside_the_onset;
 use crate::cli::report::folder::today;
 use crate::error::Result;
 use crate::flutter::Onset;
@@ -103,7 +103,7 @@ pub(crate) struct ModeFacts {
 
 impl BridgeSummary {
     /// Of results beside which these files are written.
-    pub(super) fn of(
+    pub(super) fn new(
         ran: &BridgeRun,
         study: &BridgeStudy,
         results: &BridgeFlutter,

@@ -1,8 +1,8 @@
 //! `aerodeck campaign check`: reads a campaign and says what is in it.
 
-use crate::cli::account::to_tenths_of_mm;
 use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
+use crate::cli::text::to_tenths_of_mm;
 use crate::error::{Result, counted};
 use crate::wind_tunnel::campaign::{Campaign, CampaignReading, RecordingSummary};
 use std::fmt::Write as _;
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &CampaignCheckArgs, progress: &Progress) -> Result<Answe
     let reading = campaign.load()?;
     drop(stage);
     Answer::new(
-        account(&reading),
+        text(&reading),
         &serde_json::json!({
             "section": reading.raw.section,
             "rig": reading.raw.rig,
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &CampaignCheckArgs, progress: &Progress) -> Result<Answe
     )
 }
 
-fn account(reading: &CampaignReading) -> String {
+fn text(reading: &CampaignReading) -> String {
     let rig = &reading.raw.rig;
     let cells: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
     let mut text = format!(

@@ -39,7 +39,7 @@ pub(crate) fn run(args: &CompareDecksArgs, progress: &Progress) -> Result<Answer
     for (stem, figure) in figures(&options, &results)? {
         drawn::write(&stem, &mut out, || Ok(figure))?;
     }
-    let text = account(&results);
+    let text = text(&results);
     out.answer(text, serde_json::json!({ "comparison": results }))
 }
 
@@ -106,7 +106,7 @@ fn caption(stem: &str) -> String {
     format!("{printed}: metrics of several girders over the frequency of {motion} motion, {speed}")
 }
 
-fn account(results: &DecksComparison) -> String {
+fn text(results: &DecksComparison) -> String {
     let mut text = String::from("Predicted against measured forces of several girders\n\n");
     for deck in &results.decks {
         let speeds: Vec<String> = deck.speeds_m_s.iter().map(|v| format!("{v:.2}")).collect();

@@ -47,7 +47,7 @@ pub(crate) fn run(args: &CompareModelsArgs, progress: &Progress) -> Result<Answe
     for (stem, figure) in histories(&results)? {
         figures::write(&stem, &mut out, || Ok(figure))?;
     }
-    let text = account(&results);
+    let text = text(&results);
     out.answer(text, serde_json::json!({ "comparison": results }))
 }
 
@@ -218,7 +218,7 @@ fn history_caption(stem: &str) -> String {
     format!("Figures {printed}: lift and moment due to {motion}, measured and by the models")
 }
 
-fn account(results: &ModelsComparison) -> String {
+fn text(results: &ModelsComparison) -> String {
     let mut text = format!(
         "Models of {} at {:.2} m/s against what was measured\n\n",
         results.deck, results.speed_m_s

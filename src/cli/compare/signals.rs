@@ -107,7 +107,7 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
     drop(stage);
     let missing = lines.iter().any(|l| l.problem.is_some());
     let value = serde_json::json!({ "metrics": lines });
-    Ok(Answer::new(account(args, &pair, &lines), &value)?.passed_if(!missing))
+    Ok(Answer::new(text(args, &pair, &lines), &value)?.passed_if(!missing))
 }
 
 fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>> {
@@ -159,7 +159,7 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
     ])
 }
 
-fn account(args: &CompareSignalsArgs, pair: &SignalPair<'_>, lines: &[Line]) -> String {
+fn text(args: &CompareSignalsArgs, pair: &SignalPair<'_>, lines: &[Line]) -> String {
     let mut text = format!(
         "{} against {}: {} samples of {} s; 1 for equal signals\n",
         args.compared,

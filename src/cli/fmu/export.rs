@@ -3,10 +3,10 @@
 mod bridge;
 
 use crate::aerodynamics::{GustForce, RationalAdmittance};
-use crate::cli::account;
 use crate::cli::answer::Answer;
 use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
+use crate::cli::text;
 use crate::cli::{headline, stages};
 use crate::error::{Error, Result};
 use crate::files::coefficients::gust_force;
@@ -216,7 +216,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         }
         ExportKind::Force | ExportKind::Structure => ("deck_force.fmu", None),
     };
-    let verdict = evidence.as_ref().map(Verdict::of);
+    let verdict = evidence.as_ref().map(Verdict::judge);
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
@@ -225,7 +225,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         gusts: args.gusts(&model)?,
         bounds: evidence.as_ref().and_then(|e| {
             let onset = e.flutter.first()?.search.onset()?;
-            OnsetBounds::of(&onset.interval)
+            OnsetBounds::from_interval(&onset.interval)
         }),
         verdict: verdict.clone(),
         label: args.label()?,
@@ -246,9 +246,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let growth = growth_of(&model)?;
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform.to_string()).collect();
-    let headline = verdict
-        .iter()
-        .map(|v| headline::account(&model.name, v, &[]));
+    let headline = verdict.iter().map(|v| headline::text(&model.name, v, &[]));
     let mut text: String = headline.collect();
     let _ = writeln!(
         text,
@@ -263,7 +261,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         crate::trained_model::Model::kind(&model.model),
         platforms.join(", ")
     );
-    text.push_str(&account::growth(&model.name, &growth));
+    text.push_str(&text::growth(&model.name, &growth));
     Answer::new(
         text,
         &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict }),

@@ -1,6 +1,6 @@
 //! Curves of a report, from the file that the study left.
 
-use crate::cli::evidence::CURVES;
+use crate::cli::result_files::CURVES;
 use crate::error::{Error, Result};
 use crate::report::PageCurve;
 use std::collections::BTreeMap;

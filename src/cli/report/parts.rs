@@ -1,6 +1,6 @@
 //! Parts that the pages of a section and of a bridge share.
 
-use crate::cli::account::interval;
+use crate::cli::text::interval;
 use crate::flutter::{ModeBranch, Onset, OnsetInterval};
 use crate::report::PageFigure;
 

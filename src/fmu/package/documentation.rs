@@ -49,13 +49,13 @@ pub fn documentation(
             .map(|r| (r.path_in_archive(FmiVersion::Two), r.platform_words()))
             .collect(),
         groups: groups(resources.table.listed(listing).table.variables(), &firsts),
-        models: resources.models().map(ModelText::of).collect(),
+        models: resources.models().map(ModelText::new).collect(),
         stability: match &resources.force {
             None => stability(model, verdict)?,
             Some(_) => Vec::new(),
         },
         force: resources.force.as_ref(),
-        sampling: resources.models().find_map(SamplingText::of),
+        sampling: resources.models().find_map(SamplingText::new),
     };
     page.render()
         .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
@@ -88,10 +88,10 @@ struct ModelText<'a> {
 }
 
 impl<'a> ModelText<'a> {
-    fn of(model: &'a TrainedModel) -> Self {
+    fn new(model: &'a TrainedModel) -> Self {
         Self {
             model,
-            range: Range::of(model),
+            range: Range::new(model),
             speeds: speeds(model),
         }
     }
@@ -188,7 +188,7 @@ struct Range {
 }
 
 impl Range {
-    fn of(model: &TrainedModel) -> Self {
+    fn new(model: &TrainedModel) -> Self {
         let (low, high) = (model.tested_range.min, model.tested_range.max);
         let v_star = |k: ReducedFrequency| ReducedVelocity::from(k).v_star();
         Self {
@@ -251,7 +251,7 @@ fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<Stri
             let tested = model.tested_range;
             let evidence =
                 Evidence::of_section("the model", &section, &at_rest, tested, &search, found);
-            own = Verdict::of(&Evidence {
+            own = Verdict::judge(&Evidence {
                 implausible: of_section(&model.section),
                 ..evidence
             });
@@ -305,7 +305,7 @@ struct SamplingText {
 }
 
 impl SamplingText {
-    fn of(model: &TrainedModel) -> Option<Self> {
+    fn new(model: &TrainedModel) -> Option<Self> {
         let Model::DiscreteLaguerre(discrete) = &model.model else {
             return None;
         };

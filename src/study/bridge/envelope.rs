@@ -51,7 +51,7 @@ pub(super) fn envelope(
     duration_s: f64,
     forces: Option<&Path>,
 ) -> Result<SpanEnvelope> {
-    let covariance = ModalCovariance::of(domain)?;
+    let covariance = ModalCovariance::new(domain)?;
     let bridge = domain.bridge();
     let nodes: Vec<usize> = (0..bridge.nodes.len()).collect();
     let shapes = bridge.shapes_at(&nodes);

@@ -77,7 +77,7 @@ impl BridgeStudy {
     /// As [`bridge_flutter`].
     pub fn verdict(&self) -> Result<Verdict> {
         let results = bridge_flutter(self)?;
-        Ok(Verdict::of(&self.evidence(&results, &results.failed)))
+        Ok(Verdict::judge(&self.evidence(&results, &results.failed)))
     }
 
     /// The speeds at which every mode is among the tests of every section.
@@ -91,7 +91,7 @@ impl BridgeStudy {
                 false => FastMotion::Open,
             };
         }
-        Ok(Reach::of(judged, &results.curves, self.by_model.width_m()))
+        Ok(Reach::new(judged, &results.curves, self.by_model.width_m()))
     }
 
     /// Whether the model of every section takes energy out of each motion faster than `k`, a reduced frequency of the bridge.

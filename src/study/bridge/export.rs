@@ -60,7 +60,9 @@ impl BridgeStudy {
         Ok(BridgeExport {
             model: self.first_model(onset)?,
             bridge: BridgeOptions {
-                onset: found.onset().and_then(|o| OnsetStart::of(o, &section)),
+                onset: found
+                    .onset()
+                    .and_then(|o| OnsetStart::from_onset(o, &section)),
                 ..self.options(&found, named, gusts)?
             },
             turbulence: wanted
@@ -144,7 +146,7 @@ impl BridgeStudy {
             onset_interval: found.onset().and_then(|onset| {
                 // a unit without an interval is better than none
                 let interval = self.onset_interval(onset).ok()?;
-                OnsetBounds::of(&interval)
+                OnsetBounds::from_interval(&interval)
             }),
             onset: None,
         })

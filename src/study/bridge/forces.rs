@@ -63,7 +63,7 @@ impl std::fmt::Debug for SectionForceModels {
 }
 
 impl SectionForceModels {
-    pub(super) fn of(
+    pub(super) fn new(
         block: &BridgeSectionBlock,
         trained: Option<(TrainedModel, KnownUncertainty)>,
         directory: &Path,

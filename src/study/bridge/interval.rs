@@ -21,7 +21,7 @@ impl BridgeStudy {
     /// # Errors
     /// [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
     pub fn onset_interval(&self, onset: &Onset) -> Result<OnsetInterval> {
-        let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
+        let nearby = NearbyOnset::new(&self.by_model, &onset.at)?;
         let (mut variance, mut of_each) = (0.0, 0.0);
         let mut between_speeds = None;
         for (section, forces) in self.sections.iter().enumerate() {
@@ -73,7 +73,7 @@ impl BridgeStudy {
         let section = coupled(&bridge)?;
         let onset = with.onset();
         // most constraints move the onset by little: then its mode can be followed without another search
-        let nearby = onset.and_then(|o| NearbyOnset::of(&self.by_model, &o.at).ok());
+        let nearby = onset.and_then(|o| NearbyOnset::new(&self.by_model, &o.at).ok());
         let without_m_s = match nearby.and_then(|nearby| nearby.find(&section)) {
             Some(at) => Some(at.speed_m_s),
             None => find_onset("data alone", &section, &self.search(), self.tested_range())?

@@ -15,7 +15,7 @@ pub(super) struct Scaled {
 }
 
 impl Scaled {
-    pub(super) fn of(forces: &dyn Transfer, factors: &DMatrix<f64>) -> Result<Self> {
+    pub(super) fn new(forces: &dyn Transfer, factors: &DMatrix<f64>) -> Result<Self> {
         let unfit = || {
             Error::input(
                 "scatter of the derivatives",

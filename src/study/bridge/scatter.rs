@@ -120,7 +120,7 @@ impl BridgeStudy {
             study: self,
             scatter,
             forces: self.drawn_forces(scatter.derivatives)?,
-            nearby: NearbyOnset::of(&self.by_model, &onset.at)?,
+            nearby: NearbyOnset::new(&self.by_model, &onset.at)?,
         };
         let done = AtomicUsize::new(0);
         let found = (0..scatter.samples)
@@ -156,7 +156,7 @@ impl BridgeStudy {
     fn drawn_forces(&self, scatter: DerivativeScatter) -> Result<Vec<ForceDraws<'_>>> {
         let sections = self.file.sections.iter().zip(&self.sections);
         sections
-            .map(|(block, forces)| ForceDraws::of(block, forces, scatter))
+            .map(|(block, forces)| ForceDraws::new(block, forces, scatter))
             .collect()
     }
 }
@@ -170,7 +170,7 @@ enum ForceDraws<'a> {
 }
 
 impl<'a> ForceDraws<'a> {
-    fn of(
+    fn new(
         block: &BridgeSectionBlock,
         forces: &'a SectionForceModels,
         scatter: DerivativeScatter,
@@ -203,7 +203,7 @@ impl<'a> ForceDraws<'a> {
                 let n = mean.dofs().len();
                 let mut normal = || -> f64 { random.sample(StandardNormal) };
                 let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + part * deviation * normal());
-                Arc::new(Scaled::of(mean.as_ref(), &factors)?)
+                Arc::new(Scaled::new(mean.as_ref(), &factors)?)
             }
             Self::Models(draws) => Arc::new(draws.model(random, part)?),
         })
@@ -306,7 +306,7 @@ mod tests {
             study: &study,
             scatter: &scatter,
             forces: study.drawn_forces(scatter.derivatives).unwrap(),
-            nearby: NearbyOnset::of(&study.by_model, &mean.onset().unwrap().at).unwrap(),
+            nearby: NearbyOnset::new(&study.by_model, &mean.onset().unwrap().at).unwrap(),
         };
         let mut searched = 0;
         for index in 0..scatter.samples as u64 {

@@ -68,7 +68,7 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
         .collect::<Result<_>>()?;
     let onset = quasi_steady_onset(&name, &structure, &theory, &range.search())?;
     Ok(QuasiSteadyStudy {
-        verdict: Verdict::of(&evidence(study, &onset)),
+        verdict: Verdict::judge(&evidence(study, &onset)),
         coefficients: table.name().to_owned(),
         dofs: structure.dofs.clone(),
         curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,

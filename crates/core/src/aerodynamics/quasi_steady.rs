@@ -86,7 +86,7 @@ impl QuasiSteady {
     pub fn specific_forces(&self, rotation_rad: f64, wind: &RelativeWind) -> Result<[f64; 3]> {
         let mut forces = [0.0; 3];
         for (force, dof) in forces.iter_mut().zip(&self.dofs) {
-            let normal = wind.vertical_m_s - self.arms.of(*dof) * wind.rotation_m_s;
+            let normal = wind.vertical_m_s - self.arms.arm(*dof) * wind.rotation_m_s;
             let square = wind.along_m_s * wind.along_m_s + normal * normal;
             let psi = normal.atan2(wind.along_m_s);
             let c = self.coefficients.at(rotation_rad + psi)?;
@@ -103,7 +103,7 @@ impl QuasiSteady {
     /// Static coefficients of the force components at a rotation in smooth wind (1.9).
     pub fn static_forces(&self, rotation_rad: f64) -> Result<StaticForces> {
         let c = self.coefficients.at(rotation_rad)?;
-        let (values, slopes) = self.dofs.iter().map(|dof| c.of(*dof)).unzip();
+        let (values, slopes) = self.dofs.iter().map(|dof| c.coefficient(*dof)).unzip();
         Ok(StaticForces { values, slopes })
     }
 
@@ -144,7 +144,7 @@ mod tests {
         let model = LinearQuasiSteady::new(&Dof::THREE, arms, 0.0, at);
         let found = Arms::from_model(&model, ReducedFrequency::from_full_width(0.3)).unwrap();
         for dof in Dof::THREE {
-            assert!((found.of(dof) - arms.of(dof)).abs() < 1e-14);
+            assert!((found.arm(dof) - arms.arm(dof)).abs() < 1e-14);
         }
     }
 

@@ -12,7 +12,7 @@ use crate::section::Dof;
 #[derive(Debug, Clone, PartialEq)]
 pub struct GustChannels {
     /// Wind factor over width of each group of channels, 1/m; as many channels in a group as modes.
-    pub passing: Vec<f64>,
+    pub convection_per_width: Vec<f64>,
     /// Force on each channel by a gust of 1 m/s: `u` of the first strip, `w` of the first strip, `u` of the second …
     pub by_gust: Vec<Vec<f64>>,
 }
@@ -33,7 +33,7 @@ impl GustChannels {
         let strip_of_node = owners(bridge, strips)?;
         let modes = bridge.coordinates();
         let mut all = Self {
-            passing: Vec::new(),
+            convection_per_width: Vec::new(),
             by_gust: vec![Vec::new(); 2 * strips.len()],
         };
         for (group, matrix) in bridge.groups.iter().zip(matrices) {
@@ -62,15 +62,18 @@ impl GustChannels {
     }
 
     /// First channel of the strips with this wind factor over width.
-    fn channel_of(&mut self, passing: f64, modes: usize) -> usize {
-        let known = self.passing.iter().position(|p| *p == passing);
+    fn channel_of(&mut self, convection_per_width: f64, modes: usize) -> usize {
+        let known = self
+            .convection_per_width
+            .iter()
+            .position(|p| *p == convection_per_width);
         let group = known.unwrap_or_else(|| {
-            self.passing.push(passing);
-            let channels = self.passing.len() * modes;
+            self.convection_per_width.push(convection_per_width);
+            let channels = self.convection_per_width.len() * modes;
             self.by_gust
                 .iter_mut()
                 .for_each(|c| c.resize(channels, 0.0));
-            self.passing.len() - 1
+            self.convection_per_width.len() - 1
         });
         group * modes
     }

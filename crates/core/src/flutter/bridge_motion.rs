@@ -135,7 +135,7 @@ impl NearbyOnset {
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
     /// motion.
-    pub fn of(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
+    pub fn new(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
         let omega = at
             .reduced_frequency
             .circular(bridge.width_m(), at.speed_m_s);

@@ -153,7 +153,7 @@ impl Characteristic {
         let mut last = None;
         let lambda = newton(start, MAX_NEWTON_STEPS, NEWTON_TOLERANCE, |lambda| {
             let (value, derivative) = self.evaluate(lambda, speed, work);
-            let determinant = Determinant::of(&value, self.n);
+            let determinant = Determinant::new(&value, self.n);
             let step = determinant.value / determinant.along(&derivative);
             last = Some(determinant);
             step

@@ -37,7 +37,7 @@ impl EntryBlock {
 
     /// Adds real rows times a complex number.
     #[inline(always)]
-    fn add(&mut self, real: &Eight, factor: Complex64) {
+    fn add(&mut self, real: &RowGroup, factor: Complex64) {
         for e in 0..WIDTH {
             self.re[e] += factor.re * real.0[e];
         }
@@ -62,18 +62,18 @@ impl EntryBlock {
 #[derive(Debug, Clone)]
 pub(super) struct RealColumns {
     rows: usize,
-    all: Vec<Eight>,
+    all: Vec<RowGroup>,
 }
 
 /// Eight rows of one column.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-struct Eight([f64; WIDTH]);
+struct RowGroup([f64; WIDTH]);
 
 impl RealColumns {
-    pub(super) fn of(matrix: &DMatrix<f64>) -> Self {
+    pub(super) fn new(matrix: &DMatrix<f64>) -> Self {
         let stride = matrix.nrows().div_ceil(WIDTH);
-        let mut all = vec![Eight([0.0; WIDTH]); stride * matrix.ncols()];
+        let mut all = vec![RowGroup([0.0; WIDTH]); stride * matrix.ncols()];
         for (j, column) in matrix.column_iter().enumerate() {
             for (i, x) in column.iter().enumerate() {
                 all[j * stride + i / WIDTH].0[i % WIDTH] = *x;
@@ -98,7 +98,7 @@ pub(super) struct Term<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct ComplexColumns {
     pub(super) rows: usize,
-    /// Eights of one column.
+    /// Groups of eight of one column.
     pub(super) stride: usize,
     pub(super) all: Vec<EntryBlock>,
 }
@@ -113,7 +113,7 @@ impl ComplexColumns {
         }
     }
 
-    pub(super) fn of(matrix: &DMatrix<Complex64>) -> Self {
+    pub(super) fn new(matrix: &DMatrix<Complex64>) -> Self {
         let mut all = Self::zeros(matrix.nrows(), matrix.ncols());
         for (j, column) in matrix.column_iter().enumerate() {
             for (i, z) in column.iter().enumerate() {

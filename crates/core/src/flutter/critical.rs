@@ -73,7 +73,7 @@ fn small(section: &CoupledSection) -> Option<(Dimensionless, usize)> {
     };
     let n = section.structure().dofs.len();
     let size = n * (3 * n - 1) / 2 + n * aero.a.nrows();
-    let system = (size <= LARGEST).then(|| Dimensionless::of(section, aero));
+    let system = (size <= LARGEST).then(|| Dimensionless::new(section, aero));
     Some((system??, size))
 }
 
@@ -98,7 +98,7 @@ struct MatrixPart<'a> {
 }
 
 impl Dimensionless {
-    fn of(section: &CoupledSection, aero: &ContinuousRealization) -> Option<Self> {
+    fn new(section: &CoupledSection, aero: &ContinuousRealization) -> Option<Self> {
         let s = section.structure();
         let (n, width) = (s.dofs.len(), s.width_m);
         let natural = s.still_air_rad_s().filter(|w| *w > 0.0);

@@ -46,7 +46,7 @@ pub(super) struct Determinant<const M: usize> {
 }
 
 impl<const M: usize> Determinant<M> {
-    pub(super) fn of(d: &Small<M>, n: usize) -> Self {
+    pub(super) fn new(d: &Small<M>, n: usize) -> Self {
         let mut adjugate = [[ZERO; M]; M];
         match n {
             1 => adjugate[0][0] = Complex64::new(1.0, 0.0),

@@ -133,13 +133,13 @@ pub fn solve_complex(
     a: &DMatrix<Complex64>,
     sides: &DMatrix<Complex64>,
 ) -> Option<DMatrix<Complex64>> {
-    Some(solution(ComplexColumns::of(a), ComplexColumns::of(sides))?.to_matrix())
+    Some(solution(ComplexColumns::new(a), ComplexColumns::new(sides))?.to_matrix())
 }
 
 /// Numbers whose product is the determinant of `a`, n×n: that of many modes is beyond all numbers. `None` as for
 /// [`solve_complex`].
 pub fn pivots(a: &DMatrix<Complex64>) -> Option<Vec<Complex64>> {
-    let factors = triangles(ComplexColumns::of(a))?;
+    let factors = triangles(ComplexColumns::new(a))?;
     Some(factors.pivots().collect())
 }
 
@@ -180,9 +180,9 @@ mod tests {
             assert!((&found - &expected).norm() < 1e-11 * expected.norm(), "{n}");
             assert!((&a * found - &sides).norm() < 1e-12 * sides.norm() * n as f64);
             let side = sides.columns(0, 1).into_owned();
-            let factors = ComplexColumns::of(&a).factors().expect("a regular matrix");
+            let factors = ComplexColumns::new(&a).factors().expect("a regular matrix");
             let of_transposed = factors
-                .solve_transposed(&ComplexColumns::of(&side))
+                .solve_transposed(&ComplexColumns::new(&side))
                 .to_matrix();
             assert!((a.transpose() * of_transposed - &side).norm() < 1e-11 * side.norm());
         }

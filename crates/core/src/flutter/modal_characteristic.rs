@@ -59,10 +59,10 @@ impl ModalCharacteristic {
         let half_rho = 0.5 * s.air_density_kg_m3;
         let width = s.width_m;
         let mass = &s.mass - s.scaled(&aero.e2) * (half_rho * width * width);
-        let force = |output: &DMatrix<f64>| RealColumns::of(&(s.scaled(output) * half_rho));
+        let force = |output: &DMatrix<f64>| RealColumns::new(&(s.scaled(output) * half_rho));
         Some(Self {
             width,
-            mass: RealColumns::of(&mass),
+            mass: RealColumns::new(&mass),
             mass_determinant: mass.determinant(),
             damping: s.damping.clone(),
             stiffness: s.stiffness.clone(),
@@ -77,8 +77,8 @@ impl ModalCharacteristic {
         AtSpeed {
             problem: self,
             speed,
-            damping: RealColumns::of(&(&self.damping - &self.on_rate * speed)),
-            stiffness: RealColumns::of(&(&self.stiffness - &self.on_motion * (speed * speed))),
+            damping: RealColumns::new(&(&self.damping - &self.on_rate * speed)),
+            stiffness: RealColumns::new(&(&self.stiffness - &self.on_motion * (speed * speed))),
         }
     }
 
@@ -113,7 +113,7 @@ impl AtSpeed<'_> {
         apart: Option<f64>,
     ) -> Option<(Complex64, Shape)> {
         let small = |step: Complex64| apart.is_some_and(|apart| step.norm() <= SMALL_PART * apart);
-        let settled = |step: Complex64, left: f64, lambda: Complex64, tolerance: f64| {
+        let converged = |step: Complex64, left: f64, lambda: Complex64, tolerance: f64| {
             let (step, size) = (step.norm(), lambda.norm());
             step <= NUDGE * size || step <= tolerance * size && left <= LEFT * size
         };
@@ -130,7 +130,7 @@ impl AtSpeed<'_> {
             };
             lambda -= round.step;
             let part = part(round.step);
-            if settled(
+            if converged(
                 round.step,
                 round.step.norm() * part * part,
                 lambda,
@@ -145,7 +145,7 @@ impl AtSpeed<'_> {
             let terms = self.terms(lambda)?;
             let (step, better) = without_residual(terms, round)?;
             lambda -= step;
-            if settled(step, step.norm() * part, lambda, POLISHED) {
+            if converged(step, step.norm() * part, lambda, POLISHED) {
                 return Some((lambda, better.to_column()));
             }
             shape = better;
@@ -160,7 +160,7 @@ impl AtSpeed<'_> {
         basis: &DMatrix<Complex64>,
     ) -> Option<DMatrix<Complex64>> {
         let terms = self.terms(lambda)?;
-        let basis = ComplexColumns::of(basis);
+        let basis = ComplexColumns::new(basis);
         Some(inverse_of_slope(terms, basis)?.to_matrix())
     }
 

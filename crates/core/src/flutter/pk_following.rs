@@ -230,8 +230,8 @@ impl StructureInWind<'_> {
 
     /// The modes at `speed` that settle and oscillate.
     fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let settled = |mode: &Mode| pk_mode(self.structure, self.model, speed, mode);
-        let all = self.of_each(&from.all, settled)?;
+        let solved = |mode: &Mode| pk_mode(self.structure, self.model, speed, mode);
+        let all = self.of_each(&from.all, solved)?;
         Ok(Modes { speed, all })
     }
 

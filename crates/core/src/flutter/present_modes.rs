@@ -124,7 +124,7 @@ impl Solved {
         }
         let all = self
             .eigenvalues
-            .of(&mut self.matrix)
+            .eigenvalues(&mut self.matrix)
             .filter(|_| wind >= 0.0);
         all.map(least)
     }

@@ -27,7 +27,7 @@ pub(super) fn pk_mode(
     speed_m_s: f64,
     start: &Mode,
 ) -> Result<Option<Mode>> {
-    settle(structure, model, |_| speed_m_s, start)
+    converge(structure, model, |_| speed_m_s, start)
 }
 
 /// The mode at the reduced frequency `k` that the iteration reaches from `start`, with its speed (m/s).
@@ -38,12 +38,12 @@ pub(super) fn pk_mode_at(
     start: &Mode,
 ) -> Result<Option<(f64, Mode)>> {
     let speed = |omega: f64| omega * structure.width_m / k.full_width();
-    let mode = settle(structure, model, speed, start)?;
+    let mode = converge(structure, model, speed, start)?;
     Ok(mode.map(|mode| (speed(mode.lambda.im), mode)))
 }
 
 /// Iterates at the speed that belongs to each frequency.
-fn settle(
+fn converge(
     structure: &Structure,
     model: &dyn Transfer,
     speed: impl Fn(f64) -> f64,

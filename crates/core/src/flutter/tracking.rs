@@ -51,7 +51,7 @@ enum Correction {
 }
 
 impl Correction {
-    fn of(section: &CoupledSection) -> Self {
+    fn new(section: &CoupledSection) -> Self {
         let small = Characteristic::new(section).map(|c| Self::Determinant(Box::new(c)));
         small
             .or_else(|| ModalCharacteristic::new(section).map(|c| Self::Shapes(Arc::new(c))))
@@ -63,7 +63,7 @@ impl<'a> Tracker<'a> {
     pub(super) fn new(section: &'a CoupledSection) -> Self {
         Self {
             section,
-            correction: Correction::of(section),
+            correction: Correction::new(section),
         }
     }
 

@@ -44,7 +44,7 @@ pub fn of_coefficients(place: &str, at: &CoefficientsAt, arms: &Arms) -> Vec<Fin
     }
     found.extend(slopes(place, at));
     for dof in Dof::THREE {
-        let arm = arms.of(dof);
+        let arm = arms.arm(dof);
         if arm.abs() > MOST_ARM {
             let text = "a part of the width, usually -1 to 1";
             let meant = "is it a length in m, to be divided by the width?".to_owned();

@@ -50,7 +50,7 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let mut found: Vec<Finding> = beyond(&width, table.width_m, &DECK_WIDTH)
         .into_iter()
         .collect();
-    let own = Signature::of(&|d| table.points(d).to_vec());
+    let own = Signature::new(&|d| table.points(d).to_vec());
     let score = own.score();
     if score < ODD {
         return found;
@@ -60,7 +60,7 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let slips = contradict.then(|| single_slips(table, *label));
     let best = candidates(table, *label)
         .chain(slips.into_iter().flatten())
-        .map(|(words, reading)| (Signature::of(&*reading).score(), words))
+        .map(|(words, reading)| (Signature::new(&*reading).score(), words))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let odd = Finding::doubt(FindingKind::Convention, &table.name, own.words());
     found.push(match best {
@@ -177,7 +177,7 @@ fn times(point: &DerivativePoint, factor: f64) -> DerivativePoint {
 
 impl Signature {
     /// Medians over the lower half of the reduced velocities.
-    fn of(reading: &dyn Fn(Derivative) -> Vec<DerivativePoint>) -> Self {
+    fn new(reading: &dyn Fn(Derivative) -> Vec<DerivativePoint>) -> Self {
         Self(USUAL.map(|(derivative, _, _)| {
             let mut points = reading(derivative);
             points.sort_by(|a, b| a.v_hat.total_cmp(&b.v_hat));

@@ -67,34 +67,45 @@ impl Gusts {
         let by_gust = DMatrix::from_fn(n, 2, |i, j| {
             half_rho * structure.dofs[i].force_scale(structure.width_m) * about_axis[(i, j)]
         });
-        let passing = vec![structure.width_m.recip(); 2];
+        let convection_per_width = vec![structure.width_m.recip(); 2];
         Self {
             on_section: true,
-            ..Self::of(&by_gust, &passing, force.admittance)
+            ..Self::by_channel(&by_gust, &convection_per_width, force.admittance)
         }
     }
 
-    /// On a bridge, whose channels are forces per 1 m/s of wind on each mode: `passing` is the wind factor over the width of each
+    /// On a bridge, whose channels are forces per 1 m/s of wind on each mode: `convection_per_width` is the wind factor over the width of each
     /// group of `modes` channels.
-    pub(super) fn on_modes(modes: usize, passing: &[f64], admittance: RationalAdmittance) -> Self {
-        let passing: Vec<f64> = passing.iter().flat_map(|p| vec![*p; modes]).collect();
-        let by_gust = DMatrix::from_fn(modes, passing.len(), |i, j| {
+    pub(super) fn on_modes(
+        modes: usize,
+        convection_per_width: &[f64],
+        admittance: RationalAdmittance,
+    ) -> Self {
+        let convection_per_width: Vec<f64> = convection_per_width
+            .iter()
+            .flat_map(|p| vec![*p; modes])
+            .collect();
+        let by_gust = DMatrix::from_fn(modes, convection_per_width.len(), |i, j| {
             f64::from(u8::from(j % modes == i))
         });
-        Self::of(&by_gust, &passing, admittance)
+        Self::by_channel(&by_gust, &convection_per_width, admittance)
     }
 
-    /// `Q` by channel; `passing`: 1/m of each.
-    fn of(by_gust: &DMatrix<f64>, passing: &[f64], admittance: RationalAdmittance) -> Self {
+    /// `Q` by channel; `convection_per_width`: 1/m of each.
+    fn by_channel(
+        by_gust: &DMatrix<f64>,
+        convection_per_width: &[f64],
+        admittance: RationalAdmittance,
+    ) -> Self {
         let (lags, (motions, channels)) = (admittance.lags(), by_gust.shape());
         let of_channel = |p: &f64| lags.iter().map(|[pole, _]| pole * p).collect::<Vec<_>>();
         Self {
-            by_channel: Sparse::of(by_gust),
+            by_channel: Sparse::new(by_gust),
             motions,
             channels,
             on_section: false,
             weights: array::from_fn(|lag| lags.get(lag).map_or(0.0, |[_, weight]| *weight)),
-            speeds: passing.iter().flat_map(of_channel).collect(),
+            speeds: convection_per_width.iter().flat_map(of_channel).collect(),
             series: LagSeries::default(),
         }
     }
@@ -232,7 +243,7 @@ impl Gusts {
 
     /// Whether the last term is below `part` of the largest gust.
     #[inline(always)]
-    pub(super) fn settled(&self, part: f64) -> bool {
+    pub(super) fn converged(&self, part: f64) -> bool {
         self.series.last <= part * self.series.largest
     }
 }

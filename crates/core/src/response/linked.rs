@@ -14,7 +14,7 @@ pub(super) struct Sparse {
 }
 
 impl Sparse {
-    pub(super) fn of(m: &DMatrix<f64>) -> Self {
+    pub(super) fn new(m: &DMatrix<f64>) -> Self {
         let (mut ends, mut entries) = (Vec::with_capacity(m.nrows()), Vec::new());
         for row in m.row_iter() {
             let filled = row.iter().enumerate().filter(|(_, x)| **x != 0.0);
@@ -74,13 +74,16 @@ pub(super) enum Linked {
 
 impl Linked {
     /// A matrix whose first `full` rows are full.
-    pub(super) fn of(matrix: &DMatrix<f64>, full: usize) -> Self {
+    pub(super) fn new(matrix: &DMatrix<f64>, full: usize) -> Self {
         let rest = matrix.nrows() - full;
         if matrix.nrows() > FEW_ROWS {
-            let linked = Sparse::of(&matrix.rows(full, rest).into_owned());
-            Self::Many(Packed::of(&matrix.rows(0, full).into_owned()), linked)
+            let linked = Sparse::new(&matrix.rows(full, rest).into_owned());
+            Self::Many(
+                Packed::from_matrix(&matrix.rows(0, full).into_owned()),
+                linked,
+            )
         } else {
-            Self::Few(Packed::of(matrix))
+            Self::Few(Packed::from_matrix(matrix))
         }
     }
 

@@ -51,7 +51,7 @@ impl Packed {
     }
 
     /// A whole matrix.
-    pub(super) fn of(m: &DMatrix<f64>) -> Self {
+    pub(super) fn from_matrix(m: &DMatrix<f64>) -> Self {
         Self::new(m.nrows(), m.ncols(), |i, j| m[(i, j)])
     }
 
@@ -324,16 +324,16 @@ fn add<S: FourLanes, const N: usize>(
 /// `x`, or zero where it has died out; `spoilt` stays zero as long as all are finite. Without a branch: this is part of
 /// every step.
 #[inline(always)]
-fn settle(x: f64, spoilt: &mut f64) -> f64 {
+fn flush_subnormal(x: f64, spoilt: &mut f64) -> f64 {
     *spoilt += 0.0 * x;
     if x.abs() < DIED_OUT { 0.0 } else { x }
 }
 
 /// Whether all values are finite; those that have died out become zero.
-pub(super) fn settled(values: &mut [f64]) -> bool {
+pub(super) fn flush_subnormals(values: &mut [f64]) -> bool {
     let mut spoilt = 0.0;
     for x in values {
-        *x = settle(*x, &mut spoilt);
+        *x = flush_subnormal(*x, &mut spoilt);
     }
     spoilt == 0.0
 }
@@ -377,7 +377,7 @@ mod tests {
             let w = DMatrix::from_fn(rows, columns, |i, j| {
                 (3.7 * i as f64 + 1.3 * j as f64).sin()
             });
-            let packed = Packed::of(&w);
+            let packed = Packed::from_matrix(&w);
             let v: Vec<f64> = (0..columns).map(|j| (0.7 * j as f64).cos()).collect();
             for v in [&v[..], &v[..columns / 2]] {
                 let expected: Vec<_> = (0..rows).map(|i| row(&w, i, v)).collect();

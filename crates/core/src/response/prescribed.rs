@@ -71,7 +71,7 @@ impl PrescribedForces {
     /// Forces of a realisation with these degrees of freedom.
     pub fn new(realization: Realization, dofs: Vec<Dof>) -> Self {
         Self {
-            series: FilterSeries::of(&realization, dofs.len()),
+            series: FilterSeries::new(&realization, dofs.len()),
             group: StripLanes::default(),
             next: Vec::new(),
             realization,
@@ -163,7 +163,7 @@ impl PrescribedForces {
         self.enter(new, given);
         let (per_strip, states) = (self.per_strip(), self.realization.states());
         if Self::points(new) == 1 {
-            return self.settle(new, strips);
+            return self.enter_steady_flow_of(new, strips);
         }
         let (now, before) = (new[2], new[3]);
         let step = FilterAdvance {
@@ -278,14 +278,14 @@ impl PrescribedForces {
     }
 
     /// The filters of sections held where they are until the flow has settled.
-    fn settle(&self, state: &mut [f64], strips: &[StripFlow]) -> Result<()> {
-        let settling = self.settling()?;
+    fn enter_steady_flow_of(&self, state: &mut [f64], strips: &[StripFlow]) -> Result<()> {
+        let steady_flow = self.steady_flow()?;
         let states = self.realization.states();
         for (strip, flow) in state[SHARED..].chunks_mut(self.per_strip()).zip(strips) {
             let (filters, known) = strip[1..].split_at_mut(states);
             let points = known.chunks(POINTS * NUMBERS);
             let displacement: Vec<f64> = points.map(|newest| newest[0]).collect();
-            self.settle_at(&settling, &displacement, flow.width_m, filters);
+            self.enter_steady_flow(&steady_flow, &displacement, flow.width_m, filters);
         }
         Ok(())
     }
@@ -312,7 +312,7 @@ impl PrescribedForces {
             let scale = 0.5 * air.density_kg_m3 * dof.force_scale(width);
             *force = match &self.realization {
                 Realization::Continuous(c) => {
-                    let fed = |order: usize| {
+                    let driven = |order: usize| {
                         wind * wind * row(&c.e0, i, &|j| motion[j][order])
                             + wind * width * row(&c.e1, i, &|j| motion[j][order + 1])
                     };
@@ -324,8 +324,8 @@ impl PrescribedForces {
                     };
                     ForceAhead {
                         force: scale
-                            * (fed(0) + mass(0) + wind * wind * row(&c.c, i, &|k| filters[k])),
-                        rate: scale * (fed(1) + mass(1) + wind * wind * row(&c.c, i, &moves)),
+                            * (driven(0) + mass(0) + wind * wind * row(&c.c, i, &|k| filters[k])),
+                        rate: scale * (driven(1) + mass(1) + wind * wind * row(&c.c, i, &moves)),
                     }
                 }
                 // held from sample to sample
@@ -338,7 +338,7 @@ impl PrescribedForces {
     }
 }
 
-fn unsettled() -> Error {
+fn without_steady_flow() -> Error {
     Error::Numerical("prescribed motion: a filter does not settle".into())
 }
 

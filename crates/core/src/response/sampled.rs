@@ -2,7 +2,7 @@
 //! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
 use super::matrix_polynomial::{MatrixPolynomial, terms_of_exponential};
-use super::packed::{apply, settled};
+use super::packed::{apply, flush_subnormals};
 use super::sampling::{Sampling, wind_after};
 use super::series::{Drive, Moving};
 use super::step_cache::{active_columns, load};
@@ -80,7 +80,7 @@ impl Stepper {
                 remaining = 0.0;
             }
         }
-        if !settled(&mut next.values) {
+        if !flush_subnormals(&mut next.values) {
             return Err(overgrown());
         }
         Ok(())

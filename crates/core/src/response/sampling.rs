@@ -25,7 +25,7 @@ pub(super) struct Sampling {
 
 impl Sampling {
     /// None for a continuous model.
-    pub(super) fn of(section: &CoupledSection) -> Option<Self> {
+    pub(super) fn from_section(section: &CoupledSection) -> Option<Self> {
         let Realization::Discrete(d) = section.aerodynamics() else {
             return None;
         };
@@ -34,7 +34,7 @@ impl Sampling {
         Some(Self {
             dofs: n,
             way_m: d.delta_s * s.width_m,
-            force: Packed::of(&section.force_of_filters(&d.c, 1.0)),
+            force: Packed::from_matrix(&section.force_of_filters(&d.c, 1.0)),
             next: Packed::new(filters, filters + n, |l, j| {
                 if j < filters {
                     d.a[(l, j)]

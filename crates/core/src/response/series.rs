@@ -130,8 +130,8 @@ impl PowerSeries {
             dofs: n,
             scale,
             rate,
-            structure: Packed::of(&structure),
-            aerodynamic: Linked::of(&aerodynamic, n),
+            structure: Packed::from_matrix(&structure),
+            aerodynamic: Linked::new(&aerodynamic, n),
             force,
             norms,
             gusts,
@@ -272,9 +272,9 @@ impl PowerSeries {
             // each term to come is below norm/(k+2) times the largest of those it is made from
             let made_from = last.into_iter().fold(size, f64::max);
             let rest = norm * if change == 0.0 { size } else { made_from };
-            let blown = gusts.as_ref().is_none_or(|g| g.settled(LEFT_OUT));
-            let settled = blown && rest <= LEFT_OUT * (k + 2) as f64 * largest;
-            if k >= 2 && (settled || rest.is_nan()) {
+            let blown = gusts.as_ref().is_none_or(|g| g.converged(LEFT_OUT));
+            let converged = blown && rest <= LEFT_OUT * (k + 2) as f64 * largest;
+            if k >= 2 && (converged || rest.is_nan()) {
                 break;
             }
         }

@@ -133,7 +133,7 @@ impl StepCache {
                 }
                 column.copy_from_slice(&z);
             }
-            Ok(Packed::of(&matrix))
+            Ok(Packed::from_matrix(&matrix))
         })
     }
 }

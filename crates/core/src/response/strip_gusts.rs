@@ -54,16 +54,16 @@ impl StripGusts {
         air: Airflow,
         forces: &mut [ForceAhead],
     ) {
-        let passing = air.wind_m_s / air.width_m;
+        let convection_per_s = air.wind_m_s / air.width_m;
         let gust = [0, 1].map(|j| strip[j] + ahead_s * rate[j]);
         let (mut passed, mut passed_rate) = (gust, rate);
         if !self.lags.is_empty() {
             (passed, passed_rate) = ([0.0; 2], [0.0; 2]);
             for (i, (g, j)) in strip[2..].iter().zip(self.components()).enumerate() {
                 let [pole, weight] = self.lags[i % self.lags.len()];
-                let now = behind_a_lag(*g, [strip[j], gust[j]], pole * passing * ahead_s);
+                let now = behind_a_lag(*g, [strip[j], gust[j]], pole * convection_per_s * ahead_s);
                 passed[j] += weight * now;
-                passed_rate[j] += weight * pole * passing * (gust[j] - now);
+                passed_rate[j] += weight * pole * convection_per_s * (gust[j] - now);
             }
         }
         for ((force, dof), row) in forces.iter_mut().zip(&self.dofs).zip(&self.coefficients) {
@@ -74,7 +74,7 @@ impl StripGusts {
     }
 
     /// Rates of the gusts behind the lags, per second, where the mean wind passes so many widths in a second.
-    pub fn rates(&self, strip: &[f64], passing: f64) -> impl Iterator<Item = f64> {
+    pub fn rates(&self, strip: &[f64], convection_per_s: f64) -> impl Iterator<Item = f64> {
         let (now, lagging) = strip.split_at(2);
         lagging
             .iter()
@@ -82,7 +82,7 @@ impl StripGusts {
             .enumerate()
             .map(move |(i, (g, j))| {
                 let [pole, _] = self.lags[i % self.lags.len()];
-                pole * passing * (now[j] - g)
+                pole * convection_per_s * (now[j] - g)
             })
     }
 

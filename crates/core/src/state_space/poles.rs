@@ -17,7 +17,7 @@ pub fn balance(a: &DMatrix<f64>) -> DMatrix<f64> {
 fn balance_in_place(m: &mut DMatrix<f64>) {
     let n = m.nrows();
     loop {
-        let mut settled = true;
+        let mut balanced = true;
         for i in 0..n {
             let off_diagonal = |values: &mut dyn Iterator<Item = (usize, f64)>| {
                 values
@@ -35,10 +35,10 @@ fn balance_in_place(m: &mut DMatrix<f64>) {
             if column * scale + row / scale < 0.95 * (column + row) {
                 m.column_mut(i).scale_mut(scale);
                 m.row_mut(i).scale_mut(1.0 / scale);
-                settled = false;
+                balanced = false;
             }
         }
-        if settled {
+        if balanced {
             return;
         }
     }
@@ -63,7 +63,7 @@ fn balance_in_place(m: &mut DMatrix<f64>) {
 /// [`Error::Numerical`] when an entry is not finite or the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
     let mut found = RepeatedEigenvalues::new(a.nrows());
-    let found = found.of(&mut a.clone()).map(<[_]>::to_vec);
+    let found = found.eigenvalues(&mut a.clone()).map(<[_]>::to_vec);
     found.ok_or_else(|| {
         let why = match a.iter().all(|x| x.is_finite()) {
             true => "the QR iteration did not converge",
@@ -88,7 +88,7 @@ impl RepeatedEigenvalues {
     }
 
     /// All eigenvalues of `a`, which is spoilt; `None` when an entry is not finite or the iteration does not converge.
-    pub fn of(&mut self, a: &mut DMatrix<f64>) -> Option<&[Complex<f64>]> {
+    pub fn eigenvalues(&mut self, a: &mut DMatrix<f64>) -> Option<&[Complex<f64>]> {
         self.found.clear();
         if !a.iter().all(|x| x.is_finite()) {
             return None;

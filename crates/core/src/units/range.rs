@@ -99,7 +99,7 @@ impl ReducedFrequencyRange {
         Some(Self {
             min: parts[0].min,
             max: reached,
-            gaps: Gaps::of(gaps),
+            gaps: Gaps::new(gaps),
         })
     }
 
@@ -117,7 +117,7 @@ impl ReducedFrequencyRange {
             } else {
                 other.max
             },
-            gaps: Gaps::of(self.gaps().chain(other.gaps()).collect()),
+            gaps: Gaps::new(self.gaps().chain(other.gaps()).collect()),
         }
     }
 
@@ -133,7 +133,7 @@ impl ReducedFrequencyRange {
         Self {
             min: scaled(self.min),
             max: scaled(self.max),
-            gaps: Gaps::of(gaps.collect()),
+            gaps: Gaps::new(gaps.collect()),
         }
     }
 
@@ -218,7 +218,7 @@ impl Gaps {
     }
 
     /// All of them, those left out that say nothing besides the others.
-    fn of(mut gaps: Vec<ReducedFrequencyGap>) -> Self {
+    fn new(mut gaps: Vec<ReducedFrequencyGap>) -> Self {
         gaps.sort_by(|a, b| a.from.full_width().total_cmp(&b.from.full_width()));
         let within =
             |a: &ReducedFrequencyGap, b: &ReducedFrequencyGap| match (a.unknown(), b.unknown()) {
@@ -279,7 +279,7 @@ impl TryFrom<Vec<ReducedFrequencyGap>> for Gaps {
                 ));
             }
         }
-        Ok(Self::of(gaps))
+        Ok(Self::new(gaps))
     }
 }
 

@@ -70,7 +70,7 @@ pub struct Critical {
 }
 
 impl Critical {
-    pub(super) fn of(evidence: &Evidence) -> Self {
+    pub(super) fn find(evidence: &Evidence) -> Self {
         let mut all = flutter(&evidence.flutter);
         all.extend(evidence.divergence.iter().filter_map(|d| {
             Some(CriticalSpeed {

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// // nothing was looked at
 /// let required = Some(RequiredSpeed { speed_m_s: 60.0 });
-/// assert!(Verdict::of(&Evidence { required, ..Evidence::default() }).refuses());
+/// assert!(Verdict::judge(&Evidence { required, ..Evidence::default() }).refuses());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RequiredSpeed {

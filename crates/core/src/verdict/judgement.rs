@@ -18,12 +18,12 @@ pub(super) struct Judgement {
 }
 
 impl Judgement {
-    pub(super) fn of(evidence: &Evidence) -> Self {
-        let critical = Critical::of(evidence);
+    pub(super) fn new(evidence: &Evidence) -> Self {
+        let critical = Critical::find(evidence);
         let doubts = doubts::all(evidence, &critical);
         let required = evidence.required;
         Self {
-            outcome: required.map(|r| Outcome::of(r, &critical, &doubts)),
+            outcome: required.map(|r| Outcome::judge(r, &critical, &doubts)),
             suggested_m_s: match required {
                 None => suggestion(evidence, &critical),
                 Some(_) => None,
@@ -48,6 +48,6 @@ fn suggestion(evidence: &Evidence, critical: &Critical) -> Option<f64> {
         required: Some(RequiredSpeed { speed_m_s }),
         ..evidence.clone()
     };
-    let met = Judgement::of(&required).outcome == Some(Outcome::Met);
+    let met = Judgement::new(&required).outcome == Some(Outcome::Met);
     met.then_some(speed_m_s)
 }

@@ -22,7 +22,7 @@ pub(super) fn constraints(
         without_m_s: moved.without_m_s,
         with_m_s: moved.with_m_s,
     };
-    let settled = |severity, text: String| {
+    let doubt = |severity, text: String| {
         let doubt = Doubt::new(severity, kind, text);
         Some(doubt.settled_by("tests that determine the onset without constraints"))
     };
@@ -37,7 +37,7 @@ pub(super) fn constraints(
             // where the search ends stands for an onset that lies above
             let (_, searched_to) = first.judged_m_s();
             let severity = Severity::severe_if(without >= BELIEVABLE * searched_to);
-            return settled(severity, gone);
+            return doubt(severity, gone);
         }
     };
     let (low, high) = first.ends_m_s().unwrap_or((with, with));
@@ -70,5 +70,5 @@ pub(super) fn constraints(
             speed(with)
         ),
     };
-    settled(severity, text)
+    doubt(severity, text)
 }

@@ -36,7 +36,7 @@ pub enum Below {
 }
 
 impl Outcome {
-    pub(super) fn of(required: RequiredSpeed, critical: &Critical, doubts: &[Doubt]) -> Self {
+    pub(super) fn judge(required: RequiredSpeed, critical: &Critical, doubts: &[Doubt]) -> Self {
         let found = || critical.all();
         let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
         let undetermined = doubts.iter().any(open);

@@ -47,7 +47,7 @@ impl Reach {
     }
 
     /// The speeds that a search of a structure of this width could judge; its modes are in `curves`.
-    pub fn of(judged: JudgedSpeeds, curves: &FlutterCurves, width_m: f64) -> Self {
+    pub fn new(judged: JudgedSpeeds, curves: &FlutterCurves, width_m: f64) -> Self {
         let mut all: Vec<&ModePoint> = curves.branches.iter().flat_map(|b| &b.points).collect();
         all.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
         let mut lowest: Vec<(f64, f64)> = Vec::new();

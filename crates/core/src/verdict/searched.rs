@@ -27,7 +27,7 @@ impl Evidence {
         let structure = section.structure();
         let reach = judged_speeds(section, search, Some(tested)).and_then(|judged| {
             let curves = trace_modes(forces, section, &search.speeds_m_s()?)?;
-            Ok(Reach::of(judged, &curves, structure.width_m))
+            Ok(Reach::new(judged, &curves, structure.width_m))
         });
         let reach = evidence.noted("modes over wind speed", reach);
         let growth = unwanted_growth_below(Some(&found), section, search, Some(tested));

@@ -89,7 +89,7 @@ fn unstable(forces: &str, speed_m_s: f64) -> FlutterReading {
 }
 
 /// Evidence of a model that was scanned for growth, against a required speed.
-fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
+fn scanned(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
     Evidence {
         required: Some(RequiredSpeed {
             speed_m_s: required_m_s,
@@ -106,18 +106,18 @@ fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
 }
 
 fn words(evidence: &Evidence) -> &'static str {
-    Verdict::of(evidence).outcome.unwrap().words()
+    Verdict::judge(evidence).outcome.unwrap().words()
 }
 
 fn severe(evidence: &Evidence) -> Vec<DoubtKind> {
-    let all = Verdict::of(evidence).doubts.into_iter();
+    let all = Verdict::judge(evidence).doubts.into_iter();
     let severe = all.filter(|d| d.severity == Severity::Severe);
     severe.map(|d| d.kind).collect()
 }
 
 #[test]
 fn an_onset_with_its_interval_above_is_met() {
-    let verdict = Verdict::of(&of(30.0, vec![found("the model", 36.9, 0.3)]));
+    let verdict = Verdict::judge(&scanned(30.0, vec![found("the model", 36.9, 0.3)]));
     assert!(verdict.is_met() && !verdict.refuses());
     assert_eq!(
         verdict.headline,
@@ -132,11 +132,11 @@ fn an_onset_with_its_interval_above_is_met() {
 
 #[test]
 fn which_number_lies_below_is_said() {
-    let verdict = Verdict::of(&of(36.7, vec![found("the model", 36.9, 0.3)]));
+    let verdict = Verdict::judge(&scanned(36.7, vec![found("the model", 36.9, 0.3)]));
     let below = Below::LowerEnd;
     assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
     assert!(verdict.explanation.contains("only the lower end counts"));
-    let verdict = Verdict::of(&of(45.0, vec![found("the model", 36.9, 0.3)]));
+    let verdict = Verdict::judge(&scanned(45.0, vec![found("the model", 36.9, 0.3)]));
     let below = Below::BestEstimate;
     assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
     assert!(verdict.refuses());
@@ -145,10 +145,10 @@ fn which_number_lies_below_is_said() {
 /// Divergence at 79.9 m/s, required 100, no flutter to 110 was a green "Met".
 #[test]
 fn divergence_below_the_required_speed_is_not_met() {
-    let mut evidence = of(100.0, vec![stable("the model", 110.0)]);
+    let mut evidence = scanned(100.0, vec![stable("the model", 110.0)]);
     assert_eq!(words(&evidence), "MET");
     evidence.divergence = vec![DivergenceReading::at("the model", Some(79.9))];
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     let below = Below::BestEstimate;
     assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
     assert_eq!(
@@ -160,10 +160,10 @@ fn divergence_below_the_required_speed_is_not_met() {
 /// A bridge that diverges at 62.6 m/s was headed "no flutter up to 120 m/s"; a deck with divergence at 14.8 "onset at 21.2".
 #[test]
 fn what_begins_first_governs_also_without_a_requirement() {
-    let mut evidence = of(1.0, vec![stable("the models", 120.0)]);
+    let mut evidence = scanned(1.0, vec![stable("the models", 120.0)]);
     evidence.required = None;
     evidence.divergence = vec![DivergenceReading::at("the models", Some(62.6))];
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     assert!(
         verdict
             .headline
@@ -177,27 +177,27 @@ fn what_begins_first_governs_also_without_a_requirement() {
     );
     evidence.flutter = vec![found("the model", 21.2, 0.4)];
     evidence.divergence = vec![DivergenceReading::at("the table", Some(14.8))];
-    let critical = Verdict::of(&evidence).critical;
+    let critical = Verdict::judge(&evidence).critical;
     let governs = critical.governs.unwrap();
     assert_eq!(governs.phenomenon, Phenomenon::Divergence);
     assert_eq!((governs.best_m_s, &governs.forces[..]), (14.8, "the table"));
     assert_eq!(critical.others[0].phenomenon, Phenomenon::Flutter);
     // what was assumed at rest makes the lower end
     evidence.divergence[0].lower_m_s = Some(14.0);
-    assert_eq!(Verdict::of(&evidence).critical.least_m_s(), Some(14.0));
+    assert_eq!(Verdict::judge(&evidence).critical.least_m_s(), Some(14.0));
     evidence.galloping = Some(GallopingReading {
         forces: "the coefficients".to_owned(),
         speed_m_s: 9.0,
     });
-    let governs = Verdict::of(&evidence).critical.governs.unwrap();
+    let governs = Verdict::judge(&evidence).critical.governs.unwrap();
     assert_eq!(governs.phenomenon, Phenomenon::Galloping);
 }
 
 /// Required 62 and searched to 54 was "NOT met"; tests that end at 4.5 m/s were "no flutter up to 40 m/s".
 #[test]
 fn what_was_not_looked_at_cannot_be_judged() {
-    let evidence = of(62.0, vec![stable("the model", 54.0)]);
-    let verdict = Verdict::of(&evidence);
+    let evidence = scanned(62.0, vec![stable("the model", 54.0)]);
+    let verdict = Verdict::judge(&evidence);
     assert_eq!(words(&evidence), "CANNOT BE JUDGED");
     assert!(
         verdict
@@ -211,7 +211,7 @@ fn what_was_not_looked_at_cannot_be_judged() {
             asked_m_s: 62.0
         }]
     );
-    let mut tested = of(30.0, vec![stable("the model", 40.0)]);
+    let mut tested = scanned(30.0, vec![stable("the model", 40.0)]);
     assert_eq!(words(&tested), "MET");
     tested.flutter[0].basis = tests(4.5);
     assert_eq!(words(&tested), "CANNOT BE JUDGED");
@@ -221,7 +221,7 @@ fn what_was_not_looked_at_cannot_be_judged() {
     assert_eq!(words(&tested), "CANNOT BE JUDGED");
     tested.flutter[0].basis = tests(31.0);
     assert_eq!(words(&tested), "MET");
-    assert_eq!(words(&of(30.0, Vec::new())), "CANNOT BE JUDGED");
+    assert_eq!(words(&scanned(30.0, Vec::new())), "CANNOT BE JUDGED");
 }
 
 /// A bridge was headed 84.1 m/s where its table said 77.97; 84.6 where the table was unstable from 8.6 on.
@@ -229,8 +229,8 @@ fn what_was_not_looked_at_cannot_be_judged() {
 fn model_and_table_that_contradict_each_other_are_said() {
     let table = found("the tables", 77.97, 0.0);
     let model = found("the models", 84.1, 1.5);
-    let evidence = of(50.0, vec![table.clone(), model.clone()]);
-    let verdict = Verdict::of(&evidence);
+    let evidence = scanned(50.0, vec![table.clone(), model.clone()]);
+    let verdict = Verdict::judge(&evidence);
     assert_eq!(words(&evidence), "CANNOT BE JUDGED");
     assert!(
         verdict
@@ -239,7 +239,7 @@ fn model_and_table_that_contradict_each_other_are_said() {
     );
     assert_eq!(verdict.critical.least_m_s(), Some(77.97));
     // the same, whichever comes first
-    let reversed = Verdict::of(&of(50.0, vec![model.clone(), table.clone()]));
+    let reversed = Verdict::judge(&scanned(50.0, vec![model.clone(), table.clone()]));
     assert_eq!(reversed.critical.least_m_s(), Some(77.97));
     let said = reversed.warnings().next().unwrap();
     assert_eq!(
@@ -247,8 +247,8 @@ fn model_and_table_that_contradict_each_other_are_said() {
         "Contradiction: 84.1 m/s (82.6–85.6) by the models, 78.0 m/s by the tables"
     );
     // lower than required by the table alone
-    assert_eq!(words(&of(80.0, vec![table.clone(), model])), "NOT MET");
-    let verdict = Verdict::of(&of(
+    assert_eq!(words(&scanned(80.0, vec![table.clone(), model])), "NOT MET");
+    let verdict = Verdict::judge(&scanned(
         50.0,
         vec![unstable("the tables", 8.6), found("the models", 84.6, 2.0)],
     ));
@@ -272,20 +272,20 @@ fn model_and_table_that_contradict_each_other_are_said() {
             reason: "scatter".to_owned(),
         };
     }
-    let verdict = Verdict::of(&of(15.0, vec![open, unstable("the tables", 7.8)]));
+    let verdict = Verdict::judge(&scanned(15.0, vec![open, unstable("the tables", 7.8)]));
     let said = verdict.explanation;
     assert!(said.contains("unstable at and below 7.80 m/s"), "{said}");
     // neither of two that grow from the lowest speed on knows where it begins
-    let both = of(50.0, vec![unstable("a", 84.9), unstable("b", 86.1)]);
-    assert!(!Verdict::of(&both).headline.contains("CONTRADICTED"));
+    let both = scanned(50.0, vec![unstable("a", 84.9), unstable("b", 86.1)]);
+    assert!(!Verdict::judge(&both).headline.contains("CONTRADICTED"));
     // one finds what the other excludes
-    let missed = Verdict::of(&of(
+    let missed = Verdict::judge(&scanned(
         50.0,
         vec![stable("the tables", 90.0), found("the models", 60.0, 1.0)],
     ));
     assert!(!missed.is_met());
     // a table that ends before says nothing against it
-    let ends = Verdict::of(&of(
+    let ends = Verdict::judge(&scanned(
         50.0,
         vec![found("the models", 60.0, 1.0), stable("the tables", 55.0)],
     ));
@@ -297,7 +297,7 @@ fn model_and_table_that_contradict_each_other_are_said() {
 #[test]
 fn what_is_unstable_from_the_start_meets_nothing() {
     for (required_m_s, below) in [(10.0, Below::LowerEnd), (20.0, Below::BestEstimate)] {
-        let verdict = Verdict::of(&of(required_m_s, vec![unstable("the model", 15.7)]));
+        let verdict = Verdict::judge(&scanned(required_m_s, vec![unstable("the model", 15.7)]));
         assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
         assert!(
             verdict
@@ -309,36 +309,36 @@ fn what_is_unstable_from_the_start_meets_nothing() {
     }
     let open = Evidence {
         required: None,
-        ..of(10.0, vec![unstable("the model", 15.7)])
+        ..scanned(10.0, vec![unstable("the model", 15.7)])
     };
-    assert_eq!(Verdict::of(&open).suggested_m_s, None);
+    assert_eq!(Verdict::judge(&open).suggested_m_s, None);
 }
 
 #[test]
 fn readings_that_agree_share_an_interval() {
-    let evidence = of(
+    let evidence = scanned(
         70.0,
         vec![
             found("the tables", 77.0, 0.0),
             found("the models", 77.4, 2.0),
         ],
     );
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     assert_eq!(
         verdict.headline,
         "✓ MET, required 70 m/s: flutter onset 77.0 m/s by the tables, inside the tested range; the models: 77.4 m/s (75.4–79.4)"
     );
     assert_eq!(verdict.critical.least_m_s(), Some(75.4));
     let low = found("the tables", 75.0, 0.0);
-    let other = Verdict::of(&of(70.0, vec![found("the models", 77.4, 2.5), low]));
+    let other = Verdict::judge(&scanned(70.0, vec![found("the models", 77.4, 2.5), low]));
     assert_eq!(other.critical.least_m_s(), Some(74.9));
 }
 
 #[test]
 fn a_verdict_is_written_and_read() {
-    let mut evidence = of(62.0, vec![stable("the model", 54.0)]);
+    let mut evidence = scanned(62.0, vec![stable("the model", 54.0)]);
     evidence.divergence = vec![DivergenceReading::at("the model", Some(79.9))];
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     let json = serde_json::to_value(&verdict).unwrap();
     assert_eq!(json["outcome"]["state"], "cannot_be_judged");
     assert_eq!(json["doubts"][0]["kind"], "not_judged_above");

@@ -380,7 +380,7 @@ fn table_of(samples: &[TransferSample], dofs: &[Dof]) -> Result<DerivativeTable>
         if !(dofs.contains(&sample.force) && dofs.contains(&sample.motion)) {
             continue;
         }
-        let derivative = Derivative::of(sample.force, sample.motion, sample.part);
+        let derivative = Derivative::from_entry(sample.force, sample.motion, sample.part);
         let v_hat = sample.k.v_hat();
         points.entry(derivative).or_default().push(DerivativePoint {
             mean_speed_m_s: sample.mean_speed_m_s,

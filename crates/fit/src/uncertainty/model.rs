@@ -263,7 +263,7 @@ pub(crate) fn derivative_intervals(
                     let half = two_sided_quantile(CONFIDENCE, nu.min(1e6)) * standard_error;
                     let value = at(&here);
                     intervals.push(DerivativeInterval {
-                        derivative: Derivative::of(force, motion, part),
+                        derivative: Derivative::from_entry(force, motion, part),
                         k: k.full_width(),
                         value,
                         standard_error,

@@ -59,12 +59,12 @@ impl Slave {
                 let all = first(*place)..first(*place) + element(*place).size;
                 let whole: Vec<u32> = all.clone().map(|p| p as u32).collect();
                 if let Some(now) = self.three().and_then(|t| t.numbers(&whole).ok()) {
-                    self.late.held[all].copy_from_slice(&now);
+                    self.late.kept[all].copy_from_slice(&now);
                 }
             }
         }
         for (place, value) in places.iter().zip(values) {
-            self.late.held[*place as usize] = *value;
+            self.late.kept[*place as usize] = *value;
         }
         let mut done = usize::MAX;
         for place in places {
@@ -73,7 +73,7 @@ impl Slave {
                 continue;
             }
             done = from;
-            let now = &self.late.held[from..from + element(*place).size];
+            let now = &self.late.kept[from..from + element(*place).size];
             if let Some(three) = self.three() {
                 three.set_array(element(*place), now)?;
             }

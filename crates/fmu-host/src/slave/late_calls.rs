@@ -6,7 +6,7 @@ use crate::library::{Component, Fmi3Functions, Int};
 /// What is told to an instance at another time than in FMI 2.0.
 pub(super) struct LateCalls {
     /// What each number was set to last, at first its start value: an element is set along with its whole array.
-    pub(super) held: Vec<f64>,
+    pub(super) kept: Vec<f64>,
     start_s: f64,
     stop_s: Option<f64>,
     tolerance: Option<f64>,
@@ -23,7 +23,7 @@ impl LateCalls {
             _ => 0.0,
         };
         Self {
-            held: (0..description.elements.len()).map(start).collect(),
+            kept: (0..description.elements.len()).map(start).collect(),
             start_s: 0.0,
             stop_s: None,
             tolerance: None,

@@ -40,14 +40,14 @@ impl Section {
     }
 
     /// States of the transposed direct form when the input has been one for ever.
-    fn settled(&self) -> [f64; 2] {
+    fn steady_state(&self) -> [f64; 2] {
         let second = self.b[2] - self.a[1];
         [self.b[1] - self.a[0] + second, second]
     }
 
     /// Filters in place, starting as if the first sample had always been there.
     pub(super) fn run(&self, samples: &mut [f64], first: f64) {
-        let [mut s1, mut s2] = self.settled().map(|s| s * first);
+        let [mut s1, mut s2] = self.steady_state().map(|s| s * first);
         for x in samples {
             let y = self.b[0] * *x + s1;
             s1 = self.b[1] * *x - self.a[0] * y + s2;

@@ -74,7 +74,7 @@ impl UnitMotion {
         timing: Timing,
         seed: u64,
     ) -> Self {
-        let (lines, duration_s) = Lines::of(motion, frequencies_hz, timing, seed);
+        let (lines, duration_s) = Lines::new(motion, frequencies_hz, timing, seed);
         let on_time = lines.samples(duration_s, timing, 0.0);
         let largest = on_time[0].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let unit = |x: Vec<f64>| -> Vec<f64> {
@@ -143,7 +143,7 @@ struct Lines(Vec<(f64, Complex<f64>)>);
 
 impl Lines {
     /// The steady motion and its duration.
-    fn of(
+    fn new(
         motion: &TrainingMotion,
         frequencies_hz: &[f64],
         timing: Timing,

@@ -33,7 +33,7 @@ impl TransferColumn {
     pub(crate) fn new(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
         let column = |part| {
             dofs.iter()
-                .map(move |force| Derivative::of(*force, motion, part))
+                .map(move |force| Derivative::from_entry(*force, motion, part))
         };
         let all: Vec<Derivative> = column(Part::Real).chain(column(Part::Imaginary)).collect();
         let reference = group.points(all[0]);
@@ -59,7 +59,7 @@ impl TransferColumn {
             point.value * point.k().full_width().powi(2)
         };
         let row = |force: &Dof| {
-            let at = |p| Derivative::of(*force, motion, p);
+            let at = |p| Derivative::from_entry(*force, motion, p);
             (0..reference.len())
                 .map(|i| Complex::new(part(at(Part::Real), i), part(at(Part::Imaginary), i)))
                 .collect()
@@ -76,7 +76,7 @@ impl TransferColumn {
     fn interpolated(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
         let model = InterpolatedTable::new(group, dofs, Extrapolation::Refuse)?;
         let range = model.tested_range();
-        let first = Derivative::of(dofs[0], motion, Part::Real);
+        let first = Derivative::from_entry(dofs[0], motion, Part::Real);
         let points = group.points(first).iter().map(DerivativePoint::k);
         let k: Vec<ReducedFrequency> = points.filter(|k| range.contains(*k)).collect();
         ensure(

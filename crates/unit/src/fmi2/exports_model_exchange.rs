@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::guard::{array, array_mut, exported, place};
+use super::guard::{array, array_mut, exported, target};
 use super::types::{fmi2Boolean, fmi2EventInfo, fmi2Real};
 use crate::lifecycle::{Call, State};
 use crate::refusal::Refusal;
@@ -15,7 +15,7 @@ exported! {
     };
     /// Looks for changes at an event: there are none.
     fmi2NewDiscreteStates(eventInfo: *mut fmi2EventInfo) Call::NewDiscreteStates => |_| {
-        *place(eventInfo, "eventInfo")? = fmi2EventInfo::default();
+        *target(eventInfo, "eventInfo")? = fmi2EventInfo::default();
         Ok(())
     };
     /// Begins the integration.
@@ -28,8 +28,8 @@ exported! {
         _noSetFMUStatePriorToCurrentPoint: fmi2Boolean, enterEventMode: *mut fmi2Boolean,
         terminateSimulation: *mut fmi2Boolean
     ) Call::CompletedIntegratorStep => |component| {
-        *place(enterEventMode, "enterEventMode")? = 0;
-        *place(terminateSimulation, "terminateSimulation")? = 0;
+        *target(enterEventMode, "enterEventMode")? = 0;
+        *target(terminateSimulation, "terminateSimulation")? = 0;
         component.instance.step_taken()
     };
     /// Sets the time, s.

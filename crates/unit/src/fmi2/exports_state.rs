@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::guard::{array, array_mut, exported, place};
+use super::guard::{array, array_mut, exported, target};
 use super::types::{fmi2Byte, fmi2FMUstate, fmi2Real, fmi2ValueReference};
 use crate::instance::Snapshot;
 use crate::lifecycle::Call;
@@ -12,7 +12,7 @@ use crate::refusal::{CallResult, Refusal};
 /// NULL, or a saved state made here and not freed.
 unsafe fn snapshot<'a>(state: fmi2FMUstate) -> CallResult<&'a mut Snapshot> {
     // SAFETY: by the contract of this function
-    unsafe { place(state.cast::<Snapshot>(), "FMUstate") }
+    unsafe { target(state.cast::<Snapshot>(), "FMUstate") }
 }
 
 fn handle(snapshot: Snapshot) -> fmi2FMUstate {
@@ -22,7 +22,7 @@ fn handle(snapshot: Snapshot) -> fmi2FMUstate {
 exported! {
     /// Saves the state, into the given one or, where that is NULL, a new one.
     fmi2GetFMUstate(FMUstate: *mut fmi2FMUstate) Call::GetFMUstate => |component| {
-        let state = place(FMUstate, "FMUstate")?;
+        let state = target(FMUstate, "FMUstate")?;
         if state.is_null() {
             *state = handle(component.instance.snapshot());
         } else {
@@ -46,7 +46,7 @@ exported! {
     /// Length in bytes of a serialised state.
     fmi2SerializedFMUstateSize(FMUstate: fmi2FMUstate, size: *mut usize) Call::SerializedFMUstateSize => |component| {
         snapshot(FMUstate)?;
-        *place(size, "size")? = component.instance.serialized_length();
+        *target(size, "size")? = component.instance.serialized_length();
         Ok(())
     };
     /// Writes a saved state as bytes.
@@ -69,7 +69,7 @@ exported! {
         serializedState: *const fmi2Byte, size: usize, FMUstate: *mut fmi2FMUstate
     ) Call::DeSerializeFMUstate => |component| {
         let bytes = array(serializedState.cast::<u8>(), size, "serializedState")?;
-        let state = place(FMUstate, "FMUstate")?;
+        let state = target(FMUstate, "FMUstate")?;
         *state = handle(component.instance.deserialize(bytes)?);
         Ok(())
     };

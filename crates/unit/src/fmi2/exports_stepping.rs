@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::guard::{array, array_mut, exported, not_offered, place};
+use super::guard::{array, array_mut, exported, not_offered, target};
 use super::types::{
     fmi2Boolean, fmi2Component, fmi2Integer, fmi2LastSuccessfulTime, fmi2Real, fmi2Status,
     fmi2StatusKind, fmi2String, fmi2Terminated, fmi2ValueReference,
@@ -52,7 +52,7 @@ exported! {
     /// After a discarded step, the point of time it started from.
     fmi2GetRealStatus(s: fmi2StatusKind, value: *mut fmi2Real) Call::GetRealStatus => |component| {
         after_discard(s, fmi2LastSuccessfulTime, component.instance.state())?;
-        *place(value, "value")? = component.instance.time_s();
+        *target(value, "value")? = component.instance.time_s();
         Ok(())
     };
     /// No status is an integer.
@@ -61,7 +61,7 @@ exported! {
     /// After a discarded step, whether the unit wants to end the run: it does not.
     fmi2GetBooleanStatus(s: fmi2StatusKind, value: *mut fmi2Boolean) Call::GetBooleanStatus => |component| {
         after_discard(s, fmi2Terminated, component.instance.state())?;
-        *place(value, "value")? = 0;
+        *target(value, "value")? = 0;
         Ok(())
     };
     /// Description of a pending step: there never is one.

@@ -34,8 +34,8 @@ exported! {
     fmi2GetString(vr: *const fmi2ValueReference, nvr: usize, value: *mut fmi2String) Call::GetString => |component| {
         let references = array(vr, nvr, "vr")?;
         for (reference, value) in references.iter().zip(array_mut(value, nvr, "value")?) {
-            let place = component.instance.text_place(*reference)?;
-            *value = component.texts[place].as_ptr();
+            let index = component.instance.text_index(*reference)?;
+            *value = component.texts[index].as_ptr();
         }
         Ok(())
     };

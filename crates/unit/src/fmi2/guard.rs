@@ -102,12 +102,12 @@ pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> &str {
 }
 
 /// A call, and the function of the interface that makes it, as messages name it.
-pub(crate) struct Named<'a> {
+pub(crate) struct NamedCall<'a> {
     call: Call,
     function: &'a str,
 }
 
-impl From<Call> for Named<'_> {
+impl From<Call> for NamedCall<'_> {
     #[inline]
     fn from(call: Call) -> Self {
         let function = call.name();
@@ -118,9 +118,9 @@ impl From<Call> for Named<'_> {
 impl Call {
     /// The call as a function of another name makes it.
     #[inline]
-    pub(crate) fn by(self, function: &str) -> Named<'_> {
+    pub(crate) fn by(self, function: &str) -> NamedCall<'_> {
         let call = self;
-        Named { call, function }
+        NamedCall { call, function }
     }
 }
 
@@ -132,10 +132,10 @@ impl Call {
 #[inline]
 pub(crate) unsafe fn guarded<'a>(
     handle: fmi2Component,
-    call: impl Into<Named<'a>>,
+    call: impl Into<NamedCall<'a>>,
     body: impl FnOnce(&mut Component) -> CallResult<()>,
 ) -> fmi2Status {
-    let Named { call, function } = call.into();
+    let NamedCall { call, function } = call.into();
     // SAFETY: by the contract of this function
     let Some(component) = (unsafe { handle.cast::<Component>().as_mut() }) else {
         return fmi2Status::fmi2Error;
@@ -287,11 +287,11 @@ fn array_too_long(count: usize, name: &str) -> Refusal {
     Refusal::error(format!("{name}: {count} elements do not fit into memory"))
 }
 
-/// One place of the importer to be filled.
+/// One variable of the importer to be written.
 ///
 /// # Safety
 /// `pointer` is NULL or points to a value that nobody else uses while the result is in use.
-pub(crate) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> CallResult<&'a mut T> {
+pub(crate) unsafe fn target<'a, T>(pointer: *mut T, name: &str) -> CallResult<&'a mut T> {
     // SAFETY: by the contract of this function
     unsafe { pointer.as_mut() }
         .ok_or_else(|| Refusal::error(format!("{name}: expected a pointer, found NULL")))

@@ -6,7 +6,7 @@
 use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Status};
 use std::ffi::{CStr, CString, c_char, c_void};
 
-/// Category of a message: place in [`crate::log_categories::LOG_CATEGORIES`].
+/// Category of a message: index in [`crate::log_categories::LOG_CATEGORIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Category {
     Events,

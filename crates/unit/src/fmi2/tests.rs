@@ -66,7 +66,7 @@ struct Archive {
 }
 
 impl Archive {
-    fn of(json: &str) -> Self {
+    fn new(json: &str) -> Self {
         let folder = tempfile::Builder::new()
             .prefix("Brücke 1 ")
             .tempdir()
@@ -83,7 +83,7 @@ impl Archive {
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("../..")
             .join(path);
-        Self::of(&std::fs::read_to_string(path).unwrap())
+        Self::new(&std::fs::read_to_string(path).unwrap())
     }
 
     /// The rational fixture with a light lateral support and a quasi-steady drag.
@@ -113,7 +113,7 @@ impl Archive {
         };
         (m.a1, m.a2, m.a3) = (widen(&m.a1, 0.0), widen(&m.a2, -0.05), widen(&m.a3, 0.0));
         m.lag_terms = m.lag_terms.iter().map(|a| widen(a, 0.0)).collect();
-        Self::of(&model.to_json().unwrap())
+        Self::new(&model.to_json().unwrap())
     }
 
     fn model(&self) -> &TrainedModel {
@@ -125,8 +125,8 @@ impl Archive {
     }
 
     fn reference(&self, name: &str) -> fmi2ValueReference {
-        let place = self.resources.table.find_name(name);
-        place.unwrap_or_else(|| panic!("no variable `{name}`")) as fmi2ValueReference
+        let index = self.resources.table.find_name(name);
+        index.unwrap_or_else(|| panic!("no variable `{name}`")) as fmi2ValueReference
     }
 }
 
@@ -193,13 +193,13 @@ impl Unit {
         }
     }
 
-    fn of(kind: &str) -> Self {
+    fn new(kind: &str) -> Self {
         Self::instantiate(Archive::fixture(kind))
     }
 
     /// Ready for the first step at time zero.
     fn started(kind: &str) -> Self {
-        let unit = Self::of(kind);
+        let unit = Self::new(kind);
         unit.start();
         unit
     }

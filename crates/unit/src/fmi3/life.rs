@@ -96,8 +96,8 @@ pub unsafe fn count_of_values(c: fmi2Component, references: &[fmi2ValueReference
     let count = |reference: &fmi2ValueReference| match groups.names_at(*reference) {
         Some(names) => names.of.len(),
         None => groups
-            .places(&[*reference])
-            .map_or(1, |places| places.len()),
+            .indices(&[*reference])
+            .map_or(1, |indices| indices.len()),
     };
     references.iter().map(count).sum()
 }
@@ -219,11 +219,11 @@ pub unsafe extern "C" fn fmi3Reset(c: fmi2Component) -> fmi2Status {
     }
 }
 
-/// The places of an array of references.
+/// The indices of an array of references.
 ///
 /// # Safety
 /// NULL, or `count` references.
-pub(super) unsafe fn places(
+pub(super) unsafe fn indices(
     component: &Component,
     references: *const fmi2ValueReference,
     count: usize,
@@ -231,7 +231,7 @@ pub(super) unsafe fn places(
 ) -> CallResult<Vec<u32>> {
     // SAFETY: by the contract of this function
     let references = unsafe { array(references, count, name) }?;
-    Ok(component.groups.places(references)?.into_owned())
+    Ok(component.groups.indices(references)?.into_owned())
 }
 
 /// Refuses arrays of other lengths than the variables have.

@@ -4,7 +4,7 @@
 
 use super::Fmi3Boolean;
 use crate::fmi2::guard::exported;
-use crate::fmi2::guard::place;
+use crate::fmi2::guard::target;
 use crate::lifecycle::Call;
 
 as_in_fmi2! {
@@ -27,9 +27,9 @@ exported! {
             nextEventTimeDefined,
         ] {
             // what the importer has there need not be a truth value yet
-            *place(flag.cast::<u8>(), "flags")? = 0;
+            *target(flag.cast::<u8>(), "flags")? = 0;
         }
-        *place(nextEventTime, "nextEventTime")? = 0.0;
+        *target(nextEventTime, "nextEventTime")? = 0.0;
         Ok(())
     };
 }
@@ -45,8 +45,8 @@ exported! {
         _noSetFMUStatePriorToCurrentPoint: Fmi3Boolean, enterEventMode: *mut bool,
         terminateSimulation: *mut bool
     ) Call::CompletedIntegratorStep.by("CompletedIntegratorStep") => |component| {
-        *place(enterEventMode.cast::<u8>(), "enterEventMode")? = 0;
-        *place(terminateSimulation.cast::<u8>(), "terminateSimulation")? = 0;
+        *target(enterEventMode.cast::<u8>(), "enterEventMode")? = 0;
+        *target(terminateSimulation.cast::<u8>(), "terminateSimulation")? = 0;
         component.instance.step_taken()
     };
 }
@@ -81,14 +81,14 @@ exported! {
     fmi3GetNumberOfEventIndicators(
         nEventIndicators: *mut usize
     ) Call::GetNominalsOfContinuousStates.by("GetNumberOfEventIndicators") => |_| {
-        *place(nEventIndicators, "nEventIndicators")? = 0;
+        *target(nEventIndicators, "nEventIndicators")? = 0;
         Ok(())
     };
     /// Number of continuous states.
     fmi3GetNumberOfContinuousStates(
         nContinuousStates: *mut usize
     ) Call::GetNominalsOfContinuousStates.by("GetNumberOfContinuousStates") => |component| {
-        *place(nContinuousStates, "nContinuousStates")? = component.instance.state_count();
+        *target(nContinuousStates, "nContinuousStates")? = component.instance.state_count();
         Ok(())
     };
 }

@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::life::{check_count, places};
+use super::life::{check_count, indices};
 use crate::fmi2::guard::{array, array_mut, exported};
 use crate::fmi2::types::{fmi2FMUstate, fmi2ValueReference};
 use crate::instance::derivatives::{check_derivatives, check_seed};
@@ -35,8 +35,8 @@ exported! {
         unknowns: *const fmi2ValueReference, nUnknowns: usize, knowns: *const fmi2ValueReference,
         nKnowns: usize, seed: *const f64, nSeed: usize, sensitivity: *mut f64, nSensitivity: usize
     ) Call::GetDirectionalDerivative => |component| {
-        let unknowns = places(component, unknowns, nUnknowns, "unknowns")?;
-        let knowns = places(component, knowns, nKnowns, "knowns")?;
+        let unknowns = indices(component, unknowns, nUnknowns, "unknowns")?;
+        let knowns = indices(component, knowns, nKnowns, "knowns")?;
         check_count("seed", knowns.len(), nSeed)?;
         check_count("sensitivity", unknowns.len(), nSensitivity)?;
         component.instance.directional_derivative(
@@ -51,8 +51,8 @@ exported! {
         unknowns: *const fmi2ValueReference, nUnknowns: usize, knowns: *const fmi2ValueReference,
         nKnowns: usize, seed: *const f64, nSeed: usize, sensitivity: *mut f64, nSensitivity: usize
     ) Call::GetDirectionalDerivative.by("GetAdjointDerivative") => |component| {
-        let unknowns = places(component, unknowns, nUnknowns, "unknowns")?;
-        let knowns = places(component, knowns, nKnowns, "knowns")?;
+        let unknowns = indices(component, unknowns, nUnknowns, "unknowns")?;
+        let knowns = indices(component, knowns, nKnowns, "knowns")?;
         check_count("seed", unknowns.len(), nSeed)?;
         check_count("sensitivity", knowns.len(), nSensitivity)?;
         let seed = array(seed, nSeed, "seed")?;

@@ -3,7 +3,7 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::Fmi3Boolean;
-use super::life::{check_count, places};
+use super::life::{check_count, indices};
 use crate::fmi2::guard::{Component, array, array_mut, exported, guarded};
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 use crate::lifecycle::Call;
@@ -40,10 +40,10 @@ exported! {
         let references = array(vr, nvr, "valueReferences")?;
         let orders = array(orders, nvr, "orders")?;
         let of_each = of_elements(component, references, orders)?;
-        let places = places(component, vr, nvr, "valueReferences")?;
-        check_count("values", places.len(), nValues)?;
+        let indices = indices(component, vr, nvr, "valueReferences")?;
+        check_count("values", indices.len(), nValues)?;
         let values = array_mut(values, nValues, "values")?;
-        component.instance.output_rates(&places, &of_each, values)
+        component.instance.output_rates(&indices, &of_each, values)
     };
 }
 
@@ -55,7 +55,7 @@ fn of_elements(
 ) -> CallResult<Vec<i32>> {
     let mut all = Vec::with_capacity(references.len());
     for (reference, order) in references.iter().zip(orders) {
-        let count = component.groups.places(&[*reference])?.len();
+        let count = component.groups.indices(&[*reference])?.len();
         all.extend(std::iter::repeat_n(*order, count));
     }
     Ok(all)
@@ -73,10 +73,12 @@ pub unsafe fn set_input_derivatives(
 ) -> fmi2Status {
     let call = Call::SetRealInputDerivatives.by("SetInputDerivatives");
     let body = |component: &mut Component| {
-        let places = component.groups.places(references)?;
-        check_count("values", places.len(), values.len())?;
+        let indices = component.groups.indices(references)?;
+        check_count("values", indices.len(), values.len())?;
         let orders = of_elements(component, references, orders)?;
-        component.instance.set_input_rates(&places, &orders, values)
+        component
+            .instance
+            .set_input_rates(&indices, &orders, values)
     };
     // SAFETY: by the contract of this function
     unsafe { guarded(c, call, body) }

@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use crate::fmi2::guard::{Component, array, array_mut, exported, place};
+use crate::fmi2::guard::{Component, array, array_mut, exported, target};
 use crate::fmi2::types::fmi2ValueReference;
 use crate::lifecycle::{Call, State};
 use crate::refusal::{CallResult, Refusal};
@@ -96,7 +96,7 @@ exported! {
 
 /// What the numbers of a variable depend on: while initialising on what has been set for it, later on inputs and states at once.
 fn dependencies(c: &mut Component, reference: u32) -> CallResult<Vec<ElementDependency>> {
-    let Some(places) = c.groups.all().get(reference as usize) else {
+    let Some(indices) = c.groups.all().get(reference as usize) else {
         return match c.groups.is_known(reference) {
             true => Ok(Vec::new()),
             false => Err(Refusal::call(format!(
@@ -110,7 +110,7 @@ fn dependencies(c: &mut Component, reference: u32) -> CallResult<Vec<ElementDepe
     );
     let table = c.instance.described_table()?;
     let mut all = Vec::new();
-    for (i, own) in places.iter().enumerate() {
+    for (i, own) in indices.iter().enumerate() {
         let v = &table.variables()[*own as usize];
         let on = match initial {
             true => &v.initial_dependencies,
@@ -134,7 +134,7 @@ exported! {
     fmi3GetNumberOfVariableDependencies(
         vr: fmi2ValueReference, nDependencies: *mut usize
     ) Call::SetDebugLogging.by("GetNumberOfVariableDependencies") => |c| {
-        *place(nDependencies, "nDependencies")? = dependencies(c, vr)?.len();
+        *target(nDependencies, "nDependencies")? = dependencies(c, vr)?.len();
         Ok(())
     };
     /// Which they are: indices of elements count from one.

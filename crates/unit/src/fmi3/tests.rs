@@ -40,7 +40,7 @@ impl Drop for Unit {
 }
 
 impl Unit {
-    fn of(kind: &str, strips: Option<usize>, integrated: bool) -> Self {
+    fn new(kind: &str, strips: Option<usize>, integrated: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = format!(
             "{}/../../tests/data/models/{kind}.json",
@@ -122,15 +122,15 @@ impl Unit {
 
     /// The reference of a variable, or of the array that its name without the strip stands for.
     fn reference(&self, name: &str) -> u32 {
-        let named = |place: &u32| {
-            let v = &self.resources.table.variables()[*place as usize];
+        let named = |index: &u32| {
+            let v = &self.resources.table.variables()[*index as usize];
             v.name == name || v.name == format!("strip[1].{name}")
         };
         let found = self
             .groups
             .all()
             .iter()
-            .position(|places| named(&places[0]));
+            .position(|indices| named(&indices[0]));
         found.unwrap_or_else(|| panic!("no variable `{name}`")) as u32
     }
 
@@ -173,10 +173,10 @@ impl Unit {
 #[test]
 fn the_trajectory_is_that_of_the_instance_bit_for_bit() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let unit = Unit::of(kind, None, false);
+        let unit = Unit::new(kind, None, false);
         let read = |name: &str| unit.resources.table.find_name(name).unwrap() as u32;
         let (outputs, wind) = (["heave", "rotation", "lift", "moment"], read("wind_speed"));
-        let places = outputs.map(read);
+        let indices = outputs.map(read);
         let json = std::fs::read(unit.folder.path().join("model.json")).unwrap();
         let resources = Resources::from_bytes(&json, OptionFiles::default()).unwrap();
         let mut own = crate::instance::Instance::new(resources).unwrap();
@@ -192,7 +192,7 @@ fn the_trajectory_is_that_of_the_instance_bit_for_bit() {
             unit.ok(unit.step(time, 0.01));
             own.do_step(time, 0.01).unwrap();
             let mut values = [0.0; 4];
-            own.reals(&places, &mut values).unwrap();
+            own.reals(&indices, &mut values).unwrap();
             for (name, value) in outputs.iter().zip(values) {
                 assert_eq!(unit.get(name, 1), [value], "{kind}, {name}");
             }
@@ -207,7 +207,7 @@ fn the_trajectory_is_that_of_the_instance_bit_for_bit() {
 
 #[test]
 fn strips_are_arrays() {
-    let unit = Unit::of("rational", Some(3), false);
+    let unit = Unit::new("rational", Some(3), false);
     unit.start();
     unit.set("wind_speed", &[20.0]);
     unit.set("heave", &[0.01, 0.0, -0.02]);
@@ -226,7 +226,7 @@ fn strips_are_arrays() {
 /// The adjoint is the transpose of the directional derivative.
 #[test]
 fn adjoints_are_transposed_directions() {
-    let unit = Unit::of("rational", None, false);
+    let unit = Unit::new("rational", None, false);
     unit.start();
     unit.ok(unit.step(0.0, 0.1));
     let unknowns = ["heave_acceleration", "moment"].map(|n| unit.reference(n));
@@ -284,7 +284,7 @@ fn adjoints_are_transposed_directions() {
 #[test]
 fn seeds_that_are_no_numbers_are_refused() {
     for seed in [f64::NAN, f64::INFINITY] {
-        let unit = Unit::of("rational", None, false);
+        let unit = Unit::new("rational", None, false);
         unit.start();
         let (unknown, known) = ([unit.reference("moment")], [unit.reference("rotation")]);
         let mut found = [7.0];
@@ -308,7 +308,7 @@ fn seeds_that_are_no_numbers_are_refused() {
 
 #[test]
 fn an_importer_may_integrate() {
-    let unit = Unit::of("continuous_laguerre", None, true);
+    let unit = Unit::new("continuous_laguerre", None, true);
     unit.start();
     let mut flags = [true; 5];
     let [a, b, c, d, e] = &mut flags;
@@ -333,7 +333,7 @@ fn an_importer_may_integrate() {
 /// States of strips are arrays, which follow one another as the importer's list does.
 #[test]
 fn states_of_strips_are_arrays() {
-    let unit = Unit::of("rational", Some(3), true);
+    let unit = Unit::new("rational", Some(3), true);
     unit.start();
     unit.ok(unsafe { fmi3EnterContinuousTimeMode(unit.handle) });
     unit.set("wind_speed", &[20.0]);
@@ -360,7 +360,7 @@ fn states_of_strips_are_arrays() {
 
 #[test]
 fn what_there_is_not_is_refused_and_the_run_goes_on() {
-    let unit = Unit::of("rational", None, false);
+    let unit = Unit::new("rational", None, false);
     unit.start();
     let vr = [unit.groups.time()];
     let status = unsafe { fmi3EnterStepMode(unit.handle) };
@@ -373,7 +373,7 @@ fn what_there_is_not_is_refused_and_the_run_goes_on() {
     unit.refused(status, "no variables of this type");
     // a resource path, a token and a kind that do not fit
     assert!(
-        Unit::of("discrete_laguerre", Some(2), false)
+        Unit::new("discrete_laguerre", Some(2), false)
             .instantiate(true)
             .is_null()
     );

@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::life::{check_count, places};
+use super::life::{check_count, indices};
 use crate::fmi2::guard::{array, array_mut, exported};
 use crate::fmi2::types::{fmi2String, fmi2ValueReference};
 use crate::instance::DataType;
@@ -18,9 +18,9 @@ exported! {
         let values = array_mut(values, nValues, "values")?;
         let time = component.groups.time();
         if !references.contains(&time) {
-            let places = component.groups.places(references)?;
-            check_count("values", places.len(), values.len())?;
-            return component.instance.reals(&places, values);
+            let indices = component.groups.indices(references)?;
+            check_count("values", indices.len(), values.len())?;
+            return component.instance.reals(&indices, values);
         }
         let mut rest = values;
         for reference in references {
@@ -28,7 +28,7 @@ exported! {
             let of = if *reference == time {
                 None
             } else {
-                Some(component.groups.places(&own)?)
+                Some(component.groups.indices(&own)?)
             };
             let count = of.as_ref().map_or(1, |of| of.len());
             let Some((now, behind)) = std::mem::take(&mut rest).split_at_mut_checked(count)
@@ -36,7 +36,7 @@ exported! {
                 return check_count("values", nvr, nValues);
             };
             match of {
-                Some(places) => component.instance.reals(&places, now)?,
+                Some(indices) => component.instance.reals(&indices, now)?,
                 None => now[0] = component.instance.time_s(),
             }
             rest = behind;
@@ -49,18 +49,18 @@ exported! {
     ) Call::SetReal.by("SetFloat64") => |component| {
         let references = array(vr, nvr, "valueReferences")?;
         let values = array(values, nValues, "values")?;
-        let places = component.groups.places(references)?;
-        check_count("values", places.len(), values.len())?;
-        component.instance.set_reals(&places, values)
+        let indices = component.groups.indices(references)?;
+        check_count("values", indices.len(), values.len())?;
+        component.instance.set_reals(&indices, values)
     };
     /// Reads integer variables.
     fmi3GetInt32(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut i32, nValues: usize
     ) Call::GetInteger.by("GetInt32") => |component| {
-        let places = places(component, vr, nvr, "valueReferences")?;
-        check_count("values", places.len(), nValues)?;
-        for (place, value) in places.iter().zip(array_mut(values, nValues, "values")?) {
-            *value = component.instance.integer(*place)?;
+        let indices = indices(component, vr, nvr, "valueReferences")?;
+        check_count("values", indices.len(), nValues)?;
+        for (index, value) in indices.iter().zip(array_mut(values, nValues, "values")?) {
+            *value = component.instance.integer(*index)?;
         }
         Ok(())
     };
@@ -68,12 +68,12 @@ exported! {
     fmi3GetBoolean(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut bool, nValues: usize
     ) Call::GetBoolean.by("GetBoolean") => |component| {
-        let places = places(component, vr, nvr, "valueReferences")?;
-        check_count("values", places.len(), nValues)?;
+        let indices = indices(component, vr, nvr, "valueReferences")?;
+        check_count("values", indices.len(), nValues)?;
         // what the importer has there need not be a truth value yet
         let values = array_mut(values.cast::<u8>(), nValues, "values")?;
-        for (place, value) in places.iter().zip(values) {
-            *value = u8::from(component.instance.boolean(*place)?);
+        for (index, value) in indices.iter().zip(values) {
+            *value = u8::from(component.instance.boolean(*index)?);
         }
         Ok(())
     };
@@ -87,9 +87,9 @@ exported! {
                 found.extend(names.of.iter().map(|name| name.as_ptr()));
                 continue;
             }
-            for place in component.groups.places(&[*reference])?.iter() {
-                let place = component.instance.text_place(*place)?;
-                found.push(component.texts[place].as_ptr());
+            for index in component.groups.indices(&[*reference])?.iter() {
+                let index = component.instance.text_index(*index)?;
+                found.push(component.texts[index].as_ptr());
             }
         }
         check_count("values", found.len(), nValues)?;
@@ -100,22 +100,22 @@ exported! {
     fmi3SetInt32(
         vr: *const fmi2ValueReference, nvr: usize, _values: *const i32, _nValues: usize
     ) Call::SetInteger.by("SetInt32") => |component| {
-        let places = places(component, vr, nvr, "valueReferences")?;
-        component.instance.refuse_to_set(&places, DataType::Integer)
+        let indices = indices(component, vr, nvr, "valueReferences")?;
+        component.instance.refuse_to_set(&indices, DataType::Integer)
     };
     /// There are none to set.
     fmi3SetBoolean(
         vr: *const fmi2ValueReference, nvr: usize, _values: *const bool, _nValues: usize
     ) Call::SetBoolean.by("SetBoolean") => |component| {
-        let places = places(component, vr, nvr, "valueReferences")?;
-        component.instance.refuse_to_set(&places, DataType::Boolean)
+        let indices = indices(component, vr, nvr, "valueReferences")?;
+        component.instance.refuse_to_set(&indices, DataType::Boolean)
     };
     /// There are none to set.
     fmi3SetString(
         vr: *const fmi2ValueReference, nvr: usize, _values: *const fmi2String, _nValues: usize
     ) Call::SetString.by("SetString") => |component| {
-        let places = places(component, vr, nvr, "valueReferences")?;
-        component.instance.refuse_to_set(&places, DataType::String)
+        let indices = indices(component, vr, nvr, "valueReferences")?;
+        component.instance.refuse_to_set(&indices, DataType::String)
     };
     /// There are no binary variables.
     fmi3GetBinary(

@@ -9,61 +9,61 @@ use crate::variables::{Causality, Variability, Variable, VariableTable};
 impl Instance {
     /// Access to `reference`, known by the table to be of this type.
     pub(super) fn typed(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
-        let place = reference as usize;
-        match self.layout.access.get(place) {
-            Some(access) if access.data_type == wanted => Ok((place, *access)),
-            _ => Err(wrong_reference(place, wanted, self.table())),
+        let index = reference as usize;
+        match self.layout.access.get(index) {
+            Some(access) if access.data_type == wanted => Ok((index, *access)),
+            _ => Err(wrong_reference(index, wanted, self.table())),
         }
     }
 
     /// Access to a variable that may be read now.
     pub(super) fn readable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
-        let (place, access) = self.typed(reference, wanted)?;
-        self.check_state(place, "read", access.gettable)?;
-        Ok((place, access))
+        let (index, access) = self.typed(reference, wanted)?;
+        self.check_state(index, "read", access.gettable)?;
+        Ok((index, access))
     }
 
     /// Access to a variable that may be set now.
     pub(super) fn writable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
-        let (place, access) = self.typed(reference, wanted)?;
-        self.check_state(place, "set", access.settable)?;
-        Ok((place, access))
+        let (index, access) = self.typed(reference, wanted)?;
+        self.check_state(index, "set", access.settable)?;
+        Ok((index, access))
     }
 
-    fn check_state(&self, place: usize, verb: &str, allowed: StateSet) -> CallResult<()> {
+    fn check_state(&self, index: usize, verb: &str, allowed: StateSet) -> CallResult<()> {
         let state = self.memory.state;
         if allowed.contains(state) {
             return Ok(());
         }
-        let variable = &self.table().variables()[place];
+        let variable = &self.table().variables()[index];
         Err(not_in_state(variable, verb, allowed, state))
     }
 
-    /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.
-    pub(super) fn check_value(&self, place: usize, access: Access, value: f64) -> CallResult<()> {
+    /// Whether `value` may be stored at `index`: finite, and within the limits of the variable.
+    pub(super) fn check_value(&self, index: usize, access: Access, value: f64) -> CallResult<()> {
         if value.is_finite() && value >= access.min && value <= access.max {
             return Ok(());
         }
-        Err(wrong_value(&self.table().variables()[place], value))
+        Err(wrong_value(&self.table().variables()[index], value))
     }
 
-    /// Whether `value` may stand at `place` in a state read from a file.
-    pub(super) fn check_stored(&self, place: usize, value: f64) -> CallResult<()> {
-        self.check_value(place, self.layout.access[place], value)
+    /// Whether `value` may stand at `index` in a state read from a file.
+    pub(super) fn check_stored(&self, index: usize, value: f64) -> CallResult<()> {
+        self.check_value(index, self.layout.access[index], value)
             .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
     }
 }
 
 #[cold]
-fn wrong_reference(place: usize, wanted: DataType, table: &VariableTable) -> Refusal {
-    Refusal::error(match table.variables().get(place) {
+fn wrong_reference(index: usize, wanted: DataType, table: &VariableTable) -> Refusal {
+    Refusal::error(match table.variables().get(index) {
         Some(v) => format!(
-            "value reference {place}: `{}` is of type {}, not {wanted:?}",
+            "value reference {index}: `{}` is of type {}, not {wanted:?}",
             v.name,
             v.value.type_name()
         ),
         None => format!(
-            "value reference {place}: there is no such variable, the last one is {}",
+            "value reference {index}: there is no such variable, the last one is {}",
             table.variables().len() - 1
         ),
     })

@@ -86,7 +86,7 @@ impl Built {
         let Some(channels) = &self.gusts else {
             return;
         };
-        let count = channels.passing.len() * self.bridge.coordinates();
+        let count = channels.convection_per_width.len() * self.bridge.coordinates();
         for list in [&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2] {
             list.clear();
             list.resize(count, 0.0);

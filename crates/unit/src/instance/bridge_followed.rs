@@ -39,7 +39,7 @@ pub(super) struct SearchedOnset {
 
 impl SearchedOnset {
     /// That of a search; `None` where there is more to say of it than a speed.
-    pub(super) fn of(built: &Built, onset: &Onset) -> Option<Self> {
+    pub(super) fn from_onset(built: &Built, onset: &Onset) -> Option<Self> {
         let plain = onset.warnings.is_empty() && onset.spurious_speeds_m_s.is_empty();
         let at = &onset.at;
         let section = built.stepper.section();
@@ -56,7 +56,7 @@ impl SearchedOnset {
         let k = ReducedFrequency::from_hertz(hertz, bridge.width_m(), speed);
         let at = CriticalPoint::new("bridge", OnsetMethod::Eigenvalues, speed, hertz, k);
         Ok(Self {
-            motion: NearbyOnset::of(bridge, &at)?,
+            motion: NearbyOnset::new(bridge, &at)?,
             damping_below: start.damping_below,
             parameters: parameters(&mut bridge.clone()),
         })

@@ -56,7 +56,9 @@ impl OnsetCard {
                 let stable = !matches!(found, FlutterSearch::UnstableAtOrBelow(_));
                 let k = found.onset().map(|o| o.at.reduced_frequency);
                 let inside = k.zip(tested).is_some_and(|(k, range)| range.contains(k));
-                searched = found.onset().and_then(|o| SearchedOnset::of(built, o));
+                searched = found
+                    .onset()
+                    .and_then(|o| SearchedOnset::from_onset(built, o));
                 card.take(found, limit);
                 card.numbers.in_tested_range = inside;
                 card.numbers.stable_below = stable;

@@ -26,7 +26,7 @@ use nalgebra::DMatrix;
 /// See the module.
 #[derive(Debug)]
 pub(super) struct ModalBridge {
-    /// Motions and modes: places, and what they stand for.
+    /// Motions and modes: indices, and what they stand for.
     responses: Vec<(usize, Role)>,
     tested: Option<ReducedFrequencyRange>,
     /// Root of the generalised mass of each mode.
@@ -55,7 +55,7 @@ impl BridgeUnit {
         });
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
         let own = ModalBridge {
-            responses: responses.map(|(place, v)| (place, v.role)).collect(),
+            responses: responses.map(|(index, v)| (index, v.role)).collect(),
             roots: masses.collect(),
             tested: options.tested_range,
             // without a start the first onset is searched for
@@ -76,12 +76,12 @@ impl BridgeUnit {
     /// Loads wind, and forces and gusts on the modes, without the turbulence of the archive.
     fn load_without_turbulence(&mut self, memory: &Memory) {
         let rates = &memory.input_rates;
-        self.inputs.wind_speed_m_s = self.places.wind_speed(memory);
+        self.inputs.wind_speed_m_s = self.indices.wind_speed(memory);
         self.inputs.wind_speed_rate_m_s2 = rates[0];
         self.inputs.force.fill(0.0);
         self.inputs.force_rate.fill(0.0);
-        for (row, place) in self.places.forces().iter().enumerate() {
-            let (force, rate) = (memory.values[*place], rates[row + 1]);
+        for (row, index) in self.indices.forces().iter().enumerate() {
+            let (force, rate) = (memory.values[*index], rates[row + 1]);
             if force == 0.0 && rate == 0.0 {
                 continue;
             }
@@ -90,15 +90,15 @@ impl BridgeUnit {
                 self.inputs.force_rate[m] += phi * rate;
             }
         }
-        let gusts = self.places.gusts().iter();
-        let gusts = gusts.map(|place| memory.values[*place]);
-        let gust_rates = rates[self.places.first_gust..].iter().copied();
+        let gusts = self.indices.gusts().iter();
+        let gusts = gusts.map(|index| memory.values[*index]);
+        let gust_rates = rates[self.indices.first_gust..].iter().copied();
         self.built.set_gusts(&mut self.inputs, gusts, gust_rates);
     }
 
     fn turbulence_factor(&self, memory: &Memory) -> f64 {
-        let place = self.places.turbulence_factor;
-        place.map_or(0.0, |place| memory.values[place])
+        let index = self.indices.turbulence_factor;
+        index.map_or(0.0, |index| memory.values[index])
     }
 
     /// What a role stands for in the motion of the mass-normalised modes.
@@ -178,8 +178,8 @@ impl CoupledKind for ModalBridge {
     }
 
     fn motion_at_release(unit: &BridgeUnit, values: &[f64]) -> [Vec<f64>; 2] {
-        let initial = unit.places.initial.iter().zip(&unit.own.roots);
-        let modes: Vec<f64> = initial.map(|(place, root)| values[*place] * root).collect();
+        let initial = unit.indices.initial.iter().zip(&unit.own.roots);
+        let modes: Vec<f64> = initial.map(|(index, root)| values[*index] * root).collect();
         // masses of dampers go with the girder
         let masses = unit.built.bridge.dampers.masses.iter().enumerate();
         let dampers = masses
@@ -228,20 +228,20 @@ impl CoupledKind for ModalBridge {
     ) -> bool {
         unit.calculate(resources, memory, notices);
         let onset = unit.calculated.onset();
-        let wind = unit.places.wind_speed(memory);
+        let wind = unit.indices.wind_speed(memory);
         let (hertz, width) = (onset.frequency_hz.value, unit.built.bridge.width_m());
         let k = ReducedFrequency::from_hertz(hertz, width, wind);
         onset.found && wind > 0.0 && unit.own.tested.is_some_and(|r| r.contains(k))
     }
 
     fn searched(unit: &BridgeUnit, _: &Resources, memory: &Memory) -> OnsetCard {
-        OnsetCard::of_bridge(&unit.built, unit.own.tested, unit.places.limit(memory)).0
+        OnsetCard::of_bridge(&unit.built, unit.own.tested, unit.indices.limit(memory)).0
     }
 
     /// Followed, where it can be.
     fn found(unit: &mut BridgeUnit, _: &Resources, memory: &Memory) -> OnsetCard {
         unit.take_start();
-        let limit = unit.places.limit(memory);
+        let limit = unit.indices.limit(memory);
         let (own, built) = (&mut unit.own, &mut unit.built);
         let known = own.searched.as_ref();
         match known.and_then(|known| known.followed(built, limit)) {
@@ -273,8 +273,8 @@ impl CoupledKind for ModalBridge {
     }
 
     fn write_outputs(unit: &BridgeUnit, memory: &mut Memory) {
-        for (place, role) in &unit.own.responses {
-            memory.values[*place] = unit.pick_modal(&unit.outputs, *role);
+        for (index, role) in &unit.own.responses {
+            memory.values[*index] = unit.pick_modal(&unit.outputs, *role);
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::variables::{Causality, ComputedNumber, OnsetNumbers, Present, Role, V
 /// Onset and divergence of a unit, and what follows from them.
 #[derive(Debug)]
 pub(super) struct CalculatedNumbers {
-    /// The variables, with their places in the table.
+    /// The variables, with their indices in the table.
     variables: Vec<(usize, &'static ComputedNumber)>,
     /// For the parameters as they are; `None` until they are asked for.
     onset: Option<OnsetNumbers>,
@@ -16,9 +16,9 @@ pub(super) struct CalculatedNumbers {
 impl CalculatedNumbers {
     pub(super) fn new(table: &VariableTable) -> Self {
         let each = table.variables().iter().enumerate();
-        let calculated = each.filter_map(|(place, v)| match v.role {
+        let calculated = each.filter_map(|(index, v)| match v.role {
             Role::Computed(number) if number.causality != Causality::Output => {
-                Some((place, number))
+                Some((index, number))
             }
             _ => None,
         });
@@ -67,8 +67,8 @@ impl CalculatedNumbers {
             onset,
             ..Present::default()
         };
-        for (place, number) in &self.variables {
-            memory.values[*place] = number.of(&present).value;
+        for (index, number) in &self.variables {
+            memory.values[*index] = number.evaluate(&present).value;
         }
     }
 }

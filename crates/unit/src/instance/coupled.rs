@@ -2,7 +2,7 @@
 
 use super::calculated::CalculatedNumbers;
 use super::damping::PresentDamping;
-use super::layout::{Source, place};
+use super::layout::{Source, index_of};
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, check_finite, finite};
@@ -17,9 +17,9 @@ use crate::section::Dof;
 use crate::variables::{Causality, Response, Role, Variable, VariableTable};
 use std::fmt::Debug;
 
-/// Places in the table.
+/// Indices in the table.
 #[derive(Debug)]
-pub(super) struct CoupledPlaces {
+pub(super) struct CoupledIndices {
     /// Wind speed, then forces, then gusts: the inputs.
     pub inputs: Vec<usize>,
     /// Where the gusts begin among them.
@@ -30,17 +30,17 @@ pub(super) struct CoupledPlaces {
     pub limit: usize,
     /// Factor on the turbulence of the archive.
     pub turbulence_factor: Option<usize>,
-    /// Entry of the state that a variable is; by place.
+    /// Entry of the state that a variable is; by index.
     pub state_entry: Vec<Option<usize>>,
 }
 
-impl CoupledPlaces {
+impl CoupledIndices {
     /// Those of a section or bridge, whose inputs stand first in the table, in this order.
     pub(super) fn new(table: &VariableTable) -> Result<Self> {
         let all = |wanted: &dyn Fn(&Variable) -> bool| -> Vec<usize> {
             let variables = table.variables().iter().enumerate();
             let wanted = variables.filter(|(_, v)| wanted(v));
-            wanted.map(|(place, _)| place).collect()
+            wanted.map(|(index, _)| index).collect()
         };
         let inputs = all(&|v| v.causality == Causality::Input);
         let gusts = all(&|v| matches!(v.role, Role::Gust(..))).len();
@@ -61,7 +61,7 @@ impl CoupledPlaces {
             first_gust: inputs.len() - gusts,
             inputs,
             initial,
-            limit: place(table, Role::OnsetSearchLimit)?,
+            limit: index_of(table, Role::OnsetSearchLimit)?,
             turbulence_factor: table.find(Role::TurbulenceFactor),
             state_entry: entries.collect(),
         })
@@ -189,7 +189,7 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
 #[derive(Debug)]
 pub(super) struct Coupled<S: CoupledKind> {
     pub own: S,
-    pub places: CoupledPlaces,
+    pub indices: CoupledIndices,
     /// Of the parameters as they are.
     pub built: S::Built,
     /// Whether they have changed since.
@@ -203,7 +203,7 @@ pub(super) struct Coupled<S: CoupledKind> {
 
 impl<S: CoupledKind> Unit for Coupled<S> {
     fn inputs(&self) -> &[usize] {
-        &self.places.inputs
+        &self.indices.inputs
     }
 
     fn at_rest(&self) -> SectionState {
@@ -238,8 +238,8 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
-        if memory.state == State::Initialization && self.places.gusts().contains(&place) {
+    fn input_set(&mut self, memory: &mut Memory, index: usize, _: bool) -> bool {
+        if memory.state == State::Initialization && self.indices.gusts().contains(&index) {
             self.release_pending = true;
         }
         false
@@ -298,8 +298,8 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         S::repeat_outputs(self, memory)
     }
 
-    fn held_output(&self, place: usize) -> Option<usize> {
-        self.places.state_entry[place]
+    fn state_index(&self, index: usize) -> Option<usize> {
+        self.indices.state_entry[index]
     }
 }
 
@@ -341,7 +341,7 @@ impl<S: CoupledKind> Coupled<S> {
         let coordinates = S::stepper(&built).section().structure().dofs.len();
         Ok(Self {
             own,
-            places: CoupledPlaces::new(table)?,
+            indices: CoupledIndices::new(table)?,
             built,
             stale: false,
             release_pending: true,
@@ -385,6 +385,6 @@ impl<S: CoupledKind> Coupled<S> {
     /// All that there is in a state, with the inputs that are loaded.
     pub(super) fn instant(&mut self, state: &SectionState) -> Result<SectionValues> {
         let (stepper, inputs) = self.parts();
-        SectionValues::of(stepper, state, inputs)
+        SectionValues::new(stepper, state, inputs)
     }
 }

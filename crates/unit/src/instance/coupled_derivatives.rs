@@ -56,7 +56,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         notices: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
         let role = resources.table.variables()[known].role;
-        let instant = match (Source::of(role), role) {
+        let instant = match (Source::from_role(role), role) {
             (Source::Section, _) => {
                 let step = parameter_step(memory.values[known]);
                 return central_difference(resources, memory, known, step, |other| {
@@ -92,7 +92,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         notices: &mut Vec<String>,
     ) -> f64 {
         number
-            .of(&self.read(resources, memory, number, notices))
+            .evaluate(&self.read(resources, memory, number, notices))
             .value
     }
 }
@@ -104,14 +104,14 @@ fn by_unit<S: CoupledKind>(
     known: usize,
 ) -> Result<SectionValues> {
     let mut of_one = memory.clone();
-    let places = &unit.places;
-    for place in places.inputs[1..].iter().chain(&places.initial) {
-        of_one.values[*place] = f64::from(u8::from(*place == known));
+    let indices = &unit.indices;
+    for index in indices.inputs[1..].iter().chain(&indices.initial) {
+        of_one.values[*index] = f64::from(u8::from(*index == known));
     }
-    if let Some(place) = places.turbulence_factor {
-        of_one.values[place] = 0.0;
+    if let Some(index) = indices.turbulence_factor {
+        of_one.values[index] = 0.0;
     }
-    let entry = places.state_entry[known];
+    let entry = indices.state_entry[known];
     of_one.input_rates.fill(0.0);
     S::load_inputs(unit, &of_one);
     // while initialising the state follows from what is stated, and lags stand where the gusts are

@@ -41,7 +41,7 @@ impl<S: CoupledKind> Coupled<S> {
         number: &ComputedNumber,
         notices: &mut Vec<String>,
     ) -> Present {
-        let wind = self.places.wind_speed(memory);
+        let wind = self.indices.wind_speed(memory);
         let mut present = Present {
             wind_m_s: wind.into(),
             ..Present::default()
@@ -110,10 +110,10 @@ impl<S: CoupledKind> Coupled<S> {
         }
         present.onset.follow_limit(by.limit);
         if by.wind != 0.0 && number.reads(Known::Damping) {
-            let wind = self.places.wind_speed(memory);
+            let wind = self.indices.wind_speed(memory);
             present.damping_ratio.slope = by.wind * damping_slope(self.section(), wind)?;
         }
-        Ok(number.of(&present).slope)
+        Ok(number.evaluate(&present).slope)
     }
 
     /// The unknowns of what is released with the values in `memory`, with the parameters that it has been made with.
@@ -126,7 +126,7 @@ impl<S: CoupledKind> Coupled<S> {
         S::load_inputs(self, memory);
         let state = self.release(&memory.values)?;
         let instant = self.instant(&state)?;
-        let wind = self.places.wind_speed(memory);
+        let wind = self.indices.wind_speed(memory);
         let mut present = Present {
             wind_m_s: wind.into(),
             ..Present::default()
@@ -152,7 +152,7 @@ impl<S: CoupledKind> Coupled<S> {
         let value = |unknown: &Role| match unknown {
             // flags have no derivative
             Role::Computed(number) if number.is_flag() => 0.0,
-            Role::Computed(number) => number.of(&present).value,
+            Role::Computed(number) => number.evaluate(&present).value,
             other => S::pick(self, &instant, *other),
         };
         Ok(unknowns.iter().map(value).collect())

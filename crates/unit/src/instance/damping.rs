@@ -45,7 +45,7 @@ impl PresentDamping {
         if let Some(known) = self.last.filter(|known| known.wind_m_s == wind_m_s) {
             return Ok(known.ratio);
         }
-        let way = self.way.get_or_insert_with(|| Way::of(stepper));
+        let way = self.way.get_or_insert_with(|| Way::new(stepper));
         let ratio = match way {
             Way::Continuous(least) => least.at(stepper.section(), wind_m_s)?,
             Way::Sampled(sampled) => match sampled.at(stepper, wind_m_s)? {
@@ -69,7 +69,7 @@ impl PresentDamping {
 }
 
 impl Way {
-    fn of(stepper: &Stepper) -> Self {
+    fn new(stepper: &Stepper) -> Self {
         let section = stepper.section();
         let states = section.states();
         match section.aerodynamics() {
@@ -88,7 +88,7 @@ impl Sampled {
     fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<Option<f64>> {
         self.steady.wind_speed_m_s = wind_m_s;
         let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;
-        let found = self.eigenvalues.of(&mut self.matrix);
+        let found = self.eigenvalues.eigenvalues(&mut self.matrix);
         Ok(step.zip(found).map(|(step, all)| {
             let diverges = |z: &Complex<f64>| z.im == 0.0 && z.norm() > 1.0;
             let alive = all.iter().filter(|z| z.im > 0.0 || diverges(z));

@@ -60,14 +60,14 @@ fn enter<S: CoupledKind>(
     resources: &Resources,
     unit: Coupled<S>,
 ) -> Result<()> {
-    let mut pattern = Pattern::of(unit, resources)?;
+    let mut pattern = Pattern::new(unit, resources)?;
     let variables = table.variables_mut();
     let at_once = set_while_moving(&mut pattern, variables);
     let at_release = set_at_release(&mut pattern, variables, &at_once);
     let motion = 2 * pattern.unit.section().structure().dofs.len();
-    let entries = &pattern.unit.places.state_entry;
-    for (row, place) in pattern.responses.iter().enumerate() {
-        let variable = &mut variables[*place];
+    let entries = &pattern.unit.indices.state_entry;
+    for (row, index) in pattern.responses.iter().enumerate() {
+        let variable = &mut variables[*index];
         // dampers go along with the girder until the release, and the flow has settled
         let still = match variable.role {
             Role::Damper(_, response) => response == Response::Displacement,
@@ -102,30 +102,30 @@ fn through(row: &[Option<DependencyKind>], sources: &Sources) -> Vec<Dependency>
 }
 
 /// Adds a number to the columns of what it loads.
-fn add_loading<S: CoupledKind>(pattern: &mut Pattern<S>, place: usize, sources: &mut Sources) {
+fn add_loading<S: CoupledKind>(pattern: &mut Pattern<S>, index: usize, sources: &mut Sources) {
     let mut one = pattern.calm.clone();
-    one.values[place] = 1.0;
+    one.values[index] = 1.0;
     S::load_inputs(&mut pattern.unit, &one);
     let (_, loaded) = pattern.unit.parts();
     let loaded = loaded.force.iter().chain(&loaded.gust_m_s);
     let columns = sources[pattern.forces..].iter_mut().zip(loaded);
     for (list, _) in columns.filter(|(_, number)| **number != 0.0) {
-        list.push(Dependency::constant(place));
+        list.push(Dependency::constant(index));
     }
 }
 
 /// Inputs and the states that importers see.
 fn set_while_moving<S: CoupledKind>(pattern: &mut Pattern<S>, table: &[Variable]) -> Sources {
     let mut sources = vec![Vec::new(); pattern.air + 1];
-    let inputs = pattern.unit.places.inputs.clone();
+    let inputs = pattern.unit.indices.inputs.clone();
     sources[pattern.air].push(Dependency::constant(inputs[0]));
-    for place in &inputs[1..] {
-        add_loading(pattern, *place, &mut sources);
+    for index in &inputs[1..] {
+        add_loading(pattern, *index, &mut sources);
     }
-    let entries = &pattern.unit.places.state_entry;
-    for place in table.iter().filter_map(|v| v.derivative_of) {
-        if let Some(entry) = entries[place] {
-            sources[entry].push(Dependency::constant(place));
+    let entries = &pattern.unit.indices.state_entry;
+    for index in table.iter().filter_map(|v| v.derivative_of) {
+        if let Some(entry) = entries[index] {
+            sources[entry].push(Dependency::constant(index));
         }
     }
     sources
@@ -140,24 +140,24 @@ fn set_at_release(
     let (forces, gusts, air) = (pattern.forces, pattern.gusts, pattern.air);
     let mut sources = inputs.clone();
     sources[..forces].iter_mut().for_each(Vec::clear);
-    if let Some(factor) = pattern.unit.places.turbulence_factor {
+    if let Some(factor) = pattern.unit.indices.turbulence_factor {
         add_loading(pattern, factor, &mut sources);
     }
-    let initial = &pattern.unit.places.initial;
-    for (entry, place) in initial.iter().enumerate() {
-        sources[entry].push(Dependency::constant(*place));
+    let initial = &pattern.unit.indices.initial;
+    for (entry, index) in initial.iter().enumerate() {
+        sources[entry].push(Dependency::constant(*index));
     }
-    for (row, place) in pattern.responses.iter().enumerate() {
-        if let Role::Damper(d, Response::Displacement) = table[*place].role {
+    for (row, index) in pattern.responses.iter().enumerate() {
+        if let Role::Damper(d, Response::Displacement) = table[*index].role {
             let of_modes = through(&pattern.moving[row][..initial.len()], &sources);
             sources[initial.len() + d].extend(of_modes);
         }
     }
     let section = pattern.unit.section();
     let filters = driven_filters(section);
-    for (place, variable) in table.iter().enumerate() {
+    for (index, variable) in table.iter().enumerate() {
         for column in columns_of(variable, pattern, &filters) {
-            sources[column].push(Dependency::plain(place));
+            sources[column].push(Dependency::plain(index));
         }
     }
     for (coordinate, driven) in filters.iter().enumerate() {
@@ -214,7 +214,7 @@ fn columns_of(
         },
         // springs and dashpots of dampers are at rest
         Role::DamperParameter(i) if variable.quantity == Some("Mass") => {
-            vec![pattern.unit.places.initial.len() + i / 3]
+            vec![pattern.unit.indices.initial.len() + i / 3]
         }
         _ => Vec::new(),
     }

@@ -92,8 +92,8 @@ impl Instance {
     }
 
     fn response_of(&self, reference: u32) -> CallResult<Role> {
-        let (place, access) = self.typed(reference, DataType::Real)?;
-        let variable = &self.table().variables()[place];
+        let (index, access) = self.typed(reference, DataType::Real)?;
+        let variable = &self.table().variables()[index];
         let computed = matches!(access.source, Source::Response | Source::Status);
         if computed && variable.causality == Causality::Output {
             Ok(variable.role)
@@ -103,38 +103,38 @@ impl Instance {
     }
 
     fn unknown(&self, reference: u32) -> CallResult<Role> {
-        let (place, access) = self.typed(reference, DataType::Real)?;
-        let variable = &self.table().variables()[place];
+        let (index, access) = self.typed(reference, DataType::Real)?;
+        let variable = &self.table().variables()[index];
         match access.source {
             Source::Response | Source::Status | Source::State | Source::Rate => Ok(variable.role),
             Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
-            _ => Err(self.refused(place, "unknown")),
+            _ => Err(self.refused(index, "unknown")),
         }
     }
 
-    /// Place of a known.
+    /// Index of a known.
     fn known(&self, reference: u32) -> CallResult<usize> {
-        let (place, access) = self.typed(reference, DataType::Real)?;
+        let (index, access) = self.typed(reference, DataType::Real)?;
         let initializing = self.memory.state == State::Initialization;
         match access.source {
-            Source::Input => Ok(place),
-            Source::Section | Source::Release | Source::Limit if initializing => Ok(place),
-            Source::Response | Source::State if !initializing && self.is_seen_state(place) => {
-                Ok(place)
+            Source::Input => Ok(index),
+            Source::Section | Source::Release | Source::Limit if initializing => Ok(index),
+            Source::Response | Source::State if !initializing && self.is_seen_state(index) => {
+                Ok(index)
             }
-            _ => Err(self.refused(place, "known")),
+            _ => Err(self.refused(index, "known")),
         }
     }
 
     /// Whether it is a state that the description lists.
-    fn is_seen_state(&self, place: usize) -> bool {
-        self.offers_model_exchange() && self.table().variables()[place].is_state()
+    fn is_seen_state(&self, index: usize) -> bool {
+        self.offers_model_exchange() && self.table().variables()[index].is_state()
     }
 
-    fn refused(&self, place: usize, what: &str) -> Refusal {
+    fn refused(&self, index: usize, what: &str) -> Refusal {
         Refusal::error(format!(
             "directional derivative: `{}` is no {what} in the state `{}`",
-            self.table().variables()[place].name,
+            self.table().variables()[index].name,
             self.memory.state.name()
         ))
     }

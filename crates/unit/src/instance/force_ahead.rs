@@ -114,7 +114,7 @@ impl ForceUnit {
         }
         let wind = PrescribedForces::newest_wind_m_s(self.first_of(system));
         for s in 0..self.gusts.len() {
-            let part = StripsUnderModel::of(&self.parts, s);
+            let part = StripsUnderModel::new(&self.parts, s);
             if let Some(gusts) = &part.gusts {
                 let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
                 let air = work.flows[s].in_air(wind, density);
@@ -139,12 +139,12 @@ impl ForceUnit {
         let now = memory.values[self.inputs[0]];
         // to second order in the change of the wind, as the filters of the motion
         let wind = 0.5 * (PrescribedForces::newest_wind_m_s(before) + now);
-        for (s, (places, flow)) in self.gusts.iter().zip(flows).enumerate() {
-            let part = StripsUnderModel::of(&self.parts, s);
+        for (s, (indices, flow)) in self.gusts.iter().zip(flows).enumerate() {
+            let part = StripsUnderModel::new(&self.parts, s);
             let widths = seconds.map(|s| s * wind * flow.wind_factor / flow.width_m);
             if let Some(strips) = &part.gusts {
                 let strip = &mut gusts[part.gusts_of(s)];
-                strips.take(strip, places.map(|place| memory.values[place]), widths);
+                strips.take(strip, indices.map(|index| memory.values[index]), widths);
             }
         }
     }

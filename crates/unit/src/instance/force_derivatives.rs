@@ -70,7 +70,7 @@ impl ForceUnit {
         unknowns: &[Role],
     ) -> Result<Vec<f64>> {
         if memory.state == State::Initialization {
-            self.settle(memory)?;
+            self.enter_steady_flow(memory)?;
         }
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
         if wants(|role| matches!(role, Role::Force(..))) {
@@ -94,8 +94,8 @@ impl ForceUnit {
     /// Nothing moves, no gust blows, no force acts, and none has.
     fn in_still_flow(&self, memory: &Memory) -> Memory {
         let mut still = memory.clone();
-        for place in &self.inputs[1..] {
-            still.values[*place] = 0.0;
+        for index in &self.inputs[1..] {
+            still.values[*index] = 0.0;
         }
         still.system.gusts.fill(0.0);
         still.input_rates.fill(0.0);

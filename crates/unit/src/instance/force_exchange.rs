@@ -57,11 +57,11 @@ impl ForceUnit {
         s: usize,
         strip: &'a mut Vec<f64>,
     ) -> Option<&'a [f64]> {
-        let places = self.gusts.get(s)?;
+        let indices = self.gusts.get(s)?;
         strip.clear();
         strip.extend_from_slice(&memory.system.gusts[part.gusts_of(s)]);
-        for (gust, place) in strip.iter_mut().zip(places) {
-            *gust = memory.values[*place];
+        for (gust, index) in strip.iter_mut().zip(indices) {
+            *gust = memory.values[*index];
         }
         Some(strip)
     }
@@ -96,8 +96,8 @@ impl ForceUnit {
         for (part, s) in self.parts_and_strips() {
             self.add_rates(memory, part, s, &mut work);
         }
-        for (slot, place) in rates.iter_mut().zip(&self.inner) {
-            *slot = work.rates[*place];
+        for (slot, index) in rates.iter_mut().zip(&self.inner) {
+            *slot = work.rates[*index];
         }
         self.work = work;
     }
@@ -134,19 +134,19 @@ impl ForceUnit {
     }
 
     /// The flow settles around the deck where it is held, in the gusts that blow.
-    pub(super) fn settle(&self, memory: &mut Memory) -> Result<()> {
+    pub(super) fn enter_steady_flow(&self, memory: &mut Memory) -> Result<()> {
         for part in &self.parts {
-            let settling = part.forces.settling()?;
+            let steady_flow = part.forces.steady_flow()?;
             for s in part.strips.clone() {
                 let flow = self.flow(&memory.values, s);
                 let at = |i: usize| memory.values[self.inputs[1 + 3 * i]];
                 let displacement: Vec<f64> = part.coordinates_of(s).map(at).collect();
                 let filters = &mut memory.system.values[part.filters_of(s)];
                 part.forces
-                    .settle_at(&settling, &displacement, flow.width_m, filters);
+                    .enter_steady_flow(&steady_flow, &displacement, flow.width_m, filters);
                 if let Some(gusts) = &part.gusts {
                     let strip = &mut memory.system.gusts[part.gusts_of(s)];
-                    gusts.take(strip, self.gusts[s].map(|place| memory.values[place]), None);
+                    gusts.take(strip, self.gusts[s].map(|index| memory.values[index]), None);
                 }
             }
         }

@@ -53,7 +53,7 @@ impl StripsUnderModel {
     }
 
     /// The part to which strip `s` belongs.
-    pub(super) fn of(all: &[Self], s: usize) -> &Self {
+    pub(super) fn new(all: &[Self], s: usize) -> &Self {
         &all[all.partition_point(|part| part.strips.end <= s)]
     }
 
@@ -77,16 +77,16 @@ impl StripsUnderModel {
         first..first + per_strip
     }
 
-    /// Place of a filter or lagging gust of strip `s` among those of all, by its number among those of the strip.
-    pub(super) fn inner_place(&self, s: usize, number: usize) -> usize {
+    /// Index of a filter or lagging gust of strip `s` among those of all, by its number among those of the strip.
+    pub(super) fn inner_index(&self, s: usize, number: usize) -> usize {
         let per_strip = self.inner.len() / self.strips.len();
         self.inner.start + (s - self.strips.start) * per_strip + number
     }
 
-    /// Strip and number of one of its filters and lagging gusts, by that place.
-    pub(super) fn at_inner(&self, place: usize) -> [usize; 2] {
+    /// Strip and number of one of its filters and lagging gusts, by that index.
+    pub(super) fn at_inner(&self, index: usize) -> [usize; 2] {
         let per_strip = self.inner.len() / self.strips.len();
-        let own = place - self.inner.start;
+        let own = index - self.inner.start;
         [self.strips.start + own / per_strip, own % per_strip]
     }
 }

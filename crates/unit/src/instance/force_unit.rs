@@ -5,7 +5,7 @@
 //! the importer integrates, they are those of its instant.
 
 use super::force_parts::StripsUnderModel;
-use super::layout::{Source, place};
+use super::layout::{Source, index_of};
 use super::memory::Memory;
 use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
@@ -34,7 +34,7 @@ pub(super) struct ForceUnit {
     pub parts: Vec<StripsUnderModel>,
     /// Wind, then the motion: strip by strip, displacement, rate and acceleration of each degree of freedom.
     pub inputs: Vec<usize>,
-    /// Index of the motion among the inputs, by place; zero for what is none.
+    /// Index of the motion among the inputs, by index in the table; zero for what is none.
     pub input_at: Vec<usize>,
     /// Force and total force, in the order of the motion.
     outputs: Vec<[usize; 2]>,
@@ -47,14 +47,14 @@ pub(super) struct ForceUnit {
     pub derivatives: usize,
     /// Entry of the system's state that each filter is, then each lagging gust, in the order of [`Role::Filter`].
     pub entries: Vec<usize>,
-    /// Place of each of them where they stand strip by strip.
+    /// Index of each of them where they stand strip by strip.
     pub inner: Vec<usize>,
-    /// The same by place in the table.
-    held: Vec<Option<usize>>,
+    /// The same by index in the table.
+    state_index: Vec<Option<usize>>,
     /// Whether the importer integrates.
     pub integrated: bool,
     /// While initialising: the flow has to settle around other motion.
-    settle_pending: bool,
+    steady_flow_pending: bool,
     /// Whether it has been said that a rotation is beyond linear theory.
     warned: bool,
     /// Whether it has been said that the added mass is missing.
@@ -90,24 +90,24 @@ impl ForceUnit {
         let last = |range: fn(&StripsUnderModel) -> usize| parts.last().map_or(0, range);
         let (count, coordinates) = (last(|p| p.strips.end), last(|p| p.coordinates.end));
         let coordinate = |s: usize, dof| coordinate(&parts, s, dof);
-        let mut inputs = vec![place(table, Role::WindSpeed)?; 1 + 3 * coordinates];
+        let mut inputs = vec![index_of(table, Role::WindSpeed)?; 1 + 3 * coordinates];
         let (mut outputs, mut strips) = (vec![[0; 2]; coordinates], vec![[0; 3]; count]);
         let mut gusts = vec![[0; 2]; count];
         // in one pass: there may be ten thousand strips
-        for (place, variable) in table.variables().iter().enumerate() {
+        for (index, variable) in table.variables().iter().enumerate() {
             match variable.role {
                 Role::Motion(s, response, dof) => {
-                    inputs[1 + 3 * coordinate(s, dof) + response as usize] = place;
+                    inputs[1 + 3 * coordinate(s, dof) + response as usize] = index;
                 }
-                Role::Force(s, kind, dof) => outputs[coordinate(s, dof)][kind as usize] = place,
-                Role::Strip(s, which) => strips[s][which as usize] = place,
-                Role::Gust(s, which) => gusts[s][which as usize] = place,
+                Role::Force(s, kind, dof) => outputs[coordinate(s, dof)][kind as usize] = index,
+                Role::Strip(s, which) => strips[s][which as usize] = index,
+                Role::Gust(s, which) => gusts[s][which as usize] = index,
                 _ => {}
             }
         }
         let mut input_at = vec![0; table.variables().len()];
-        for (index, place) in inputs.iter().enumerate() {
-            input_at[*place] = index;
+        for (input, index) in inputs.iter().enumerate() {
+            input_at[*index] = input;
         }
         if resources.gusts.is_some() {
             // behind the motion, which is what has an index
@@ -122,14 +122,14 @@ impl ForceUnit {
             inputs,
             outputs,
             strips,
-            density: place(table, Role::Section(SectionParameter::AirDensity))?,
-            prediction: place(table, Role::Prediction)?,
-            derivatives: place(table, Role::MotionDerivatives)?,
+            density: index_of(table, Role::Section(SectionParameter::AirDensity))?,
+            prediction: index_of(table, Role::Prediction)?,
+            derivatives: index_of(table, Role::MotionDerivatives)?,
             entries: Vec::new(),
             inner: Vec::new(),
-            held: Vec::new(),
+            state_index: Vec::new(),
             integrated: false,
-            settle_pending: true,
+            steady_flow_pending: true,
             warned: false,
             warned_of_mass: false,
             work: ForceWork::default(),
@@ -147,7 +147,7 @@ impl ForceUnit {
             lags,
         } in strip_states(of_models)
         {
-            let part = StripsUnderModel::of(&self.parts, strip);
+            let part = StripsUnderModel::new(&self.parts, strip);
             let filters = part.filters_of(strip);
             let (entry, number) = match lags {
                 false => (filters.start + number, number),
@@ -158,10 +158,10 @@ impl ForceUnit {
                 ),
             };
             self.entries.push(entry);
-            self.inner.push(part.inner_place(strip, number));
+            self.inner.push(part.inner_index(strip, number));
         }
         let states = table.variables().iter().map(|v| self.entry_of(v.role));
-        self.held = states.collect();
+        self.state_index = states.collect();
     }
 
     /// Coordinates of all strips.
@@ -231,12 +231,12 @@ impl Unit for ForceUnit {
     }
 
     fn changed(&mut self, _: Source) {
-        self.settle_pending = true;
+        self.steady_flow_pending = true;
     }
 
     fn begin_initialization(&mut self) {
         (self.warned, self.warned_of_mass) = (false, false);
-        self.settle_pending = true;
+        self.steady_flow_pending = true;
     }
 
     fn will_be_integrated(&mut self) {
@@ -265,14 +265,14 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, place: usize, changed: bool) -> bool {
-        let index = self.input_at[place];
-        if index > 0 && self.integrated {
-            self.note_motion(memory, index, changed);
-        } else if index > 0 {
-            memory.system.values[index] = SET;
+    fn input_set(&mut self, memory: &mut Memory, index: usize, changed: bool) -> bool {
+        let input = self.input_at[index];
+        if input > 0 && self.integrated {
+            self.note_motion(memory, input, changed);
+        } else if input > 0 {
+            memory.system.values[input] = SET;
         }
-        index > 0
+        input > 0
     }
 
     fn input_rate_set(&mut self, memory: &mut Memory, index: usize) {
@@ -285,23 +285,23 @@ impl Unit for ForceUnit {
     }
 
     fn replace(&mut self, _: &mut Memory, _: &dyn Fn(Source) -> bool) {
-        self.settle_pending = true;
+        self.steady_flow_pending = true;
     }
 
     fn prepared(&mut self, _: &Resources, memory: &mut Memory) -> Result<&mut dyn Differentiable> {
-        if memory.state == State::Initialization && self.settle_pending {
+        if memory.state == State::Initialization && self.steady_flow_pending {
             if self.integrated {
                 self.check_stated(memory)?;
             }
             // in co-simulation what is read of the filters: the first step settles them itself
-            self.settle(memory)?;
-            self.settle_pending = false;
+            self.enter_steady_flow(memory)?;
+            self.steady_flow_pending = false;
         }
         Ok(self)
     }
 
-    fn held_output(&self, place: usize) -> Option<usize> {
-        self.held[place]
+    fn state_index(&self, index: usize) -> Option<usize> {
+        self.state_index[index]
     }
 }
 
@@ -315,9 +315,9 @@ impl Prepared for ForceUnit {
     }
 
     fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
-        let place = *self.inner.get(i)?;
-        let part = self.parts.iter().find(|part| place < part.inner.end)?;
-        let [strip, number] = part.at_inner(place);
+        let index = *self.inner.get(i)?;
+        let part = self.parts.iter().find(|part| index < part.inner.end)?;
+        let [strip, number] = part.at_inner(index);
         let mut work = std::mem::take(&mut self.work);
         work.rates.clear();
         self.add_rates(memory, part, strip, &mut work);
@@ -361,7 +361,7 @@ impl Prepared for ForceUnit {
 
 /// Which of all coordinates a degree of freedom of strip `s` is.
 fn coordinate(parts: &[StripsUnderModel], s: usize, dof: Dof) -> usize {
-    let part = StripsUnderModel::of(parts, s);
+    let part = StripsUnderModel::new(parts, s);
     let of_strip = part.forces.dofs().iter().position(|d| *d == dof);
     part.coordinates_of(s).start + of_strip.unwrap_or(0)
 }
@@ -399,11 +399,11 @@ impl ForceUnit {
         for part in &self.parts {
             let n = part.forces.dofs().len();
             let own = part.coordinates.clone();
-            let places = self.outputs[own.clone()].chunks(n);
-            let found = places.zip(self.work.forces[own].chunks(n));
-            for (strip, (places, found)) in self.strips[part.strips.clone()].iter().zip(found) {
+            let indices = self.outputs[own.clone()].chunks(n);
+            let found = indices.zip(self.work.forces[own].chunks(n));
+            for (strip, (indices, found)) in self.strips[part.strips.clone()].iter().zip(found) {
                 let length = memory.values[strip[1]];
-                for ([per_length, total], force) in places.iter().zip(found) {
+                for ([per_length, total], force) in indices.iter().zip(found) {
                     memory.values[*per_length] = force.force;
                     memory.values[*total] = force.force * length;
                 }

@@ -117,9 +117,9 @@ impl Instance {
         self.unit.step_taken(table, &self.memory, notices)
     }
 
-    /// Rate of the state to which the variable at `place` belongs.
-    pub(super) fn rate_at(&mut self, place: usize) -> CallResult<f64> {
-        let role = self.table().variables()[place].role;
+    /// Rate of the state to which the variable at `index` belongs.
+    pub(super) fn rate_at(&mut self, index: usize) -> CallResult<f64> {
+        let role = self.table().variables()[index].role;
         let unit = self.unit.prepared(&self.resources, &mut self.memory)?;
         if let Role::FilterRate(i) = role
             && let Some(rate) = unit.filter_rate(&self.memory, i)
@@ -130,7 +130,7 @@ impl Instance {
         let mut rates = std::mem::take(&mut self.rates);
         rates.resize(self.layout.state_rates.len(), 0.0);
         let found = self.state_rates(&mut rates);
-        let entry = self.layout.state_rates.iter().position(|p| *p == place);
+        let entry = self.layout.state_rates.iter().position(|p| *p == index);
         let rate = entry.map_or(0.0, |entry| rates[entry]);
         self.rates = rates;
         found.map(|()| rate)

@@ -46,7 +46,7 @@ pub(super) enum Source {
 
 impl Source {
     /// Where the value of a variable with this role comes from.
-    pub(super) fn of(role: Role) -> Self {
+    pub(super) fn from_role(role: Role) -> Self {
         match role {
             Role::WindSpeed
             | Role::ExternalForce(_)
@@ -92,7 +92,7 @@ pub(super) struct Access {
 }
 
 impl Access {
-    fn of(v: &Variable) -> Self {
+    fn new(v: &Variable) -> Self {
         Self {
             data_type: match v.value {
                 StartValue::Real(_) => DataType::Real,
@@ -100,7 +100,7 @@ impl Access {
                 StartValue::Boolean(_) => DataType::Boolean,
                 StartValue::String(_) => DataType::String,
             },
-            source: Source::of(v.role),
+            source: Source::from_role(v.role),
             gettable: gettable_in(v.causality, v.variability),
             settable: settable_in(v.causality, v.variability),
             min: v.min.unwrap_or(f64::NEG_INFINITY),
@@ -122,17 +122,17 @@ enum ReadableWhen {
 
 /// What reading a variable at every step needs, and no more: between steps, whatever can be read may be read.
 #[derive(Debug, Clone, Copy)]
-struct QuickAccess {
+struct FastRead {
     /// Its index in the system state; an invalid index if it is not a state.
     entry: u32,
-    at_hand: ReadableWhen,
+    stored_value: ReadableWhen,
 }
 
-impl QuickAccess {
-    fn of(access: &Access, held: Option<usize>) -> Self {
-        let (at_hand, entry) = match (access.data_type, access.source, held) {
+impl FastRead {
+    fn new(access: &Access, state_index: Option<usize>) -> Self {
+        let (stored_value, entry) = match (access.data_type, access.source, state_index) {
             (DataType::Real, Source::Response | Source::State, Some(_)) => {
-                (ReadableWhen::Never, held)
+                (ReadableWhen::Never, state_index)
             }
             (DataType::Real, Source::Response, None) => (ReadableWhen::WithOutputs, None),
             (
@@ -146,16 +146,16 @@ impl QuickAccess {
         let entry = entry.and_then(|entry| u32::try_from(entry).ok());
         Self {
             entry: entry.unwrap_or(u32::MAX),
-            at_hand,
+            stored_value,
         }
     }
 }
 
-/// The variables by place, which is the index into the table and into the stored values.
+/// The variables, by their index in the table, which is that of their stored values.
 #[derive(Debug, Clone)]
-pub(super) struct VariablePlaces {
+pub(super) struct VariableLayout {
     pub access: Vec<Access>,
-    glances: Vec<QuickAccess>,
+    fast_reads: Vec<FastRead>,
     wind_speed: usize,
     /// Rates of the continuous states, in their order.
     pub state_rates: Vec<usize>,
@@ -163,23 +163,27 @@ pub(super) struct VariablePlaces {
     pub state_entries: Vec<usize>,
 }
 
-/// Place of the variable with this role.
-pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
+/// Index of the variable with this role.
+pub(super) fn index_of(table: &VariableTable, role: Role) -> Result<usize> {
     table
         .find(role)
         .ok_or_else(|| Error::Numerical(format!("variable table: nothing stands for {role:?}")))
 }
 
-impl VariablePlaces {
-    /// The layout of a table; `held` says which outputs are entries of the system's state.
+impl VariableLayout {
+    /// The layout of a table; `state_index` says which outputs are entries of the system's state.
     pub(super) fn new(
         table: &VariableTable,
-        held: impl Fn(usize) -> Option<usize>,
+        state_index: impl Fn(usize) -> Option<usize>,
     ) -> Result<Self> {
-        let access: Vec<_> = table.variables().iter().map(Access::of).collect();
+        let access: Vec<_> = table.variables().iter().map(Access::new).collect();
         let each = access.iter().enumerate();
         let state_rates = table.state_rates();
-        let of = |rate: &usize| table.variables()[*rate].derivative_of.and_then(&held);
+        let of = |rate: &usize| {
+            table.variables()[*rate]
+                .derivative_of
+                .and_then(&state_index)
+        };
         let state_entries = state_rates.iter().map(of).collect::<Option<_>>();
         Ok(Self {
             state_entries: state_entries.ok_or_else(|| {
@@ -187,53 +191,55 @@ impl VariablePlaces {
                     "variable table: a continuous state is no part of the state".into(),
                 )
             })?,
-            glances: each.map(|(i, a)| QuickAccess::of(a, held(i))).collect(),
+            fast_reads: each
+                .map(|(i, a)| FastRead::new(a, state_index(i)))
+                .collect(),
             access,
-            wind_speed: place(table, Role::WindSpeed)?,
+            wind_speed: index_of(table, Role::WindSpeed)?,
             state_rates,
         })
     }
 
-    /// Entry of the system's state that the output at `place` is, if it is one.
-    pub(super) fn held(&self, place: usize) -> Option<usize> {
-        let entry = self.glances[place].entry;
+    /// Entry of the system's state that the output at `index` is, if it is one.
+    pub(super) fn state_index(&self, index: usize) -> Option<usize> {
+        let entry = self.fast_reads[index].entry;
         (entry != u32::MAX).then_some(entry as usize)
     }
 
     /// The value of a real variable that needs no work, between steps: most of what is read at every step.
     #[inline]
-    pub(super) fn at_hand(
+    pub(super) fn read_fast(
         &self,
         reference: u32,
         memory: &Memory,
         outputs_current: bool,
     ) -> Option<f64> {
-        let place = reference as usize;
-        let glance = self.glances.get(place)?;
-        if let Some(held) = memory.system.values.get(glance.entry as usize) {
-            return Some(*held);
+        let index = reference as usize;
+        let fast = self.fast_reads.get(index)?;
+        if let Some(state) = memory.system.values.get(fast.entry as usize) {
+            return Some(*state);
         }
-        let stored = match glance.at_hand {
+        let stored = match fast.stored_value {
             ReadableWhen::Always => true,
             ReadableWhen::WithOutputs => outputs_current,
             ReadableWhen::Never => false,
         };
-        stored.then(|| memory.values[place])
+        stored.then(|| memory.values[index])
     }
 
-    /// Where the value at `place` comes from.
     /// Whether a variable may be set in a state.
-    pub(super) fn is_settable(&self, place: usize, state: State) -> bool {
-        self.access[place].settable.contains(state)
+    pub(super) fn is_settable(&self, index: usize, state: State) -> bool {
+        self.access[index].settable.contains(state)
     }
 
-    pub(super) fn source(&self, place: usize) -> Source {
-        self.access[place].source
+    /// Origin of the value at `index`.
+    pub(super) fn source(&self, index: usize) -> Source {
+        self.access[index].source
     }
 
-    /// `value` as it is stored at `place`: a wind that rounding has taken below zero is at rest.
-    pub(super) fn settled(&self, place: usize, value: f64) -> f64 {
-        if place == self.wind_speed {
+    /// `value` as it is stored at `index`: a wind that rounding has taken below zero is at rest.
+    pub(super) fn clamp_to_calm(&self, index: usize, value: f64) -> f64 {
+        if index == self.wind_speed {
             wind_at_rest(value, 0.0)
         } else {
             value

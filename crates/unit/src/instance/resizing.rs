@@ -16,12 +16,12 @@ impl Instance {
         let variables = self.table().variables().iter();
         let values = variables.zip(&self.memory.values);
         let old: HashMap<&str, f64> = values.map(|(v, x)| (v.name.as_str(), *x)).collect();
-        for place in 0..resized.table().variables().len() {
-            let name = resized.table().variables()[place].name.as_str();
+        for index in 0..resized.table().variables().len() {
+            let name = resized.table().variables()[index].name.as_str();
             if let Some(value) = old.get(name)
-                && resized.layout.is_settable(place, State::Instantiated)
+                && resized.layout.is_settable(index, State::Instantiated)
             {
-                resized.store(place, *value);
+                resized.store(index, *value);
             }
         }
         Ok(resized)

@@ -68,9 +68,9 @@ impl Instance {
     pub(super) fn replace_memory(&mut self, mut memory: Memory) {
         let (layout, old) = (&self.layout, &self.memory);
         let same = |source: Source| {
-            let places = (0..old.values.len()).filter(|place| layout.source(*place) == source);
-            let bits = |values: &[f64], place: usize| values[place].to_bits();
-            places
+            let indices = (0..old.values.len()).filter(|index| layout.source(*index) == source);
+            let bits = |values: &[f64], index: usize| values[index].to_bits();
+            indices
                 .into_iter()
                 .all(|p| bits(&old.values, p) == bits(&memory.values, p))
         };
@@ -106,11 +106,11 @@ impl Instance {
         let guid = self.resources.guid;
         let mut memory = serialized::read(bytes, &guid, &self.fresh)
             .map_err(|e| Refusal::call(e.to_string()))?;
-        for (place, value) in memory.values.iter_mut().enumerate() {
-            if self.layout.source(place) == Source::Constant {
-                *value = self.fresh.values[place];
+        for (index, value) in memory.values.iter_mut().enumerate() {
+            if self.layout.source(index) == Source::Constant {
+                *value = self.fresh.values[index];
             }
-            self.check_stored(place, *value)?;
+            self.check_stored(index, *value)?;
         }
         Ok(Snapshot { guid, memory })
     }

@@ -9,7 +9,7 @@ use crate::variables::LINEAR_ROTATION_RAD;
 impl SectionUnit {
     #[inline]
     pub(super) fn in_tested_winds(&self, memory: &Memory) -> bool {
-        let wind = self.places.wind_speed(memory);
+        let wind = self.indices.wind_speed(memory);
         let tested = self.built.tested_winds;
         tested.is_some_and(|[low, high]| (low..=high).contains(&wind))
     }
@@ -34,7 +34,7 @@ impl SectionUnit {
         let leaves = self.own.wind_was_tested && !inside && !self.own.wind_left;
         if let Some([low, high]) = self.built.tested_winds.filter(|_| leaves) {
             self.own.wind_left = true;
-            let wind = self.places.wind_speed(memory);
+            let wind = self.indices.wind_speed(memory);
             notices.push(format!(
                 "wind_speed = {wind} m/s leaves the speeds at which this section was tested, {low:.3} to {high:.3} m/s \
                  at its frequencies in still air: the forces are extrapolated"

@@ -3,7 +3,7 @@
 
 use super::coupled::{Coupled, CoupledKind};
 use super::damping::PresentDamping;
-use super::layout::place;
+use super::layout::index_of;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::sensitivity::SectionValues;
@@ -21,7 +21,7 @@ use crate::variables::{Response, Role, VariableTable};
 const GROWTH_SEARCHES: usize = 32;
 
 /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
-type ResponsePlaces = Vec<[usize; 4]>;
+type ResponseIndices = Vec<[usize; 4]>;
 
 /// What is known of the inputs.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +37,7 @@ enum LoadedInputs {
 /// See the module.
 #[derive(Debug)]
 pub(super) struct SuspendedSection {
-    responses: ResponsePlaces,
+    responses: ResponseIndices,
     aerodynamics: Realization,
     /// Whether growth below the onset has been looked for with the current parameters.
     growth_known: bool,
@@ -68,7 +68,7 @@ impl SectionUnit {
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub(super) fn of_section(resources: &Resources) -> Result<Self> {
-        let responses = response_places(&resources.table)?;
+        let responses = response_indices(&resources.table)?;
         let own = SuspendedSection {
             responses,
             aerodynamics: resources.model.model.realize(),
@@ -80,7 +80,7 @@ impl SectionUnit {
             loaded: LoadedInputs::Stale,
         };
         let mut unit = Self::new(own, resources)?;
-        let gusts = unit.places.gusts().len();
+        let gusts = unit.indices.gusts().len();
         unit.inputs.gust_m_s = vec![0.0; gusts];
         unit.inputs.gust_rate_m_s2 = vec![0.0; gusts];
         Ok(unit)
@@ -89,7 +89,7 @@ impl SectionUnit {
     /// Growth below the onset for the parameters in `values`.
     fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
         let Resources { model, table, .. } = resources;
-        let limit = values[self.places.limit];
+        let limit = values[self.indices.limit];
         let section = section::coupled_section(model, table, &self.own.aerodynamics, values)?;
         let forces = &self.own.aerodynamics;
         if let Some(speed) = section::plainly_stable_to(model, table, forces, values, limit) {
@@ -162,15 +162,15 @@ impl CoupledKind for SuspendedSection {
     fn load_inputs(unit: &mut SectionUnit, memory: &Memory) {
         unit.own.loaded = LoadedInputs::Stale;
         let (inputs, rates) = (&mut unit.inputs, &memory.input_rates);
-        inputs.wind_speed_m_s = unit.places.wind_speed(memory);
+        inputs.wind_speed_m_s = unit.indices.wind_speed(memory);
         inputs.wind_speed_rate_m_s2 = rates[0];
-        for (i, place) in unit.places.forces().iter().enumerate() {
-            inputs.force[i] = memory.values[*place];
+        for (i, index) in unit.indices.forces().iter().enumerate() {
+            inputs.force[i] = memory.values[*index];
             inputs.force_rate[i] = rates[i + 1];
         }
-        let of_gusts = &rates[unit.places.first_gust..];
-        for (i, place) in unit.places.gusts().iter().enumerate() {
-            inputs.gust_m_s[i] = memory.values[*place];
+        let of_gusts = &rates[unit.indices.first_gust..];
+        for (i, index) in unit.indices.gusts().iter().enumerate() {
+            inputs.gust_m_s[i] = memory.values[*index];
             inputs.gust_rate_m_s2[i] = of_gusts[i];
         }
     }
@@ -187,7 +187,7 @@ impl CoupledKind for SuspendedSection {
     }
 
     fn motion_at_release(unit: &SectionUnit, values: &[f64]) -> [Vec<f64>; 2] {
-        let initial: Vec<f64> = unit.places.initial.iter().map(|i| values[*i]).collect();
+        let initial: Vec<f64> = unit.indices.initial.iter().map(|i| values[*i]).collect();
         let (displacements, rates) = initial.split_at(unit.own.responses.len());
         [displacements.to_vec(), rates.to_vec()]
     }
@@ -224,7 +224,7 @@ impl CoupledKind for SuspendedSection {
     fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
         let Resources { model, table, .. } = resources;
         let (values, forces) = (&memory.values, &unit.own.aerodynamics);
-        let limit = unit.places.limit(memory);
+        let limit = unit.indices.limit(memory);
         match section::coupled_section(model, table, forces, values) {
             Ok(section) => {
                 let plain = section::plain_onset(model, table, forces, values, limit);
@@ -300,23 +300,23 @@ impl CoupledKind for SuspendedSection {
     }
 }
 
-fn response_places(table: &VariableTable) -> Result<ResponsePlaces> {
+fn response_indices(table: &VariableTable) -> Result<ResponseIndices> {
     let dofs = table.dofs().into_iter();
     dofs.map(|dof| {
-        let mut places = [0; 4];
-        for (slot, response) in places.iter_mut().zip(Response::ALL) {
-            *slot = place(table, Role::Response(response, dof))?;
+        let mut indices = [0; 4];
+        for (slot, response) in indices.iter_mut().zip(Response::ALL) {
+            *slot = index_of(table, Role::Response(response, dof))?;
         }
-        Ok(places)
+        Ok(indices)
     })
     .collect()
 }
 
 #[inline(always)]
-fn write(responses: &ResponsePlaces, accelerations: &[f64], forces: &[f64], memory: &mut Memory) {
+fn write(responses: &ResponseIndices, accelerations: &[f64], forces: &[f64], memory: &mut Memory) {
     let each = responses.iter().zip(accelerations.iter().zip(forces));
-    for (places, (acceleration, force)) in each {
-        memory.values[places[2]] = *acceleration;
-        memory.values[places[3]] = *force;
+    for (indices, (acceleration, force)) in each {
+        memory.values[indices[2]] = *acceleration;
+        memory.values[indices[3]] = *force;
     }
 }

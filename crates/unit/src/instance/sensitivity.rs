@@ -40,7 +40,11 @@ pub(super) struct SectionValues {
 }
 
 impl SectionValues {
-    pub(super) fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
+    pub(super) fn new(
+        stepper: &mut Stepper,
+        state: &SectionState,
+        inputs: &Inputs,
+    ) -> Result<Self> {
         let mut outputs = Outputs::default();
         stepper.outputs(state, inputs, &mut outputs)?;
         let continuous = matches!(stepper.section().aerodynamics(), Realization::Continuous(_));

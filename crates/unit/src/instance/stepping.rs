@@ -88,9 +88,9 @@ impl Instance {
         let values = &mut self.memory.values;
         let inputs = self.unit.inputs();
         let before = values[inputs[0]];
-        for (place, rate) in inputs.iter().zip(&self.memory.input_rates) {
+        for (index, rate) in inputs.iter().zip(&self.memory.input_rates) {
             if *rate != 0.0 {
-                values[*place] += rate * step;
+                values[*index] += rate * step;
             }
         }
         values[inputs[0]] = wind_at_rest(values[inputs[0]], before);

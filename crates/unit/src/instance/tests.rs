@@ -183,7 +183,7 @@ fn instance(kind: Kind, integrated: bool) -> Option<Instance> {
     }
 }
 
-fn place(instance: &Instance, name: &str) -> u32 {
+fn index(instance: &Instance, name: &str) -> u32 {
     let found = instance.table().find_name(name);
     found.unwrap_or_else(|| panic!("no variable `{name}`")) as u32
 }

@@ -13,7 +13,7 @@ use std::fmt::Debug;
 /// The system behind an instance. Everything that changes in time stands in the [`Memory`]; a unit holds what follows
 /// from it and is made anew when it has changed.
 pub(super) trait Unit: Debug + Send {
-    /// Places of the inputs, in the order of their rates; the wind speed comes first.
+    /// Indices of the inputs, in the order of their rates; the wind speed comes first.
     fn inputs(&self) -> &[usize];
 
     /// The state of a new instance.
@@ -23,7 +23,7 @@ pub(super) trait Unit: Debug + Send {
     fn changed(&mut self, source: Source);
 
     /// An input has been set, whether it changed or not; returns whether outputs change with it.
-    fn input_set(&mut self, _memory: &mut Memory, _place: usize, _changed: bool) -> bool {
+    fn input_set(&mut self, _memory: &mut Memory, _index: usize, _changed: bool) -> bool {
         false
     }
 
@@ -84,8 +84,8 @@ pub(super) trait Unit: Debug + Send {
         false
     }
 
-    /// Entry of the state of what is simulated that the output at `place` is, if it is one.
-    fn held_output(&self, _place: usize) -> Option<usize> {
+    /// Entry of the state of what is simulated that the output at `index` is, if it is one.
+    fn state_index(&self, _index: usize) -> Option<usize> {
         None
     }
 }

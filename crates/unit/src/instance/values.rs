@@ -16,7 +16,7 @@ impl Instance {
     /// A reference that is none, of another type, or not readable now; a value that cannot be computed.
     #[inline(always)]
     pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> CallResult<()> {
-        let read = self.read_at_hand(references, values);
+        let read = self.read_cached(references, values);
         if read == references.len() {
             return Ok(());
         }
@@ -25,7 +25,7 @@ impl Instance {
 
     /// Reads real variables up to the first that needs work; returns how many.
     #[inline]
-    fn read_at_hand(&self, references: &[u32], values: &mut [f64]) -> usize {
+    fn read_cached(&self, references: &[u32], values: &mut [f64]) -> usize {
         // ahead of its release a section is not yet where its initial values put it
         if self.memory.state != State::StepComplete {
             return 0;
@@ -33,10 +33,10 @@ impl Instance {
         let (memory, current) = (&self.memory, self.outputs_current);
         let mut read = 0;
         for (reference, value) in references.iter().zip(values) {
-            let Some(at_hand) = self.layout.at_hand(*reference, memory, current) else {
+            let Some(cached) = self.layout.read_fast(*reference, memory, current) else {
                 break;
             };
-            *value = at_hand;
+            *value = cached;
             read += 1;
         }
         read
@@ -47,12 +47,12 @@ impl Instance {
     fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> CallResult<()> {
         if self.memory.state == State::StepComplete && !self.outputs_current {
             self.outputs_current = self.unit.repeat_outputs(&mut self.memory);
-            let read = self.read_at_hand(references, values);
+            let read = self.read_cached(references, values);
             (references, values) = (&references[read..], &mut values[read..]);
         }
         while let ([reference, others @ ..], [value, rest @ ..]) = (references, values) {
             *value = self.number(*reference, DataType::Real)?;
-            let read = self.read_at_hand(others, rest);
+            let read = self.read_cached(others, rest);
             (references, values) = (&others[read..], &mut rest[read..]);
         }
         Ok(())
@@ -68,19 +68,19 @@ impl Instance {
         Ok(self.number(reference, DataType::Boolean)? != 0.0)
     }
 
-    /// Place in the table of a text that may be read now.
-    pub(crate) fn text_place(&self, reference: u32) -> CallResult<usize> {
+    /// Index in the table of a text that may be read now.
+    pub(crate) fn text_index(&self, reference: u32) -> CallResult<usize> {
         Ok(self.readable(reference, DataType::String)?.0)
     }
 
     pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> CallResult<f64> {
-        let (place, access) = self.readable(reference, wanted)?;
+        let (index, access) = self.readable(reference, wanted)?;
         let (resources, memory) = (&self.resources, &mut self.memory);
         match access.source {
             Source::Response => {
                 let unit = self.unit.prepared(resources, memory)?;
                 // what is part of the state needs no output equation
-                if let Some(entry) = self.layout.held(place) {
+                if let Some(entry) = self.layout.state_index(index) {
                     return state_number(memory, entry);
                 }
                 if !self.outputs_current {
@@ -89,7 +89,7 @@ impl Instance {
                 }
             }
             Source::Status => {
-                let Role::Computed(number) = resources.table.variables()[place].role else {
+                let Role::Computed(number) = resources.table.variables()[index].role else {
                     return Ok(0.0);
                 };
                 let unit = self.unit.prepared(resources, memory)?;
@@ -97,10 +97,10 @@ impl Instance {
             }
             Source::State => {
                 self.unit.prepared(resources, memory)?;
-                let entry = self.layout.held(place);
+                let entry = self.layout.state_index(index);
                 return entry.map_or(Ok(0.0), |entry| state_number(memory, entry));
             }
-            Source::Rate => return self.rate_at(place),
+            Source::Rate => return self.rate_at(index),
             Source::Calculated => match self.unit.prepared(resources, memory) {
                 Ok(unit) => unit.calculate(resources, memory, &mut self.notices),
                 Err(why) => {
@@ -112,7 +112,7 @@ impl Instance {
             },
             _ => {}
         }
-        Ok(self.memory.values[place])
+        Ok(self.memory.values[index])
     }
 
     /// Sets real variables: all of them or, when one is refused, none.
@@ -122,14 +122,14 @@ impl Instance {
     /// a discard for a value outside the limits of its variable.
     pub fn set_reals(&mut self, references: &[u32], values: &[f64]) -> CallResult<()> {
         for (reference, value) in references.iter().zip(values) {
-            let (place, access) = self.writable(*reference, DataType::Real)?;
-            self.check_value(place, access, self.layout.settled(place, *value))?;
+            let (index, access) = self.writable(*reference, DataType::Real)?;
+            self.check_value(index, access, self.layout.clamp_to_calm(index, *value))?;
         }
         for (reference, value) in references.iter().zip(values) {
-            let place = *reference as usize;
-            let changed = self.store(place, self.layout.settled(place, *value));
-            let input = self.layout.source(place) == Source::Input;
-            if input && self.unit.input_set(&mut self.memory, place, changed) {
+            let index = *reference as usize;
+            let changed = self.store(index, self.layout.clamp_to_calm(index, *value));
+            let input = self.layout.source(index) == Source::Input;
+            if input && self.unit.input_set(&mut self.memory, index, changed) {
                 self.outputs_current = false;
             }
         }
@@ -148,13 +148,13 @@ impl Instance {
     }
 
     /// Returns whether the value has changed.
-    pub(super) fn store(&mut self, place: usize, value: f64) -> bool {
-        if self.memory.values[place].to_bits() == value.to_bits() {
+    pub(super) fn store(&mut self, index: usize, value: f64) -> bool {
+        if self.memory.values[index].to_bits() == value.to_bits() {
             return false;
         }
-        self.memory.values[place] = value;
+        self.memory.values[index] = value;
         self.outputs_current = false;
-        self.unit.changed(self.layout.source(place));
+        self.unit.changed(self.layout.source(index));
         true
     }
 
@@ -185,12 +185,12 @@ impl Instance {
         Ok(())
     }
 
-    /// Place among the inputs.
+    /// Index among the inputs.
     pub(super) fn input_index(&self, reference: u32) -> CallResult<usize> {
-        let (place, _) = self.typed(reference, DataType::Real)?;
+        let (index, _) = self.typed(reference, DataType::Real)?;
         let mut inputs = self.unit.inputs().iter();
-        inputs.position(|input| *input == place).ok_or_else(|| {
-            let name = &self.table().variables()[place].name;
+        inputs.position(|input| *input == index).ok_or_else(|| {
+            let name = &self.table().variables()[index].name;
             Refusal::error(format!("`{name}` is no input"))
         })
     }

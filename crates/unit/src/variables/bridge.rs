@@ -77,13 +77,13 @@ fn gusts<'a>(
 ) -> impl Iterator<Item = Variable> + 'a {
     strips.iter().enumerate().flat_map(|(s, nodes)| {
         let ends = [nodes.first(), nodes.last()].map(|n| n.map(|n| &options.nodes[*n].name));
-        let place = match ends {
+        let location = match ends {
             [Some(a), Some(b)] if a != b => format!(", at the nodes {a} to {b}"),
             [Some(a), _] => format!(", at node {a}"),
             _ => String::new(),
         };
         gust_inputs(s, |of| format!("strip[{}].{of}", s + 1)).map(|mut v| {
-            v.description.push_str(&place);
+            v.description.push_str(&location);
             v
         })
     })
@@ -131,7 +131,7 @@ fn parameters(options: &BridgeOptions, turbulence: bool) -> Vec<Variable> {
 }
 
 /// Where a node is, in words.
-fn place(options: &BridgeOptions, named: usize) -> String {
+fn location(options: &BridgeOptions, named: usize) -> String {
     let node = &options.nodes[options.named[named]];
     format!("at node {}, {} m along the girder", node.name, node.along_m)
 }
@@ -147,7 +147,7 @@ fn force(options: &BridgeOptions, named: usize, dof: Dof) -> Variable {
         options.node_name(named),
         names_of(dof).external
     );
-    let text = format!("External {what}, {}", place(options, named));
+    let text = format!("External {what}, {}", location(options, named));
     real(name, Role::NodeForce(named, dof), INPUT, text)
         .start(0.0)
         .quantity(quantity, Some(unit))
@@ -165,7 +165,7 @@ fn motions(options: &BridgeOptions, named: usize) -> impl Iterator<Item = Variab
             _ => format!("Second rate of the {}", w.motion),
         };
         let name = format!("node[{}].{}", options.node_name(named), w.responses[i]);
-        let text = format!("{what}, {}", place(options, named));
+        let text = format!("{what}, {}", location(options, named));
         real(name, Role::NodeMotion(named, response, dof), OUTPUT, text)
             .quantity(w.quantities[i], Some(w.units[i]))
             .shown_if(dof == Dof::Torsion)

@@ -42,7 +42,7 @@ impl States {
         2 * self.modes + self.filters + self.lags
     }
 
-    /// Place of an entry of the state of what is simulated.
+    /// Index of an entry of the state of what is simulated.
     fn state(&self, entry: usize) -> usize {
         match entry.checked_sub(2 * self.modes) {
             Some(behind) => self.first + 3 * self.modes + 2 * behind,
@@ -50,7 +50,7 @@ impl States {
         }
     }
 
-    /// Place of its rate; that of a coordinate is a state itself.
+    /// Index of its rate; that of a coordinate is a state itself.
     fn rate(&self, entry: usize) -> usize {
         match entry.checked_sub(2 * self.modes) {
             Some(_) => self.state(entry) + 1,

@@ -160,7 +160,7 @@ impl ComputedNumber {
     }
 
     /// Its value with its slope; truth values are 0 and 1.
-    pub(crate) fn of(&self, present: &Present) -> Dual {
+    pub(crate) fn evaluate(&self, present: &Present) -> Dual {
         match self.formula {
             Formula::Real(formula) => formula(present),
             Formula::Flag(formula) => f64::from(u8::from(formula(present))).into(),

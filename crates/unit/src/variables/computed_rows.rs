@@ -153,15 +153,15 @@ pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
         };
         let mut on = [BTreeSet::new(), BTreeSet::new()];
         let [direct, initial] = &mut on;
-        for (place, variable) in table.iter().enumerate() {
+        for (index, variable) in table.iter().enumerate() {
             if number
                 .reads
                 .iter()
                 .any(|known| follows(*known, variable.role, of_bridge))
             {
-                initial.insert(place);
+                initial.insert(index);
                 if variable.causality == Causality::Input {
-                    direct.insert(place);
+                    direct.insert(index);
                 }
             }
             let motion = match variable.role {

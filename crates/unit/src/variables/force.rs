@@ -94,9 +94,9 @@ fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, states: &[Strip
             false => filter(i, &of("filter")),
             true => gust_filter(i, &of("gust_filter")),
         };
-        let place = table.len();
+        let index = table.len();
         table.extend(pair);
-        table[place + 1].derivative_of = Some(place);
+        table[index + 1].derivative_of = Some(index);
     }
 }
 
@@ -243,33 +243,33 @@ struct StripDependencies {
 /// the displacements and all filters, that of a lagging gust the gusts and itself.
 fn fill_dependencies(table: &mut [Variable], strips: usize, states: &[StripState]) {
     let (mut shared, mut of_strip) = (Vec::new(), vec![StripDependencies::default(); strips]);
-    for (place, variable) in table.iter().enumerate() {
+    for (index, variable) in table.iter().enumerate() {
         match variable.role {
-            Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(place),
+            Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(index),
             Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => {
-                of_strip[s].known.push(place);
+                of_strip[s].known.push(index);
             }
-            Role::Filter(i) if is_lag(variable) => of_strip[states[i].strip].lags.push(place),
-            Role::Filter(i) => of_strip[states[i].strip].filters.push(place),
+            Role::Filter(i) if is_lag(variable) => of_strip[states[i].strip].lags.push(index),
+            Role::Filter(i) => of_strip[states[i].strip].filters.push(index),
             _ => {}
         }
     }
     let roles: Vec<Role> = table.iter().map(|v| v.role).collect();
-    for (place, variable) in table.iter_mut().enumerate() {
+    for (index, variable) in table.iter_mut().enumerate() {
         let (strip, inner) = match variable.role {
             Role::Force(s, ..) => (s, [&of_strip[s].filters[..], &of_strip[s].lags].concat()),
-            Role::Filter(i) => (states[i].strip, vec![place]),
+            Role::Filter(i) => (states[i].strip, vec![index]),
             // behind its state
-            Role::FilterRate(i) if is_lag(variable) => (states[i].strip, vec![place - 1]),
+            Role::FilterRate(i) if is_lag(variable) => (states[i].strip, vec![index - 1]),
             Role::FilterRate(i) => (states[i].strip, of_strip[states[i].strip].filters.clone()),
             _ => continue,
         };
         let known = shared.iter().chain(&of_strip[strip].known).copied();
         let mut known: Vec<usize> = known.filter(|on| follows(variable, roles[*on])).collect();
         known.sort_unstable();
-        let input = |place: &usize| {
+        let input = |index: &usize| {
             matches!(
-                roles[*place],
+                roles[*index],
                 Role::WindSpeed | Role::Motion(..) | Role::Gust(..)
             )
         };

@@ -15,9 +15,9 @@ pub enum Listing {
 /// The variables that a description lists.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ListedVariables {
-    /// As a table of their own, whose dependencies are places in it.
+    /// As a table of their own, whose dependencies are indices in it.
     pub table: VariableTable,
-    /// Their value references: the places in the full table, so that one runtime serves both.
+    /// Their value references: the indices in the full table, so that one runtime serves both.
     pub references: Vec<usize>,
 }
 
@@ -30,17 +30,17 @@ impl VariableTable {
             .filter(|&i| listing == Listing::All || real(&self.variables[i]))
             .collect();
         // ascending, since the references are
-        let place = |reference: usize| references.binary_search(&reference).ok();
+        let index = |reference: usize| references.binary_search(&reference).ok();
         let variables = references.iter().map(|&reference| {
             let mut variable = self.variables[reference].clone();
-            variable.derivative_of = variable.derivative_of.and_then(place);
+            variable.derivative_of = variable.derivative_of.and_then(index);
             let lists = [
                 &mut variable.direct_inputs,
                 &mut variable.initial_dependencies,
             ];
             for list in lists {
                 let listed = list.iter();
-                let listed = listed.filter_map(|d| place(d.on).map(|on| Dependency { on, ..*d }));
+                let listed = listed.filter_map(|d| index(d.on).map(|on| Dependency { on, ..*d }));
                 *list = listed.collect();
             }
             variable

@@ -149,9 +149,9 @@ fn name_rates(table: &mut [Variable], dofs: &[Dof]) {
     let triples = motion.chunks_exact(3);
     let pairs = triples.flat_map(|m| [[m[0], m[1]], [m[1], m[2]]]);
     for [state, rate] in pairs.chain(filters) {
-        let place = find(table, state);
+        let index = find(table, state);
         if let Some(rate) = find(table, rate) {
-            table[rate].derivative_of = place;
+            table[rate].derivative_of = index;
         }
     }
 }
@@ -178,7 +178,7 @@ fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
 }
 
 fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
-    let held = match &model.model {
+    let sampling = match &model.model {
         Model::DiscreteLaguerre(m) => format!(
             "; sampled and held over internal steps of delta_s*B/V, delta_s = {}",
             m.delta_s
@@ -190,7 +190,7 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
         Response::Rate => format!("Rate of the {}", w.motion),
         Response::Acceleration => format!("Second rate of the {}", w.motion),
         Response::SelfExcitedForce => {
-            format!("Self-excited {}, added mass included{held}", w.force)
+            format!("Self-excited {}, added mass included{sampling}", w.force)
         }
     };
     dofs.iter()

@@ -29,8 +29,8 @@ fn names<'a>(table: &'a VariableTable, on: &[Dependency]) -> Vec<&'a str> {
 }
 
 fn direct<'a>(table: &'a VariableTable, output: &str) -> Vec<&'a str> {
-    let place = table.find_name(output).unwrap();
-    names(table, &table.variables()[place].direct_inputs)
+    let index = table.find_name(output).unwrap();
+    names(table, &table.variables()[index].direct_inputs)
 }
 
 #[test]

@@ -70,7 +70,7 @@ pub enum Role {
     Prediction,
     /// Which derivatives of the motion the importer sets.
     MotionDerivatives,
-    /// External force on a node of a bridge, by its place among those named.
+    /// External force on a node of a bridge, by its index among those named.
     NodeForce(usize, Dof),
     /// Motion of a node of a bridge.
     NodeMotion(usize, Response, Dof),
@@ -162,7 +162,7 @@ impl FmiTerm for DependencyKind {
 /// One known that an unknown depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dependency {
-    /// Place of the known in the table.
+    /// Index of the known in the table.
     pub on: usize,
     /// How.
     pub kind: DependencyKind,
@@ -221,11 +221,11 @@ pub struct Variable {
     pub max: Option<f64>,
     /// Usual size.
     pub nominal: Option<f64>,
-    /// The variable whose rate it is, by place in the table (rates of states only).
+    /// The variable whose rate it is, by index in the table (rates of states only).
     pub derivative_of: Option<usize>,
-    /// Inputs and states that act on it without delay, by place in the table (outputs and rates of states only).
+    /// Inputs and states that act on it without delay, by index in the table (outputs and rates of states only).
     pub direct_inputs: Vec<Dependency>,
-    /// What it depends on while initialising, by place in the table (unknowns only).
+    /// What it depends on while initialising, by index in the table (unknowns only).
     pub initial_dependencies: Vec<Dependency>,
 }
 
@@ -244,7 +244,7 @@ impl Variable {
     }
 }
 
-/// Place of the variable with this role.
+/// Index of the variable with this role.
 pub(super) fn find(variables: &[Variable], role: Role) -> Option<usize> {
     variables.iter().position(|v| v.role == role)
 }

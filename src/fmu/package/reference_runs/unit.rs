@@ -90,7 +90,7 @@ impl ReferenceUnit {
         })
     }
 
-    fn of(&self, wanted: impl Fn(&Variable) -> bool) -> impl Iterator<Item = (usize, &str)> {
+    fn variables(&self, wanted: impl Fn(&Variable) -> bool) -> impl Iterator<Item = (usize, &str)> {
         let all = self.listed.iter();
         let chosen = all.filter(move |(place, _)| wanted(&self.variables[**place]));
         chosen.map(|(place, name)| (*place, name.as_str()))
@@ -98,7 +98,7 @@ impl ReferenceUnit {
 
     /// Parameters with their start values; of FMI 3.0 those that are no arrays, which a parameter set cannot hold.
     pub(super) fn parameters(&self) -> Vec<(String, f64)> {
-        let own = self.of(|v| {
+        let own = self.variables(|v| {
             let is_array = self.version == FmiVersion::Three && array_of(v.role, &v.name).is_some();
             v.causality == Causality::Parameter && !is_array
         });
@@ -110,7 +110,7 @@ impl ReferenceUnit {
     }
 
     fn wind(&self) -> Option<usize> {
-        self.of(|v| v.role == Role::WindSpeed)
+        self.variables(|v| v.role == Role::WindSpeed)
             .next()
             .map(|(place, _)| place)
     }
@@ -243,7 +243,7 @@ impl ReferenceUnit {
                     _ => matches!(v.value, StartValue::Real(_)),
                 }
         };
-        let all: Vec<usize> = self.of(moving).map(|(place, _)| place).collect();
+        let all: Vec<usize> = self.variables(moving).map(|(place, _)| place).collect();
         let every = all.len().div_ceil(MAX_RECORDED).max(1);
         all.into_iter().step_by(every).collect()
     }
@@ -260,7 +260,8 @@ impl ReferenceUnit {
             frequency_hz: 0.3,
             phase: 0.0,
         });
-        let others = self.of(|v| v.causality == Causality::Input && v.role != Role::WindSpeed);
+        let others =
+            self.variables(|v| v.causality == Causality::Input && v.role != Role::WindSpeed);
         let others = others.filter_map(|(place, _)| self.stimulus(place, planned));
         let others = others.take(if planned.driven { MAX_STIMULI } else { 0 });
         wind.into_iter().chain(others).collect()

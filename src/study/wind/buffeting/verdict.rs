@@ -25,7 +25,7 @@ impl WindStudy {
             }
             (None, None) => Evidence::default(),
         };
-        Ok(Verdict::of(&Evidence {
+        Ok(Verdict::judge(&Evidence {
             required: self.speeds.required(),
             implausible: [self.findings(), setting.findings.clone()].concat(),
             ..evidence

@@ -76,7 +76,7 @@ impl Derivative {
     }
 
     /// The derivative that is `part` of the entry (`force`, `motion`) of `G/K²`.
-    pub fn of(force: Dof, motion: Dof, part: Part) -> Self {
+    pub fn from_entry(force: Dof, motion: Dof, part: Part) -> Self {
         let matches = |d: &Self| (d.force(), d.motion(), d.part()) == (force, motion, part);
         // The 18 derivatives are all 3×3×2 combinations, so the fallback is never taken.
         Self::ALL.into_iter().find(matches).unwrap_or(Self::P1)
@@ -138,8 +138,11 @@ mod tests {
         let order = [Dof::Lateral, Dof::Vertical, Dof::Torsion];
         for (force, row) in order.into_iter().zip(printed) {
             for (motion, (imaginary, real)) in order.into_iter().zip(row) {
-                assert_eq!(Derivative::of(force, motion, Part::Imaginary), imaginary);
-                assert_eq!(Derivative::of(force, motion, Part::Real), real);
+                assert_eq!(
+                    Derivative::from_entry(force, motion, Part::Imaginary),
+                    imaginary
+                );
+                assert_eq!(Derivative::from_entry(force, motion, Part::Real), real);
             }
         }
     }

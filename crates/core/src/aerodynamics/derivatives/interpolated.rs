@@ -84,7 +84,9 @@ impl InterpolatedTable {
         table.require(dofs)?;
         let groups = table.speed_groups_end();
         let curve = |force, motion, part| {
-            let points = table.points(Derivative::of(force, motion, part)).iter();
+            let points = table
+                .points(Derivative::from_entry(force, motion, part))
+                .iter();
             let with_group = |p: &DerivativePoint| {
                 let speed = p.mean_speed_m_s.unwrap_or(0.0);
                 (*p, groups.partition_point(|end| *end < speed))

@@ -140,7 +140,7 @@ impl DerivativeTable {
             let g = model.transfer(k)?;
             for (i, j) in (0..dofs.len()).flat_map(|i| (0..dofs.len()).map(move |j| (i, j))) {
                 for (part, value) in [(Part::Real, g[(i, j)].re), (Part::Imaginary, g[(i, j)].im)] {
-                    let of_one = points.entry(Derivative::of(dofs[i], dofs[j], part));
+                    let of_one = points.entry(Derivative::from_entry(dofs[i], dofs[j], part));
                     of_one.or_default().push(DerivativePoint {
                         mean_speed_m_s: Some(speed),
                         v_hat: k.v_hat(),

@@ -27,7 +27,7 @@ pub struct Arms {
 
 impl Arms {
     /// The arm of one force component.
-    pub fn of(&self, dof: Dof) -> f64 {
+    pub fn arm(&self, dof: Dof) -> f64 {
         match dof {
             Dof::Vertical => self.vertical,
             Dof::Lateral => self.lateral,
@@ -38,7 +38,7 @@ impl Arms {
     /// Checks that all are parts of a width; `place` goes before their keys.
     pub fn validate(&self, place: &str) -> Result<()> {
         for dof in Dof::THREE {
-            let (key, arm) = (format!("{place}arms.{}", dof.name()), self.of(dof));
+            let (key, arm) = (format!("{place}arms.{}", dof.name()), self.arm(dof));
             ensure(
                 finite(key.as_str(), arm)?.abs() <= LARGEST,
                 key,

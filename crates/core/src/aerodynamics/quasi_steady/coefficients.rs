@@ -59,7 +59,7 @@ pub struct CoefficientsAt {
 
 impl CoefficientsAt {
     /// The coefficient of the force on a degree of freedom and its slope, per rad.
-    pub fn of(&self, dof: Dof) -> (f64, f64) {
+    pub fn coefficient(&self, dof: Dof) -> (f64, f64) {
         match dof {
             Dof::Vertical => (self.lift, self.lift_slope),
             Dof::Lateral => (self.drag, self.drag_slope),

@@ -40,13 +40,13 @@ impl LinearQuasiSteady {
     /// From the coefficients at the rotation `θ₀` (rad) about which the theory is linear.
     pub fn new(dofs: &[Dof], arms: Arms, rotation_rad: f64, at: CoefficientsAt) -> Self {
         let n = dofs.len();
-        let by_u = |dof: Dof| 2.0 * at.of(dof).0;
+        let by_u = |dof: Dof| 2.0 * at.coefficient(dof).0;
         let by_w = |dof: Dof| match dof {
             Dof::Vertical => at.lift_slope + at.drag,
             Dof::Lateral => at.drag_slope - at.lift,
             Dof::Torsion => at.moment_slope,
         };
-        let by_rotation = |dof: Dof| at.of(dof).1;
+        let by_rotation = |dof: Dof| at.coefficient(dof).1;
         let e0 = DMatrix::from_fn(n, n, |i, j| match dofs[j] {
             Dof::Torsion => by_rotation(dofs[i]),
             _ => 0.0,
@@ -54,7 +54,7 @@ impl LinearQuasiSteady {
         let e1 = DMatrix::from_fn(n, n, |i, j| match dofs[j] {
             Dof::Vertical => -by_w(dofs[i]),
             Dof::Lateral => -by_u(dofs[i]),
-            Dof::Torsion => -arms.of(dofs[i]) * by_w(dofs[i]),
+            Dof::Torsion => -arms.arm(dofs[i]) * by_w(dofs[i]),
         });
         let buffeting = DMatrix::from_fn(n, 2, |i, j| match j {
             0 => by_u(dofs[i]),

@@ -17,12 +17,12 @@ enum Function {
     /// Takenaka–Malmquist filter with the poles up to its own.
     Filter(Vec<f64>),
     /// Discrete Laguerre filter whose output is held from sample to sample.
-    Held(HeldFilter),
+    Sampled(SampledFilter),
 }
 
 /// A filter of the discrete Laguerre model and the hold behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct HeldFilter {
+struct SampledFilter {
     alpha: f64,
     order: i32,
     /// Step in dimensionless time.
@@ -113,7 +113,7 @@ impl LinearForces {
                     continue;
                 }
                 for (order, column) in term.coefficients.column_iter().enumerate() {
-                    let function = Function::Held(HeldFilter {
+                    let function = Function::Sampled(SampledFilter {
                         alpha: term.alpha,
                         order: order as i32,
                         delta_s: model.delta_s,
@@ -268,12 +268,12 @@ impl Function {
                 }
                 (value, value * logarithmic)
             }
-            Self::Held(filter) => filter.at(p),
+            Self::Sampled(filter) => filter.at(p),
         }
     }
 }
 
-impl HeldFilter {
+impl SampledFilter {
     /// `√(1−α)/D (N/D)^l (1 − b)/(pΔs)` with `b = e^{−pΔs}`, `D = 1 − √α b`, `N = √α − b`, and its derivative.
     #[inline(always)]
     fn at(&self, p: Complex64) -> (Complex64, Complex64) {

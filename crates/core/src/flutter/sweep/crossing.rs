@@ -85,7 +85,7 @@ fn singularity<const N: usize>(
             by_speed[i][j] = g[i][j] * (-2.0 * air * speed) + slope[i][j] * lambda * lag;
         }
     }
-    let determinant = Determinant::of(&d, N);
+    let determinant = Determinant::new(&d, N);
     Singularity {
         value: determinant.value,
         by_lambda: determinant.along(&by_lambda),

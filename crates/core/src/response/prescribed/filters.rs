@@ -74,7 +74,7 @@ pub(super) struct FilterSeries {
 }
 
 impl FilterSeries {
-    pub(super) fn of(realization: &Realization, dofs: usize) -> Self {
+    pub(super) fn new(realization: &Realization, dofs: usize) -> Self {
         let none = DMatrix::zeros(0, 0);
         let (a, b) = match realization {
             Realization::Continuous(c) => (&c.a, &c.b),
@@ -85,8 +85,8 @@ impl FilterSeries {
             filters: a.nrows(),
             dofs,
             size: sums.fold(0.0, f64::max),
-            a: Sparse::of(a),
-            b: Sparse::of(b),
+            a: Sparse::new(a),
+            b: Sparse::new(b),
             operand: Vec::new(),
             drive: vec![[0.0; LANES]; dofs * COEFFICIENTS],
             term: vec![[0.0; LANES]; a.nrows()],

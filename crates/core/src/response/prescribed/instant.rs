@@ -30,7 +30,7 @@ impl PrescribedForces {
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] for a filter that does not settle.
-    pub fn settling(&self) -> Result<DMatrix<f64>> {
+    pub fn steady_flow(&self) -> Result<DMatrix<f64>> {
         let (matrix, drive) = match &self.realization {
             Realization::Continuous(c) => (-&c.a, &c.b),
             Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
@@ -38,19 +38,22 @@ impl PrescribedForces {
         if matrix.is_empty() {
             return Ok(drive.clone());
         }
-        matrix.lu().solve(drive).ok_or_else(super::unsettled)
+        matrix
+            .lu()
+            .solve(drive)
+            .ok_or_else(super::without_steady_flow)
     }
 
     /// Enters the filters of a strip of this width (m) held at a displacement (m or rad) until the flow has settled.
-    pub fn settle_at(
+    pub fn enter_steady_flow(
         &self,
-        settling: &DMatrix<f64>,
+        steady_flow: &DMatrix<f64>,
         displacement: &[f64],
         width: f64,
         filters: &mut [f64],
     ) {
-        let settled = settling * self.dimensionless(displacement, width);
-        filters.copy_from_slice(settled.as_slice());
+        let filters_at_rest = steady_flow * self.dimensionless(displacement, width);
+        filters.copy_from_slice(filters_at_rest.as_slice());
     }
 
     /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate.

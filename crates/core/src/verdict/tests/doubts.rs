@@ -7,14 +7,14 @@ fn an_extrapolated_onset_counts_as_far_as_tests_reach() {
     let mut first = onset(60.0, 1.0);
     first.in_tested_range = Some(false);
     first.at = at(60.0, 0.2);
-    let mut evidence = of(
+    let mut evidence = scanned(
         30.0,
         vec![reading("the model", FlutterSearch::Onset(Box::new(first)))],
     );
     evidence.flutter[0].basis = tests(50.0);
     assert_eq!(words(&evidence), "MET");
     evidence.required = Some(RequiredSpeed { speed_m_s: 55.0 });
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     let Some(Outcome::CannotBeJudged { settled_by, .. }) = verdict.outcome else {
         panic!("{:?}", verdict.outcome);
     };
@@ -32,7 +32,7 @@ fn an_onset_in_a_gap_between_tests_is_a_doubt() {
         from: k(0.4),
         to: k(1.1),
     });
-    let mut evidence = of(
+    let mut evidence = scanned(
         58.0,
         vec![reading("the model", FlutterSearch::Onset(Box::new(first)))],
     );
@@ -46,13 +46,13 @@ fn an_onset_in_a_gap_between_tests_is_a_doubt() {
         }),
         "{kinds:?}"
     );
-    let settled = Verdict::of(&evidence).explanation;
+    let settled = Verdict::judge(&evidence).explanation;
     assert!(settled.contains("tests at K 0.40–1.10"), "{settled}");
 }
 
 #[test]
 fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
-    let evidence = of(30.0, vec![found("the model", 36.9, 0.0)]);
+    let evidence = scanned(30.0, vec![found("the model", 36.9, 0.0)]);
     assert_eq!(words(&evidence), "CANNOT BE JUDGED");
     assert!(matches!(
         severe(&evidence)[..],
@@ -62,13 +62,13 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
     exact.flutter[0].basis = ForceBasis::Exact;
     assert_eq!(words(&exact), "MET");
     // not even "not met": the best estimate is no result
-    let wide = of(30.0, vec![found("the model", 9.2, 114.0)]);
+    let wide = scanned(30.0, vec![found("the model", 9.2, 114.0)]);
     assert_eq!(words(&wide), "CANNOT BE JUDGED");
     assert!(matches!(
         severe(&wide)[..],
         [DoubtKind::IntervalUndetermined { .. }]
     ));
-    let mut one = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    let mut one = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
     one.test_speeds = Some(1);
     assert_eq!(severe(&one), [DoubtKind::OneTestSpeed]);
     // the scatter of other decks in the interval makes it one to be known
@@ -80,12 +80,12 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
     first.interval = OnsetInterval::about(36.9, 0.3, 20.0, between);
     one.flutter[0].search = FlutterSearch::Onset(Box::new(first));
     assert_eq!(words(&one), "MET");
-    assert_eq!(Verdict::of(&one).doubts[0].kind, DoubtKind::OneTestSpeed);
+    assert_eq!(Verdict::judge(&one).doubts[0].kind, DoubtKind::OneTestSpeed);
     // the interval of models beside tables says so as well
-    let mut beside = of(30.0, vec![found("the tables", 36.9, 0.0)]);
+    let mut beside = scanned(30.0, vec![found("the tables", 36.9, 0.0)]);
     beside.flutter.push(one.flutter[0].clone());
     assert_eq!(words(&beside), "MET");
-    let doubts = Verdict::of(&beside).doubts;
+    let doubts = Verdict::judge(&beside).doubts;
     assert!(doubts.iter().any(|d| d.kind == DoubtKind::OneTestSpeed));
     one.flutter = vec![found("the model", 36.9, 0.3)];
     one.test_speeds = Some(2);
@@ -94,7 +94,7 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
 
 #[test]
 fn growth_where_nothing_was_tested_cannot_be_judged() {
-    let mut evidence = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    let mut evidence = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
     evidence.growth.as_mut().unwrap().bands.push(GrowthBand {
         from_m_s: 3.1,
         to_m_s: 3.4,
@@ -106,7 +106,7 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
         tested_from_m_s: None,
         branch: "vertical".to_owned(),
     });
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     assert_eq!(words(&evidence), "CANNOT BE JUDGED");
     assert_eq!(
         verdict.critical.governs.unwrap().phenomenon,
@@ -133,13 +133,13 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
 
 #[test]
 fn constraints_that_moved_the_onset_are_weighed() {
-    let mut evidence = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    let mut evidence = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
     let weight = |evidence: &mut Evidence, without_m_s, with_m_s| {
         evidence.constraints = Some(MovedOnset {
             without_m_s,
             with_m_s,
         });
-        let doubts = Verdict::of(evidence).doubts;
+        let doubts = Verdict::judge(evidence).doubts;
         doubts.first().map(|d| d.severity)
     };
     // by less than a hundredth
@@ -164,9 +164,12 @@ fn constraints_that_moved_the_onset_are_weighed() {
         without_m_s: Some(34.0),
         with_m_s: None,
     });
-    assert_eq!(Verdict::of(&evidence).doubts[0].severity, Severity::Severe);
+    assert_eq!(
+        Verdict::judge(&evidence).doubts[0].severity,
+        Severity::Severe
+    );
     // nothing was found up to 70 m/s, and the data alone grow from nearly no wind: that is no onset
-    let mut none = of(60.0, vec![stable("the model", 70.0)]);
+    let mut none = scanned(60.0, vec![stable("the model", 70.0)]);
     assert_eq!(weight(&mut none, Some(1.7), None), Some(Severity::Minor));
     assert_eq!(weight(&mut none, Some(50.0), None), Some(Severity::Severe));
     evidence.required = None;
@@ -178,7 +181,7 @@ fn constraints_that_moved_the_onset_are_weighed() {
 
 #[test]
 fn failures_input_and_rotation_are_weighed() {
-    let clean = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    let clean = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
     let failed = |bears_on_answer| Evidence {
         failures: vec![Failure {
             stage: "divergence".to_owned(),
@@ -211,14 +214,14 @@ fn failures_input_and_rotation_are_weighed() {
     assert_eq!(words(&turned(-2.0)), "CANNOT BE JUDGED");
     let text = "The deck stands at -1.4° in the mean wind of 36.9 m/s, the forces are those at 0.0°, assumed since no `angle_deg` \
                 of the tests is stated";
-    assert_eq!(Verdict::of(&turned(-1.4)).doubts[0].text, text);
+    assert_eq!(Verdict::judge(&turned(-1.4)).doubts[0].text, text);
     assert_eq!(words(&turned(-1.4)), "MET");
     // tests at the angle at which the deck stands
     let mut tested = turned(-5.8);
     tested.mean_rotation.as_mut().unwrap().tested_deg = Some(-5.0);
     assert_eq!(words(&tested), "MET");
-    assert!(Verdict::of(&tested).doubts.is_empty());
-    assert!(Verdict::of(&turned(0.5)).doubts.is_empty());
+    assert!(Verdict::judge(&tested).doubts.is_empty());
+    assert!(Verdict::judge(&turned(0.5)).doubts.is_empty());
     let theory = Evidence {
         flutter: vec![FlutterReading {
             basis: ForceBasis::Stated,
@@ -233,7 +236,10 @@ fn failures_input_and_rotation_are_weighed() {
         ..clean
     };
     assert_eq!(words(&known), "MET");
-    let texts: Vec<String> = Verdict::of(&known).warnings().map(str::to_owned).collect();
+    let texts: Vec<String> = Verdict::judge(&known)
+        .warnings()
+        .map(str::to_owned)
+        .collect();
     assert_eq!(
         texts,
         [
@@ -246,7 +252,7 @@ fn failures_input_and_rotation_are_weighed() {
 /// Tests at K 0.54–0.97, 10 m/s required, torsion at K 1.6 there: it was met without a word.
 #[test]
 fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
-    let mut evidence = of(10.0, vec![found("the model", 36.9, 0.3)]);
+    let mut evidence = scanned(10.0, vec![found("the model", 36.9, 0.3)]);
     let mut below = |below| {
         let from = TestedFrom {
             speed_m_s: 16.4,
@@ -255,7 +261,7 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
         };
         let range = ReducedFrequencyRange::between(k(0.54), k(0.97));
         evidence.flutter[0].basis = ForceBasis::tested(range, Reach::of_table(Some(from)));
-        Verdict::of(&evidence)
+        Verdict::judge(&evidence)
     };
     // what the conditions of a fit answer for is said, where no test is as fast, in the explanation
     let verdict = below(FastMotion::Damped);
@@ -286,7 +292,7 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
     };
     let range = ReducedFrequencyRange::between(k(0.54), k(0.97));
     evidence.flutter[0].basis = ForceBasis::tested(range, Reach::of_table(Some(from)));
-    let verdict = Verdict::of(&evidence);
+    let verdict = Verdict::judge(&evidence);
     assert!(verdict.is_met() && !verdict.explanation.contains("Below"));
     assert_eq!(verdict.doubts.len(), 1);
 }

@@ -162,7 +162,7 @@ fn measured(
     force: Dof,
     motion: Dof,
 ) -> Vec<(ReducedFrequency, Complex<f64>)> {
-    let part = |p| group.points(Derivative::of(force, motion, p));
+    let part = |p| group.points(Derivative::from_entry(force, motion, p));
     let value = |p: &DerivativePoint| p.value * p.k().full_width().powi(2);
     let mut all: Vec<_> = part(Part::Real)
         .iter()

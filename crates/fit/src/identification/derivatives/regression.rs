@@ -172,7 +172,7 @@ impl<'a> TestPointEquations<'a> {
         let s = &self.group[run];
         let v_hat = s.k.v_hat();
         let of = |part, c: usize| DerivativeEstimate {
-            derivative: Derivative::of(self.dofs[force], self.dofs[motion], part),
+            derivative: Derivative::from_entry(self.dofs[force], self.dofs[motion], part),
             run: s.run.clone(),
             mean_speed_m_s: s.speed_m_s,
             frequency_hz: s.frequency_hz,

@@ -92,7 +92,7 @@ fn all_eighteen_come_back_from_the_records_of_a_table() {
     let found = identify_derivatives(&sources(&records), &DerivativeOptions::default()).unwrap();
     assert_eq!(found.estimates.len(), 18 * 16);
     for d in Derivative::ALL {
-        let pair = |part| Derivative::of(d.force(), d.motion(), part);
+        let pair = |part| Derivative::from_entry(d.force(), d.motion(), part);
         let both = |i: usize| {
             let at = |p| table.points(pair(p))[i].value;
             at(Part::Real).hypot(at(Part::Imaginary))
@@ -129,7 +129,7 @@ fn standard_errors_are_the_scatter() {
         let found =
             identify_derivatives(&sources(&records), &DerivativeOptions::default()).unwrap();
         for d in found.dofs.clone().iter().flat_map(|f| {
-            [Part::Real, Part::Imaginary].map(|p| Derivative::of(*f, Dof::Vertical, p))
+            [Part::Real, Part::Imaginary].map(|p| Derivative::from_entry(*f, Dof::Vertical, p))
         }) {
             for (i, e) in found.of(d).enumerate() {
                 let sum = sums.entry((d, i)).or_default();

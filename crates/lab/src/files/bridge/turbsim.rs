@@ -74,7 +74,7 @@ struct TurbSimHeader {
 }
 
 impl TurbSimHeader {
-    fn of(all: &[u8]) -> Result<Self> {
+    fn read(all: &[u8]) -> Result<Self> {
         let mut bytes = TurbSimBytes { all, at: 0 };
         let kind = bytes.short("the kind of file")?;
         ensure(
@@ -168,7 +168,7 @@ pub(super) fn read(path: &Path) -> Result<FieldTable> {
 }
 
 fn parse(bytes: &[u8]) -> Result<FieldTable> {
-    let head = TurbSimHeader::of(bytes)?;
+    let head = TurbSimHeader::read(bytes)?;
     let [_, across, _, times] = head.counts;
     let (below, share) = head.row();
     let sample = |time: usize, row: usize, point: usize, component: usize| -> f64 {

@@ -173,23 +173,23 @@ fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Po
     ];
     // tests without sway have no columns for what it couples; a column in one sheet must be in all
     let names = |d| convention.notation.name_of(d);
-    let is_held = |d: &Derivative| {
+    let is_given = |d: &Derivative| {
         let column = |(sheet, kind): &(Sheet, (&str, &str))| column_of(sheet, kind.1, names(*d));
         sheets.iter().any(|s| column(s).is_some())
     };
-    let held: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_held).collect();
+    let given: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_given).collect();
     ensure(
-        !held.is_empty(),
+        !given.is_empty(),
         format_args!("sheet {}, first row", DERIVATIVES.0),
         format_args!("columns named {}", convention.notation.names()),
         sheets[2].0.title_words(),
     )?;
     let columns = |i: usize| {
         let (sheet, (name, prefix)) = &sheets[i];
-        read_columns(sheet, name, prefix, &held, convention)
+        read_columns(sheet, name, prefix, &given, convention)
     };
     let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);
-    let points = held.iter().map(|&d| {
+    let points = given.iter().map(|&d| {
         let (speeds, arguments, values) = (&speeds[&d], &arguments[&d], &values[&d]);
         for (sheet, column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
             ensure(
@@ -233,12 +233,12 @@ fn column_of(sheet: &Sheet, prefix: &str, name: &str) -> Option<u32> {
         .or_else(|| named(underscored.as_deref()?, underscored.as_deref()?))
 }
 
-/// The columns of one sheet that belong to the derivatives `held`.
+/// The columns of one sheet that belong to the derivatives `given`.
 fn read_columns(
     sheet: &Sheet,
     name: &str,
     prefix: &str,
-    held: &[Derivative],
+    given: &[Derivative],
     convention: &Convention,
 ) -> Result<BTreeMap<Derivative, Vec<f64>>> {
     let column = |d: &Derivative| {
@@ -249,7 +249,7 @@ fn read_columns(
             Error::input(place, expected, sheet.title_words())
         })
     };
-    let columns: Vec<u32> = held.iter().map(column).collect::<Result<_>>()?;
+    let columns: Vec<u32> = given.iter().map(column).collect::<Result<_>>()?;
     let rows = sheet.first_row() + 1..sheet.last_row(&columns) + 1;
     check_point_count(format!("sheet {name}"), rows.len())?;
     let numbers = |column: u32| {
@@ -257,7 +257,8 @@ fn read_columns(
         rows.map(|row| number(sheet, name, row, column))
             .collect::<Result<Vec<f64>>>()
     };
-    held.iter()
+    given
+        .iter()
         .zip(&columns)
         .map(|(d, column)| Ok((*d, numbers(*column)?)))
         .collect()

@@ -31,7 +31,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     let start = take_comments(bytes, &mut set);
     let (skipped, rest) = (count_lines(&bytes[..start]), &bytes[start..]);
     check_lines(rest, skipped)?;
-    let style = Style::of(rest);
+    let style = Style::detect(rest);
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(style.separator)
         .has_headers(false)
@@ -115,7 +115,7 @@ fn count_lines(bytes: &[u8]) -> usize {
 impl Style {
     /// The separator is the one of semicolon, tab and comma that the first line holds, in this order: where
     /// semicolons or tabs separate, commas are decimal.
-    fn of(text: &[u8]) -> Self {
+    fn detect(text: &[u8]) -> Self {
         let first = text.split(|b| *b == b'\n').next().unwrap_or(text);
         let separator = [b';', b'\t']
             .into_iter()

@@ -26,7 +26,7 @@ pub struct StageLevels {
 }
 
 impl StageLevels {
-    pub(super) fn of(stage: &str, signals: &SectionSignals) -> Self {
+    pub(super) fn new(stage: &str, signals: &SectionSignals) -> Self {
         let levels: [Level; 3] = std::array::from_fn(|d| level(&signals.force[d]));
         Self {
             stage: stage.to_owned(),
@@ -68,7 +68,7 @@ pub struct DimensionlessFactors {
 }
 
 impl DimensionlessFactors {
-    pub(super) fn of(run: &RawRun, rig: &Rig) -> Self {
+    pub(super) fn new(run: &RawRun, rig: &Rig) -> Self {
         Self {
             speed_m_s: run.mean_speed_m_s,
             air_density_kg_m3: run.air_density_kg_m3,

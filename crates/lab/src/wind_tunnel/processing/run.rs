@@ -122,7 +122,7 @@ impl<'a> RunInProgress<'a> {
             low_pass: None,
             cross_talk: CrossTalk::default(),
             signal_to_noise: SignalToNoise::default(),
-            dimensionless: DimensionlessFactors::of(run, rig),
+            dimensionless: DimensionlessFactors::new(run, rig),
             levels: Vec::new(),
             warnings: findings.warnings.clone(),
         };
@@ -144,7 +144,7 @@ impl<'a> RunInProgress<'a> {
     fn done(&mut self, stage: &str) {
         self.report
             .levels
-            .push(StageLevels::of(stage, &self.signals));
+            .push(StageLevels::new(stage, &self.signals));
         self.stages.push(StageSignals {
             stage: stage.to_owned(),
             signals: self.signals.clone(),

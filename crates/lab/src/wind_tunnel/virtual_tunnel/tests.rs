@@ -102,7 +102,7 @@ fn the_records_of_a_table_hold_its_derivatives() {
             for (i, force) in Dof::THREE.into_iter().enumerate() {
                 let g = measured(record, i, j, segment);
                 for (part, found) in [(Part::Real, g.re), (Part::Imaginary, g.im)] {
-                    let derivative = Derivative::of(force, Dof::THREE[j], part);
+                    let derivative = Derivative::from_entry(force, Dof::THREE[j], part);
                     let point = group.points(derivative)[segment];
                     assert!((k.v_hat() / point.v_hat - 1.0).abs() < 1e-12);
                     let found = found * point.v_hat * point.v_hat;

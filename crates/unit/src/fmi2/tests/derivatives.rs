@@ -118,7 +118,7 @@ fn outputs_by_inputs() {
 
 #[test]
 fn unknowns_by_parameters_while_initialising() {
-    let unit = Unit::of("continuous_laguerre");
+    let unit = Unit::new("continuous_laguerre");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     for (known, delta, tolerance) in [

@@ -83,7 +83,7 @@ impl Unit {
 /// Names of the states in their order, and of their rates.
 fn state_names(unit: &Unit) -> [Vec<String>; 2] {
     let table = &unit.archive.resources.table;
-    let name = |place: usize| table.variables()[place].name.clone();
+    let name = |index: usize| table.variables()[index].name.clone();
     let state = |rate: usize| name(table.variables()[rate].derivative_of.unwrap());
     let rates = table.state_rates();
     [

@@ -46,7 +46,7 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
 fn a_gust_acts_as_its_force() {
     for kind in KINDS {
         let blown = Unit::instantiate(in_gusts(kind, RationalAdmittance::None));
-        let pushed = Unit::of(kind);
+        let pushed = Unit::new(kind);
         let section = &blown.archive.model().section;
         let (wind, width) = (20.0, section.width_m);
         let scale = 0.5 * section.air_density_kg_m3 * wind * width;

@@ -39,7 +39,7 @@ fn legal_parameters_do_not_make_a_getter_fail() {
     ];
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
         for parameters in cases {
-            let unit = Unit::of(kind);
+            let unit = Unit::new(kind);
             unit.ok(unit.set_up());
             unit.ok(unit.enter());
             for (name, value) in parameters {
@@ -65,7 +65,7 @@ fn legal_parameters_do_not_make_a_getter_fail() {
 /// motion can still be stepped.
 #[test]
 fn what_cannot_be_searched_for_is_zero_with_a_warning() {
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     unit.set("torsion_frequency", 0.0);
@@ -120,7 +120,7 @@ fn endless_steps_are_discarded_within_ten_milliseconds() {
     let discarded = |kind: &str, (name, value): (&str, f64), rate: f64, step: f64| {
         let spent = (0..5).map(|_| {
             // before the start, where changed parameters are looked at
-            let unit = Unit::of(kind);
+            let unit = Unit::new(kind);
             unit.set(name, value);
             unit.start();
             unit.set_rate("wind_speed", rate);
@@ -174,7 +174,7 @@ fn no_output_is_ever_infinite() {
 /// Some importers never set up the experiment.
 #[test]
 fn an_experiment_that_is_not_set_up_starts_at_zero() {
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     unit.ok(unit.enter());
     assert!(warned(&unit, "has not been set up"));
@@ -207,7 +207,7 @@ fn models_of_too_many_states_are_refused() {
 fn sections_of_many_states_are_not_searched() {
     let mut model = many_filters(300);
     model.experiment.onset_search_limit_m_s = 5.0;
-    let unit = Unit::instantiate(Archive::of(&model.to_json().unwrap()));
+    let unit = Unit::instantiate(Archive::new(&model.to_json().unwrap()));
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     unit.ok(unit.set_up());
     unit.ok(unit.enter());

@@ -136,7 +136,7 @@ fn the_state_space_gives_rates_and_outputs() {
         unit.start();
         unit.integrate_from_event();
         let table = &unit.archive.resources.table;
-        let name = |place: usize| table.variables()[place].name.clone();
+        let name = |index: usize| table.variables()[index].name.clone();
         let rates: Vec<String> = table.state_rates().into_iter().map(name).collect();
         let states: Vec<String> = table
             .state_rates()

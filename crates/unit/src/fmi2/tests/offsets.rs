@@ -9,7 +9,7 @@ fn unbalanced(kind: &str, (axis, mass): (f64, f64)) -> Archive {
     let mut model = Archive::fixture(kind).resources.model;
     model.section.axis_offset_m = Some(axis);
     model.section.mass_offset_m = Some(mass);
-    Archive::of(&model.to_json().unwrap())
+    Archive::new(&model.to_json().unwrap())
 }
 
 fn onset(model: &TrainedModel) -> f64 {

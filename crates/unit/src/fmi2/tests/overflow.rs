@@ -7,7 +7,7 @@ use crate::variables::StartValue;
 #[test]
 fn a_release_that_overflows_is_refused() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let unit = Unit::of(kind);
+        let unit = Unit::new(kind);
         unit.ok(unit.set_up());
         unit.ok(unit.enter());
         unit.set("initial_heave", 1e308);

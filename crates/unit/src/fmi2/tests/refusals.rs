@@ -142,7 +142,7 @@ fn steps_are_refused() {
 
 #[test]
 fn the_stop_time_holds() {
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     unit.ok(unsafe { fmi2SetupExperiment(unit.handle, 1, 1e-4, 2.0, 1, 3.0) });
     unit.ok(unit.enter());
     unit.ok(unit.exit());
@@ -153,7 +153,7 @@ fn the_stop_time_holds() {
     }
     unit.refused(unit.step(time, 0.1), fmi2Error, &["stop time 3 s"]);
     for (start, stop) in [(0.0, -1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
-        let unit = Unit::of("rational");
+        let unit = Unit::new("rational");
         let status = unsafe { fmi2SetupExperiment(unit.handle, 0, 0.0, start, 1, stop) };
         unit.refused(status, fmi2Error, &["start", "stop"]);
     }
@@ -234,7 +234,7 @@ fn in_state(state: State) -> Unit {
 
 fn in_state_of(interface: Interface, state: State) -> Unit {
     let unit = match interface {
-        Interface::CoSimulation => Unit::of("rational"),
+        Interface::CoSimulation => Unit::new("rational"),
         Interface::ModelExchange => super::model_exchange::exchanged(Archive::fixture("rational")),
     };
     if state == State::Error {
@@ -285,13 +285,13 @@ fn the_table_of_legal_calls_is_kept() {
 
 #[test]
 fn calls_in_the_wrong_order() {
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     unit.refused(
         unit.exit(),
         fmi2Error,
         &["ExitInitializationMode", "instantiated"],
     );
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     let status = unit.try_get(&["heave"], &mut [0.0]);
     unit.refused(status, fmi2Error, &["`heave` (an output", "instantiated"]);
     let unit = in_state(State::Terminated);

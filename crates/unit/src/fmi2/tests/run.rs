@@ -135,7 +135,7 @@ fn newer_rational_forms_move_as_in_process() {
     for (model, states) in [(Model::Rational(own), 4), (Model::MinimumState(small), 2)] {
         trained.schema_version = model.schema_version();
         trained.model = model;
-        let archive = Archive::of(&trained.to_json().unwrap());
+        let archive = Archive::new(&trained.to_json().unwrap());
         let variable = archive.resources.table.find_name("filters").unwrap();
         let value = &archive.resources.table.variables()[variable].value;
         assert_eq!(*value, crate::variables::StartValue::Integer(Some(states)));
@@ -162,7 +162,7 @@ fn filters_of_one_transfer_function_move_as_in_process() {
     model.schema_version = model.model.schema_version();
     let states = model.model.realize().states();
     assert_eq!(states, 8);
-    compare(Archive::of(&model.to_json().unwrap()));
+    compare(Archive::new(&model.to_json().unwrap()));
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn three_degrees_of_freedom_move_as_in_process() {
     assert!((frequency - (2000.0_f64 / 15.0).sqrt() / std::f64::consts::TAU).abs() < 1e-15);
     // a lateral motion to compare needs a start; the force of the run gives it
     archive.resources.model.experiment.initial_rotation_rad = 0.02;
-    let archive = Archive::of(&archive.resources.model.to_json().unwrap());
+    let archive = Archive::new(&archive.resources.model.to_json().unwrap());
     let unit = Unit::instantiate(archive);
     let mut process = InProcess::new(unit.archive.model());
     unit.start();
@@ -189,7 +189,7 @@ fn three_degrees_of_freedom_move_as_in_process() {
 
 #[test]
 fn initialisation_reads_and_writes() {
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     unit.set("initial_heave", 0.02); // start values are set while instantiated …
     unit.set("wind_speed", 20.0);
     unit.ok(unit.set_up());
@@ -227,7 +227,7 @@ fn tunable_parameters_act_between_steps() {
 
 #[test]
 fn calculated_parameters_are_those_of_the_searches() {
-    let unit = Unit::of("rational");
+    let unit = Unit::new("rational");
     let model = unit.archive.model().clone();
     let section =
         CoupledSection::new(model.section.structure().unwrap(), model.model.realize()).unwrap();
@@ -276,7 +276,7 @@ fn calculated_parameters_are_those_of_the_searches() {
 /// The onset of the flat plate (39.468 m/s) is met by the growth of the stepped motion.
 #[test]
 fn growth_changes_sign_at_the_calculated_onset() {
-    let unit = Unit::of("continuous_laguerre");
+    let unit = Unit::new("continuous_laguerre");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     let [onset] = unit.get(["onset_speed"]);

@@ -27,7 +27,7 @@ const KINDS: [&str; 3] = ["continuous_laguerre", "rational", "discrete_laguerre"
 #[test]
 fn reset_restores_every_default() {
     for kind in KINDS {
-        let unit = Unit::of(kind);
+        let unit = Unit::new(kind);
         let variables = unit.archive.resources.table.variables().to_vec();
         unit.start();
         let first = run(&unit, 0);
@@ -169,7 +169,7 @@ fn serialised_states_go_on_in_another_instance() {
         }
         let bytes = serialize(&unit);
         let rest = run(&unit, 20);
-        let other = Unit::of(kind); // not even initialised
+        let other = Unit::new(kind); // not even initialised
         let (status, mut saved) = deserialize(&other, &bytes);
         other.ok(status);
         other.ok(unsafe { fmi2SetFMUstate(other.handle, saved) });
@@ -185,8 +185,8 @@ fn sign(bytes: &mut [fmi2Byte]) {
     let before: Vec<u8> = bytes[..end].iter().map(|b| *b as u8).collect();
     let guid = uuid::Uuid::from_slice(&before[12..28]).unwrap();
     let digest = uuid::Uuid::new_v5(&guid, &before).into_bytes();
-    for (place, new) in bytes[end..].iter_mut().zip(digest) {
-        *place = new as fmi2Byte;
+    for (index, new) in bytes[end..].iter_mut().zip(digest) {
+        *index = new as fmi2Byte;
     }
 }
 

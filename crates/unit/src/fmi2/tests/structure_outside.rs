@@ -139,13 +139,13 @@ fn with_a_structure_outside_it_is_the_section() {
         }
         own.start();
         own.set_rate("wind_speed", ramp);
-        let places = own.archive.resources.table.state_rates();
+        let indices = own.archive.resources.table.state_rates();
         let table = &own.archive.resources.table;
         let state = |i: usize| {
-            let of = table.variables()[places[i]].derivative_of.unwrap();
+            let of = table.variables()[indices[i]].derivative_of.unwrap();
             table.variables()[of].name.clone()
         };
-        let names: Vec<String> = (0..places.len()).map(state).collect();
+        let names: Vec<String> = (0..indices.len()).map(state).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let n = own.archive.model().section.dofs().len();
         let read = || {

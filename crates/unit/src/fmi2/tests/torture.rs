@@ -15,7 +15,7 @@ const KINDS: [&str; 4] = [
 /// The forces of the rational fixture, or the section of another one.
 fn unit_of(kind: &str) -> Unit {
     if kind != "force" {
-        return Unit::of(kind);
+        return Unit::new(kind);
     }
     let mut archive = Archive::fixture("rational");
     let json = std::fs::read(archive.folder.path().join("model.json")).unwrap();
@@ -220,9 +220,9 @@ fn every_pair_of_calls_in_every_state() {
                     for deed in [first, second] {
                         let (answer, next) = by_the_standard(deed, state);
                         let found = unit.carry_out(deed);
-                        let place = format!("{kind}: {first:?}, {second:?} from {begin:?}");
-                        assert_eq!(found, answer, "{place}: {:?}", unit.last_message());
-                        assert_eq!(unit.state(), next, "{place}");
+                        let index = format!("{kind}: {first:?}, {second:?} from {begin:?}");
+                        assert_eq!(found, answer, "{index}: {:?}", unit.last_message());
+                        assert_eq!(unit.state(), next, "{index}");
                         state = next;
                     }
                 }
@@ -267,7 +267,7 @@ fn sixty_four_threads_do_not_notice_each_other() {
 /// drift remains that grows with their number.
 fn many_steps(count: u32) {
     let unit = |kind| {
-        let unit = Unit::of(kind);
+        let unit = Unit::new(kind);
         // what does not decay keeps its size over the run
         for name in ["heave_damping_ratio", "torsion_damping_ratio"] {
             unit.set(name, 0.0);
@@ -309,7 +309,7 @@ fn a_hundred_million_steps_are_one() {
 /// An instance that is reset over and over, with other parameters each time, gives the bits of a fresh one.
 fn resets(count: u32) {
     for kind in ["rational", "discrete_laguerre"] {
-        let used = Unit::of(kind);
+        let used = Unit::new(kind);
         for n in 0..count {
             let part = f64::from(n) / f64::from(count);
             let run = |unit: &Unit| {
@@ -327,7 +327,7 @@ fn resets(count: u32) {
             // what a reset has to take back
             used.set("width", 0.3 + part);
             used.ok(used.reset());
-            assert!(run(&used) == run(&Unit::of(kind)), "{kind}, set {n}");
+            assert!(run(&used) == run(&Unit::new(kind)), "{kind}, set {n}");
         }
     }
 }

@@ -40,9 +40,9 @@ impl Unit {
 fn any_number_of_strips_is_that_of_an_export() {
     for kind in KINDS {
         for strips in [1, 2, 3, 7] {
-            let exported = Unit::of(kind, Some(strips), false);
+            let exported = Unit::new(kind, Some(strips), false);
             exported.set("wind_speed", &[17.0]);
-            let unit = Unit::of(kind, Some(3), false);
+            let unit = Unit::new(kind, Some(3), false);
             assert_eq!(unit.strips(), 3);
             unit.set("wind_speed", &[17.0]);
             unit.ok(unit.configure(strips as u64));
@@ -50,7 +50,7 @@ fn any_number_of_strips_is_that_of_an_export() {
             assert_eq!(unit.lifts(strips), exported.lifts(strips), "{kind}");
             unit.ok(unsafe { fmi3Reset(unit.handle) });
             assert_eq!(unit.strips(), 3);
-            let three = Unit::of(kind, Some(3), false);
+            let three = Unit::new(kind, Some(3), false);
             assert_eq!(unit.lifts(3), three.lifts(3), "{kind}");
         }
     }
@@ -58,7 +58,7 @@ fn any_number_of_strips_is_that_of_an_export() {
 
 #[test]
 fn what_is_no_number_of_strips_is_refused() {
-    let unit = Unit::of("rational", Some(3), false);
+    let unit = Unit::new("rational", Some(3), false);
     for strips in [0, 10_001, u64::MAX] {
         assert_eq!(unit.configure(strips), fmi2Status::fmi2Discard);
         unit.ok(unsafe { fmi3ExitConfigurationMode(unit.handle) });
@@ -81,7 +81,7 @@ fn what_is_no_number_of_strips_is_refused() {
     let (vr, four) = (unit.groups.strips_reference().unwrap(), 4);
     let status = unsafe { fmi3SetUInt64(unit.handle, &raw const vr, 1, &raw const four, 1) };
     unit.refused(status, "configuration mode only");
-    let section = Unit::of("rational", None, false);
+    let section = Unit::new("rational", None, false);
     let status = unsafe { fmi3EnterConfigurationMode(section.handle) };
     section.refused(status, "no structural parameters");
     section.start();
@@ -90,7 +90,7 @@ fn what_is_no_number_of_strips_is_refused() {
 /// Every element of an array depends on its own strip, and on the wind of all.
 #[test]
 fn every_strip_depends_on_itself() {
-    let unit = Unit::of("rational", Some(3), false);
+    let unit = Unit::new("rational", Some(3), false);
     unit.start();
     let lift = unit.reference("lift");
     let mut count = 0;
@@ -108,8 +108,8 @@ fn every_strip_depends_on_itself() {
             count,
         )
     });
-    let places = &unit.groups.all()[lift as usize];
-    let direct = |i: usize| &unit.resources.table.variables()[places[i] as usize].direct_inputs;
+    let indices = &unit.groups.all()[lift as usize];
+    let direct = |i: usize| &unit.resources.table.variables()[indices[i] as usize].direct_inputs;
     assert_eq!(count, (0..3).map(|i| direct(i).len()).sum::<usize>());
     let wind = unit.reference("wind_speed");
     for i in 0..count {
@@ -119,8 +119,8 @@ fn every_strip_depends_on_itself() {
         } else {
             of[i] == own[i]
         });
-        let place = unit.groups.all()[on[i] as usize][of[i] - 1] as usize;
-        assert!(direct(own[i] - 1).iter().any(|d| d.on == place));
+        let index = unit.groups.all()[on[i] as usize][of[i] - 1] as usize;
+        assert!(direct(own[i] - 1).iter().any(|d| d.on == index));
     }
     let status = unsafe { fmi3GetNumberOfVariableDependencies(unit.handle, 9999, &raw mut count) };
     unit.refused(status, "no such variable");

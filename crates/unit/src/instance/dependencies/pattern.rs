@@ -30,7 +30,7 @@ pub(super) struct Pattern<S: CoupledKind> {
     pub forces: usize,
     pub gusts: usize,
     pub air: usize,
-    /// Places of the responses, which are the rows.
+    /// Indices of the responses, which are the rows.
     pub responses: Vec<usize>,
     /// While it moves.
     pub moving: Vec<PatternRow>,
@@ -39,7 +39,7 @@ pub(super) struct Pattern<S: CoupledKind> {
 }
 
 impl<S: CoupledKind> Pattern<S> {
-    pub(super) fn of(mut unit: Coupled<S>, resources: &Resources) -> Result<Self> {
+    pub(super) fn new(mut unit: Coupled<S>, resources: &Resources) -> Result<Self> {
         let table = resources.table.variables();
         let start = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
         let with = |value: fn(usize, &Variable) -> f64| {
@@ -62,12 +62,12 @@ impl<S: CoupledKind> Pattern<S> {
         let forces = calm.system.all().len();
         let gusts = forces + inputs.force.len();
         let air = gusts + inputs.gust_m_s.len();
-        let is_response = |place: &usize| {
-            let source = Source::of(table[*place].role);
+        let is_response = |index: &usize| {
+            let source = Source::from_role(table[*index].role);
             matches!(source, Source::Response | Source::State | Source::Rate)
         };
         let responses: Vec<usize> = (0..table.len()).filter(is_response).collect();
-        let roles: Vec<Role> = responses.iter().map(|place| table[*place].role).collect();
+        let roles: Vec<Role> = responses.iter().map(|index| table[*index].role).collect();
         let mut entries = |of: &Memory, wind: f64| {
             unit.with_parameters(resources, of, &mut |unit| {
                 S::load_inputs(unit, of);
@@ -112,7 +112,7 @@ impl<S: CoupledKind> Pattern<S> {
 
 /// A start value that hides nothing: inputs are off, parameters on.
 fn generic(variable: &Variable, start: f64) -> f64 {
-    match (Source::of(variable.role), variable.role) {
+    match (Source::from_role(variable.role), variable.role) {
         (Source::Input, _) | (_, Role::TurbulenceFactor) => 0.0,
         (Source::Section, _) if start == 0.0 => IN_PLACE_OF_ZERO,
         _ => start,
@@ -130,8 +130,8 @@ fn response<S: CoupledKind>(
     // sines of whole numbers have nothing to do with one another
     let uneven = |count: usize| (1..=count).map(|i| (i as f64).sin());
     let (is_air, mut on) = (column == air, rest.clone());
-    for (place, value) in unit.inputs().iter().zip(uneven(unit.inputs().len())) {
-        on.values[*place] = if is_air { value } else { 0.0 };
+    for (index, value) in unit.inputs().iter().zip(uneven(unit.inputs().len())) {
+        on.values[*index] = if is_air { value } else { 0.0 };
     }
     S::load_inputs(unit, &on);
     let (stepper, inputs) = unit.parts();

@@ -1,40 +1,40 @@
 //! Whatever is read first after a parameter was set is that of the parameter.
 
-use super::{KINDS, Kind, instance, place, start};
+use super::{KINDS, Kind, index, instance, start};
 use crate::instance::layout::{DataType, Source};
 use crate::instance::{Instance, Snapshot};
 use crate::lifecycle::{State, gettable_in, settable_in};
 
-/// Places of the parameters that may be set in a state, with other values for them.
+/// Indices of the parameters that may be set in a state, with other values for them.
 fn parameters(instance: &Instance, state: State) -> Vec<(u32, f64)> {
     let all = instance.table().variables().iter().enumerate();
-    let free = all.filter(|(place, v)| {
-        let source = instance.layout.source(*place);
+    let free = all.filter(|(index, v)| {
+        let source = instance.layout.source(*index);
         matches!(source, Source::Section | Source::Release | Source::Limit)
-            && instance.layout.access[*place].data_type == DataType::Real
+            && instance.layout.access[*index].data_type == DataType::Real
             && settable_in(v.causality, v.variability).contains(state)
     });
-    free.map(|(place, v)| {
-        let start = instance.memory.values[place];
+    free.map(|(index, v)| {
+        let start = instance.memory.values[index];
         let other = if start == 0.0 { 0.003 } else { 1.28 * start };
         let allowed = v.min.is_none_or(|min| other >= min) && v.max.is_none_or(|max| other <= max);
-        (place as u32, if allowed { other } else { 1.0 })
+        (index as u32, if allowed { other } else { 1.0 })
     })
     .collect()
 }
 
-/// Places of everything that is computed and may be read in a state.
+/// Indices of everything that is computed and may be read in a state.
 fn computed(instance: &Instance, state: State) -> Vec<u32> {
     let all = instance.table().variables().iter().enumerate();
-    let read = all.filter(|(place, v)| {
-        let access = &instance.layout.access[*place];
+    let read = all.filter(|(index, v)| {
+        let access = &instance.layout.access[*index];
         let stored = matches!(
             access.source,
             Source::Input | Source::Section | Source::Release | Source::Limit | Source::Constant
         );
         !stored && gettable_in(v.causality, v.variability).contains(state)
     });
-    read.map(|(place, _)| place as u32).collect()
+    read.map(|(index, _)| index as u32).collect()
 }
 
 fn read(instance: &mut Instance, reference: u32) -> f64 {
@@ -43,10 +43,10 @@ fn read(instance: &mut Instance, reference: u32) -> f64 {
 }
 
 /// All of them in the order of the table, read from `first` on and round.
-fn read_from(instance: &mut Instance, places: &[u32], first: usize) -> Vec<u64> {
-    let mut values = vec![0; places.len()];
-    for i in (first..places.len()).chain(0..first) {
-        values[i] = read(instance, places[i]).to_bits();
+fn read_from(instance: &mut Instance, indices: &[u32], first: usize) -> Vec<u64> {
+    let mut values = vec![0; indices.len()];
+    for i in (first..indices.len()).chain(0..first) {
+        values[i] = read(instance, indices[i]).to_bits();
     }
     values
 }
@@ -77,11 +77,11 @@ fn judge(kind: Kind, integrated: bool, state: State) {
     };
     let mut unit = instance(kind, integrated).unwrap();
     begin(&mut unit);
-    let places = computed(&unit, state);
+    let indices = computed(&unit, state);
     let before = unit.snapshot();
     let shown = |unit: &mut Instance, snapshot: &Snapshot| {
         unit.restore(snapshot).unwrap();
-        read_from(unit, &places, 0)
+        read_from(unit, &indices, 0)
     };
     for parameter in parameters(&unit, state) {
         let name = unit.table().variables()[parameter.0 as usize].name.clone();
@@ -91,17 +91,17 @@ fn judge(kind: Kind, integrated: bool, state: State) {
         let mut other = fresh(kind, integrated, parameter);
         begin(&mut other);
         let expected = shown(&mut other, &changed);
-        for first in 0..places.len() {
+        for first in 0..indices.len() {
             for way in [Way::Set, Way::Restored] {
                 shown(&mut unit, &before);
                 match way {
                     Way::Set => unit.set_reals(&[parameter.0], &[parameter.1]).unwrap(),
                     Way::Restored => unit.restore(&changed).unwrap(),
                 }
-                let found = read_from(&mut unit, &places, first);
+                let found = read_from(&mut unit, &indices, first);
                 for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
-                    let of = &unit.table().variables()[places[i] as usize].name;
-                    let first = &unit.table().variables()[places[first] as usize].name;
+                    let of = &unit.table().variables()[indices[i] as usize].name;
+                    let first = &unit.table().variables()[indices[first] as usize].name;
                     let [found, expected] = [found, expected].map(|bits| f64::from_bits(*bits));
                     // the onset of a bridge is followed from that of the last search, until it settles to 1e-9
                     let followed = matches!(kind, Kind::Bridge | Kind::Damped)
@@ -148,7 +148,7 @@ fn the_onset_of_a_bridge_is_that_of_the_parameters() {
     }
     for density in [1.19, 1.6, 1.0, 1.6] {
         let onset = |unit: &mut Instance| {
-            let [air, onset] = ["air_density", "onset_speed"].map(|name| place(unit, name));
+            let [air, onset] = ["air_density", "onset_speed"].map(|name| index(unit, name));
             unit.set_reals(&[air], &[density]).unwrap();
             let mut speed = [f64::NAN];
             unit.reals(&[onset], &mut speed).unwrap();

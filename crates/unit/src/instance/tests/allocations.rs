@@ -1,6 +1,6 @@
 //! Real time: what a step takes from the memory of the process.
 
-use super::{KINDS, driven, place, start};
+use super::{KINDS, driven, index, start};
 use crate::instance::Instance;
 use crate::lifecycle::State;
 use crate::variables::{Causality, StartValue};
@@ -40,12 +40,12 @@ fn taken(what: impl FnOnce()) -> usize {
     COUNT.get() - before
 }
 
-/// Places of all real outputs, or inputs.
+/// Indices of all real outputs, or inputs.
 fn real(unit: &Instance, causality: Causality) -> Vec<u32> {
     let all = unit.table().variables().iter().enumerate();
     let read =
         all.filter(|(_, v)| v.causality == causality && matches!(v.value, StartValue::Real(_)));
-    read.map(|(place, _)| place as u32).collect()
+    read.map(|(index, _)| index as u32).collect()
 }
 
 /// What an importer changes at every step.
@@ -75,11 +75,11 @@ fn set(unit: &mut Instance, inputs: &[u32], change: Change, i: usize) {
         Change::Wind => 1,
         Change::Inputs | Change::Ramps => inputs.len(),
     };
-    for (input, place) in inputs[..others].iter().enumerate() {
+    for (input, index) in inputs[..others].iter().enumerate() {
         let value = if input == 0 { wind } else { changed(i, input) };
-        unit.set_reals(&[*place], &[value]).unwrap();
+        unit.set_reals(&[*index], &[value]).unwrap();
         if matches!(change, Change::Ramps) {
-            unit.set_input_rates(&[*place], &[1], &[0.1 * value])
+            unit.set_input_rates(&[*index], &[1], &[0.1 * value])
                 .unwrap();
         }
     }
@@ -88,12 +88,12 @@ fn set(unit: &mut Instance, inputs: &[u32], change: Change, i: usize) {
 /// Wind first.
 fn inputs(unit: &Instance) -> Vec<u32> {
     let mut inputs = real(unit, Causality::Input);
-    inputs.sort_by_key(|place| *place != place_of_wind(unit));
+    inputs.sort_by_key(|index| *index != index_of_wind(unit));
     inputs
 }
 
-fn place_of_wind(unit: &Instance) -> u32 {
-    place(unit, "wind_speed")
+fn index_of_wind(unit: &Instance) -> u32 {
+    index(unit, "wind_speed")
 }
 
 /// Allocations of a step and of reading every output, the most of twenty after ten.

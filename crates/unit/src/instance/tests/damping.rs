@@ -1,6 +1,6 @@
 //! `damping_now` of every kind is the smallest damping of all eigenvalues, whatever wind was before.
 
-use super::{Kind, fixture, instance, place, start};
+use super::{Kind, fixture, index, instance, start};
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::smallest_damping;
@@ -31,7 +31,7 @@ fn the_damping_is_that_of_all_eigenvalues() {
         let section = CoupledSection::new(structure, model.model.realize()).unwrap();
         let mut unit = instance(kind, false).unwrap();
         start(&mut unit);
-        let [wind, damping] = ["wind_speed", "damping_now"].map(|name| place(&unit, name));
+        let [wind, damping] = ["wind_speed", "damping_now"].map(|name| index(&unit, name));
         for speed in [12.0, 12.1, 3.0, 40.0, 0.5, 25.0, 12.0] {
             unit.set_reals(&[wind], &[speed]).unwrap();
             let mut found = [f64::NAN];

@@ -8,9 +8,9 @@ fn real(v: &Variable) -> bool {
     matches!(v.value, StartValue::Real(_))
 }
 
-fn all(unit: &mut Instance, places: &[u32]) -> Vec<f64> {
-    let mut values = vec![f64::NAN; places.len()];
-    unit.reals(places, &mut values).unwrap();
+fn all(unit: &mut Instance, indices: &[u32]) -> Vec<f64> {
+    let mut values = vec![f64::NAN; indices.len()];
+    unit.reals(indices, &mut values).unwrap();
     values
 }
 
@@ -27,17 +27,17 @@ fn derivatives_while_initialising_are_differences() {
         unit.set_up_experiment(0.0, None).unwrap();
         unit.enter_initialization();
         let table = unit.table().variables().to_vec();
-        let places = |wanted: &dyn Fn(&Variable) -> bool| -> Vec<u32> {
+        let indices = |wanted: &dyn Fn(&Variable) -> bool| -> Vec<u32> {
             (0..)
                 .zip(&table)
                 .filter(|(_, v)| real(v) && wanted(v))
                 .map(|(i, _)| i)
                 .collect()
         };
-        let unknowns = places(&|v| {
+        let unknowns = indices(&|v| {
             v.initial == Some(Initial::Calculated) && !matches!(v.role, Role::Computed(_))
         });
-        let knowns = places(&|v| {
+        let knowns = indices(&|v| {
             v.causality == Causality::Input
                 || matches!(
                     v.role,

@@ -1,6 +1,6 @@
 //! The onset of a bridge is followed where that is safe, and searched for where it is not.
 
-use super::{Kind, place, resources, start};
+use super::{Kind, index, resources, start};
 use crate::instance::Instance;
 use crate::instance::bridge_built::Built;
 use crate::instance::bridge_followed::SearchedOnset;
@@ -104,7 +104,7 @@ fn a_start_in_the_archive_gives_the_same_onset() {
 
 fn start_and_read(unit: &mut Instance, expected: f64) {
     start(unit);
-    let speed = place(unit, "onset_speed");
+    let speed = index(unit, "onset_speed");
     let mut found = [f64::NAN];
     unit.reals(&[speed], &mut found).unwrap();
     assert!(

@@ -1,6 +1,6 @@
 //! Strips of several models in one unit are the units of the models side by side.
 
-use super::{fixture, gust_force, place, start};
+use super::{fixture, gust_force, index, start};
 use crate::aerodynamics::{GustForce, Lags, RationalModel};
 use crate::force_options::{ForceOptions, FurtherModel, StripOptions};
 use crate::instance::Instance;
@@ -126,13 +126,13 @@ fn named(unit: &Instance, wanted: impl Fn(&Variable) -> bool) -> Vec<String> {
 }
 
 fn set(unit: &mut Instance, name: &str, value: f64) {
-    let at = place(unit, name);
+    let at = index(unit, name);
     unit.set_reals(&[at], &[value]).unwrap();
 }
 
 fn get(unit: &mut Instance, name: &str) -> f64 {
     let mut value = [f64::NAN];
-    let at = place(unit, name);
+    let at = index(unit, name);
     unit.reals(&[at], &mut value).unwrap();
     value[0]
 }
@@ -249,8 +249,8 @@ fn the_instant_is_that_of_each_model() {
         let by_name = |unit: &Instance| -> Vec<f64> {
             let table = unit.table();
             let state = |rate: &usize| table.variables()[*rate].derivative_of.unwrap();
-            let places = table.state_rates();
-            let names = places.iter().map(|r| &table.variables()[state(r)].name);
+            let indices = table.state_rates();
+            let names = indices.iter().map(|r| &table.variables()[state(r)].name);
             names.map(|name| wave(name, 0.5)).collect()
         };
         for unit in &mut units {
@@ -276,10 +276,10 @@ fn derivatives(units: &mut [Instance]) {
         });
         for known in knowns.iter().map(String::as_str).chain(["wind_speed"]) {
             let [a, b] = [&mut *all, unit].map(|unit| {
-                let places: Vec<u32> = unknowns.iter().map(|n| place(unit, n)).collect();
-                let mut slopes = vec![f64::NAN; places.len()];
-                let known = place(unit, known);
-                unit.directional_derivative(&places, &[known], &[1.0], &mut slopes)
+                let indices: Vec<u32> = unknowns.iter().map(|n| index(unit, n)).collect();
+                let mut slopes = vec![f64::NAN; indices.len()];
+                let known = index(unit, known);
+                unit.directional_derivative(&indices, &[known], &[1.0], &mut slopes)
                     .unwrap();
                 slopes
             });

@@ -1,17 +1,17 @@
 //! What is not known reads as nothing that is safe.
 
-use super::{Kind, instance, place};
+use super::{Kind, index, instance};
 use crate::instance::Instance;
 
 fn read<const N: usize>(unit: &mut Instance, names: [&str; N]) -> [f64; N] {
-    let references = names.map(|name| place(unit, name));
+    let references = names.map(|name| index(unit, name));
     let mut values = [f64::NAN; N];
     unit.reals(&references, &mut values).unwrap();
     values
 }
 
 fn flag(unit: &mut Instance, name: &str) -> bool {
-    let reference = place(unit, name);
+    let reference = index(unit, name);
     unit.boolean(reference).unwrap()
 }
 
@@ -20,7 +20,7 @@ fn flag(unit: &mut Instance, name: &str) -> bool {
 fn an_onset_that_is_not_there_is_the_limit() {
     let mut unit = instance(Kind::Section("rational"), false).unwrap();
     unit.enter_initialization();
-    let limit = place(&unit, "onset_search_limit");
+    let limit = index(&unit, "onset_search_limit");
     unit.set_reals(&[limit], &[2.0]).unwrap();
     let speeds = read(&mut unit, ["onset_speed", "divergence_speed"]);
     assert_eq!(speeds, [2.0, 2.0]);
@@ -34,7 +34,7 @@ fn what_a_bridge_cannot_be_searched_for_is_zero() {
     let mut unit = instance(Kind::Bridge, false).unwrap();
     unit.enter_initialization();
     for density in [1e300, 1.25, 1e200, f64::MAX] {
-        let own = place(&unit, "air_density");
+        let own = index(&unit, "air_density");
         unit.set_reals(&[own], &[density]).unwrap();
         unit.take_notices();
         let [onset, frequency, margin, wind] = read(
@@ -74,7 +74,7 @@ fn what_a_bridge_cannot_be_searched_for_is_zero() {
 #[test]
 fn a_bridge_counts_its_filters() {
     let mut unit = instance(Kind::Bridge, false).unwrap();
-    let filters = place(&unit, "filters");
+    let filters = index(&unit, "filters");
     let count = unit.integer(filters).unwrap();
     let states = unit.state_count();
     assert_eq!(count as usize, states - 4);

@@ -45,7 +45,7 @@ pub(super) fn check_complete(points: &BTreeMap<Derivative, Vec<DerivativePoint>>
             Part::Imaginary => Part::Real,
         };
         let needed = d.force() != Dof::Lateral && d.motion() != Dof::Lateral
-            || has(&Derivative::of(d.force(), d.motion(), other))
+            || has(&Derivative::from_entry(d.force(), d.motion(), other))
             || points.contains_key(d);
         needed && !has(d)
     };

@@ -1,8 +1,8 @@
 //! The onset card of a bridge, in words.
 
 use super::files::NAMED_SHARE;
-use crate::cli::account as section_account;
 use crate::cli::headline;
+use crate::cli::text as section_account;
 use crate::cli::wrapping::beside;
 use crate::error::counted;
 use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
@@ -16,7 +16,7 @@ const NAMED_IN_SHORT: f64 = 0.05;
 pub(super) const MORE: &str = "onset cards, fewer modes";
 
 /// The answer, and what stands beside it; the whole [`card`] with `verbose`, and on the page.
-pub(super) fn account(
+pub(super) fn text(
     study: &BridgeStudy,
     results: &BridgeFlutter,
     verdict: &Verdict,
@@ -69,7 +69,7 @@ pub(super) fn account(
 /// The card.
 fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> String {
     let bridge = &study.by_model;
-    let mut text = headline::account(&study.file.name, verdict, &[]);
+    let mut text = headline::text(&study.file.name, verdict, &[]);
     let _ = writeln!(
         text,
         "Bridge    {}, {}, {} of strips; K refers to B = {} m",

@@ -7,15 +7,17 @@ use std::sync::Once;
 /// Exit code for a fault of the program, as `sysexits.h` has it for internal errors.
 pub(crate) const OWN_FAULT: u8 = 70;
 
-/// Several threads may fail of one cause: one apology is enough.
-static SAID: Once = Once::new();
+/// Several threads may fail of one cause: one message is enough.
+static REPORTED: Once = Once::new();
 
 /// Replaces the message of the language by one that a user can do something with.
 pub(crate) fn install() {
-    set_hook(Box::new(|info| SAID.call_once(|| apologise(info))));
+    set_hook(Box::new(|info| {
+        REPORTED.call_once(|| write_panic_message(info))
+    }));
 }
 
-fn apologise(info: &PanicHookInfo<'_>) {
+fn write_panic_message(info: &PanicHookInfo<'_>) {
     let payload = info.payload();
     let text = payload.downcast_ref::<String>().map(String::as_str);
     let what = text
@@ -69,11 +71,11 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_in_any_thread_is_an_apology_and_exit_code_70() {
+    fn a_panic_in_any_thread_is_a_message_and_exit_code_70() {
         let output = Command::new(std::env::current_exe().unwrap())
             .args([
                 "--exact",
-                "cli::apology::tests::faulty_command",
+                "cli::panic_message::tests::faulty_command",
                 "--nocapture",
             ])
             .env(CHILD, "1")
@@ -83,7 +85,7 @@ mod tests {
         assert_eq!(output.status.code(), Some(OWN_FAULT.into()), "{said}");
         assert!(!said.contains("panicked at"), "{said}");
         assert_eq!(said.matches("We are sorry").count(), 1, "{said}");
-        assert!(said.contains("apology.rs"), "{said}");
+        assert!(said.contains("panic_message.rs"), "{said}");
         assert!(said.contains("divide by zero"), "{said}");
     }
 }

@@ -23,7 +23,7 @@ pub(crate) fn chain(
     // what was assumed in reading the deck stands beside the deck
     let assumed = deck.warnings();
     let mut text = match verbose {
-        true => headline::account(&study.name, &summary.verdict, &assumed),
+        true => headline::text(&study.name, &summary.verdict, &assumed),
         false => headline::short(&study.name, &summary.verdict),
     };
     let _ = writeln!(text, "Deck      {}", deck.description());

@@ -7,7 +7,7 @@ use crate::study::Study;
 use std::fmt::Write as _;
 
 /// The table of cells and the recommendation.
-pub(crate) fn account(selection: &Selection) -> String {
+pub(crate) fn text(selection: &Selection) -> String {
     let mut text = format!(
         "{} cells: {} values of {}, L = 1 to {}\n\nBest fit of each number of filters, as a free search of {} finds it\n",
         selection.cells.len(),
