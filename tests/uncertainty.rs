@@ -25,7 +25,7 @@ fn repeated(truth: Truth, noise_correlation_s: f64, poles: &[f64]) -> CoverageRe
         },
         ..CoveragePlan::default()
     };
-    coverage(&plan, &|_| ()).unwrap()
+    coverage(&plan, &|_, _| ()).unwrap()
 }
 
 /// The short form of `aerodeck coverage --repetitions 500`. If 95 % of the intervals hold the truth, fewer than 88 of 100
@@ -55,7 +55,7 @@ fn scattered(speed_scatter: f64, run_scatter: f64) -> CoverageReport {
         repetitions: 80,
         ..CoveragePlan::default()
     };
-    coverage(&plan, &|_| ()).unwrap()
+    coverage(&plan, &|_, _| ()).unwrap()
 }
 
 /// Another run changes the forces by 4 %, another speed by 3 %, as with measured decks: if 95 % of 80 intervals hold the truth,

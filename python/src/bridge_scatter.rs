@@ -50,12 +50,13 @@ pub struct BridgeScatter {
 
 impl BridgeScatter {
     pub fn new(py: Python<'_>, found: &ScatteredOnset) -> Self {
+        let onsets = &found.onsets;
         Self {
-            speeds_m_s: PyArray1::from_slice(py, &found.speeds_m_s).unbind(),
-            mean_m_s: found.mean_m_s,
-            standard_deviation_m_s: found.standard_deviation_m_s,
-            interval_m_s: (found.interval_m_s[0], found.interval_m_s[1]),
-            without_onset: found.without_onset,
+            speeds_m_s: PyArray1::from_slice(py, &onsets.speeds_m_s).unbind(),
+            mean_m_s: onsets.mean_m_s,
+            standard_deviation_m_s: onsets.standard_deviation_m_s,
+            interval_m_s: onsets.interval_m_s.into(),
+            without_onset: onsets.without_onset,
         }
     }
 }

@@ -114,8 +114,8 @@ pub fn onsets(
     let work = Work::new(progress);
     let found = work.run(py, || {
         on_threads(threads, || {
-            many_onsets(&trained, count, &make, limit, &|done| {
-                work.tell(done, count)
+            many_onsets(&trained, count, &make, limit, &|done, all| {
+                work.tell(done, all)
             })
         })
     })?;

@@ -69,7 +69,7 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
             speeds_scatter: !args.no_speed_scatter,
         };
         let stage = progress.steps("decks");
-        let report = family_coverage(&plan, &|done| stage.at(done as u64, decks as u64))?;
+        let report = family_coverage(&plan, &|done, all| stage.at(done as u64, all as u64))?;
         drop(stage);
         return Answer::new(family(&report), &report);
     }
@@ -90,9 +90,7 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
         ..CoveragePlan::default()
     };
     let stage = progress.steps("repetitions");
-    let report = coverage(&plan, &|done| {
-        stage.at(done as u64, args.repetitions as u64)
-    })?;
+    let report = coverage(&plan, &|done, all| stage.at(done as u64, all as u64))?;
     drop(stage);
     Answer::new(text(&report), &report)
 }

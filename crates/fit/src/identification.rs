@@ -1,5 +1,6 @@
 //! From records and tables to models: regressors, fits, reports.
 
+pub(crate) mod affine;
 pub(crate) mod basis;
 mod constrained;
 mod degenerate;

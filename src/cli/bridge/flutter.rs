@@ -149,14 +149,15 @@ impl BridgeFlutterArgs {
 }
 
 fn scatter_line(of: &ScatteredOnset) -> String {
+    let onsets = &of.onsets;
     format!(
         "Scatter of {} samples: {:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s; {} without onset",
         of.scatter.samples,
-        of.mean_m_s,
-        of.standard_deviation_m_s,
-        of.interval_m_s[0],
-        of.interval_m_s[1],
-        of.without_onset
+        onsets.mean_m_s,
+        onsets.standard_deviation_m_s,
+        onsets.interval_m_s[0],
+        onsets.interval_m_s[1],
+        onsets.without_onset
     )
 }
 

@@ -8,15 +8,13 @@ use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
 use crate::files::bridge::BridgeSectionBlock;
 use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
-use crate::signal::{mean_and_deviation, random_stream};
-use crate::uncertainty::{ModelDraws, sample_quantile};
+use crate::signal::random_stream;
+use crate::uncertainty::{ModelDraws, OnSamples, SampledOnsets, sampled};
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Shortest step from the mean to a sample, as a part of the way: where the motion changes faster, the onset is searched.
 const SHORTEST_STEP: f64 = 1.0 / 32.0;
@@ -78,17 +76,9 @@ impl std::fmt::Display for DerivativeScatter {
 pub struct ScatteredOnset {
     /// What scattered.
     pub scatter: Scatter,
-    /// Mean, m/s.
-    pub mean_m_s: f64,
-    /// Standard deviation, m/s.
-    pub standard_deviation_m_s: f64,
-    /// 95 % of the samples lie between these, m/s.
-    pub interval_m_s: [f64; 2],
-    /// Samples without an onset up to the highest wind speed; they are not in the numbers above.
-    pub without_onset: usize,
-    /// The onset of each sample that has one, m/s, rising.
-    #[serde(skip)]
-    pub speeds_m_s: Vec<f64>,
+    /// What came of it.
+    #[serde(flatten)]
+    pub onsets: SampledOnsets,
 }
 
 impl BridgeStudy {
@@ -102,7 +92,7 @@ impl BridgeStudy {
         &self,
         onset: &Onset,
         scatter: &Scatter,
-        progress: &(dyn Fn(usize, usize) + Sync),
+        progress: OnSamples<'_>,
     ) -> Result<ScatteredOnset> {
         non_negative("scatter of the frequencies", scatter.frequency)?;
         non_negative("scatter of the damping", scatter.damping)?;
@@ -122,33 +112,16 @@ impl BridgeStudy {
             forces: self.drawn_forces(scatter.derivatives)?,
             nearby: NearbyOnset::new(&self.by_model, &onset.at)?,
         };
-        let done = AtomicUsize::new(0);
-        let found = (0..scatter.samples)
-            .into_par_iter()
-            .map(|i| {
-                // who wants no more need not wait for what has not begun
-                progress(done.load(Ordering::Relaxed), scatter.samples);
-                let found = sampler.onset(i as u64);
-                progress(1 + done.fetch_add(1, Ordering::Relaxed), scatter.samples);
-                found
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let mut speeds: Vec<f64> = found.iter().copied().flatten().collect();
-        if speeds.len() < 2 {
+        let found = sampled(scatter.samples, progress, |i| sampler.onset(i as u64))?;
+        let onsets = SampledOnsets::from(found);
+        if onsets.speeds_m_s.len() < 2 {
             return Err(Error::Numerical(
                 "scatter: fewer than two samples have an onset".into(),
             ));
         }
-        speeds.sort_by(f64::total_cmp);
-        let (mean_m_s, standard_deviation_m_s) = mean_and_deviation(speeds.iter().copied());
-        let quantile = |p| sample_quantile(&speeds, speeds.len(), p).unwrap_or(f64::NAN);
         Ok(ScatteredOnset {
             scatter: *scatter,
-            mean_m_s,
-            standard_deviation_m_s,
-            interval_m_s: [quantile(0.025), quantile(0.975)],
-            without_onset: found.len() - speeds.len(),
-            speeds_m_s: speeds,
+            onsets,
         })
     }
 

@@ -3,6 +3,7 @@
 //! Constraints `C c = d` are met exactly by the null-space method (Golub & Van Loan, *Matrix Computations*, section
 //! 6.2.3): `c = c₀ + N z` with `C c₀ = d`, `C N = 0`, and least squares for the free `z`.
 
+use super::affine::{AffineMap, AffineSpace};
 use super::least_squares::{Factor, StreamingQr};
 use super::report::enough_rows;
 use crate::error::{Error, Result};
@@ -37,15 +38,7 @@ pub(crate) struct LinearSolution {
     /// Largest `‖A_c c‖` over `‖A c‖`: near one for a sound fit, large when terms cancel.
     pub cancellation: f64,
     /// From the free unknowns to all coefficients.
-    spread: CoefficientSpace,
-}
-
-/// `c = c₀ + N z`.
-enum CoefficientSpace {
-    /// `N` picks columns, `c₀ = 0`.
-    Columns(Vec<usize>),
-    /// Constrained: `c₀`, `N`.
-    Affine(DVector<f64>, DMatrix<f64>),
+    space: AffineMap,
 }
 
 impl LinearProblem {
@@ -63,41 +56,47 @@ impl LinearProblem {
         place: &str,
         names: &dyn Fn(usize) -> String,
     ) -> Result<LinearSolution> {
-        let spread = self.spread(place)?;
-        let unknowns = spread.unknowns();
+        let space = self.space(place)?;
+        let unknowns = space.spread.ncols();
         enough_rows(place, self.rows.len(), unknowns)?;
-        let mut qr = StreamingQr::new(unknowns, 1);
-        for (row, right) in self.rows.iter().zip(&self.right) {
-            qr.push_row(&spread.reduce(row, *right));
-        }
         let norms = self.norms();
-        for (c, ridge) in self.ridge.iter().enumerate() {
-            if *ridge > 0.0 {
-                let mut row = vec![0.0; self.columns()];
-                row[c] = ridge * norms[c];
-                qr.push_row(&spread.reduce(&row, 0.0));
-            }
+        let ridge: Vec<(usize, f64)> = (0..self.columns())
+            .filter(|&c| self.ridge[c] > 0.0)
+            .map(|c| (c, self.ridge[c] * norms[c]))
+            .collect();
+        let mut qr = StreamingQr::new(unknowns, 1);
+        let mut push = |row: &[f64], right: f64| {
+            let dot = |column: &[f64]| row.iter().zip(column).map(|(a, c)| a * c).sum::<f64>();
+            let columns = space.spread.column_iter().map(|c| dot(c.as_slice()));
+            let line: Vec<f64> = columns.chain([right - dot(&space.values)]).collect();
+            qr.push_row(&line);
+        };
+        for (row, right) in self.rows.iter().zip(&self.right) {
+            push(row, *right);
+        }
+        for (c, factor) in &ridge {
+            push(unit(self.columns(), *c, *factor).as_slice(), 0.0);
         }
         let factor = qr.finish();
         if let Some(z) = factor.undetermined(unknowns) {
+            let what = match self.constraints.is_empty() {
+                true => names(space.spread.column(z).imax()),
+                false => "what the limits leave free".to_owned(),
+            };
             return Err(Error::input(
                 place,
                 "samples at enough different K for the number of filters",
-                format!("nothing that determines {}", spread.name(z, names)),
+                format!("nothing that determines {what}"),
             ));
         }
-        let solution = factor.solve(unknowns)?;
-        let coefficients = spread.expand(solution.as_slice(), self.columns());
+        let coefficients = space.coefficients(&factor.solve(unknowns)?.column(0).into_owned());
         Ok(LinearSolution {
             unknowns,
-            ridge: (0..self.columns())
-                .filter(|&c| self.ridge[c] > 0.0)
-                .map(|c| (c, self.ridge[c] * norms[c]))
-                .collect(),
+            ridge,
             cancellation: self.cancellation(&norms, &coefficients),
             factor,
             coefficients,
-            spread,
+            space,
         })
     }
 
@@ -122,111 +121,39 @@ impl LinearProblem {
         largest / fitted.sqrt()
     }
 
-    fn spread(&self, place: &str) -> Result<CoefficientSpace> {
-        let seen = |c: &usize| self.rows.iter().any(|row| row[*c] != 0.0);
+    /// The coefficients that meet the constraints, without those that neither rows nor constraints see: with one part only (say,
+    /// no H4*), columns that have no such part are out of reach.
+    fn space(&self, place: &str) -> Result<AffineMap> {
         let n = self.columns();
-        if self.constraints.is_empty() {
-            // with one part only (say, no H4*), columns that have no such part are out of reach
-            return Ok(CoefficientSpace::Columns((0..n).filter(seen).collect()));
+        let seen = |c: usize| self.rows.iter().any(|row| row[c] != 0.0);
+        let bound = |c: usize| self.constraints.iter().any(|(row, _)| row[c] != 0.0);
+        let mut space = AffineSpace::whole(n);
+        for c in (0..n).filter(|&c| !seen(c) && !bound(c)) {
+            space.hold(&unit(n, c, 1.0), 0.0, RANK_TOLERANCE);
         }
-        let bound = |c: &usize| self.constraints.iter().any(|(row, _)| row[*c] != 0.0);
-        let reached: Vec<usize> = (0..n).filter(|c| seen(c) || bound(c)).collect();
-        let m = self.constraints.len();
-        // rows scaled to unit norm: a slope divides by small lags
-        let scaled = DMatrix::from_fn(reached.len(), m, |c, r| {
-            let (row, _) = &self.constraints[r];
-            row[reached[c]] / norm_of(row)
-        });
-        let targets =
-            DVector::from_iterator(m, self.constraints.iter().map(|(r, d)| d / norm_of(r)));
-        let failed = || {
-            Error::input(
-                place,
-                "limits at K → 0 that the columns of the model can meet",
-                "a feed-through is missing, or one limit repeats another",
-            )
-        };
-        if reached.len() < m {
-            return Err(failed());
+        for (row, target) in &self.constraints {
+            let gradient = DVector::from_column_slice(row);
+            if !space.hold(&gradient, *target, RANK_TOLERANCE) {
+                return Err(Error::input(
+                    place,
+                    "limits at K → 0 that the columns of the model can meet",
+                    "a feed-through is missing, or one limit repeats another",
+                ));
+            }
         }
-        // Q of [Cᵀ I]: its first m columns span the constraints, the others what they leave free
-        let mut wide = DMatrix::identity(reached.len(), m + reached.len());
-        wide.view_mut((0, 0), scaled.shape()).copy_from(&scaled);
-        wide.view_mut((0, m), (reached.len(), reached.len()))
-            .fill_with_identity();
-        let (q, r) = wide.qr().unpack();
-        let triangle = r.view((0, 0), (m, m)).into_owned();
-        if !(0..m).all(|i| triangle[(i, i)].abs() > RANK_TOLERANCE) {
-            return Err(failed());
-        }
-        let along = triangle
-            .transpose()
-            .solve_lower_triangular(&targets)
-            .ok_or_else(failed)?;
-        let particular = q.columns(0, m) * along;
-        let free = q.columns(m, reached.len() - m);
-        let mut start = DVector::zeros(n);
-        let mut map = DMatrix::zeros(n, free.ncols());
-        for (at, &c) in reached.iter().enumerate() {
-            start[c] = particular[at];
-            map.row_mut(c).copy_from(&free.row(at));
-        }
-        Ok(CoefficientSpace::Affine(start, map))
+        Ok(AffineMap {
+            spread: space.basis(),
+            values: space.start.data.into(),
+            at: 0,
+        })
     }
 }
 
-fn norm_of(row: &[f64]) -> f64 {
-    let norm = row.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if norm > 0.0 { norm } else { 1.0 }
-}
-
-impl CoefficientSpace {
-    fn unknowns(&self) -> usize {
-        match self {
-            Self::Columns(columns) => columns.len(),
-            Self::Affine(_, map) => map.ncols(),
-        }
-    }
-
-    /// A row of `A` in the free unknowns, with its right-hand side.
-    fn reduce(&self, row: &[f64], right: f64) -> Vec<f64> {
-        match self {
-            Self::Columns(columns) => {
-                let mut line: Vec<f64> = columns.iter().map(|&c| row[c]).collect();
-                line.push(right);
-                line
-            }
-            Self::Affine(start, map) => {
-                let dot = |column: &[f64]| row.iter().zip(column).map(|(a, c)| a * c).sum::<f64>();
-                let mut line: Vec<f64> = map.column_iter().map(|c| dot(c.as_slice())).collect();
-                line.push(right - dot(start.as_slice()));
-                line
-            }
-        }
-    }
-
-    fn expand(&self, free: &[f64], columns: usize) -> Vec<f64> {
-        match self {
-            Self::Columns(picked) => {
-                let mut all = vec![0.0; columns];
-                for (value, &c) in free.iter().zip(picked) {
-                    all[c] = *value;
-                }
-                all
-            }
-            Self::Affine(start, map) => {
-                let all = start + map * DVector::from_column_slice(free);
-                all.iter().copied().collect()
-            }
-        }
-    }
-
-    fn name(&self, z: usize, names: &dyn Fn(usize) -> String) -> String {
-        match self {
-            Self::Columns(columns) => names(columns[z]),
-            Self::Affine(..) => "what the limits leave free".to_owned(),
-        }
-    }
+/// `factor` times a unit vector.
+fn unit(n: usize, c: usize, factor: f64) -> DVector<f64> {
+    let mut unit = DVector::zeros(n);
+    unit[c] = factor;
+    unit
 }
 
 impl LinearSolution {
@@ -240,35 +167,13 @@ impl LinearSolution {
     /// What the coefficients become when the free unknowns leave their best values by one unit of the weighted residual,
     /// along each of them, n×unknowns: `N R⁻¹`.
     pub(crate) fn spread(&self) -> Result<DMatrix<f64>> {
-        let inverse = self.factor.inverse_upper(self.unknowns)?;
-        Ok(match &self.spread {
-            CoefficientSpace::Columns(columns) => {
-                let mut all = DMatrix::zeros(self.coefficients.len(), self.unknowns);
-                for (row, &c) in columns.iter().enumerate() {
-                    all.row_mut(c).copy_from(&inverse.row(row));
-                }
-                all
-            }
-            CoefficientSpace::Affine(_, map) => map * inverse,
-        })
+        Ok(&self.space.spread * self.factor.inverse_upper(self.unknowns)?)
     }
 
     /// `(AᵀA)⁻¹` of the free unknowns, spread over all coefficients.
     pub(crate) fn inverse_gram(&self) -> Result<DMatrix<f64>> {
-        let small = self.factor.inverse_gram(self.unknowns)?;
-        let n = self.coefficients.len();
-        match &self.spread {
-            CoefficientSpace::Columns(columns) => {
-                let mut full = DMatrix::zeros(n, n);
-                for (a, &i) in columns.iter().enumerate() {
-                    for (b, &j) in columns.iter().enumerate() {
-                        full[(i, j)] = small[(a, b)];
-                    }
-                }
-                Ok(full)
-            }
-            CoefficientSpace::Affine(_, map) => Ok(map * small * map.transpose()),
-        }
+        let (small, map) = (self.factor.inverse_gram(self.unknowns)?, &self.space.spread);
+        Ok(map * small * map.transpose())
     }
 }
 

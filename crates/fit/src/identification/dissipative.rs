@@ -25,8 +25,8 @@ mod everywhere;
 mod motions;
 mod report;
 mod stated;
-mod tangent;
 
+use super::affine::{AffineMap, AffineSpace};
 use super::basis::Basis;
 use crate::error::{Error, Result};
 use conic::shortest;
@@ -40,7 +40,6 @@ use report::GrowthLimit;
 use stated::{Condition, Stated};
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport};
-pub(crate) use tangent::{LinearEntry, Tangent};
 
 /// Violation, on the scale of the condition, at which a fit without constraints breaks it.
 const TOLERANCE: f64 = 1e-9;
@@ -48,6 +47,8 @@ const TOLERANCE: f64 = 1e-9;
 const ACTIVE: f64 = 1e-7;
 /// Part of the gradient of a condition that rounding leaves where its limit changes as it does itself.
 pub(crate) const NOTHING_HELD: f64 = 1e-6;
+/// Part of a gradient outside those of other constraints below which it adds no direction.
+pub(crate) const SAME_DIRECTION: f64 = 1e-8;
 /// Times that further `K` are stated; two or three are the rule.
 const ROUNDS: usize = 30;
 
@@ -77,7 +78,8 @@ pub(crate) struct Solution {
     pub coefficients: Vec<Vec<f64>>,
     /// What holds it.
     pub active: Vec<ActiveConstraint>,
-    pub tangent: Tangent,
+    /// The free numbers that satisfy all of it.
+    pub space: AffineSpace,
 }
 
 impl<'a> Dissipation<'a> {
@@ -115,49 +117,43 @@ impl<'a> Dissipation<'a> {
     /// Limits at K → 0 that the columns cannot meet, and conditions that no coefficients satisfy.
     pub(crate) fn solve(
         &self,
-        entries: &[LinearEntry],
+        entries: &[AffineMap],
         strictness: Strictness,
     ) -> Result<Option<Solution>> {
-        let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
+        let width = entries.iter().map(AffineMap::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let edges = self.edges(&alone);
-        let (equalities, start) = satisfy(&self.equations, entries, width)?;
-        let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&start)).collect();
+        let equalities = satisfy(&self.equations, entries, width)?;
+        let start = &equalities.start;
+        let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(start)).collect();
         let mut stated = self.stated.clone();
-        let mut at = (start.clone(), at_start.clone());
+        let (mut free, mut coefficients) = (start.clone(), at_start.clone());
         let mut holds = vec![false; stated.len()];
         let broken = |s: &Stated| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
-        if !stated.iter().any(broken) {
-            stated.extend(self.broken_between(&at_start, &edges, strictness));
-            if stated.len() == self.stated.len() {
-                if start.amax() == 0.0 {
+        let mut more = match stated.iter().any(broken) {
+            true => None,
+            false => Some(self.broken_between(&at_start, &edges, strictness)),
+        };
+        for _ in 0..=ROUNDS {
+            if more.as_ref().is_some_and(Vec::is_empty) {
+                if free.amax() == 0.0 {
                     return Ok(None);
                 }
-                let (free, coefficients) = at;
                 let held = held(&stated, &holds);
                 let solution = self.solution(entries, free, coefficients, &edges, held, equalities);
                 return Ok(Some(solution));
             }
-        }
-        for _ in 0..ROUNDS {
+            stated.extend(more.into_iter().flatten());
             let cone = |s: &Stated| {
                 let edge = &edges[s.condition.part];
                 s.cone(&self.motions, entries, &at_start, edge, &equalities)
             };
             let cones: Vec<_> = stated.iter().map(cone).collect();
             let found = shortest(&cones, width)?;
-            let u = &start + found.w;
-            let coefficients = entries.iter().map(|e| e.coefficients(&u)).collect();
-            at = (u, coefficients);
+            free = start + found.w;
+            coefficients = entries.iter().map(|e| e.coefficients(&free)).collect();
             holds = found.holds;
-            let more = self.broken_between(&at.1, &edges, strictness);
-            if more.is_empty() {
-                let (free, coefficients) = at;
-                let held = held(&stated, &holds);
-                let solution = self.solution(entries, free, coefficients, &edges, held, equalities);
-                return Ok(Some(solution));
-            }
-            stated.extend(more);
+            more = Some(self.broken_between(&coefficients, &edges, strictness));
         }
         Err(Error::Numerical(format!(
             "dissipative fit: damping for every K not reached after {ROUNDS} rounds; `constraints = \"none\"` fits without"
@@ -205,17 +201,16 @@ impl<'a> Dissipation<'a> {
 
     fn solution(
         &self,
-        entries: &[LinearEntry],
+        entries: &[AffineMap],
         free: DVector<f64>,
         coefficients: Vec<Vec<f64>>,
         edges: &[TestedRangeEnd],
         held: Vec<&Stated>,
-        equalities: Vec<DVector<f64>>,
+        mut space: AffineSpace,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let account = |e: &Equation| e.account(self.motions.count, &alone, &coefficients);
         let mut active: Vec<_> = self.equations.iter().map(account).collect();
-        let mut gradients = equalities;
         for s in held {
             let (excesses, directions) = self.excesses(s, &coefficients, edges);
             for (m, excess) in excesses.iter().enumerate() {
@@ -224,7 +219,9 @@ impl<'a> Dissipation<'a> {
                 }
                 let direction = directions.column(m).into_owned();
                 let constraint = self.held_back(s, &direction, edges, &alone, &coefficients);
-                gradients.extend(self.free_gradient(s, &constraint, entries));
+                if let Some(gradient) = self.free_gradient(s, &constraint, entries) {
+                    space.hold(&gradient, gradient.dot(&free), SAME_DIRECTION);
+                }
                 active.push(constraint);
             }
         }
@@ -232,7 +229,7 @@ impl<'a> Dissipation<'a> {
             free,
             coefficients,
             active,
-            tangent: Tangent::new(gradients.into_iter()),
+            space,
         }
     }
 
@@ -269,7 +266,7 @@ impl<'a> Dissipation<'a> {
         &self,
         stated: &Stated,
         constraint: &ActiveConstraint,
-        entries: &[LinearEntry],
+        entries: &[AffineMap],
     ) -> Option<DVector<f64>> {
         let v = DVector::from_column_slice(&constraint.direction);
         let held = stated.gradient(&self.motions, &(&v * v.transpose()), entries);

@@ -10,6 +10,7 @@ use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
 use super::onset::onset_error;
 use super::record_covariance::record_uncertainty;
+use super::sampling::{OnSamples, sampled};
 use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
@@ -20,8 +21,6 @@ use crate::identification::{Fitted, TimeFit, fit_records};
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Highest wind speed at which an onset is looked for, m/s.
 const SPEED_MAX_M_S: f64 = 80.0;
@@ -30,21 +29,11 @@ const DERIVATIVE_POINTS: usize = 8;
 
 /// Runs the campaign over and over, each time with noise of its own, in parallel.
 ///
-/// `done` is called after each repetition with the number of those that are through.
-///
 /// # Errors
 /// [`Error::Input`] for impossible plans; [`Error::Numerical`] when no fit or no search gives an onset.
-pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<CoverageReport> {
+pub fn coverage(plan: &CoveragePlan, progress: OnSamples<'_>) -> Result<CoverageReport> {
     let campaign = KnownDeck::new(plan)?;
-    let finished = AtomicUsize::new(0);
-    let runs: Vec<Option<Repetition>> = (0..plan.repetitions)
-        .into_par_iter()
-        .map(|r| {
-            let run = campaign.repeat(r);
-            done(1 + finished.fetch_add(1, Ordering::Relaxed));
-            run
-        })
-        .collect::<Result<_>>()?;
+    let runs = sampled(plan.repetitions, progress, |r| campaign.repeat(r))?;
     campaign.summary(plan, &runs)
 }
 

@@ -13,15 +13,14 @@ pub use plan::FamilyPlan;
 use super::coverage::IntervalCoverage;
 use super::forms::{FormEnsemble, interval_with_forms};
 use super::onset::onset_error;
+use super::sampling::{OnSamples, sampled};
 use super::table_covariance::table_uncertainty;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Result, ensure};
 use crate::flutter::{FlutterSearch, OnsetInterval, OnsetSearch, find_onset};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
 use deck::{SEARCHED, SyntheticDeck};
-use rayon::prelude::*;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Required speeds over the true onset with which a deck is asked whether it meets them.
 const REQUIRED: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.02, 1.1, 1.25, 1.5];
@@ -91,21 +90,13 @@ pub struct FamilyReport {
 
 /// Makes, tests and judges every deck, in parallel; the same for any number of threads.
 ///
-/// `done` is called after each deck with the number of those that are through.
-///
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) for a family without decks; [`Error::Numerical`](crate::error::Error::Numerical) when no deck that flutters can be drawn.
-pub fn family_coverage(plan: &FamilyPlan, done: &(dyn Fn(usize) + Sync)) -> Result<FamilyReport> {
+pub fn family_coverage(plan: &FamilyPlan, progress: OnSamples<'_>) -> Result<FamilyReport> {
     ensure(plan.decks != 0, "decks", "at least 1", "0")?;
-    let finished = AtomicUsize::new(0);
-    let decks: Vec<DeckOutcome> = (0..plan.decks)
-        .into_par_iter()
-        .map(|number| {
-            let outcome = judged(number, &SyntheticDeck::draw(plan, number)?);
-            done(1 + finished.fetch_add(1, Ordering::Relaxed));
-            Ok(outcome)
-        })
-        .collect::<Result<_>>()?;
+    let decks = sampled(plan.decks, progress, |number| {
+        Ok(judged(number, &SyntheticDeck::draw(plan, number)?))
+    })?;
     let mut ranges: Vec<RangeCount> = FamilyRange::ALL
         .iter()
         .filter_map(|range| RangeCount::of(*range, &decks))

@@ -6,7 +6,8 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::draws::ModelDraws;
-use super::statistics::{sample_quantile, two_sided_quantile};
+use super::sampling::{SampledOnsets, sampled};
+use super::statistics::two_sided_quantile;
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
@@ -14,12 +15,11 @@ use crate::flutter::{
     BetweenSpeeds, ErrorParts, FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset,
 };
 use crate::section::Structure;
-use crate::signal::{mean_and_deviation, random_stream};
+use crate::signal::random_stream;
 use crate::state_space::{ValueAt, complex, eigenvector, secant};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::{Complex, DMatrix, DVector};
 use rand_distr::{Distribution, Exp1, StandardNormal};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -187,33 +187,25 @@ pub(crate) fn resample_onset(
 ) -> Result<Option<ResampledOnset>> {
     let draws = ModelDraws::of(estimate)?;
     let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-    let found: Vec<Option<Option<f64>>> = (0..plan.replicates)
-        .into_par_iter()
-        .map(|r| {
-            let Some(values) = drawn(estimate, &draws, plan, r)? else {
-                return Ok(None);
-            };
-            let model = draws.model_at(&values).ok();
-            Ok(Some(model.and_then(|m| {
-                solve(&m, structure, speed_m_s, omega, plan)
-            })))
-        })
-        .collect::<Result<_>>()?;
-    if found.iter().any(Option::is_none) {
-        return Ok(None);
-    }
-    let mut speeds: Vec<f64> = found.iter().filter_map(|d| d.flatten()).collect();
-    speeds.sort_by(f64::total_cmp);
-    let (mean_m_s, standard_deviation_m_s) = mean_and_deviation(speeds.iter().copied());
-    let quantile = |part| sample_quantile(&speeds, speeds.len(), part).unwrap_or(f64::NAN);
-    Ok(Some(ResampledOnset {
+    let onset_of = |r: usize| -> Result<Option<Option<f64>>> {
+        let Some(values) = drawn(estimate, &draws, plan, r)? else {
+            return Ok(None);
+        };
+        let model = draws.model_at(&values).ok();
+        Ok(Some(model.and_then(|m| {
+            solve(&m, structure, speed_m_s, omega, plan)
+        })))
+    };
+    let found = sampled(plan.replicates, &|_, _| (), onset_of)?;
+    let found: Option<Vec<Option<f64>>> = found.into_iter().collect();
+    Ok(found.map(SampledOnsets::from).map(|onsets| ResampledOnset {
         resampling: plan.resampling,
         replicates: plan.replicates,
-        without_onset: plan.replicates - speeds.len(),
-        mean_m_s,
-        standard_deviation_m_s,
-        low_m_s: quantile(0.5 * (1.0 - CONFIDENCE)),
-        high_m_s: quantile(0.5 * (1.0 + CONFIDENCE)),
+        without_onset: onsets.without_onset,
+        mean_m_s: onsets.mean_m_s,
+        standard_deviation_m_s: onsets.standard_deviation_m_s,
+        low_m_s: onsets.interval_m_s[0],
+        high_m_s: onsets.interval_m_s[1],
     }))
 }
 

@@ -2,8 +2,9 @@
 //! bounds, and the directions that active constraints leave to them.
 
 use crate::error::Result;
+use crate::identification::affine::AffineSpace;
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::{NOTHING_HELD, Tangent};
+use crate::identification::dissipative::{NOTHING_HELD, SAME_DIRECTION};
 use crate::identification::{ActiveConstraint, FitReport, Form, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
@@ -261,11 +262,13 @@ pub(super) fn tangent_of(
             }
         }
     }
-    let holding = gradients.into_iter().zip(held_squares);
-    let holding = holding
-        .filter(|(gradient, square)| gradient.norm_squared() > NOTHING_HELD.powi(2) * square)
-        .map(|(gradient, _)| gradient);
-    Ok(Some(Tangent::new(holding).basis(parameters)))
+    let mut space = AffineSpace::whole(parameters);
+    for (gradient, square) in gradients.iter().zip(held_squares) {
+        if gradient.norm_squared() > NOTHING_HELD.powi(2) * square {
+            space.hold(gradient, 0.0, SAME_DIRECTION);
+        }
+    }
+    Ok(Some(space.basis()))
 }
 
 /// What a transfer function adds to what a constraint holds beyond its limit.

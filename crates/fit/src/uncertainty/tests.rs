@@ -270,7 +270,7 @@ fn a_family_of_decks_is_told_nothing_false() {
         decks: 40,
         ..FamilyPlan::default()
     };
-    let report = family_coverage(&plan, &|_| ()).unwrap();
+    let report = family_coverage(&plan, &|_, _| ()).unwrap();
     for d in &report.decks {
         println!("DECK {}", serde_json::to_string(d).unwrap());
     }

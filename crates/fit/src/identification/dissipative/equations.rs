@@ -1,8 +1,9 @@
 //! Equations that coefficients have to satisfy besides: symmetric added mass, limits at K → 0.
 
 use super::report::{ActiveConstraint, ConstraintKind};
-use super::tangent::{LinearEntry, take_away};
+
 use crate::error::{Result, ensure};
+use crate::identification::affine::{AffineMap, AffineSpace};
 use crate::identification::basis::Basis;
 use crate::identification::form::{LEAST_CHOSEN, MOST_CHOSEN};
 use crate::section::Dof;
@@ -106,7 +107,7 @@ impl Equation {
         self.rows.iter().map(dot).sum()
     }
 
-    fn gradient(&self, entries: &[LinearEntry], width: usize) -> DVector<f64> {
+    fn gradient(&self, entries: &[AffineMap], width: usize) -> DVector<f64> {
         let mut gradient = DVector::zeros(width);
         for (e, row) in &self.rows {
             let entry = &entries[*e];
@@ -137,37 +138,29 @@ impl Equation {
     }
 }
 
-/// Orthonormal gradients of the equations, and the shortest free numbers that satisfy them.
+/// The free numbers that satisfy the equations.
 ///
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) for limits that the columns of the model cannot meet.
 pub(super) fn satisfy(
     equations: &[Equation],
-    entries: &[LinearEntry],
+    entries: &[AffineMap],
     width: usize,
-) -> Result<(Vec<DVector<f64>>, DVector<f64>)> {
-    let mut columns: Vec<DVector<f64>> = Vec::new();
-    let mut start = DVector::zeros(width);
+) -> Result<AffineSpace> {
+    let mut space = AffineSpace::whole(width);
+    let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
     for equation in equations {
-        let mut gradient = equation.gradient(entries, width);
-        let norm = gradient.norm();
-        take_away(&mut gradient, &columns);
-        take_away(&mut gradient, &columns);
-        let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&start)).collect();
-        let short = equation.target - equation.value(&at_start);
-        let left = gradient.norm();
-        if left <= RANK_TOLERANCE * norm {
+        let gradient = equation.gradient(entries, width);
+        let target = equation.target - equation.value(&alone);
+        if !space.hold(&gradient, target, RANK_TOLERANCE) {
+            let short = target - gradient.dot(&space.start);
             ensure(
-                short.abs() <= AGREEMENT * equation.target.abs().max(norm),
+                short.abs() <= AGREEMENT * equation.target.abs().max(gradient.norm()),
                 "limits",
                 "limits at K → 0 that the columns of the model can meet",
                 "a feed-through is missing, or one limit repeats another",
             )?;
-            continue;
         }
-        gradient.unscale_mut(left);
-        start.axpy(short / left, &gradient, 1.0);
-        columns.push(gradient);
     }
-    Ok((columns, start))
+    Ok(space)
 }

@@ -4,7 +4,7 @@ use super::conic::Cone;
 use super::edge::TestedRangeEnd;
 use super::motions::Motions;
 use super::report::ConstraintKind;
-use super::tangent::{LinearEntry, take_away};
+use crate::identification::affine::{AffineMap, AffineSpace};
 use crate::identification::basis::Basis;
 use crate::identification::form::FeedThrough;
 use nalgebra::{DMatrix, DVector};
@@ -117,10 +117,10 @@ impl Stated {
         &self,
         motions: &Motions<'_>,
         weights: &DMatrix<f64>,
-        entries: &[LinearEntry],
+        entries: &[AffineMap],
     ) -> DVector<f64> {
         let n = motions.count;
-        let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
+        let width = entries.iter().map(AffineMap::end).max().unwrap_or(0);
         let mut gradient = DVector::zeros(width);
         for (e, entry) in entries.iter().enumerate() {
             let weight = weights[(e / n, e % n)];
@@ -139,10 +139,10 @@ impl Stated {
     pub(super) fn cone(
         &self,
         motions: &Motions<'_>,
-        entries: &[LinearEntry],
+        entries: &[AffineMap],
         start: &[Vec<f64>],
         edge: &TestedRangeEnd,
-        equalities: &[DVector<f64>],
+        equalities: &AffineSpace,
     ) -> Cone {
         let Condition {
             part,
@@ -161,7 +161,7 @@ impl Stated {
             weights[(held[i], held[j])] += 0.5;
             weights[(held[j], held[i])] += 0.5;
             let mut gradient = self.gradient(motions, &weights, entries);
-            take_away(&mut gradient, equalities);
+            equalities.project(&mut gradient);
             gradient
         };
         if size == 1 {

@@ -1,11 +1,10 @@
 //! All transfer functions of a table at once, held together by constraints.
 
 use crate::error::Result;
+use crate::identification::affine::AffineMap;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
-use crate::identification::dissipative::{
-    Dissipation, FitRequirements, LinearEntry, Solution, Strictness,
-};
+use crate::identification::dissipative::{Dissipation, FitRequirements, Solution, Strictness};
 use crate::identification::form::Form;
 use crate::identification::report::relative_noise;
 use crate::identification::samples::{EntrySamples, shares};
@@ -29,7 +28,7 @@ pub(super) struct JointFit<'a> {
     shares: Vec<f64>,
     pub bases: Vec<Basis>,
     pub solutions: Vec<LinearSolution>,
-    linear: Vec<LinearEntry>,
+    linear: Vec<AffineMap>,
     pub held: Option<Solution>,
 }
 
@@ -95,7 +94,7 @@ impl<'a> Joint<'a> {
         let (mut solutions, mut linear, mut at) = (Vec::new(), Vec::new(), 0);
         for ((entry, basis), share) in self.entries.iter().zip(&bases).zip(&shares) {
             let solution = entry.fit(basis)?;
-            linear.push(LinearEntry {
+            linear.push(AffineMap {
                 values: solution.coefficients.clone(),
                 spread: solution.spread()? / share.max(least),
                 at,
@@ -145,6 +144,6 @@ impl JointFit<'_> {
             let variance = v.unwrap_or(0.0) * share * share;
             (linear.spread.ncols(), variance)
         });
-        Some(held.tangent.covariance(&self.linear[e], free))
+        Some(held.space.covariance(&self.linear[e], free))
     }
 }

@@ -2,8 +2,9 @@
 
 use super::{FittedTable, LagSearch, LinearProblem, LinearSolution, ROUNDS};
 use crate::error::Result;
+use crate::identification::affine::AffineMap;
 use crate::identification::dissipative::{
-    ActiveConstraint, ConstraintReport, Dissipation, LinearEntry, Strictness,
+    ActiveConstraint, ConstraintReport, Dissipation, Strictness,
 };
 use crate::identification::report::SearchPoint;
 use crate::identification::search::descend;
@@ -72,7 +73,7 @@ impl LagSearch<'_> {
         };
         let (mut forces, mut entries, mut at) = (Vec::new(), Vec::new(), 0);
         for solution in &rows.solutions {
-            let force = LinearEntry {
+            let force = AffineMap {
                 values: solution.coefficients.clone(),
                 spread: solution.spread()?,
                 at,
@@ -90,14 +91,14 @@ impl LagSearch<'_> {
     }
 
     /// One transfer function of a force in the columns of Roger's form.
-    fn entry_of(&self, force: &LinearEntry, j: usize, e: &DMatrix<f64>) -> LinearEntry {
+    fn entry_of(&self, force: &AffineMap, j: usize, e: &DMatrix<f64>) -> AffineMap {
         let feed = self.feed.count();
         let places: Vec<(usize, f64)> = (0..feed)
             .map(|c| (j * feed + c, 1.0))
             .chain((0..self.states).map(|l| (self.n * feed + l, e[(l, j)])))
             .collect();
         let spread = &force.spread;
-        LinearEntry {
+        AffineMap {
             values: places.iter().map(|&(c, f)| f * force.values[c]).collect(),
             spread: DMatrix::from_fn(places.len(), spread.ncols(), |r, m| {
                 places[r].1 * spread[(places[r].0, m)]

@@ -3,9 +3,10 @@
 
 use super::systems::ForceSystems;
 use crate::error::{Error, Result};
+use crate::identification::affine::AffineMap;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{
-    ActiveConstraint, Dissipation, FitRequirements, LinearEntry, Solution, Strictness,
+    ActiveConstraint, Dissipation, FitRequirements, Solution, Strictness,
 };
 use crate::identification::entry_report::EntryReport;
 use crate::identification::least_squares::Factor;
@@ -220,9 +221,9 @@ impl<'a> FittedSystems<'a> {
 /// All transfer functions at given poles, each force by itself and together under the constraints.
 pub(crate) struct JointTimeFit {
     /// One per transfer function where each has rows of its own, else one per force, constant included.
-    whole: Vec<LinearEntry>,
+    whole: Vec<AffineMap>,
     /// One per transfer function.
-    entries: Vec<LinearEntry>,
+    entries: Vec<AffineMap>,
     /// Scale of the weighted residual of each of `whole` in the objective.
     shares: Vec<f64>,
     /// Sums of the squares of the residuals without constraints and of the data of each.
@@ -260,7 +261,7 @@ impl JointTimeFit {
                 at += linear.spread.ncols();
                 for j in 0..n {
                     let places = systems.places(i, j);
-                    joint.entries.push(LinearEntry {
+                    joint.entries.push(AffineMap {
                         values: places.iter().map(|&p| linear.values[p]).collect(),
                         spread: linear.spread.select_rows(&places),
                         at: linear.at,
@@ -280,7 +281,7 @@ impl JointTimeFit {
         Ok(joint)
     }
 
-    fn add(&mut self, factor: &Factor, count: f64, at: usize) -> Result<LinearEntry> {
+    fn add(&mut self, factor: &Factor, count: f64, at: usize) -> Result<AffineMap> {
         let columns = factor.columns();
         let (total, residual) = (factor.total_sum(0), factor.residual_sum(columns, 0));
         let share = if total > 0.0 {
@@ -291,7 +292,7 @@ impl JointTimeFit {
         };
         self.shares.push(share);
         self.residuals.push((residual, total));
-        Ok(LinearEntry {
+        Ok(AffineMap {
             values: factor.solve(columns)?.as_slice().to_vec(),
             spread: factor.inverse_upper(columns)? / share,
             at,
@@ -339,12 +340,12 @@ impl JointTimeFit {
     pub(crate) fn covariance(&self, e: usize, variances: &[f64]) -> Option<DMatrix<f64>> {
         let held = self.held.as_ref()?;
         let per_force = self.whole.len() / variances.len();
-        let free = |(w, (linear, share)): (usize, (&LinearEntry, &f64))| {
+        let free = |(w, (linear, share)): (usize, (&AffineMap, &f64))| {
             let variance = variances[w / per_force] * share * share;
             (linear.spread.ncols(), variance)
         };
         let all = self.whole.iter().zip(&self.shares).enumerate();
-        Some(held.tangent.covariance(&self.entries[e], all.map(free)))
+        Some(held.space.covariance(&self.entries[e], all.map(free)))
     }
 }
 

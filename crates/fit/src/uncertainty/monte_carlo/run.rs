@@ -6,23 +6,19 @@ use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
 use super::scatter::{CovarianceFactor, drawn_model};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, all_or_errors, ensure};
+use crate::error::{Error, Result, ensure};
 use crate::flutter::{
     FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
 };
 use crate::section::SectionModel;
 use crate::trained_model::{Model, TrainedModel};
-use rayon::prelude::*;
+use crate::uncertainty::sampling::{OnSamples, sampled_in_parts};
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Samples or sections between two reports of progress, on one core.
-const CHUNK: usize = 2048;
+/// Samples or sections that a thread takes at once.
+const PART: usize = 2048;
 /// Wind speeds of the search by eigenvalues.
 const SPEEDS: usize = 200;
-
-/// Called with the samples done and all of them, from any thread.
-pub(crate) type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Finds the onset of one sample.
 pub(super) struct Finder<'a> {
@@ -69,28 +65,18 @@ pub fn tally(
     let finder = Finder::new(&model, limit)?;
     let (values, _) = coefficients::of(&model.model);
     let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
-    let count = samples.len();
-    let done = AtomicUsize::new(0);
-    // a number for each sample, and nothing twice: those of a chunk stand in its places until all are closed up
-    let mut onsets = vec![0.0; count];
-    let tallies: Vec<(Tally, usize)> = onsets
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .map(|(chunk, places)| {
-            let from = samples.start + chunk * CHUNK;
-            // who wants no more need not wait for what has not begun
-            progress(done.load(Ordering::Relaxed), count);
-            let mut tally = finder.tally(&sampler, from..from + places.len());
-            let found = std::mem::take(&mut tally.onsets);
-            places[..found.len()].copy_from_slice(&found);
-            let before = done.fetch_add(places.len(), Ordering::Relaxed);
-            progress(before + places.len(), count);
-            (tally, found.len())
-        })
-        .collect();
+    // a number for each sample, and nothing twice: those of a part stand in its places until all are closed up
+    let mut onsets = vec![0.0; samples.len()];
+    let tallies = sampled_in_parts(&mut onsets, PART, progress, |first, places| {
+        let from = samples.start + first;
+        let mut tally = finder.tally(&sampler, from..from + places.len());
+        let found = std::mem::take(&mut tally.onsets);
+        places[..found.len()].copy_from_slice(&found);
+        Ok((tally, found.len()))
+    })?;
     let mut kept = 0;
-    for (chunk, (_, found)) in tallies.iter().enumerate() {
-        let from = chunk * CHUNK;
+    for (part, (_, found)) in tallies.iter().enumerate() {
+        let from = part * PART;
         onsets.copy_within(from..from + found, kept);
         kept += found;
     }
@@ -259,32 +245,22 @@ pub fn many_onsets(
     count: usize,
     section: &(dyn Fn(usize, &mut SectionModel) + Sync),
     speed_max_m_s: f64,
-    progress: &(dyn Fn(usize) + Sync),
+    progress: OnSamples<'_>,
 ) -> Result<ManyOnsets> {
     let finder = Finder::new(model, speed_max_m_s)?;
     let (values, _) = coefficients::of(&model.model);
-    let done = AtomicUsize::new(0);
-    let parts: Vec<Result<Vec<SweepOutcome>>> = (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let range = chunk * CHUNK..count.min((chunk + 1) * CHUNK);
-            let length = range.len();
-            let mut one = model.section.clone();
-            // who wants no more need not wait for what has not begun
-            progress(done.load(Ordering::Relaxed));
-            let found = range
-                .map(|i| {
-                    section(i, &mut one);
-                    let outcome = finder.onset(&one, &values).map(|(outcome, _)| outcome);
-                    outcome.map_err(|e| of_section(i, e))
-                })
-                .collect();
-            progress(length + done.fetch_add(length, Ordering::Relaxed));
-            found
-        })
-        .collect();
+    let mut outcomes = vec![SweepOutcome::Unresolved; count];
+    sampled_in_parts(&mut outcomes, PART, progress, |first, places| {
+        let mut one = model.section.clone();
+        for (i, place) in (first..).zip(places) {
+            section(i, &mut one);
+            let outcome = finder.onset(&one, &values);
+            (*place, _) = outcome.map_err(|e| of_section(i, e))?;
+        }
+        Ok(())
+    })?;
     let mut all = ManyOnsets::default();
-    for outcome in all_or_errors(parts)?.into_iter().flatten() {
+    for outcome in outcomes {
         all.push(outcome, speed_max_m_s);
     }
     Ok(all)

@@ -8,14 +8,13 @@
 use super::coefficients;
 use super::plan::MonteCarloPlan;
 use crate::error::{Error, Place, Result, counted, ensure};
+use crate::identification::FitReport;
 use crate::json;
-use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
-use crate::uncertainty::CoefficientUncertainty;
 use crate::uncertainty::parameters::SEARCHED_POLES;
 use crate::uncertainty::statistics::covariance_root;
+use crate::uncertainty::{CoefficientUncertainty, ModelDraws, ModelUncertainty};
 use nalgebra::DMatrix;
-use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// An eigenvalue below this part of the largest, on the negative side, is no rounding.
@@ -29,19 +28,6 @@ pub(super) struct CovarianceFactor {
     pub(super) factor: DMatrix<f64>,
 }
 
-/// The part of `<model>.uncertainty.json` that is drawn from.
-#[derive(Deserialize)]
-struct Saved {
-    coefficients: CoefficientUncertainty,
-}
-
-/// The assumption stated in the report of a fit.
-#[derive(Deserialize)]
-struct StatedAssumption {
-    #[serde(default)]
-    covariance_assumption: String,
-}
-
 /// The model in the form in which its draws are linear, and the factor of the covariance that the plan names.
 pub(super) fn drawn_model(
     plan: &MonteCarloPlan,
@@ -53,7 +39,7 @@ pub(super) fn drawn_model(
     let path = plan.directory.join(path);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
     if let Some((file, saved)) = all_parameters(&path, &text)? {
-        let (model, factor) = follow(&saved, trained).map_err(|e| e.in_file(&file))?;
+        let (model, factor) = follow(&saved.coefficients, trained).map_err(|e| e.in_file(&file))?;
         return Ok((model, Some(factor)));
     }
     let (_, names) = coefficients::of(&trained.model);
@@ -61,36 +47,25 @@ pub(super) fn drawn_model(
     Ok((trained.model.clone(), Some(factor)))
 }
 
+fn is_json(path: &Path) -> bool {
+    let extension = path.extension();
+    extension.is_some_and(|e| e.eq_ignore_ascii_case("json"))
+}
+
 /// The covariance of all parameters, from the file itself or from the one beside a report.
-fn all_parameters(path: &Path, text: &str) -> Result<Option<(PathBuf, CoefficientUncertainty)>> {
-    let json = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    if !json {
+fn all_parameters(path: &Path, text: &str) -> Result<Option<(PathBuf, ModelUncertainty)>> {
+    if !is_json(path) {
         return Ok(None);
     }
-    if let Ok(saved) = json::read::<Saved>("uncertainty", text) {
-        return Ok(Some((path.to_owned(), saved.coefficients)));
+    if let Ok(saved) = ModelUncertainty::from_json(text) {
+        return Ok(Some((path.to_owned(), saved)));
     }
     let beside = path.with_extension("uncertainty.json");
-    if let Ok(text) = std::fs::read_to_string(&beside) {
-        let saved: Saved = json::read("uncertainty", &text).map_err(|e| {
-            let place = format!("{}, line {}", beside.display(), e.line());
-            Error::input(place, "the uncertainty of a model", e.to_string())
-        })?;
-        return Ok(Some((beside, saved.coefficients)));
-    }
-    match serde_json::from_str::<StatedAssumption>(text) {
-        Ok(stated) if stated.covariance_assumption.contains(SEARCHED_POLES) => Err(Error::input(
-            path.display().to_string(),
-            format!(
-                "{} beside it: coefficients move with the searched poles, whose covariance is there",
-                beside.display()
-            ),
-            "none",
-        )),
-        _ => Ok(None),
-    }
+    let Ok(text) = std::fs::read_to_string(&beside) else {
+        return Ok(None);
+    };
+    let saved = ModelUncertainty::from_json(&text).map_err(|e| e.in_file(&beside))?;
+    Ok(Some((beside, saved)))
 }
 
 /// The linear model of an estimate, and the factor of its coefficients' covariance.
@@ -98,13 +73,8 @@ fn follow(
     estimate: &CoefficientUncertainty,
     trained: &TrainedModel,
 ) -> Result<(Model, CovarianceFactor)> {
-    let values = estimate.values();
-    let linear = estimate.linear()?;
-    let at = |values: &[f64]| match &linear {
-        Some(linear) => linear.model_at(values),
-        None => estimate.model_at(values),
-    };
-    let model = at(&values)?;
+    let (values, draws) = (estimate.values(), ModelDraws::of(estimate)?);
+    let model = draws.model_at(&values)?;
     ensure(
         estimate.makes(&trained.model, trained.tested_range.min)?,
         "covariance",
@@ -117,7 +87,7 @@ fn follow(
         let mut moved = values.clone();
         // the model is linear in its parameters: any step is exact
         moved[p] += 1.0;
-        let (there, _) = coefficients::of(&at(&moved)?);
+        let (there, _) = coefficients::of(&draws.model_at(&moved)?);
         for (row, (a, b)) in there.iter().zip(&base).enumerate() {
             slopes[(row, p)] = a - b;
         }
@@ -132,11 +102,8 @@ fn follow(
 /// The covariance of coefficients whose names are among `names` from the text of a file: a table, or the report of a fit
 /// whose poles were given.
 fn from_file(path: &Path, text: &str, names: &[String]) -> Result<CovarianceFactor> {
-    let json = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let read = if json {
-        from_report(text)
+    let read = if is_json(path) {
+        from_report(path, text)
     } else {
         from_csv(text)
     };
@@ -144,28 +111,19 @@ fn from_file(path: &Path, text: &str, names: &[String]) -> Result<CovarianceFact
         .map_err(|e| e.in_file(path))
 }
 
-#[derive(Deserialize)]
-struct Report {
-    entries: Vec<ReportEntry>,
-}
-
-#[derive(Deserialize)]
-struct ReportEntry {
-    force: Dof,
-    motion: Dof,
-    coefficients: Vec<ReportCoefficient>,
-    covariance: Vec<Vec<f64>>,
-}
-
-#[derive(Deserialize)]
-struct ReportCoefficient {
-    name: String,
-}
-
 /// The blocks of all transfer functions of a fit, independent of each other.
-fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
-    let report: Report = json::read("fit", text)
+fn from_report(path: &Path, text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
+    let report: FitReport = json::read("fit", text)
         .map_err(|e| Error::json("a report of a fit as written by `aerodeck train`", &e))?;
+    ensure(
+        !report.covariance_assumption.contains(SEARCHED_POLES),
+        "",
+        format_args!(
+            "{} beside it: coefficients move with the searched poles, whose covariance is there",
+            path.with_extension("uncertainty.json").display()
+        ),
+        "none",
+    )?;
     let size = report.entries.iter().map(|e| e.coefficients.len()).sum();
     let mut names = Vec::with_capacity(size);
     let mut matrix = DMatrix::zeros(size, size);
@@ -178,17 +136,10 @@ fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
             format_args!("a {n}x{n} matrix"),
             counted(entry.covariance.len(), "row"),
         )?;
-        names.extend(
-            entry
-                .coefficients
-                .iter()
-                .map(|c| format!("{place}.{}", c.name)),
-        );
-        for (i, row) in entry.covariance.iter().enumerate() {
-            for (j, value) in row.iter().enumerate() {
-                matrix[(at + i, at + j)] = *value;
-            }
-        }
+        let own = entry.coefficients.iter();
+        names.extend(own.map(|c| format!("{place}.{}", c.name)));
+        let block = DMatrix::from_fn(n, n, |i, j| entry.covariance[i][j]);
+        matrix.view_mut((at, at), (n, n)).copy_from(&block);
     }
     Ok((names, matrix))
 }

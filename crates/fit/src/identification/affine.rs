@@ -1,82 +1,85 @@
-//! The directions that active constraints leave free.
+//! What linear equations leave free: `x = x₀ + z` with `z` across all their gradients.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Part of a gradient outside the others below which it adds no direction.
-const RANK_TOLERANCE: f64 = 1e-8;
-
-/// One transfer function of a linear fit without constraints: its coefficients are `values + spread · u` with the free
-/// numbers `u` from `at` on, in units in which the joint objective grows by `‖u‖²`.
+/// Coefficients as a function of free numbers: `values + spread · u` with the numbers `u` from `at` on. Those of one transfer
+/// function without constraints are in units in which the joint objective grows by `‖u‖²`.
 #[derive(Debug, Clone)]
-pub(crate) struct LinearEntry {
+pub(crate) struct AffineMap {
     pub values: Vec<f64>,
     pub spread: DMatrix<f64>,
     pub at: usize,
 }
 
-impl LinearEntry {
+impl AffineMap {
     /// Coefficients at given free numbers.
     pub(crate) fn coefficients(&self, u: &DVector<f64>) -> Vec<f64> {
         let moved = &self.spread * u.rows(self.at, self.spread.ncols());
         self.values.iter().zip(&moved).map(|(v, d)| v + d).collect()
     }
 
-    pub(super) fn end(&self) -> usize {
+    pub(crate) fn end(&self) -> usize {
         self.at + self.spread.ncols()
     }
 }
 
-/// Takes away from a vector what lies along orthonormal directions. Twice is enough (Kahan): the first time leaves rounding
-/// errors of the cancelled part.
-pub(super) fn take_away(vector: &mut DVector<f64>, directions: &[DVector<f64>]) {
-    for q in directions {
-        let along = q.dot(vector);
-        vector.axpy(-along, q, 1.0);
-    }
-}
-
-/// Orthonormal directions that active constraints take.
+/// The numbers that satisfy linear equations.
 #[derive(Debug, Clone)]
-pub(crate) struct Tangent {
+pub(crate) struct AffineSpace {
+    /// The shortest of them.
+    pub start: DVector<f64>,
+    /// Orthonormal directions, those of the equations.
     taken: Vec<DVector<f64>>,
 }
 
-impl Tangent {
-    /// From the gradients of the constraints, in one scale for all unknowns.
-    pub(crate) fn new(gradients: impl Iterator<Item = DVector<f64>>) -> Self {
-        let mut taken: Vec<DVector<f64>> = Vec::new();
-        for mut gradient in gradients {
-            let norm = gradient.norm();
-            take_away(&mut gradient, &taken);
-            take_away(&mut gradient, &taken);
-            let left = gradient.norm();
-            if left > RANK_TOLERANCE * norm {
-                taken.push(gradient / left);
-            }
+impl AffineSpace {
+    /// All `n` numbers, without equations.
+    pub(crate) fn whole(n: usize) -> Self {
+        Self {
+            start: DVector::zeros(n),
+            taken: Vec::new(),
         }
-        Self { taken }
     }
 
-    /// Number of directions that are taken.
-    pub(crate) fn count(&self) -> usize {
-        self.taken.len()
+    /// Adds the equation `gradient · x = target`; `false`, and nothing, where no more than the part `tolerance` of the gradient
+    /// lies outside those before it.
+    pub(crate) fn hold(&mut self, gradient: &DVector<f64>, target: f64, tolerance: f64) -> bool {
+        let mut across = gradient.clone();
+        // twice is enough (Kahan): the first time leaves rounding errors of the cancelled part
+        self.project(&mut across);
+        self.project(&mut across);
+        let left = across.norm();
+        let adds = left > tolerance * gradient.norm();
+        if adds {
+            across.unscale_mut(left);
+            let short = target - gradient.dot(&self.start);
+            self.start.axpy(short / left, &across, 1.0);
+            self.taken.push(across);
+        }
+        adds
+    }
+
+    /// Takes away from a vector what lies along the gradients of the equations.
+    pub(crate) fn project(&self, vector: &mut DVector<f64>) {
+        take_away(vector, &self.taken);
     }
 
     /// Orthonormal basis of the directions that are left, n×(n − taken).
-    pub(crate) fn basis(&self, n: usize) -> DMatrix<f64> {
+    pub(crate) fn basis(&self) -> DMatrix<f64> {
+        let n = self.start.len();
         let mut left: Vec<DVector<f64>> = Vec::new();
         // the unit vectors that stick out furthest come first
         let out = |i: usize| 1.0 - self.taken.iter().map(|q| q[i] * q[i]).sum::<f64>();
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| out(*b).total_cmp(&out(*a)));
         for i in order {
-            if left.len() + self.count() == n {
+            if left.len() + self.taken.len() == n {
                 break;
             }
             let mut unit = DVector::zeros(n);
             unit[i] = 1.0;
             for _ in 0..2 {
-                take_away(&mut unit, &self.taken);
+                self.project(&mut unit);
                 take_away(&mut unit, &left);
             }
             let norm = unit.norm();
@@ -91,7 +94,7 @@ impl Tangent {
     /// their variance: with the projector `P`, that of `P u`.
     pub(crate) fn covariance(
         &self,
-        entry: &LinearEntry,
+        entry: &AffineMap,
         free: impl Iterator<Item = (usize, f64)>,
     ) -> DMatrix<f64> {
         let each = free.flat_map(|(count, variance)| std::iter::repeat_n(variance, count));
@@ -114,6 +117,13 @@ impl Tangent {
     }
 }
 
+fn take_away(vector: &mut DVector<f64>, directions: &[DVector<f64>]) {
+    for q in directions {
+        let along = q.dot(vector);
+        vector.axpy(-along, q, 1.0);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,9 +132,12 @@ mod tests {
     fn what_is_left_is_orthonormal_and_across() {
         let a = DVector::from_vec(vec![1.0, 2.0, 0.0, -1.0]);
         let b = DVector::from_vec(vec![0.0, 1.0, 1.0, 0.0]);
-        let tangent = Tangent::new([a.clone(), b.clone(), &a * 2.0 - &b].into_iter());
-        assert_eq!(tangent.count(), 2);
-        let basis = tangent.basis(4);
+        let mut space = AffineSpace::whole(4);
+        assert!(space.hold(&a, 3.0, 1e-8) && space.hold(&b, -1.0, 1e-8));
+        assert!(!space.hold(&(&a * 2.0 - &b), 7.0, 1e-8));
+        assert!((a.dot(&space.start) - 3.0).abs() < 1e-15);
+        assert!((b.dot(&space.start) + 1.0).abs() < 1e-15);
+        let basis = space.basis();
         assert_eq!(basis.ncols(), 2);
         assert!((basis.transpose() * &basis - DMatrix::identity(2, 2)).amax() < 1e-15);
         assert!((basis.transpose() * a).amax() < 1e-15 && (basis.transpose() * b).amax() < 1e-15);
