@@ -4,12 +4,12 @@ mod verdict;
 
 use super::{QUASI_STEADY, WindStudy};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
-use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::{StaticEquilibrium, static_equilibria};
 use crate::buffeting::{
-    BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, GustComponent, GustForces,
-    TimePlan, buffeting_response, compare, response_spectrum, time_ensemble, unstable_roots,
+    BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, FrequencyDomain,
+    GustComponent, TimePlan, compare, time_ensemble,
 };
 use crate::error::{Error, Result};
 use crate::files::derivatives::{TableWords, embedded, is_table_file};
@@ -17,6 +17,7 @@ use crate::identification::{Fitted, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_table};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequencyRange;
+use nalgebra::DMatrix;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -94,12 +95,6 @@ struct Setting<'a> {
     tested: Option<ReducedFrequencyRange>,
     /// What is odd about a table.
     findings: Vec<Finding>,
-}
-
-/// Everything about one wind speed.
-struct ForcesAtSpeed {
-    moving: Option<Box<dyn Transfer>>,
-    forces: GustForces,
 }
 
 /// RMS over these mean wind speeds, m/s, spectra, and the time domain where it is asked for. `progress` gets records done and
@@ -212,21 +207,14 @@ impl<'a> Setting<'a> {
         Ok(())
     }
 
-    /// The forces at one speed: gust forces about the equilibrium with quasi-steady theory, else at rotation zero; without
-    /// coefficients those of the thin plate. The inner error says that there is no equilibrium.
-    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<ForcesAtSpeed, String>> {
+    /// Quasi-steady theory at one speed, where there are coefficients: about the equilibrium, where it is the self-excited forces as
+    /// well, else at rotation zero. The inner error says that there is no equilibrium.
+    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<Option<LinearQuasiSteady>, String>> {
         let Some(theory) = &self.theory else {
-            return Ok(Ok(ForcesAtSpeed {
-                moving: None,
-                forces: GustForces::flat_plate(),
-            }));
+            return Ok(Ok(None));
         };
         if self.fixed.is_some() {
-            let forces = GustForces::quasi_steady(&theory.linearised(0.0)?);
-            return Ok(Ok(ForcesAtSpeed {
-                moving: None,
-                forces,
-            }));
+            return Ok(Ok(Some(theory.linearised(0.0)?)));
         }
         let path = static_equilibria(&self.structure, theory, &[speed_m_s])?;
         let Some(point) = path.points.first() else {
@@ -235,11 +223,7 @@ impl<'a> Setting<'a> {
                 .map_or("no equilibrium".to_owned(), |e| e.explain());
             return Ok(Err(why));
         };
-        let linear = theory.linearised(point.rotation_rad)?;
-        Ok(Ok(ForcesAtSpeed {
-            forces: GustForces::quasi_steady(&linear),
-            moving: Some(Box::new(linear)),
-        }))
+        Ok(Ok(Some(theory.linearised(point.rotation_rad)?)))
     }
 
     /// About which the responses are.
@@ -254,24 +238,22 @@ impl<'a> Setting<'a> {
         responses.iter().flat_map(at).collect()
     }
 
-    /// The problem of the frequency domain.
-    fn problem<'b>(&'b self, at: &'b ForcesAtSpeed) -> Result<BuffetingProblem<'b>> {
-        self.problem_of(at.moving.as_deref().or(self.fixed.as_deref()), at)
-    }
-
-    fn problem_of<'b>(
+    /// The problem with the forces of the file, or with a model fitted to them.
+    fn problem<'b>(
         &'b self,
-        model: Option<&'b dyn Transfer>,
-        at: &'b ForcesAtSpeed,
+        fitted: Option<&'b dyn Transfer>,
+        at: Option<&'b LinearQuasiSteady>,
     ) -> Result<BuffetingProblem<'b>> {
+        let moving = at.map(|linear| linear as &dyn Transfer);
+        let model = fitted.or(self.fixed.as_deref()).or(moving);
         let turbulence = self.study.turbulence.as_ref();
-        Ok(BuffetingProblem {
-            structure: &self.structure,
-            model: model.ok_or_else(|| Error::input("aerodynamics", "a model", "none"))?,
-            forces: &at.forces,
-            turbulence: turbulence
+        BuffetingProblem::of_section(
+            &self.structure,
+            model.ok_or_else(|| Error::input("aerodynamics", "a model", "none"))?,
+            at,
+            turbulence
                 .ok_or_else(|| Error::input("turbulence", "`along`, `vertical` or both", "none"))?,
-        })
+        )
     }
 
     /// The response, or why there is none.
@@ -280,19 +262,18 @@ impl<'a> Setting<'a> {
             Ok(at) => at,
             Err(why) => return Ok(Err(why)),
         };
-        let problem = self.problem(&at)?;
-        problem.validate()?;
-        let unstable = match unstable_roots(&problem, speed) {
+        let problem = self.problem(None, at.as_ref())?;
+        let domain = match FrequencyDomain::turned(&problem, speed) {
             // at an onset itself nothing can be told, which is no reason to end the other speeds
             Err(Error::Numerical(why)) => return Ok(Err(why)),
             other => other?,
         };
-        if unstable > 0 {
-            return Ok(Err(format!(
+        match domain.growing() {
+            0 => domain.section_response(self.tested).map(Ok),
+            unstable => Ok(Err(format!(
                 "the section is unstable ({unstable} growing roots): no stationary response"
-            )));
+            ))),
         }
-        buffeting_response(&problem, speed, self.tested).map(Ok)
     }
 
     /// The response, unless there is none, which is noted.
@@ -310,8 +291,8 @@ impl<'a> Setting<'a> {
         })
     }
 
-    /// The forces at a speed that was asked for by name.
-    fn required(&self, speed: f64) -> Result<ForcesAtSpeed> {
+    /// The theory at a speed that was asked for by name.
+    fn required(&self, speed: f64) -> Result<Option<LinearQuasiSteady>> {
         self.at(speed)?
             .map_err(|why| Error::Numerical(format!("buffeting at {speed} m/s: {why}")))
     }
@@ -349,10 +330,11 @@ impl<'a> Setting<'a> {
         let speed = frequency.speed_m_s;
         let at = self.required(speed)?;
         let (problem, model_change) = match &self.fitted {
-            None => (self.problem(&at)?, None),
+            None => (self.problem(None, at.as_ref())?, None),
             Some((model, _)) => {
-                let problem = self.problem_of(Some(model.as_ref()), &at)?;
-                let by_model = buffeting_response(&problem, speed, self.tested)?;
+                let problem = self.problem(Some(model.as_ref()), at.as_ref())?;
+                let by_model = FrequencyDomain::new(&problem, speed)?;
+                let by_model = by_model.section_response(self.tested)?;
                 let both = by_model.rms.iter().zip(&frequency.rms);
                 (problem, Some(both.map(|(m, t)| m / t - 1.0).collect()))
             }
@@ -367,7 +349,7 @@ impl<'a> Setting<'a> {
 
     fn spectra(&self, speed: f64) -> Result<SpectrumCurve> {
         let at = self.required(speed)?;
-        let problem = self.problem(&at)?;
+        let problem = self.problem(None, at.as_ref())?;
         let still_air_hz = || self.structure.still_air_rad_s().map(|w| w / TAU);
         let low = still_air_hz().fold(f64::INFINITY, f64::min);
         let high = still_air_hz().fold(0.0, f64::max);
@@ -385,11 +367,13 @@ impl<'a> Setting<'a> {
             };
             frequency_hz.iter().map(density).collect()
         });
+        let n = self.structure.dofs.len();
+        let shapes = DMatrix::identity(n, n);
         let rows = frequency_hz
             .iter()
-            .map(|f| response_spectrum(&problem, *f, speed))
+            .map(|f| problem.spectra(*f, speed, &shapes))
             .collect::<Result<Vec<_>>>()?;
-        let motion = (0..self.structure.dofs.len())
+        let motion = (0..n)
             .map(|i| rows.iter().map(|row| row[i]).collect())
             .collect();
         Ok(SpectrumCurve {
