@@ -25,7 +25,7 @@ pub(crate) use periodic::span_ensemble;
 pub use periodic::{SpanEnsemble, SpanPlan, SpanRecord, span_record};
 pub use problem::{BuffetingProblem, Gust, Turbulence};
 pub(crate) use response::peak_factor;
-pub use response::{BuffetingResponse, SpanResponse, SpanSpectra};
+pub use response::{BuffetingResponse, SpanResponse, SpectrumCurve};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub use synthesis::{TurbulenceField, turbulence_field};
 pub use time::{ComponentComparison, Ensemble, compare};

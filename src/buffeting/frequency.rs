@@ -3,7 +3,7 @@
 use super::coherence::coherent_power;
 use super::problem::BuffetingProblem;
 use super::quadrature::integrate;
-use super::response::{BuffetingResponse, SpanResponse, SpanSpectra};
+use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve};
 use super::spectrum::GustComponent;
 use super::stability::{FEW, Turning, turning};
 use crate::error::{Error, Result};
@@ -63,7 +63,7 @@ impl BuffetingProblem<'_> {
     }
 
     /// The sums of both.
-    pub(crate) fn spectra(
+    fn spectra(
         &self,
         frequency_hz: f64,
         speed_m_s: f64,
@@ -71,6 +71,31 @@ impl BuffetingProblem<'_> {
     ) -> Result<Vec<f64>> {
         let by_gust = self.spectra_by_gust(frequency_hz, speed_m_s, shapes)?;
         Ok(by_gust.into_iter().map(|[u, w]| u + w).collect())
+    }
+
+    /// Spectra of the displacements of `nodes` over frequencies, Hz.
+    pub(crate) fn spectra_over(
+        &self,
+        frequency_hz: Vec<f64>,
+        speed_m_s: f64,
+        nodes: &[usize],
+    ) -> Result<SpectrumCurve> {
+        let shapes = self.shapes_at(nodes);
+        let rows = frequency_hz.par_iter();
+        let rows = rows.map(|f| self.spectra(*f, speed_m_s, &shapes));
+        let rows = rows.collect::<Result<Vec<_>>>()?;
+        let column = |i: usize| rows.iter().map(|row| row[i]).collect();
+        let gust = GustComponent::BOTH.map(|c| {
+            let gust = self.turbulence.component(c);
+            let density = |f| gust.map_or(0.0, |g| g.spectrum.density(c, f, speed_m_s));
+            frequency_hz.iter().map(|f| density(*f)).collect()
+        });
+        Ok(SpectrumCurve {
+            speed_m_s,
+            gust,
+            motion: (0..shapes.nrows()).map(column).collect(),
+            frequency_hz,
+        })
     }
 
     /// Rows of Φ H, (Zᵀ)⁻¹ Φᵀ, at a frequency, real and imaginary parts beside each other, since the forces of long gusts are real.
@@ -281,21 +306,10 @@ impl<'a> FrequencyDomain<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at a `K`.
-    pub(crate) fn spectra(&self, nodes: &[usize]) -> Result<SpanSpectra> {
-        let frequencies_hz = self.resolved_hz();
-        let shapes = self.problem.shapes_at(nodes);
-        let mut densities = vec![[const { Vec::new() }; 3]; nodes.len()];
-        let each = frequencies_hz.par_iter();
-        let each = each.map(|f| self.problem.spectra(*f, self.speed_m_s, &shapes));
-        for all in each.collect::<Result<Vec<_>>>()? {
-            for (row, density) in all.into_iter().enumerate() {
-                densities[row / 3][row % 3].push(density);
-            }
-        }
-        Ok(SpanSpectra {
-            frequencies_hz,
-            densities,
-        })
+    pub(crate) fn spectra(&self, nodes: &[usize]) -> Result<SpectrumCurve> {
+        let frequencies = self.resolved_hz();
+        self.problem
+            .spectra_over(frequencies, self.speed_m_s, nodes)
     }
 
     /// Frequencies, Hz, that show every resonance: zero, from a hundredth of the slowest on evenly spread on a logarithmic scale,

@@ -97,7 +97,7 @@ pub struct BuffetingProblem<'a> {
     /// Force on the coordinates by a gust of 1 m/s of each component at each node in a wind of 1 m/s, nodes×coordinates.
     pub(super) gust_forces: [DMatrix<f64>; 2],
     /// Spectra and admittances.
-    pub(crate) turbulence: Turbulence,
+    pub(super) turbulence: Turbulence,
     /// Coherence from node to node.
     pub(super) coherence: Coherence,
     /// Highest natural frequency, Hz.

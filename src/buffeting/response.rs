@@ -54,11 +54,15 @@ pub(crate) fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
     root + 0.577_215_664_901_532_9 / root
 }
 
-/// One-sided spectra of the displacements of named nodes.
+/// One-sided spectra at one mean wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SpanSpectra {
-    /// Hz, rising from zero; close together at the resonances.
-    pub frequencies_hz: Vec<f64>,
-    /// Vertical, lateral (m²/Hz) and rotation (rad²/Hz) of each node at every frequency.
-    pub densities: Vec<[Vec<f64>; 3]>,
+pub struct SpectrumCurve {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Frequencies, Hz, rising.
+    pub frequency_hz: Vec<f64>,
+    /// `S_u` and `S_w` in the mean wind, m²/s² per Hz; zero for a component that is left out.
+    pub gust: [Vec<f64>; 2],
+    /// Spectra of the displacements, m²/Hz, rad²/Hz: those of a section (n), or vertical, lateral and rotation of each node of a bridge.
+    pub motion: Vec<Vec<f64>>,
 }

@@ -92,7 +92,7 @@ fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -
         let title = format!("{name} at {} m/s", spectra.speed_m_s);
         let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
         figures::write(&stem, out, || {
-            buffeting_spectra_figure(&title, &results.dofs, spectra)
+            buffeting_spectra_figure(&title, &results.dofs, &[], spectra)
         })?;
     }
     let page = buffeting_page::page(name, key, results)?;

@@ -43,7 +43,7 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
     }
     for spectra in &results.spectra {
         let title = format!("{name} at {} m/s", spectra.speed_m_s);
-        let figure = buffeting_spectra_figure(&title, &results.dofs, spectra)?;
+        let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
         let caption = format!("Spectra at {} m/s times the frequency.", spectra.speed_m_s);
         figures.push((caption, figure.svg().to_owned()));
     }

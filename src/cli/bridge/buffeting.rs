@@ -250,9 +250,9 @@ fn spectra_csv(results: &BridgeBuffeting) -> String {
     }
     text.push('\n');
     let spectra = &results.spectra;
-    for (i, frequency) in spectra.frequencies_hz.iter().enumerate() {
+    for (i, frequency) in spectra.frequency_hz.iter().enumerate() {
         let _ = write!(text, "{frequency}");
-        for density in spectra.densities.iter().flatten() {
+        for density in &spectra.motion {
             let _ = write!(text, ",{:e}", density[i]);
         }
         text.push('\n');

@@ -2,7 +2,8 @@
 
 use crate::cli::report::folder::{digest, today};
 use crate::error::Result;
-use crate::report::{PageSection, SectionsPage, envelope_figure, span_spectra_figure};
+use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
+use crate::section::Dof;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
 
 /// Motions with their unit and the factor to it.
@@ -66,7 +67,12 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
         ),
         (
             "Spectra of the displacements times the frequency.".to_owned(),
-            span_spectra_figure(of, &format!("Spectra at {speed} m/s"))?,
+            buffeting_spectra_figure(
+                &format!("Spectra at {speed} m/s"),
+                &Dof::THREE,
+                &of.nodes,
+                &of.spectra,
+            )?,
         ),
     ];
     let forces = of.envelope.section_forces.iter().map(|f| {

@@ -6,7 +6,7 @@ use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, motion_index};
 use crate::buffeting::{
     BuffetingProblem, Coherence, FrequencyDomain, Gust, SpanEnsemble, SpanPlan, SpanRecord,
-    SpanResponse, SpanSpectra, Turbulence, TurbulenceField, span_ensemble, span_record,
+    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, span_ensemble, span_record,
     turbulence_field,
 };
 use crate::error::{Error, Result, positive};
@@ -57,7 +57,7 @@ pub struct BridgeBuffeting {
     pub expected_peak_factor: Vec<[f64; 3]>,
     /// Spectra of the nodes; too many numbers for the JSON of a command.
     #[serde(skip)]
-    pub spectra: SpanSpectra,
+    pub spectra: SpectrumCurve,
     /// Time domain, by models.
     pub time: Option<SpanEnsemble>,
     /// Why there is none in time.

@@ -9,7 +9,7 @@ use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::{StaticEquilibrium, static_equilibria};
 use crate::buffeting::{
     BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, FrequencyDomain,
-    GustComponent, TimePlan, compare, time_ensemble,
+    SpectrumCurve, compare, time_ensemble,
 };
 use crate::error::{Error, Result};
 use crate::files::derivatives::{TableWords, embedded, is_table_file};
@@ -17,7 +17,6 @@ use crate::identification::{Fitted, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_table};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequencyRange;
-use nalgebra::DMatrix;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -59,19 +58,6 @@ pub(crate) struct SpeedLeftOut {
     pub reason: String,
 }
 
-/// Spectra at one wind speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct SpectrumCurve {
-    /// Mean wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Frequencies, Hz.
-    pub frequency_hz: Vec<f64>,
-    /// `S_u` and `S_w`, m²/s² per Hz; zero for a component that is left out.
-    pub gust: [Vec<f64>; 2],
-    /// Spectra of the displacements (n): m²/Hz, rad²/Hz.
-    pub motion: Vec<Vec<f64>>,
-}
-
 /// Both domains at one wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct TimeDomain {
@@ -108,14 +94,28 @@ pub(crate) fn buffeting_study(
     let mut responses = Vec::new();
     let mut left_out = Vec::new();
     for speed in speeds_m_s {
-        responses.extend(setting.answered(*speed, &mut left_out)?);
+        responses.extend(answered(*speed, setting.response(*speed), &mut left_out)?);
     }
     // the same test for the speeds of the time domain, in which an unstable section would only grow
     let mut timed = Vec::new();
     for speed in &study.time.speeds_m_s {
-        timed.extend(setting.answered(*speed, &mut left_out)?);
+        timed.extend(answered(*speed, setting.response(*speed), &mut left_out)?);
     }
-    let time = setting.time(&timed, progress, &mut left_out)?;
+    let records = study.time.plan.records;
+    let mut time = Vec::with_capacity(timed.len());
+    for (i, response) in timed.iter().enumerate() {
+        let of_all = |done: usize, _: usize| progress(i * records + done, timed.len() * records);
+        let domains = setting
+            .both_domains(response, &of_all)
+            .map_err(|e| match e {
+                // the table knows of no growth at this speed
+                Error::Unstable(why) if setting.fitted.is_some() => Error::Unstable(format!(
+                    "no time domain, the model fitted to the table grows: {why}"
+                )),
+                other => other,
+            });
+        time.extend(answered(response.speed_m_s, domains, &mut left_out)?);
+    }
     left_out.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
     left_out.dedup_by(|a, b| a.speed_m_s == b.speed_m_s);
     let mut of_spectra: Vec<f64> = timed.iter().map(|r| r.speed_m_s).collect();
@@ -137,6 +137,21 @@ pub(crate) fn buffeting_study(
         time,
         fit: setting.fitted.map(|(_, how)| how),
     })
+}
+
+/// What was found at a speed, unless nothing is stationary there, which is noted.
+fn answered<T>(
+    speed_m_s: f64,
+    found: Result<T>,
+    left_out: &mut Vec<SpeedLeftOut>,
+) -> Result<Option<T>> {
+    match found {
+        Err(Error::Unstable(reason)) => {
+            left_out.push(SpeedLeftOut { speed_m_s, reason });
+            Ok(None)
+        }
+        found => found.map(Some),
+    }
 }
 
 impl<'a> Setting<'a> {
@@ -208,22 +223,23 @@ impl<'a> Setting<'a> {
     }
 
     /// Quasi-steady theory at one speed, where there are coefficients: about the equilibrium, where it is the self-excited forces as
-    /// well, else at rotation zero. The inner error says that there is no equilibrium.
-    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<Option<LinearQuasiSteady>, String>> {
+    /// well, else at rotation zero.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] where there is no equilibrium.
+    fn at(&self, speed_m_s: f64) -> Result<Option<LinearQuasiSteady>> {
         let Some(theory) = &self.theory else {
-            return Ok(Ok(None));
+            return Ok(None);
         };
         if self.fixed.is_some() {
-            return Ok(Ok(Some(theory.linearised(0.0)?)));
+            return theory.linearised(0.0).map(Some);
         }
         let path = static_equilibria(&self.structure, theory, &[speed_m_s])?;
-        let Some(point) = path.points.first() else {
-            let why = path
-                .end
-                .map_or("no equilibrium".to_owned(), |e| e.explain());
-            return Ok(Err(why));
-        };
-        Ok(Ok(Some(theory.linearised(point.rotation_rad)?)))
+        let none = || path.end.map(|end| end.explain());
+        let point = path.points.first().ok_or_else(|| {
+            Error::Unstable(none().unwrap_or_else(|| "no equilibrium".to_owned()))
+        })?;
+        theory.linearised(point.rotation_rad).map(Some)
     }
 
     /// About which the responses are.
@@ -256,131 +272,61 @@ impl<'a> Setting<'a> {
         )
     }
 
-    /// The response, or why there is none.
-    fn response(&self, speed: f64) -> Result<std::result::Result<BuffetingResponse, String>> {
-        let at = match self.at(speed)? {
-            Ok(at) => at,
-            Err(why) => return Ok(Err(why)),
-        };
+    /// The response.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] where none is stationary.
+    fn response(&self, speed: f64) -> Result<BuffetingResponse> {
+        let at = self.at(speed)?;
         let problem = self.problem(None, at.as_ref())?;
-        let domain = match FrequencyDomain::turned(&problem, speed) {
+        let domain = FrequencyDomain::turned(&problem, speed).map_err(|e| match e {
             // at an onset itself nothing can be told, which is no reason to end the other speeds
-            Err(Error::Numerical(why)) => return Ok(Err(why)),
-            other => other?,
-        };
+            Error::Numerical(why) => Error::Unstable(why),
+            other => other,
+        })?;
         match domain.growing() {
-            0 => domain.section_response(self.tested).map(Ok),
-            unstable => Ok(Err(format!(
+            0 => domain.section_response(self.tested),
+            unstable => Err(Error::Unstable(format!(
                 "the section is unstable ({unstable} growing roots): no stationary response"
             ))),
         }
     }
 
-    /// The response, unless there is none, which is noted.
-    fn answered(
-        &self,
-        speed_m_s: f64,
-        left_out: &mut Vec<SpeedLeftOut>,
-    ) -> Result<Option<BuffetingResponse>> {
-        Ok(match self.response(speed_m_s)? {
-            Ok(response) => Some(response),
-            Err(reason) => {
-                left_out.push(SpeedLeftOut { speed_m_s, reason });
-                None
-            }
-        })
-    }
-
-    /// The theory at a speed that was asked for by name.
-    fn required(&self, speed: f64) -> Result<Option<LinearQuasiSteady>> {
-        self.at(speed)?
-            .map_err(|why| Error::Numerical(format!("buffeting at {speed} m/s: {why}")))
-    }
-
-    fn time(
-        &self,
-        responses: &[BuffetingResponse],
-        progress: &(dyn Fn(usize, usize) + Sync),
-        left_out: &mut Vec<SpeedLeftOut>,
-    ) -> Result<Vec<TimeDomain>> {
-        let plan = &self.study.time.plan;
-        let all = responses.len() * plan.records;
-        let mut found = Vec::with_capacity(responses.len());
-        for (i, response) in responses.iter().enumerate() {
-            let of_all = |done: usize, _: usize| progress(i * plan.records + done, all);
-            match self.both_domains(response, plan, &of_all) {
-                Ok(domain) => found.push(domain),
-                // the table knows of no growth at this speed
-                Err(Error::Unstable(why)) if self.fitted.is_some() => left_out.push(SpeedLeftOut {
-                    speed_m_s: response.speed_m_s,
-                    reason: format!("no time domain, the model fitted to the table grows: {why}"),
-                }),
-                Err(e) => return Err(e),
-            }
-        }
-        Ok(found)
-    }
-
+    /// The records of a speed, beside its response.
     fn both_domains(
         &self,
         frequency: &BuffetingResponse,
-        plan: &TimePlan,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<TimeDomain> {
         let speed = frequency.speed_m_s;
-        let at = self.required(speed)?;
-        let (problem, model_change) = match &self.fitted {
-            None => (self.problem(None, at.as_ref())?, None),
-            Some((model, _)) => {
-                let problem = self.problem(Some(model.as_ref()), at.as_ref())?;
-                let by_model = FrequencyDomain::new(&problem, speed)?;
-                let by_model = by_model.section_response(self.tested)?;
-                let both = by_model.rms.iter().zip(&frequency.rms);
-                (problem, Some(both.map(|(m, t)| m / t - 1.0).collect()))
-            }
-        };
-        let ensemble = time_ensemble(&problem, speed, plan, progress)?;
+        let at = self.at(speed)?;
+        let fitted = self.fitted.as_ref().map(|(model, _)| model.as_ref());
+        let problem = self.problem(fitted, at.as_ref())?;
+        let by_model = fitted
+            .map(|_| FrequencyDomain::new(&problem, speed)?.section_response(self.tested))
+            .transpose()?;
+        let ensemble = time_ensemble(&problem, speed, &self.study.time.plan, progress)?;
         Ok(TimeDomain {
             comparison: compare(&self.structure.dofs, frequency, &ensemble),
             ensemble,
-            model_change,
+            model_change: by_model.map(|by_model| {
+                let both = by_model.rms.iter().zip(&frequency.rms);
+                both.map(|(m, t)| m / t - 1.0).collect()
+            }),
         })
     }
 
     fn spectra(&self, speed: f64) -> Result<SpectrumCurve> {
-        let at = self.required(speed)?;
-        let problem = self.problem(None, at.as_ref())?;
+        let at = self.at(speed)?;
         let still_air_hz = || self.structure.still_air_rad_s().map(|w| w / TAU);
         let low = still_air_hz().fold(f64::INFINITY, f64::min);
         let high = still_air_hz().fold(0.0, f64::max);
         let (low, high) = (low * SPECTRUM_REACH.0, high * SPECTRUM_REACH.1);
         let last = (SPECTRUM_POINTS - 1) as f64;
-        let frequency_hz: Vec<f64> = (0..SPECTRUM_POINTS)
+        let frequencies = (0..SPECTRUM_POINTS)
             .map(|i| low * (high / low).powf(i as f64 / last))
             .collect();
-        let gust = GustComponent::BOTH.map(|component| {
-            let density = |f: &f64| {
-                problem
-                    .turbulence
-                    .component(component)
-                    .map_or(0.0, |gust| gust.spectrum.density(component, *f, speed))
-            };
-            frequency_hz.iter().map(density).collect()
-        });
-        let n = self.structure.dofs.len();
-        let shapes = DMatrix::identity(n, n);
-        let rows = frequency_hz
-            .iter()
-            .map(|f| problem.spectra(*f, speed, &shapes))
-            .collect::<Result<Vec<_>>>()?;
-        let motion = (0..n)
-            .map(|i| rows.iter().map(|row| row[i]).collect())
-            .collect();
-        Ok(SpectrumCurve {
-            speed_m_s: speed,
-            frequency_hz,
-            gust,
-            motion,
-        })
+        let problem = self.problem(None, at.as_ref())?;
+        problem.spectra_over(frequencies, speed, &[0])
     }
 }
