@@ -2,6 +2,7 @@
 //! turbulence cost one pass along the span instead of a factorisation.
 
 use super::spectrum::GustComponent;
+use crate::bridge::Node;
 use crate::error::{Error, Result};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -56,13 +57,14 @@ impl Coherence {
     pub(super) fn of_gaps(
         &self,
         component: GustComponent,
-        along_m: &[f64],
+        nodes: &[Node],
         frequency_hz: f64,
         speed_m_s: f64,
     ) -> Vec<f64> {
         let rate = self.decay(component) * frequency_hz / speed_m_s;
-        let gaps = along_m.windows(2);
-        gaps.map(|x| (-rate * (x[1] - x[0])).exp()).collect()
+        let gaps = nodes.windows(2);
+        gaps.map(|n| (-rate * (n[1].along_m - n[0].along_m)).exp())
+            .collect()
     }
 }
 

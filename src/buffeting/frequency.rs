@@ -125,7 +125,7 @@ impl BuffetingProblem<'_> {
             let Some(gust) = self.turbulence.component(component) else {
                 continue;
             };
-            let mut sizes = vec![Complex::default(); self.along_m.len()];
+            let mut sizes = vec![Complex::default(); self.nodes.len()];
             for strips in &self.strips {
                 let local = strips.wind_factor * speed_m_s;
                 let density = gust.spectrum.density(component, frequency_hz, local);
@@ -137,7 +137,7 @@ impl BuffetingProblem<'_> {
             gusts.push(GustAlongSpan {
                 component,
                 sizes,
-                gaps: coherence.of_gaps(component, &self.along_m, frequency_hz, speed_m_s),
+                gaps: coherence.of_gaps(component, &self.nodes, frequency_hz, speed_m_s),
             });
         }
         gusts

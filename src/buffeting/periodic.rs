@@ -68,6 +68,8 @@ pub struct SpanEnsemble {
 /// Response of named nodes to one field: vertical, lateral (m), rotation (rad).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpanRecord {
+    /// Names of the nodes.
+    pub nodes: Vec<String>,
     /// Mean wind speed, m/s.
     pub speed_m_s: f64,
     /// Root mean square about the mean over the record.
@@ -87,7 +89,7 @@ pub fn span_record(
     speed_m_s: f64,
     field: &TurbulenceField,
 ) -> Result<SpanRecord> {
-    let (count, samples) = (problem.along_m.len(), field.samples());
+    let (count, samples) = (problem.nodes.len(), field.samples());
     let fits =
         |rows: &Vec<Vec<f64>>| rows.len() == count && rows.iter().all(|r| r.len() == samples);
     if samples < 2 || !field.gusts.iter().all(fits) {
@@ -112,6 +114,7 @@ pub fn span_record(
             .collect()
     };
     Ok(SpanRecord {
+        nodes: problem.names_of(nodes),
         speed_m_s,
         rms: list(|r| r.0.sqrt()),
         peak_factor: list(|r| r.1 / r.0.sqrt()),

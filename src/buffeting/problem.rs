@@ -11,7 +11,7 @@ use super::stability::highest_natural_hz;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
-use crate::bridge::{Bridge, ModalForces, motion_index};
+use crate::bridge::{Bridge, ModalForces, Node, motion_index};
 use crate::error::{Error, Result, counted, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::units::ReducedFrequency;
@@ -88,8 +88,8 @@ impl Turbulence {
 pub struct BuffetingProblem<'a> {
     pub(super) structure: Structure,
     forces: SelfExcited<'a>,
-    /// Place of each node along the line, m.
-    pub(super) along_m: Vec<f64>,
+    /// Along the line.
+    pub(super) nodes: Vec<Node>,
     /// Motions of the nodes by the coordinates, one after the other: three of each node of a bridge, those of a section.
     pub(super) shapes: DMatrix<f64>,
     /// Nodes that the wind blows at.
@@ -153,7 +153,11 @@ impl<'a> BuffetingProblem<'a> {
         Ok(Self {
             structure: structure.clone(),
             forces: SelfExcited::Section(model),
-            along_m: vec![0.0],
+            nodes: vec![Node {
+                name: "section".to_owned(),
+                along_m: 0.0,
+                length_m: 1.0,
+            }],
             shapes: DMatrix::identity(n, n),
             strips: vec![BlownStrips {
                 width_m,
@@ -193,7 +197,7 @@ impl<'a> BuffetingProblem<'a> {
         Ok(Self {
             structure: bridge.structure(),
             forces: SelfExcited::Modal(bridge.forces()),
-            along_m: bridge.nodes.iter().map(|n| n.along_m).collect(),
+            nodes: bridge.nodes.clone(),
             shapes: bridge.shapes_at(&nodes),
             strips: blown
                 .map(|g| BlownStrips {
@@ -212,14 +216,19 @@ impl<'a> BuffetingProblem<'a> {
 
     /// Rows of the shapes of some nodes.
     pub(super) fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
-        let each = self.shapes.nrows() / self.along_m.len();
+        let each = self.shapes.nrows() / self.nodes.len();
         let rows = nodes.iter().flat_map(|n| each * n..each * (n + 1));
         self.shapes.select_rows(&rows.collect::<Vec<_>>())
     }
 
+    /// Names of some nodes.
+    pub(crate) fn names_of(&self, nodes: &[usize]) -> Vec<String> {
+        nodes.iter().map(|n| self.nodes[*n].name.clone()).collect()
+    }
+
     /// Wind factor at every node; zero where no wind blows.
     pub(super) fn wind_factors(&self) -> Vec<f64> {
-        let mut factors = vec![0.0; self.along_m.len()];
+        let mut factors = vec![0.0; self.nodes.len()];
         for strips in &self.strips {
             strips
                 .nodes

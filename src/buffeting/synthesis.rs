@@ -62,7 +62,7 @@ pub fn turbulence_field(
     });
     Ok(TurbulenceField {
         step_s,
-        along_m: problem.along_m.clone(),
+        along_m: problem.nodes.iter().map(|n| n.along_m).collect(),
         gusts,
     })
 }
@@ -84,7 +84,7 @@ impl BuffetingProblem<'_> {
     pub(super) fn check_record(&self, speed_m_s: f64, step_s: f64, samples: usize) -> Result<()> {
         positive("wind speed", speed_m_s)?;
         positive("time step of the turbulence", step_s)?;
-        let fits = 2 * self.along_m.len().saturating_mul(samples) <= NUMBERS_AT_MOST;
+        let fits = 2 * self.nodes.len().saturating_mul(samples) <= NUMBERS_AT_MOST;
         if SAMPLES.contains(&samples) && samples.is_multiple_of(2) && fits {
             return Ok(());
         }
@@ -128,7 +128,7 @@ impl BuffetingProblem<'_> {
             };
             let sizes: Vec<f64> = winds.iter().map(size).collect();
             let coherence = &self.coherence;
-            let gaps = coherence.of_gaps(component, &self.along_m, frequency, speed_m_s);
+            let gaps = coherence.of_gaps(component, &self.nodes, frequency, speed_m_s);
             let mut chain = Complex::default();
             for (n, row) in rows.iter_mut().enumerate() {
                 let (a, b): (f64, f64) =
@@ -197,7 +197,7 @@ impl BuffetingProblem<'_> {
             };
             let rows = gusts(component);
             // long gusts of the same forces
-            let mut long = DMatrix::<f64>::zeros(2 * frequencies, self.along_m.len());
+            let mut long = DMatrix::<f64>::zeros(2 * frequencies, self.nodes.len());
             for strips in &self.strips {
                 let factor = |k| self.admittance(gust, strips, k as f64 * width_hz, speed_m_s);
                 let factors: Vec<Complex<f64>> = (0..frequencies).map(factor).collect();

@@ -85,16 +85,6 @@ impl ModelsBesideTables {
     }
 }
 
-/// Response to turbulence of a file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BridgeRecord {
-    /// Names of the nodes.
-    pub nodes: Vec<String>,
-    /// Response of each.
-    #[serde(flatten)]
-    pub record: SpanRecord,
-}
-
 impl BridgeStudy {
     /// The block, read and checked.
     ///
@@ -208,7 +198,7 @@ impl BridgeStudy {
             Err(e) => return Err(e),
         };
         Ok(BridgeBuffeting {
-            nodes: self.names_of(&nodes),
+            nodes: problem.names_of(&nodes),
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
             envelope,
             spectra,
@@ -245,11 +235,6 @@ impl BridgeStudy {
         })
     }
 
-    fn names_of(&self, nodes: &[usize]) -> Vec<String> {
-        let names = nodes.iter().map(|n| self.by_model.nodes[*n].name.clone());
-        names.collect()
-    }
-
     /// Response to the turbulence of a file, at the nodes of the bridge.
     ///
     /// # Errors
@@ -259,23 +244,15 @@ impl BridgeStudy {
         block: &BuffetingBlock,
         speed_m_s: f64,
         field: &FieldTable,
-    ) -> Result<BridgeRecord> {
+    ) -> Result<SpanRecord> {
         let field = self.at_nodes(field)?;
         let field = TurbulenceField {
             step_s: field.step_s,
             along_m: field.along_m,
             gusts: field.gusts,
         };
-        let places = self.named(&block.nodes)?;
-        Ok(BridgeRecord {
-            nodes: self.names_of(&places),
-            record: span_record(
-                &self.problem(&self.by_model, block)?,
-                &places,
-                speed_m_s,
-                &field,
-            )?,
-        })
+        let problem = self.problem(&self.by_model, block)?;
+        span_record(&problem, &self.named(&block.nodes)?, speed_m_s, &field)
     }
 
     /// The turbulence of the first record.
