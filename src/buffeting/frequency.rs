@@ -3,7 +3,7 @@
 use super::coherence::coherent_power;
 use super::problem::BuffetingProblem;
 use super::quadrature::integrate;
-use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve};
+use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve, by_node};
 use super::spectrum::GustComponent;
 use super::stability::{FEW, Turning, turning};
 use crate::error::{Error, Result};
@@ -270,21 +270,16 @@ impl<'a> FrequencyDomain<'a> {
         };
         let variances = self.integral(densities, &breaks, TOLERANCE)?;
         let rows = shapes.nrows();
-        let list = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 3]> {
-            let count = 0..nodes.len();
-            count
-                .map(|n| std::array::from_fn(|i| of(3 * n + i)))
-                .collect()
-        };
+        let count = nodes.len();
         Ok(SpanResponse {
             speed_m_s: self.speed_m_s,
             nodes: nodes.to_vec(),
-            rms: list(&|row| variances[row].sqrt()),
-            crossing_frequency_hz: list(&|row| {
+            rms: by_node(count, |row| variances[row].sqrt()),
+            crossing_frequency_hz: by_node(count, |row| {
                 (variances[rows + row] / variances[row]).sqrt() / TAU
             }),
             part_in_tested_range: tested
-                .map(|_| list(&|row| variances[2 * rows + row] / variances[row])),
+                .map(|_| by_node(count, |row| variances[2 * rows + row] / variances[row])),
         })
     }
 

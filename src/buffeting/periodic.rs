@@ -12,6 +12,7 @@
 //! is stepped.
 
 use super::problem::BuffetingProblem;
+use super::response::by_node;
 use super::spectrum::GustComponent;
 use super::synthesis::{TurbulenceField, parts_in_time};
 use super::time::{all_records, root_and_error};
@@ -108,16 +109,11 @@ pub fn span_record(
         let rows = field.gusts[component as usize].par_iter();
         rows.map(|row| bridge.amplitudes(row)).collect()
     });
-    let list = |of: fn(&(f64, f64)) -> f64| -> Vec<[f64; 3]> {
-        (0..nodes.len())
-            .map(|n| std::array::from_fn(|i| of(&found[3 * n + i])))
-            .collect()
-    };
     Ok(SpanRecord {
         nodes: problem.names_of(nodes),
         speed_m_s,
-        rms: list(|r| r.0.sqrt()),
-        peak_factor: list(|r| r.1 / r.0.sqrt()),
+        rms: by_node(nodes.len(), |row| found[row].0.sqrt()),
+        peak_factor: by_node(nodes.len(), |row| found[row].1 / found[row].0.sqrt()),
     })
 }
 
@@ -307,11 +303,8 @@ fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> S
         let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / runs.len() as f64;
         [rms, error, peak / rms]
     };
-    let list = |which: usize| -> Vec<[f64; 3]> {
-        (0..nodes.len())
-            .map(|n| std::array::from_fn(|i| of(3 * n + i)[which]))
-            .collect()
-    };
+    let each: Vec<[f64; 3]> = (0..3 * nodes.len()).map(of).collect();
+    let list = |which: usize| by_node(nodes.len(), |row| each[row][which]);
     SpanEnsemble {
         speed_m_s,
         plan: *plan,

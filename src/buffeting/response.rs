@@ -54,6 +54,12 @@ pub(crate) fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
     root + 0.577_215_664_901_532_9 / root
 }
 
+/// Vertical, lateral and rotation of each node, one after the other.
+pub(super) fn by_node(nodes: usize, of: impl Fn(usize) -> f64) -> Vec<[f64; 3]> {
+    let node = |n: usize| std::array::from_fn(|i| of(3 * n + i));
+    (0..nodes).map(node).collect()
+}
+
 /// One-sided spectra at one mean wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpectrumCurve {

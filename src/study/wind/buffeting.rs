@@ -24,6 +24,8 @@ const FLAT_PLATE: &str = "flat plate";
 const JONES: &str = "flat plate (Jones)";
 /// Frequencies of the spectra, over this range about the natural ones.
 const SPECTRUM_POINTS: usize = 600;
+/// Lines of a table at most.
+const TABLE_LINES: usize = 15;
 const SPECTRUM_REACH: (f64, f64) = (0.05, 8.0);
 
 /// Response to turbulence over wind speed.
@@ -47,6 +49,14 @@ pub(crate) struct BuffetingStudy {
     pub time: Vec<TimeDomain>,
     /// How the model that is stepped in time was fitted to the table that is the answer.
     pub fit: Option<String>,
+}
+
+impl BuffetingStudy {
+    /// Responses for a table: at most fifteen, of finer lists of speeds every second, third, …
+    pub(crate) fn shown(&self) -> impl Iterator<Item = &BuffetingResponse> {
+        let every = self.responses.len().div_ceil(TABLE_LINES).max(1);
+        self.responses.iter().step_by(every)
+    }
 }
 
 /// A wind speed without a stationary response.
