@@ -226,16 +226,14 @@ impl<'a> BuffetingProblem<'a> {
         nodes.iter().map(|n| self.nodes[*n].name.clone()).collect()
     }
 
-    /// Wind factor at every node; zero where no wind blows.
-    pub(super) fn wind_factors(&self) -> Vec<f64> {
-        let mut factors = vec![0.0; self.nodes.len()];
+    /// What `of` says of strips, at every node; zero where no wind blows.
+    pub(super) fn at_nodes<T: Copy + Default>(&self, of: impl Fn(&BlownStrips) -> T) -> Vec<T> {
+        let mut all = vec![T::default(); self.nodes.len()];
         for strips in &self.strips {
-            strips
-                .nodes
-                .iter()
-                .for_each(|n| factors[*n] = strips.wind_factor);
+            let value = of(strips);
+            strips.nodes.iter().for_each(|n| all[*n] = value);
         }
-        factors
+        all
     }
 
     /// Part of the force of long gusts that gusts of a frequency exert on strips, times the mean wind.

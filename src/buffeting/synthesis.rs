@@ -106,27 +106,20 @@ impl BuffetingProblem<'_> {
         samples: usize,
         seed: u64,
     ) -> Vec<Vec<Complex<f64>>> {
-        let factors = self.wind_factors();
-        let mut rows = vec![vec![Complex::<f64>::default(); samples / 2 + 1]; factors.len()];
+        let mut rows = vec![vec![Complex::default(); samples / 2 + 1]; self.nodes.len()];
         let Some(gust) = self.turbulence.component(component) else {
             return rows;
         };
         // a stream of its own for each component: switching one off leaves the other as it is
         let mut random = random_stream(seed, component as u64);
         let width_hz = 1.0 / (samples as f64 * step_s);
-        let mut winds = factors.clone();
-        winds.sort_by(f64::total_cmp);
-        winds.dedup();
         for k in 1..samples / 2 {
             let frequency = k as f64 * width_hz;
-            let size = |factor: &f64| match factor * speed_m_s {
-                0.0 => 0.0,
-                local => {
-                    let variance = self.line_variance(gust, component, frequency, width_hz, local);
-                    variance.sqrt()
-                }
-            };
-            let sizes: Vec<f64> = winds.iter().map(size).collect();
+            let sizes = self.at_nodes(|strips| {
+                let local = strips.wind_factor * speed_m_s;
+                self.line_variance(gust, component, frequency, width_hz, local)
+                    .sqrt()
+            });
             let coherence = &self.coherence;
             let gaps = coherence.of_gaps(component, &self.nodes, frequency, speed_m_s);
             let mut chain = Complex::default();
@@ -138,8 +131,7 @@ impl BuffetingProblem<'_> {
                     None => fresh,
                     Some(rho) => chain * rho + fresh * (1.0 - rho * rho).sqrt(),
                 };
-                let wind = winds.partition_point(|w| *w < factors[n]);
-                row[k] = chain * sizes[wind];
+                row[k] = chain * sizes[n];
             }
         }
         rows
