@@ -11,7 +11,7 @@ use super::stability::highest_natural_hz;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
-use crate::bridge::{Bridge, ModalForces, Node, motion_index};
+use crate::bridge::{Bridge, ModalForces, Node};
 use crate::error::{Error, Result, counted, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::units::ReducedFrequency;
@@ -112,6 +112,8 @@ pub(super) struct BlownStrips {
     /// Wind there over the mean wind.
     pub(super) wind_factor: f64,
     pub(super) nodes: Vec<usize>,
+    /// Force per unit length on the motions of a node by a gust of 1 m/s of each component in a mean wind of 1 m/s.
+    per_length: DMatrix<f64>,
 }
 
 /// Self-excited forces on the coordinates.
@@ -149,22 +151,26 @@ impl<'a> BuffetingProblem<'a> {
         let (n, width_m) = (dofs.len(), structure.width_m);
         let gusts = structure.forces_at_axis(gusts);
         let half_rho = 0.5 * structure.air_density_kg_m3;
-        let force = |c, i: usize| half_rho * dofs[i].force_scale(width_m) * gusts[(i, c)];
+        let force = |i: usize, c| half_rho * dofs[i].force_scale(width_m) * gusts[(i, c)];
+        let nodes = vec![Node {
+            name: "section".to_owned(),
+            along_m: 0.0,
+            length_m: 1.0,
+        }];
+        let strips = vec![BlownStrips {
+            width_m,
+            wind_factor: 1.0,
+            nodes: vec![0],
+            per_length: DMatrix::from_fn(n, 2, force),
+        }];
+        let shapes = DMatrix::identity(n, n);
         Ok(Self {
             structure: structure.clone(),
             forces: SelfExcited::Section(model),
-            nodes: vec![Node {
-                name: "section".to_owned(),
-                along_m: 0.0,
-                length_m: 1.0,
-            }],
-            shapes: DMatrix::identity(n, n),
-            strips: vec![BlownStrips {
-                width_m,
-                wind_factor: 1.0,
-                nodes: vec![0],
-            }],
-            gust_forces: [0, 1].map(|c| DMatrix::from_fn(1, n, |_, i| force(c, i))),
+            gust_forces: gust_forces(&nodes, &shapes, &strips),
+            nodes,
+            shapes,
+            strips,
             turbulence: *turbulence,
             coherence: Coherence::default(),
             highest_hz: highest_natural_hz(structure),
@@ -191,22 +197,26 @@ impl<'a> BuffetingProblem<'a> {
             format_args!("gust forces of {}", counted(bridge.groups.len(), "group")),
             gust_matrices.len(),
         )?;
-        let blown = bridge.groups.iter().filter(|g| g.wind_factor != 0.0);
-        let nodes: Vec<usize> = (0..bridge.nodes.len()).collect();
+        let strips = bridge.groups.iter().zip(gust_matrices).map(|(g, matrix)| {
+            let half_rho = 0.5 * bridge.air_density_kg_m3 * g.wind_factor;
+            let scale = |i: usize| half_rho * Dof::THREE[i].force_scale(g.width_m);
+            BlownStrips {
+                width_m: g.width_m,
+                wind_factor: g.wind_factor,
+                nodes: g.nodes.clone(),
+                per_length: DMatrix::from_fn(3, 2, |i, c| scale(i) * matrix[i][c]),
+            }
+        });
+        let strips: Vec<_> = strips.filter(|s| s.wind_factor != 0.0).collect();
+        let shapes = bridge.shapes_at(&(0..bridge.nodes.len()).collect::<Vec<_>>());
         let highest = bridge.modes.iter().map(|m| m.frequency_hz);
         Ok(Self {
             structure: bridge.structure(),
             forces: SelfExcited::Modal(bridge.forces()),
             nodes: bridge.nodes.clone(),
-            shapes: bridge.shapes_at(&nodes),
-            strips: blown
-                .map(|g| BlownStrips {
-                    width_m: g.width_m,
-                    wind_factor: g.wind_factor,
-                    nodes: g.nodes.clone(),
-                })
-                .collect(),
-            gust_forces: [0, 1].map(|c| modal_gust_forces(bridge, gust_matrices, c)),
+            gust_forces: gust_forces(&bridge.nodes, &shapes, &strips),
+            shapes,
+            strips,
             turbulence,
             coherence,
             highest_hz: highest.fold(0.0, f64::max),
@@ -297,26 +307,17 @@ impl SelfExcited<'_> {
     }
 }
 
-/// Force on the mass-normalised modes by a gust of 1 m/s at each node in a wind of 1 m/s (nodes×modes).
-fn modal_gust_forces(
-    bridge: &Bridge,
-    gust_matrices: &[[[f64; 2]; 3]],
-    component: usize,
-) -> DMatrix<f64> {
-    let mut forces = DMatrix::zeros(bridge.nodes.len(), bridge.coordinates());
-    for (group, matrix) in bridge.groups.iter().zip(gust_matrices) {
-        let pressure = 0.5 * bridge.air_density_kg_m3 * group.wind_factor;
-        let per_length = Dof::THREE.map(|dof| {
-            pressure * dof.force_scale(group.width_m) * matrix[motion_index(dof)][component]
-        });
-        for &n in &group.nodes {
-            let length = bridge.nodes[n].length_m;
-            for (m, mode) in bridge.modes.iter().enumerate() {
-                let shape = mode.shape[n].iter().zip(per_length);
-                let work: f64 = shape.map(|(phi, f)| phi * f).sum();
-                forces[(n, m)] = length * work / mode.generalised_mass.sqrt();
+/// Force on the coordinates by a gust of 1 m/s of each component at each node in a wind of 1 m/s (nodes×coordinates).
+fn gust_forces(nodes: &[Node], shapes: &DMatrix<f64>, strips: &[BlownStrips]) -> [DMatrix<f64>; 2] {
+    let each = shapes.nrows() / nodes.len();
+    [0, 1].map(|component| {
+        let mut forces = DMatrix::zeros(nodes.len(), shapes.ncols());
+        for strips in strips {
+            for &n in &strips.nodes {
+                let force = strips.per_length.column(component) * nodes[n].length_m;
+                forces.set_row(n, &force.tr_mul(&shapes.rows(each * n, each)));
             }
         }
-    }
-    forces
+        forces
+    })
 }
