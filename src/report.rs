@@ -43,7 +43,7 @@ pub(crate) use bridge_figures::flutter_motion_figure;
 pub(crate) use bridge_figures::modes_figure;
 pub(crate) use bridge_figures::{BridgeCurves, bridge_curves_figure};
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
-pub(crate) use envelope_figure::{envelope_figure, span_spectra_figure};
+pub(crate) use envelope_figure::envelope_figure;
 pub use figure::Figure;
 pub use first_order_figures::{ThesisFigure, first_order_figures};
 pub use flutter_figures::vf_vg_figure;

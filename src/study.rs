@@ -39,7 +39,7 @@ pub(crate) use routes::{Route, RouteTable, route_table};
 pub use speeds::{FlutterBlock, SpeedRange};
 pub use stepped::{SteppedAnswer, SteppedOnset, stepped_onset};
 pub(crate) use wind::{
-    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, WindStudy, buffeting_study,
+    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, buffeting_study,
     quasi_steady_study, simulated_motion,
 };
 pub use wind::{CoefficientsBlock, SectionBuffetingBlock, example_wind_study_text};

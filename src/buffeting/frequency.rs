@@ -1,182 +1,362 @@
-//! Response in the frequency domain: `S_r = H S_F Hᴴ`, and its integral.
+//! Spectra of the response, `S_r = H S_Q Hᴴ` with all coordinates coupled, and their integrals.
 
+use super::coherence::coherent_power;
 use super::problem::BuffetingProblem;
-use super::quadrature::{each, integrate};
+use super::quadrature::integrate;
+use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve, by_node};
 use super::spectrum::GustComponent;
-use super::stability::turning;
+use super::stability::{FEW, Turning, turning};
 use crate::error::{Error, Result};
+use crate::flutter::{impedance, solve_complex};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use serde::Serialize;
+use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
 
-/// Relative error of the variances.
-const TOLERANCE: f64 = 1e-8;
-/// Of those of the accelerations, which end at the highest frequency below.
-const ACCELERATION_TOLERANCE: f64 = 1e-5;
-/// The integration over the frequency ends at this many times the highest natural one, that over its inverse begins there.
-const REACH: f64 = 20.0;
+/// Relative error of the variances of a bridge, and of those of accelerations, which end at the highest frequency below.
+const TOLERANCE: f64 = 1e-5;
+/// Of those of a section.
+const SECTION_TOLERANCE: f64 = 1e-8;
+/// The integration ends at this many times the highest natural frequency of a bridge.
+const REACH: f64 = 4.0;
+/// Of a section, for which that over the inverse of the frequency begins there.
+const SECTION_REACH: f64 = 20.0;
+/// Frequencies of a spectrum that are spread evenly, and those to each side of a resonance.
+const EVEN: usize = 300;
+const AROUND: i32 = 12;
 
-/// Response to turbulence at one mean wind speed; vectors in the order of the degrees of freedom.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BuffetingResponse {
-    /// Mean wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Root mean square of the displacements about their mean: m, rad.
-    pub rms: Vec<f64>,
-    /// Root mean square of the rates: m/s, rad/s.
-    pub rate_rms: Vec<f64>,
-    /// Root mean square of the accelerations: m/s², rad/s².
-    pub acceleration_rms: Vec<f64>,
-    /// The part of `rms` that each component of the turbulence causes alone, `u` then `w`.
-    pub rms_by_gust: [Vec<f64>; 2],
-    /// Mean frequency of upward crossings of the mean, Hz: rate over displacement over 2π.
-    pub crossing_frequency_hz: Vec<f64>,
-    /// Part of each variance inside the tested range of `K`, when the model has one.
-    pub part_in_tested_range: Option<Vec<f64>>,
+/// A component of the turbulence at one frequency.
+pub(super) struct GustAlongSpan {
+    pub(super) component: GustComponent,
+    /// Square root of the density at each node, with the admittance, times the mean wind.
+    pub(super) sizes: Vec<Complex<f64>>,
+    /// Coherence of neighbouring nodes.
+    pub(super) gaps: Vec<f64>,
 }
 
-/// One-sided spectra of the displacements at a frequency (n): m²/Hz, rad²/Hz.
-pub(crate) fn response_spectrum(
-    problem: &BuffetingProblem<'_>,
-    frequency_hz: f64,
-    speed_m_s: f64,
-) -> Result<Vec<f64>> {
-    let [by_u, by_w] = spectra_by_gust(problem, frequency_hz, speed_m_s)?;
-    Ok(added(&by_u, &by_w).collect())
-}
-
-fn added<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-    a.iter().zip(b).map(|(a, b)| a + b)
-}
-
-/// The same by each component of the turbulence; the components are independent, so that they add up.
-fn spectra_by_gust(
-    problem: &BuffetingProblem<'_>,
-    frequency_hz: f64,
-    speed_m_s: f64,
-) -> Result<[Vec<f64>; 2]> {
-    let motion = problem.gust_to_motion(frequency_hz, speed_m_s)?;
-    let column = |j: usize| -> Vec<f64> {
-        let component = GustComponent::BOTH[j];
-        let density = problem.turbulence.component(component).map_or(0.0, |gust| {
-            gust.spectrum.density(component, frequency_hz, speed_m_s)
-        });
-        motion
-            .column(j)
-            .iter()
-            .map(|z| z.norm_sqr() * density)
-            .collect()
-    };
-    Ok([column(0), column(1)])
-}
-
-/// Root mean squares at a mean wind speed, the variances integrated over all frequencies to 1e-8.
-///
-/// `tested` is the range of reduced frequencies in which the model was tested.
-///
-/// # Errors
-/// [`Error::Input`] for parts that do not fit together; [`Error::Unstable`] when the section is unstable at this speed.
-pub(crate) fn buffeting_response(
-    problem: &BuffetingProblem<'_>,
-    speed_m_s: f64,
-    tested: Option<ReducedFrequencyRange>,
-) -> Result<BuffetingResponse> {
-    problem.validate()?;
-    let turned = turning(problem.structure, problem.model, speed_m_s)?;
-    if turned.growing > 0 {
-        return Err(Error::Unstable(format!(
-            "buffeting at {speed_m_s} m/s: the section is unstable there ({} growing roots), no response is stationary",
-            turned.growing
-        )));
+impl BuffetingProblem<'_> {
+    /// One-sided spectra of the rows of `shapes` at a frequency by `u` and by `w` each, which are independent, so that they add up: m²/Hz,
+    /// rad²/Hz.
+    fn spectra_by_gust(
+        &self,
+        frequency_hz: f64,
+        speed_m_s: f64,
+        shapes: &DMatrix<f64>,
+    ) -> Result<Vec<[f64; 2]>> {
+        // the limit at zero: what is static has no phase
+        let frequency = frequency_hz.max(1e-9);
+        let sides = shapes.transpose().map(Complex::from);
+        let parts = self.parts_of_rows(frequency, speed_m_s, &sides)?;
+        let mut spectra = vec![[0.0; 2]; shapes.nrows()];
+        for gust in self.gusts_at(frequency, speed_m_s) {
+            // motion of each row by a gust of the size of the turbulence at each node
+            let motion = &self.gust_forces[gust.component as usize] * &parts;
+            for (row, by_gust) in spectra.iter_mut().enumerate() {
+                let (re, im) = (motion.column(2 * row), motion.column(2 * row + 1));
+                let unit = re.iter().zip(im.iter());
+                let each = unit.map(|(re, im)| Complex::new(*re, *im));
+                let sized = each.zip(&gust.sizes).map(|(z, size)| z * size);
+                by_gust[gust.component as usize] = coherent_power(sized, &gust.gaps);
+            }
+        }
+        Ok(spectra)
     }
-    let last = REACH * problem.natural_range_hz().1;
-    let peaks = turned.resonances_hz.iter().map(|(hertz, _)| *hertz);
-    let peaks: Vec<f64> = peaks.filter(|f| *f < last).collect();
-    let n = problem.structure.dofs.len();
-    let variances = all_frequencies(problem, speed_m_s, &peaks)?;
-    let part = |i: usize| variances[i * n..(i + 1) * n].to_vec();
-    let [by_u, by_w, rates] = [part(0), part(1), part(2)];
-    let rms: Vec<f64> = added(&by_u, &by_w).map(f64::sqrt).collect();
-    let rate_rms = roots(&rates);
-    let crossing = rate_rms
-        .iter()
-        .zip(&rms)
-        .map(|(rate, rms)| rate / rms / std::f64::consts::TAU);
-    let accelerations = accelerations(problem, speed_m_s, &peaks)?;
-    let part_in_tested_range = tested
-        .map(|range| tested_part(problem, speed_m_s, &peaks, range, &rms))
-        .transpose()?;
-    Ok(BuffetingResponse {
-        speed_m_s,
-        crossing_frequency_hz: crossing.collect(),
-        rms_by_gust: [roots(&by_u), roots(&by_w)],
-        rms,
-        rate_rms,
-        acceleration_rms: roots(&accelerations),
-        part_in_tested_range,
-    })
+
+    /// The sums of both.
+    fn spectra(
+        &self,
+        frequency_hz: f64,
+        speed_m_s: f64,
+        shapes: &DMatrix<f64>,
+    ) -> Result<Vec<f64>> {
+        let by_gust = self.spectra_by_gust(frequency_hz, speed_m_s, shapes)?;
+        Ok(by_gust.into_iter().map(|[u, w]| u + w).collect())
+    }
+
+    /// Spectra of the displacements of `nodes` over frequencies, Hz.
+    pub(crate) fn spectra_over(
+        &self,
+        frequency_hz: Vec<f64>,
+        speed_m_s: f64,
+        nodes: &[usize],
+    ) -> Result<SpectrumCurve> {
+        let shapes = self.shapes_at(nodes);
+        let rows = frequency_hz.par_iter();
+        let rows = rows.map(|f| self.spectra(*f, speed_m_s, &shapes));
+        let rows = rows.collect::<Result<Vec<_>>>()?;
+        let column = |i: usize| rows.iter().map(|row| row[i]).collect();
+        let gust = GustComponent::BOTH.map(|c| {
+            let gust = self.turbulence.component(c);
+            let density = |f| gust.map_or(0.0, |g| g.spectrum.density(c, f, speed_m_s));
+            frequency_hz.iter().map(|f| density(*f)).collect()
+        });
+        Ok(SpectrumCurve {
+            speed_m_s,
+            gust,
+            motion: (0..shapes.nrows()).map(column).collect(),
+            frequency_hz,
+        })
+    }
+
+    /// Rows of Φ H, (Zᵀ)⁻¹ Φᵀ, at a frequency, real and imaginary parts beside each other, since the forces of long gusts are real.
+    pub(super) fn parts_of_rows(
+        &self,
+        frequency_hz: f64,
+        speed_m_s: f64,
+        sides: &DMatrix<Complex<f64>>,
+    ) -> Result<DMatrix<f64>> {
+        let z = impedance(&self.structure, self.model(), speed_m_s, TAU * frequency_hz)?;
+        let rows = solve_complex(&z.transpose(), sides).ok_or_else(|| {
+            Error::Numerical(format!(
+                "buffeting: the impedance is singular at {frequency_hz} Hz and {speed_m_s} m/s"
+            ))
+        })?;
+        let (n, count) = rows.shape();
+        Ok(DMatrix::from_fn(n, 2 * count, |m, column| {
+            let z = rows[(m, column / 2)];
+            if column % 2 == 0 { z.re } else { z.im }
+        }))
+    }
+
+    /// The components of the turbulence at a frequency.
+    pub(super) fn gusts_at(&self, frequency_hz: f64, speed_m_s: f64) -> Vec<GustAlongSpan> {
+        let mut gusts = Vec::with_capacity(2);
+        for component in GustComponent::BOTH {
+            let Some(gust) = self.turbulence.component(component) else {
+                continue;
+            };
+            let sizes = self.at_nodes(|strips| {
+                let local = strips.wind_factor * speed_m_s;
+                let density = gust.spectrum.density(component, frequency_hz, local);
+                self.admittance(gust, strips, frequency_hz, speed_m_s) * density.sqrt()
+            });
+            let coherence = &self.coherence;
+            gusts.push(GustAlongSpan {
+                component,
+                sizes,
+                gaps: coherence.of_gaps(component, &self.nodes, frequency_hz, speed_m_s),
+            });
+        }
+        gusts
+    }
 }
 
-fn roots(variances: &[f64]) -> Vec<f64> {
-    variances.iter().map(|v| v.sqrt()).collect()
+/// A structure in turbulence at one mean wind speed. Its self-excited forces are asked for at frequencies alone, so that tables serve as
+/// well as models.
+pub(crate) struct FrequencyDomain<'a> {
+    pub(super) problem: &'a BuffetingProblem<'a>,
+    pub(super) speed_m_s: f64,
+    turned: Turning,
 }
 
-/// Variances of the accelerations, by themselves, so that those of the displacements do not hang on them.
-fn accelerations(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) -> Result<Vec<f64>> {
-    let last = REACH * problem.natural_range_hz().1;
-    let breaks = [&[0.0], peaks, &[last]].concat();
-    let densities = |f: f64| -> Result<Vec<f64>> {
-        let [by_u, by_w] = spectra_by_gust(problem, f, speed)?;
-        let fourth = (std::f64::consts::TAU * f).powi(4);
-        Ok(added(&by_u, &by_w).map(|sum| fourth * sum).collect())
-    };
-    let (inner, _) = integrate(each(densities), &breaks, ACCELERATION_TOLERANCE)?;
-    Ok(inner)
+impl<'a> FrequencyDomain<'a> {
+    /// At a speed at which the structure is stable.
+    ///
+    /// # Errors
+    /// Those of [`Self::turned`]; [`Error::Unstable`] when the structure is unstable at this speed.
+    pub(crate) fn new(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
+        let domain = Self::turned(problem, speed_m_s)?;
+        match domain.growing() {
+            0 => Ok(domain),
+            growing => Err(problem.unstable(growing, &domain.growth(), speed_m_s)),
+        }
+    }
+
+    /// Looks where the structure resonates, and how many of its motions grow.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that say nothing at a `K`; [`Error::Numerical`] at an onset itself.
+    pub(crate) fn turned(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
+        Ok(Self {
+            problem,
+            speed_m_s,
+            turned: turning(&problem.structure, problem.model(), speed_m_s)?,
+        })
+    }
+
+    /// Motions that grow.
+    pub(crate) fn growing(&self) -> usize {
+        self.turned.growing
+    }
+
+    /// Root mean squares of a section, the variances integrated over all frequencies to 1e-8. `tested` is the range of reduced frequencies
+    /// in which the model was tested.
+    ///
+    /// # Errors
+    /// Those of [`Self::response`].
+    pub(crate) fn section_response(
+        &self,
+        tested: Option<ReducedFrequencyRange>,
+    ) -> Result<BuffetingResponse> {
+        let last = SECTION_REACH * self.problem.highest_hz;
+        let peaks: Vec<f64> = self.resonances_below(last).map(|r| r.0).collect();
+        let breaks = [&[0.0], &peaks[..], &[last]].concat();
+        let (problem, speed) = (self.problem, self.speed_m_s);
+        let all = |f: f64| problem.spectra(f, speed, &problem.shapes);
+        // by u, by w, of the rate, one motion after the other
+        let densities = |f: f64| -> Result<Vec<f64>> {
+            let square = (TAU * f).powi(2);
+            let each = problem.spectra_by_gust(f, speed, &problem.shapes)?;
+            let each = each.into_iter();
+            Ok(each.flat_map(|[u, w]| [u, w, square * (u + w)]).collect())
+        };
+        let inner = self.integral(densities, &breaks, SECTION_TOLERANCE)?;
+        let beyond = |t: f64| -> Result<Vec<f64>> {
+            let values = densities(1.0 / t)?.into_iter();
+            Ok(values.map(|v| v / (t * t)).collect())
+        };
+        // a millionth of the whole at most, so a coarser tolerance does
+        let tail = self.integral(beyond, &[0.0, 1.0 / last], 1e-4)?;
+        let sums: Vec<f64> = inner.iter().zip(tail).map(|(a, b)| a + b).collect();
+        let motions = || sums.chunks_exact(3);
+        let rms: Vec<f64> = motions().map(|m| (m[0] + m[1]).sqrt()).collect();
+        let rate_rms: Vec<f64> = motions().map(|m| m[2].sqrt()).collect();
+        // by themselves, so that those of the displacements do not hang on them
+        let accelerations = |f: f64| -> Result<Vec<f64>> {
+            let fourth = (TAU * f).powi(4);
+            Ok(all(f)?.iter().map(|s| fourth * s).collect())
+        };
+        let accelerations = self.integral(accelerations, &breaks, TOLERANCE)?;
+        let tested = tested.map(|range| -> Result<Vec<f64>> {
+            let (low, high) = self.hertz(range);
+            let within = peaks.iter().copied().filter(|f| (low..high).contains(f));
+            let breaks: Vec<f64> = [low].into_iter().chain(within).chain([high]).collect();
+            let inside = self.integral(all, &breaks, 1e-6)?;
+            Ok(inside.iter().zip(&rms).map(|(v, r)| v / (r * r)).collect())
+        });
+        let crossing = rate_rms
+            .iter()
+            .zip(&rms)
+            .map(|(rate, rms)| rate / rms / TAU);
+        Ok(BuffetingResponse {
+            speed_m_s: self.speed_m_s,
+            acceleration_rms: accelerations.iter().map(|v| v.sqrt()).collect(),
+            rms_by_gust: [0, 1].map(|c| motions().map(|m| m[c].sqrt()).collect()),
+            crossing_frequency_hz: crossing.collect(),
+            part_in_tested_range: tested.transpose()?,
+            rms,
+            rate_rms,
+        })
+    }
+
+    /// Root mean squares of the displacements of `nodes` about their mean. `tested` are the reduced frequencies, of the bridge,
+    /// in which the forces were tested.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that say nothing at a `K`; [`Error::Numerical`] when the integral does not settle.
+    pub(crate) fn response(
+        &self,
+        nodes: &[usize],
+        tested: Option<ReducedFrequencyRange>,
+    ) -> Result<SpanResponse> {
+        let shapes = self.problem.shapes_at(nodes);
+        let tested = tested.map(|range| self.hertz(range));
+        let last = REACH * self.problem.highest_hz;
+        let mut breaks = vec![0.0, last];
+        breaks.extend(self.resonances_below(last).map(|(hertz, _)| hertz));
+        breaks.extend(tested.iter().flat_map(|(low, high)| [*low, *high]));
+        breaks.retain(|f| *f <= last);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup_by(|a, b| *a <= *b * (1.0 + 1e-6));
+        let densities = |f: f64| -> Result<Vec<f64>> {
+            let spectra = self.problem.spectra(f, self.speed_m_s, &shapes)?;
+            let inside = tested.is_some_and(|(low, high)| (low..=high).contains(&f));
+            let rates = spectra.iter().map(|s| s * (TAU * f).powi(2));
+            let part = spectra.iter().map(|s| if inside { *s } else { 0.0 });
+            Ok(spectra.iter().copied().chain(rates).chain(part).collect())
+        };
+        let variances = self.integral(densities, &breaks, TOLERANCE)?;
+        let rows = shapes.nrows();
+        let count = nodes.len();
+        Ok(SpanResponse {
+            speed_m_s: self.speed_m_s,
+            nodes: nodes.to_vec(),
+            rms: by_node(count, |row| variances[row].sqrt()),
+            crossing_frequency_hz: by_node(count, |row| {
+                (variances[rows + row] / variances[row]).sqrt() / TAU
+            }),
+            part_in_tested_range: tested
+                .map(|_| by_node(count, |row| variances[2 * rows + row] / variances[row])),
+        })
+    }
+
+    /// `∫ densities df` over the polygon of `breaks`, side by side where there are many coordinates.
+    fn integral(
+        &self,
+        densities: impl Fn(f64) -> Result<Vec<f64>> + Sync,
+        breaks: &[f64],
+        tolerance: f64,
+    ) -> Result<Vec<f64>> {
+        let at_all = |all: &[f64]| match self.problem.structure.dofs.len() > FEW {
+            true => all.par_iter().map(|f| densities(*f)).collect(),
+            false => all.iter().map(|f| densities(*f)).collect(),
+        };
+        integrate(at_all, breaks, tolerance).map(|(value, _)| value)
+    }
+
+    /// Spectra of the displacements of `nodes`, from zero to four times the fastest resonance.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that say nothing at a `K`.
+    pub(crate) fn spectra(&self, nodes: &[usize]) -> Result<SpectrumCurve> {
+        let frequencies = self.resolved_hz();
+        self.problem
+            .spectra_over(frequencies, self.speed_m_s, nodes)
+    }
+
+    /// Frequencies, Hz, that show every resonance: zero, from a hundredth of the slowest on evenly spread on a logarithmic scale,
+    /// and within ten half-power widths of each. Zero, since a motion whose resonance is a fast one follows slow gusts: below the
+    /// hundredth lies a twenty-fifth of the variance of a rotation.
+    pub(super) fn resolved_hz(&self) -> Vec<f64> {
+        let resonances = || self.resonances_below(REACH * self.problem.highest_hz);
+        let hertz = || resonances().map(|r| r.0);
+        let lowest = hertz().fold(f64::INFINITY, f64::min) / 100.0;
+        let highest = hertz().fold(0.0, f64::max) * REACH;
+        let even = (0..=EVEN).map(|i| lowest * (highest / lowest).powf(i as f64 / EVEN as f64));
+        let near = resonances().flat_map(|(f, half)| {
+            let part = |i: i32| (f64::from(i) / f64::from(AROUND)).powi(3);
+            (-AROUND..=AROUND).map(move |i| f + half.abs() * 10.0 * part(i))
+        });
+        let above = even.chain(near.filter(|f| *f > 0.0));
+        let mut all: Vec<f64> = std::iter::once(0.0).chain(above).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
+        all
+    }
+
+    /// Resonances, Hz, and half of the half-power width of each.
+    fn resonances_below(&self, last_hz: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let all = self.turned.resonances_hz.iter().copied();
+        all.filter(move |(hertz, _)| *hertz < last_hz)
+    }
+
+    /// Ends of a range of reduced frequencies, Hz.
+    fn hertz(&self, range: ReducedFrequencyRange) -> (f64, f64) {
+        let width_m = self.problem.structure.width_m;
+        let hertz = |k: ReducedFrequency| k.circular(width_m, self.speed_m_s) / TAU;
+        (hertz(range.min), hertz(range.max))
+    }
+
+    /// Where motions grow, in words, and whether tables know of it.
+    fn growth(&self) -> String {
+        let growing = self.turned.resonances_hz.iter().filter(|r| r.1 < 0.0);
+        let known = self.problem.model().known_range();
+        let one = |(hertz, _): &(f64, f64)| {
+            let k = ReducedFrequency::from_hertz(
+                *hertz,
+                self.problem.structure.width_m,
+                self.speed_m_s,
+            );
+            let tested = match known.map(|range| range.contains(k)) {
+                Some(true) => ", inside the tested range",
+                Some(false) => ", where nothing was tested",
+                None => "",
+            };
+            format!(" near {hertz:.4} Hz (K {:.3}{tested})", k.full_width())
+        };
+        growing.map(one).collect::<Vec<_>>().join(",")
+    }
 }
 
-/// Variances of the displacements by `u`, by `w`, and of the rates (3n): up to the last break over the frequency, beyond it
-/// over its inverse.
-fn all_frequencies(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) -> Result<Vec<f64>> {
-    let last = REACH * problem.natural_range_hz().1;
-    let mut breaks = vec![0.0];
-    breaks.extend_from_slice(peaks);
-    breaks.push(last);
-    let densities = |f: f64| -> Result<Vec<f64>> {
-        let [by_u, by_w] = spectra_by_gust(problem, f, speed)?;
-        let square = (std::f64::consts::TAU * f).powi(2);
-        let rates: Vec<f64> = added(&by_u, &by_w).map(|sum| square * sum).collect();
-        Ok([by_u, by_w, rates].concat())
-    };
-    let (inner, _) = integrate(each(densities), &breaks, TOLERANCE)?;
-    let beyond = |t: f64| -> Result<Vec<f64>> {
-        let values = densities(1.0 / t)?;
-        Ok(values.into_iter().map(|v| v / (t * t)).collect())
-    };
-    // a millionth of the whole at most, so a coarser tolerance does
-    let (tail, _) = integrate(each(beyond), &[0.0, 1.0 / last], 1e-4)?;
-    Ok(added(&inner, &tail).collect())
-}
-
-fn tested_part(
-    problem: &BuffetingProblem<'_>,
-    speed: f64,
-    peaks: &[f64],
-    range: ReducedFrequencyRange,
-    rms: &[f64],
-) -> Result<Vec<f64>> {
-    let hertz =
-        |k: ReducedFrequency| k.circular(problem.structure.width_m, speed) / std::f64::consts::TAU;
-    let (low, high) = (hertz(range.min), hertz(range.max));
-    let mut breaks = vec![low];
-    breaks.extend(peaks.iter().filter(|f| (low..high).contains(f)));
-    breaks.push(high);
-    let (inside, _) = integrate(
-        each(|f| response_spectrum(problem, f, speed)),
-        &breaks,
-        1e-6,
-    )?;
-    Ok(inside
-        .iter()
-        .zip(rms)
-        .map(|(v, rms)| v / (rms * rms))
-        .collect())
-}
+#[cfg(test)]
+mod tests;

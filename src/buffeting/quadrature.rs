@@ -90,13 +90,6 @@ fn totals(pieces: &[QuadratureInterval]) -> (Vec<f64>, Vec<f64>) {
     (sum(|p| &p.value), sum(|p| &p.error))
 }
 
-/// One after the other: values at many points of a function that is asked for little.
-pub(super) fn each(
-    f: impl Fn(f64) -> Result<Vec<f64>>,
-) -> impl Fn(&[f64]) -> Result<Vec<Vec<f64>>> {
-    move |points| points.iter().map(|x| f(*x)).collect()
-}
-
 fn piece(
     f: &impl Fn(&[f64]) -> Result<Vec<Vec<f64>>>,
     low: f64,
@@ -134,6 +127,10 @@ fn piece(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn each(f: impl Fn(f64) -> Result<Vec<f64>>) -> impl Fn(&[f64]) -> Result<Vec<Vec<f64>>> {
+        move |points| points.iter().map(|x| f(*x)).collect()
+    }
 
     /// The 15 points integrate polynomials up to the degree 22, Gauss's 7 up to 13.
     #[test]

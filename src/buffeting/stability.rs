@@ -6,7 +6,6 @@
 //! `(n − N)π`. A table is what such a `G` is on the axis of frequencies, which is all that is asked for. At a resonance the
 //! determinant turns by half a turn, the faster the less damped.
 
-use super::problem::BuffetingProblem;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
 use crate::flutter::{impedance, pivots};
@@ -21,7 +20,7 @@ const GRID: usize = 600;
 const REACH: (f64, f64) = (1e-4, 1e3);
 /// Of more degrees of freedom than this two resonances may be passed in one step, which is a whole turn, or none: steps about the
 /// natural frequencies are this small, relatively, in this range about them.
-const FEW: usize = 3;
+pub(super) const FEW: usize = 3;
 const FINE: f64 = 1.5e-3;
 const FINE_REACH: (f64, f64) = (0.5, 1.5);
 /// Turning between two frequencies from which on the interval is halved, rad.
@@ -31,13 +30,6 @@ const MAX_HALVINGS: usize = 48;
 /// Distance from a whole number that the count may have.
 const WHOLE: f64 = 0.2;
 
-impl BuffetingProblem<'_> {
-    /// Lowest and highest still-air frequency, Hz.
-    pub(super) fn natural_range_hz(&self) -> (f64, f64) {
-        range(&natural_hz(self.structure))
-    }
-}
-
 /// What the turning of the determinant over all frequencies tells.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Turning {
@@ -45,14 +37,6 @@ pub(crate) struct Turning {
     pub growing: usize,
     /// Frequencies of resonance, Hz, rising, and half of the half-power width of each, Hz: negative where the motion grows.
     pub resonances_hz: Vec<(f64, f64)>,
-}
-
-/// Number of eigenvalues with positive real part of a section at a wind speed.
-///
-/// # Errors
-/// As for [`turning`].
-pub(crate) fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
-    turning(problem.structure, problem.model, speed_m_s).map(|turned| turned.growing)
 }
 
 /// The turning of the determinant at a wind speed.
@@ -129,6 +113,11 @@ fn natural_hz(structure: &Structure) -> Vec<f64> {
     all.filter(|f| *f > 0.0).collect()
 }
 
+/// Highest of them.
+pub(super) fn highest_natural_hz(structure: &Structure) -> f64 {
+    range(&natural_hz(structure)).1
+}
+
 fn range(hertz: &[f64]) -> (f64, f64) {
     let ends = (f64::INFINITY, 0.0f64);
     hertz
@@ -201,18 +190,11 @@ mod tests {
     use super::*;
     use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
     use crate::aeroelastic::CoupledSection;
-    use crate::buffeting::{GustForces, Turbulence};
     use crate::section::SectionModel;
 
     fn count(model: &dyn Transfer, speed: f64) -> usize {
         let structure = SectionModel::iabse_1_1a().structure().unwrap();
-        let problem = BuffetingProblem {
-            structure: &structure,
-            model,
-            forces: &GustForces::flat_plate(),
-            turbulence: &Turbulence::default(),
-        };
-        unstable_roots(&problem, speed).unwrap()
+        turning(&structure, model, speed).unwrap().growing
     }
 
     /// Onset 77.48 m/s, divergence 90.466 m/s, both computed independently.

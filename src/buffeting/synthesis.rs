@@ -1,112 +1,209 @@
-//! Turbulence and its forces over time, from random Fourier coefficients.
+//! Turbulence at nodes along a line and its forces over time, from random Fourier coefficients.
 //!
 //! A record of `N` samples is one period `T = NΔt` of a periodic Gaussian process. Its coefficients at `f_k = k/T`,
 //! `0 < k < N/2`, are independent, with the variance that the spectrum has between `f_k − 1/2T` and `f_k + 1/2T`. So the
 //! expected variance of every record is exactly the integral of the spectrum from `1/2T` to `f_N − 1/2T`, `f_N = 1/2Δt`, and
 //! each single record scatters about it as a Gaussian process does. Admittance is applied to the coefficients, so that it is
 //! exact at every `f_k`, phase included.
+//!
+//! Coefficients of a frequency run along the line as a chain `ξ_{i+1} = ρ_i ξ_i + √(1 − ρ_i²) ν_i` with `ρ_i = exp(−C f Δs_i/V)`: every
+//! pair of nodes then has exactly the coherence `exp(−C f |Δs|/V)`.
 
-use super::problem::BuffetingProblem;
+use super::problem::{BuffetingProblem, Gust};
 use super::spectrum::GustComponent;
-use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result, positive};
 use crate::signal::{Fourier, random_stream};
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 use rand::Rng;
 use rand_distr::StandardNormal;
+use rayon::prelude::*;
 
 /// Samples of one record.
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=1 << 24;
+/// Numbers of a record at all nodes at most: four gigabytes.
+const NUMBERS_AT_MOST: usize = 1 << 29;
 
-/// Gauss's three points on (−1, 1).
-const GAUSS_3: [(f64, f64); 3] = [
-    (-0.774_596_669_241_483_4, 5.0 / 9.0),
-    (0.0, 8.0 / 9.0),
-    (0.774_596_669_241_483_4, 5.0 / 9.0),
-];
-
-/// One period of turbulence and of the gust forces.
+/// Turbulence at every node.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct GustSample {
-    /// The gusts themselves.
-    pub gusts: GustSeries,
-    /// Gust forces per unit length (n), each at all samples: N/m, N·m/m.
-    pub forces: Vec<Vec<f64>>,
-    /// Variances of `u` and `w` that records of this step and length have on average, m²/s².
-    pub expected_variance: [f64; 2],
+pub struct TurbulenceField {
+    /// Time step, s.
+    pub step_s: f64,
+    /// Place of each node along the girder, m.
+    pub along_m: Vec<f64>,
+    /// `u` then `w`, m/s: a row of samples per node.
+    pub gusts: [Vec<Vec<f64>>; 2],
 }
 
-/// One period of `samples` samples, an even number, every `step_s` seconds. The same seed gives the same record.
+impl TurbulenceField {
+    /// Samples at each node.
+    pub fn samples(&self) -> usize {
+        self.gusts[0].first().map_or(0, Vec::len)
+    }
+}
+
+/// One period of `samples` samples, an even number, every `step_s` seconds at a mean wind speed, at every node. The same seed gives
+/// the same field.
 ///
 /// # Errors
-/// [`Error::Input`] for parts that do not fit together, a step that is not positive and a number of samples that is odd or
-/// not between 16 and 2²⁴.
-pub(crate) fn synthesise(
+/// [`Error::Input`] for a step that is not positive and a number of samples that is odd or not between 16 and 2²⁴.
+pub fn turbulence_field(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     step_s: f64,
     samples: usize,
     seed: u64,
-) -> Result<GustSample> {
-    problem.validate()?;
-    positive("wind speed", speed_m_s)?;
-    positive("time step of the turbulence", step_s)?;
-    if !SAMPLES.contains(&samples) || !samples.is_multiple_of(2) {
-        let (least, most) = (SAMPLES.start(), SAMPLES.end());
-        let expected = format!("an even number from {least} to {most}");
-        let place = "samples of the turbulence";
-        return Err(Error::input(place, expected, samples.to_string()));
-    }
-    let n = problem.structure.dofs.len();
-    let zero = || vec![Complex::<f64>::default(); samples];
-    let mut gusts = [zero(), zero()];
-    let mut forces = vec![zero(); n];
-    let mut expected_variance = [0.0; 2];
-    let width_hz = 1.0 / (samples as f64 * step_s);
-    for (j, component) in GustComponent::BOTH.into_iter().enumerate() {
-        let Some(gust) = problem.turbulence.component(component) else {
-            continue;
-        };
-        // a stream of its own for each component: switching one off leaves the other as it is
-        let mut random = random_stream(seed, j as u64);
-        for k in 1..samples / 2 {
-            let middle = k as f64 * width_hz;
-            let density = |f| gust.spectrum.density(component, f, speed_m_s);
-            let variance = variance_of_line(middle, width_hz, density);
-            expected_variance[j] += variance;
-            let (a, b): (f64, f64) = (random.sample(StandardNormal), random.sample(StandardNormal));
-            // x = Σ a cos + b sin, so half of a − ib at +f and its conjugate at −f
-            let coefficient = Complex::new(a, -b) * (0.5 * variance.sqrt());
-            add(&mut gusts[j], k, coefficient);
-            let per_gust = problem.gust_force(component, middle, speed_m_s);
-            for (force, unit) in forces.iter_mut().zip(per_gust.iter()) {
-                add(force, k, unit * coefficient);
-            }
-        }
-    }
+) -> Result<TurbulenceField> {
+    problem.check_record(speed_m_s, step_s, samples)?;
     let fourier = Fourier::new(samples);
-    let to_time = |spectrum| fourier.sums(spectrum);
-    let [along, vertical] = gusts.map(to_time);
-    Ok(GustSample {
-        gusts: GustSeries::new(step_s, along, vertical)?,
-        forces: forces.into_iter().map(to_time).collect(),
-        expected_variance,
+    let gusts = GustComponent::BOTH.map(|component| {
+        let rows = problem.coefficients(component, speed_m_s, step_s, samples, seed);
+        let in_time = rows.into_par_iter().map(|row| in_time(&fourier, row));
+        in_time.collect()
+    });
+    Ok(TurbulenceField {
+        step_s,
+        along_m: problem.nodes.iter().map(|n| n.along_m).collect(),
+        gusts,
     })
 }
 
-/// The integral of a spectral density over the width of a line.
-fn variance_of_line(middle_hz: f64, width_hz: f64, density: impl Fn(f64) -> f64) -> f64 {
-    let points = GAUSS_3.iter();
-    let parts = points.map(|(x, weight)| {
-        let f = middle_hz + 0.5 * width_hz * x;
-        0.5 * width_hz * weight * density(f)
-    });
-    parts.sum()
+/// The real signal of which the numbers of the positive frequencies are twice the Fourier coefficients.
+fn in_time(fourier: &Fourier, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
+    spectrum.resize(fourier.length(), Complex::default());
+    fourier.sums(spectrum)
 }
 
-/// Adds a coefficient at the frequency `k` and its conjugate at `−k`.
-fn add(spectrum: &mut [Complex<f64>], k: usize, coefficient: Complex<f64>) {
-    let mirror = spectrum.len() - k;
-    spectrum[k] += coefficient;
-    spectrum[mirror] += coefficient.conj();
+/// The same of real and imaginary parts one after the other.
+pub(super) fn parts_in_time(fourier: &Fourier, parts: &[f64]) -> Vec<f64> {
+    let pairs = parts.chunks_exact(2);
+    in_time(fourier, pairs.map(|z| Complex::new(z[0], z[1])).collect())
+}
+
+impl BuffetingProblem<'_> {
+    /// Whether such a record can be made.
+    pub(super) fn check_record(&self, speed_m_s: f64, step_s: f64, samples: usize) -> Result<()> {
+        positive("wind speed", speed_m_s)?;
+        positive("time step of the turbulence", step_s)?;
+        let fits = 2 * self.nodes.len().saturating_mul(samples) <= NUMBERS_AT_MOST;
+        if SAMPLES.contains(&samples) && samples.is_multiple_of(2) && fits {
+            return Ok(());
+        }
+        let (least, most) = (SAMPLES.start(), SAMPLES.end());
+        Err(Error::input(
+            "samples of the turbulence",
+            format!("an even number from {least} to {most} that fits into memory"),
+            samples.to_string(),
+        ))
+    }
+
+    /// Fourier coefficients of one component, a row per node, from zero to half the rate of the samples. Twice those of the positive
+    /// frequencies stand there alone: the real part of the inverse transform is the gust.
+    pub(super) fn coefficients(
+        &self,
+        component: GustComponent,
+        speed_m_s: f64,
+        step_s: f64,
+        samples: usize,
+        seed: u64,
+    ) -> Vec<Vec<Complex<f64>>> {
+        let mut rows = vec![vec![Complex::default(); samples / 2 + 1]; self.nodes.len()];
+        let Some(gust) = self.turbulence.component(component) else {
+            return rows;
+        };
+        // a stream of its own for each component: switching one off leaves the other as it is
+        let mut random = random_stream(seed, component as u64);
+        let width_hz = 1.0 / (samples as f64 * step_s);
+        for k in 1..samples / 2 {
+            let frequency = k as f64 * width_hz;
+            let sizes = self.at_nodes(|strips| {
+                let local = strips.wind_factor * speed_m_s;
+                self.line_variance(gust, component, frequency, width_hz, local)
+                    .sqrt()
+            });
+            let coherence = &self.coherence;
+            let gaps = coherence.of_gaps(component, &self.nodes, frequency, speed_m_s);
+            let mut chain = Complex::default();
+            for (n, row) in rows.iter_mut().enumerate() {
+                let (a, b): (f64, f64) =
+                    (random.sample(StandardNormal), random.sample(StandardNormal));
+                let fresh = Complex::new(a, -b);
+                chain = match n.checked_sub(1).map(|gap| gaps[gap]) {
+                    None => fresh,
+                    Some(rho) => chain * rho + fresh * (1.0 - rho * rho).sqrt(),
+                };
+                row[k] = chain * sizes[n];
+            }
+        }
+        rows
+    }
+
+    /// The integral of a spectral density over the width of a line.
+    fn line_variance(
+        &self,
+        gust: &Gust,
+        component: GustComponent,
+        middle_hz: f64,
+        width_hz: f64,
+        wind_m_s: f64,
+    ) -> f64 {
+        let parts = self.line_rule.iter().map(|(x, weight)| {
+            let f = middle_hz + 0.5 * width_hz * x;
+            0.5 * width_hz * weight * gust.spectrum.density(component, f, wind_m_s)
+        });
+        parts.sum()
+    }
+
+    /// Variances of `u` and `w` in the mean wind that records have on average, m²/s².
+    pub(super) fn expected_variance(
+        &self,
+        speed_m_s: f64,
+        step_s: f64,
+        samples: usize,
+    ) -> [f64; 2] {
+        let width_hz = 1.0 / (samples as f64 * step_s);
+        GustComponent::BOTH.map(|component| {
+            let Some(gust) = self.turbulence.component(component) else {
+                return 0.0;
+            };
+            let lines = (1..samples / 2).map(|k| k as f64 * width_hz);
+            let each = lines.map(|f| self.line_variance(gust, component, f, width_hz, speed_m_s));
+            each.sum()
+        })
+    }
+
+    /// Forces on the coordinates, one column each, real and imaginary parts of every frequency one after the other, by gusts of which a
+    /// row per node is made for each component; the admittance is exact at each frequency.
+    pub(super) fn forces(
+        &self,
+        speed_m_s: f64,
+        step_s: f64,
+        samples: usize,
+        gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>,
+    ) -> DMatrix<f64> {
+        let frequencies = samples / 2 + 1;
+        let width_hz = 1.0 / (samples as f64 * step_s);
+        let mut forces = DMatrix::zeros(2 * frequencies, self.structure.dofs.len());
+        for component in GustComponent::BOTH {
+            let Some(gust) = self.turbulence.component(component) else {
+                continue;
+            };
+            let rows = gusts(component);
+            // long gusts of the same forces
+            let mut long = DMatrix::<f64>::zeros(2 * frequencies, self.nodes.len());
+            for strips in &self.strips {
+                let factor = |k| self.admittance(gust, strips, k as f64 * width_hz, speed_m_s);
+                let factors: Vec<Complex<f64>> = (0..frequencies).map(factor).collect();
+                for &n in &strips.nodes {
+                    let mut column = long.column_mut(n);
+                    let parts = column.as_mut_slice().chunks_exact_mut(2);
+                    for ((part, x), factor) in parts.zip(&rows[n]).zip(&factors) {
+                        let force = factor * x;
+                        (part[0], part[1]) = (force.re, force.im);
+                    }
+                }
+            }
+            forces.gemm(1.0, &long, &self.gust_forces[component as usize], 1.0);
+        }
+        forces
+    }
 }

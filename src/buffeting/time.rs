@@ -1,12 +1,13 @@
 //! Response in the time domain: generated gust forces stepped through the coupled section, many records.
 
-use super::frequency::BuffetingResponse;
 use super::problem::BuffetingProblem;
-use super::synthesis::synthesise;
+use super::response::BuffetingResponse;
+use super::synthesis::parts_in_time;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::response::{Inputs, Stepper};
 use crate::section::Dof;
+use crate::signal::Fourier;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -106,6 +107,7 @@ pub fn compare(
 struct TimeGrid {
     step_s: f64,
     samples: usize,
+    fourier: Fourier,
     warm_up: usize,
 }
 
@@ -123,57 +125,52 @@ pub(crate) fn time_ensemble(
     plan: &TimePlan,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Ensemble> {
-    positive("wind speed", speed_m_s)?;
-    if !(2..=MOST_RECORDS).contains(&plan.records) {
-        return Err(Error::input(
-            "records",
-            format!("a number from 2 to {MOST_RECORDS}"),
-            plan.records.to_string(),
-        ));
-    }
-    let model = problem.model.realizable().ok_or_else(|| {
-        Error::input(
-            "buffeting in the time domain",
-            "a model with a realisation",
-            "one that is known only as a transfer matrix",
-        )
-    })?;
-    let section = CoupledSection::with_model(problem.structure, model)?;
-    let grid = grid(problem, &section, speed_m_s, plan)?;
+    let (section, slowest) = problem.coupled(speed_m_s)?;
+    let grid = grid(problem, slowest, speed_m_s, plan)?;
+    let record = |seed: u64| mean_squares(problem, &section, speed_m_s, &grid, seed);
+    let runs = all_records(plan.records, plan.seed, progress, record)?;
+    Ok(gathered(problem, speed_m_s, &grid, runs))
+}
+
+/// Makes every record of a plan by its own seed, side by side; `progress` gets how many are done and how many there are.
+///
+/// # Errors
+/// [`Error::Input`] for a number of records that cannot be, and those of a record.
+pub(super) fn all_records<T: Send>(
+    records: usize,
+    seed: u64,
+    progress: &(dyn Fn(usize, usize) + Sync),
+    record: impl Fn(u64) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    let expected = format_args!("a number from 2 to {MOST_RECORDS}");
+    let fits = (2..=MOST_RECORDS).contains(&records);
+    ensure(fits, "records", expected, records)?;
     let done = AtomicUsize::new(0);
-    let runs = (0..plan.records)
-        .into_par_iter()
-        .map(|i| {
-            let seed = plan.seed.wrapping_add(i as u64);
-            let run = mean_squares(problem, &section, speed_m_s, &grid, seed)?;
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, plan.records);
-            Ok(run)
-        })
-        .collect::<Result<Vec<_>>>()?;
-    Ok(gathered(speed_m_s, &grid, runs))
+    let counted = |i: usize| {
+        let run = record(seed.wrapping_add(i as u64));
+        progress(1 + done.fetch_add(1, Ordering::Relaxed), records);
+        run
+    };
+    (0..records).into_par_iter().map(counted).collect()
+}
+
+/// Root of the mean of the mean squares of records, and its standard error by their scatter.
+pub(super) fn root_and_error(squares: &[f64]) -> (f64, f64) {
+    let count = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / count;
+    let scatter = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean.sqrt(), (scatter / count).sqrt() / (2.0 * mean.sqrt()))
 }
 
 fn grid(
     problem: &BuffetingProblem<'_>,
-    section: &CoupledSection,
+    slowest: f64,
     speed_m_s: f64,
     plan: &TimePlan,
 ) -> Result<TimeGrid> {
-    let slowest = section
-        .at(speed_m_s)?
-        .eigenvalues()?
-        .into_iter()
-        .map(|z| -z.re)
-        .fold(f64::INFINITY, f64::min);
-    if slowest <= 0.0 {
-        return Err(Error::Unstable(format!(
-            "buffeting at {speed_m_s} m/s: the section is unstable there"
-        )));
-    }
-    let (_, fastest) = problem.natural_range_hz();
     let step_s = match plan.step_s {
         Some(step) => positive("step_s", step)?,
-        None => 1.0 / (SAMPLES_PER_PERIOD * fastest),
+        None => 1.0 / (SAMPLES_PER_PERIOD * problem.highest_hz),
     };
     let duration = match plan.duration_s {
         Some(duration) => positive("duration_s", duration)?,
@@ -191,23 +188,25 @@ fn grid(
     }
     // an even number of samples
     let samples = 2 * (0.5 * duration / step_s).round() as usize;
+    problem.check_record(speed_m_s, step_s, samples)?;
     Ok(TimeGrid {
         step_s,
         samples,
+        fourier: Fourier::new(samples),
         warm_up: ((warm_up_s / step_s).ceil() as usize).min(samples),
     })
 }
 
-/// Mean squares of the displacements of one record (n), and the expected variances of its gusts.
+/// Mean squares of the displacements of one record (n).
 fn mean_squares(
     problem: &BuffetingProblem<'_>,
     section: &CoupledSection,
     speed: f64,
     grid: &TimeGrid,
     seed: u64,
-) -> Result<(Vec<f64>, [f64; 2])> {
-    let sample = synthesise(problem, speed, grid.step_s, grid.samples, seed)?;
-    let n = problem.structure.dofs.len();
+) -> Result<Vec<f64>> {
+    let forces = forces(problem, speed, grid, seed);
+    let n = forces.len();
     let mut stepper = Stepper::new(section.clone());
     let mut state = stepper.released(&vec![0.0; n], &vec![0.0; n])?;
     let mut inputs = Inputs::steady(speed, n);
@@ -215,7 +214,7 @@ fn mean_squares(
     for i in 0..grid.warm_up + grid.samples {
         let now = (i + grid.samples - grid.warm_up) % grid.samples;
         let next = (now + 1) % grid.samples;
-        for (dof, force) in sample.forces.iter().enumerate() {
+        for (dof, force) in forces.iter().enumerate() {
             inputs.force[dof] = force[now];
             inputs.force_rate[dof] = (force[next] - force[now]) / grid.step_s;
         }
@@ -226,30 +225,40 @@ fn mean_squares(
             }
         }
     }
-    Ok((squares, sample.expected_variance))
+    Ok(squares)
 }
 
-fn gathered(speed_m_s: f64, grid: &TimeGrid, runs: Vec<(Vec<f64>, [f64; 2])>) -> Ensemble {
-    let count = runs.len() as f64;
-    let n = runs.first().map_or(0, |(squares, _)| squares.len());
-    let column = |i: usize| runs.iter().map(move |(squares, _)| squares[i]);
-    let mean: Vec<f64> = (0..n).map(|i| column(i).sum::<f64>() / count).collect();
-    let error = |i: usize| {
-        let scatter = column(i).map(|s| (s - mean[i]).powi(2)).sum::<f64>() / (count - 1.0);
-        (scatter / count).sqrt() / (2.0 * mean[i].sqrt())
-    };
+/// Gust forces of one record (n), each at all samples: N/m, N·m/m.
+fn forces(problem: &BuffetingProblem<'_>, speed: f64, grid: &TimeGrid, seed: u64) -> Vec<Vec<f64>> {
+    let (step_s, samples) = (grid.step_s, grid.samples);
+    let parts = problem.forces(speed, step_s, samples, |component| {
+        problem.coefficients(component, speed, step_s, samples, seed)
+    });
+    let columns = parts.column_iter();
+    columns
+        .map(|c| parts_in_time(&grid.fourier, c.as_slice()))
+        .collect()
+}
+
+fn gathered(
+    problem: &BuffetingProblem<'_>,
+    speed_m_s: f64,
+    grid: &TimeGrid,
+    runs: Vec<Vec<f64>>,
+) -> Ensemble {
+    let n = problem.structure.dofs.len();
+    let column = |i: usize| runs.iter().map(|squares| squares[i]).collect::<Vec<f64>>();
+    let (rms, standard_error) = (0..n).map(|i| root_and_error(&column(i))).unzip();
+    let roots = |squares: &Vec<f64>| squares.iter().map(|s| s.sqrt()).collect();
     Ensemble {
         speed_m_s,
         step_s: grid.step_s,
         duration_s: grid.step_s * grid.samples as f64,
         warm_up_s: grid.step_s * grid.warm_up as f64,
-        standard_error: (0..n).map(error).collect(),
-        rms: mean.iter().map(|s| s.sqrt()).collect(),
-        rms_of_records: runs
-            .iter()
-            .map(|(squares, _)| squares.iter().map(|s| s.sqrt()).collect())
-            .collect(),
-        expected_gust_variance: runs.first().map_or([0.0; 2], |(_, variance)| *variance),
+        rms,
+        standard_error,
+        rms_of_records: runs.iter().map(roots).collect(),
+        expected_gust_variance: problem.expected_variance(speed_m_s, grid.step_s, grid.samples),
     }
 }
 

@@ -16,9 +16,6 @@ pub(super) const PAGE: &str = "buffeting.html";
 /// Key of that page where it is part of a study.
 pub(super) const OF_STUDY: &str = "study";
 
-/// Lines of the table at most: of finer lists of speeds every second, third, … is printed.
-const TABLE_LINES: usize = 15;
-
 /// RMS response to turbulence over wind speed, in the frequency and in the time domain
 ///
 /// Example: aerodeck buffeting wind.toml
@@ -92,7 +89,7 @@ fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -
         let title = format!("{name} at {} m/s", spectra.speed_m_s);
         let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
         figures::write(&stem, out, || {
-            buffeting_spectra_figure(&title, &results.dofs, spectra)
+            buffeting_spectra_figure(&title, &results.dofs, &[], spectra)
         })?;
     }
     let page = buffeting_page::page(name, key, results)?;
@@ -115,8 +112,7 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
         let _ = write!(text, "{:>12}", format!("ν {} Hz", dof.symbol()));
     }
     text.push('\n');
-    let every = results.responses.len().div_ceil(TABLE_LINES).max(1);
-    for response in results.responses.iter().step_by(every) {
+    for response in results.shown() {
         let _ = write!(text, "{:>8.2}", response.speed_m_s);
         for (dof, rms) in results.dofs.iter().zip(&response.rms) {
             let _ = write!(text, "{:>15.5}", dof.shown_in().0 * rms);

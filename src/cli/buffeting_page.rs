@@ -10,14 +10,10 @@ use crate::study::BuffetingStudy;
 /// Length of record for which peaks are expected, s.
 const DURATION_S: f64 = 600.0;
 
-/// Speeds of the table at most: of finer lists every second, third, … is shown.
-const SPEEDS: usize = 15;
-
 /// Root mean squares, peaks and accelerations over the wind speed, with the figures; another page takes them up by the `key`.
 pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<SectionsPage> {
     let mut rows = Vec::new();
-    let every = results.responses.len().div_ceil(SPEEDS).max(1);
-    for r in results.responses.iter().step_by(every) {
+    for r in results.shown() {
         let mut equilibria = results.mean.iter();
         let mean = equilibria.find(|m| m.speed_m_s == r.speed_m_s);
         for (i, dof) in results.dofs.iter().enumerate() {
@@ -43,7 +39,7 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
     }
     for spectra in &results.spectra {
         let title = format!("{name} at {} m/s", spectra.speed_m_s);
-        let figure = buffeting_spectra_figure(&title, &results.dofs, spectra)?;
+        let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
         let caption = format!("Spectra at {} m/s times the frequency.", spectra.speed_m_s);
         figures.push((caption, figure.svg().to_owned()));
     }

@@ -3,8 +3,8 @@
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::{
-    Admittance, BuffetingProblem, Gust, GustComponent, GustForces, GustSpectrum, SpectrumShape,
-    Turbulence, buffeting_response,
+    Admittance, BuffetingProblem, FrequencyDomain, Gust, GustComponent, GustSpectrum,
+    SpectrumShape, Turbulence,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{
@@ -278,18 +278,14 @@ pub(super) fn gust_density() -> f64 {
 
 pub(super) fn iabse_rms() -> Result<Vec<f64>> {
     let structure = SectionModel::iabse_1_1a().structure()?;
-    let problem = BuffetingProblem {
-        structure: &structure,
-        model: &WITHOUT_ROTARY,
-        forces: &GustForces::flat_plate(),
-        turbulence: &Turbulence {
-            along: None,
-            vertical: Some(W),
-        },
+    let turbulence = Turbulence {
+        along: None,
+        vertical: Some(W),
     };
+    let problem = BuffetingProblem::of_section(&structure, &WITHOUT_ROTARY, None, &turbulence)?;
     let responses = SPEEDS_M_S
         .iter()
-        .map(|speed| buffeting_response(&problem, *speed, None))
+        .map(|speed| FrequencyDomain::new(&problem, *speed)?.section_response(None))
         .collect::<Result<Vec<_>>>()?;
     let heave = responses.iter().map(|r| r.rms[0]);
     let edge = responses.iter().map(|r| r.rms[1] * 0.5 * structure.width_m);

@@ -1,9 +1,9 @@
-//! Response of a bridge to turbulence: along the span, and as spectra.
+//! Response of a bridge to turbulence along the span.
 
 use super::axis::Axis;
 use super::drawing::Drawing;
 use super::figure::Figure;
-use super::legend::{Entry, entries};
+use super::legend::Entry;
 use super::panel::Panel;
 use super::style::{Ink, colour, dash};
 use crate::error::Result;
@@ -50,50 +50,6 @@ pub(crate) fn envelope_figure(of: &BridgeBuffeting, title: &str) -> Result<Figur
             Entry::new("mean", inks[0]),
             Entry::new("mean ± expected peak", inks[1]),
         ]],
-    }
-    .draw()
-}
-
-/// One-sided spectra of the displacements of the named nodes, logarithmic, as `f S`.
-///
-/// # Errors
-/// [`crate::Error::Input`] for more nodes than colours and numbers that are not finite.
-pub(crate) fn span_spectra_figure(of: &BridgeBuffeting, title: &str) -> Result<Figure> {
-    let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour("spectra", i)?, dash(i))) };
-    let labels: Vec<String> = of.nodes.iter().map(|n| format!("node {n}")).collect();
-    let mut panels = Vec::with_capacity(3);
-    let names = ["f S_y (m²)", "f S_x (m²)", "f S_θ (deg²)"];
-    for (i, name) in names.into_iter().enumerate() {
-        let logarithmic = |label: &str| Axis {
-            logarithmic: true,
-            ..Axis::new(label)
-        };
-        let hertz = if i == 2 { "Frequency f (Hz)" } else { "" };
-        let mut panel = Panel::new(logarithmic(hertz), logarithmic(name));
-        let square = MOTIONS[i].1 * MOTIONS[i].1;
-        for (n, label) in labels.iter().enumerate() {
-            let both = of
-                .spectra
-                .frequencies_hz
-                .iter()
-                .zip(&of.spectra.densities[n][i]);
-            // zero has no place on a logarithmic scale
-            let above = both.filter(|(f, s)| **f > 0.0 && **s > 0.0);
-            let points: Vec<(f64, f64)> = above.map(|(f, s)| (*f, square * f * s)).collect();
-            if !points.is_empty() {
-                panel.add(label, points, ink(n)?);
-            }
-        }
-        panels.push(panel);
-    }
-    panels.retain(|p| !p.series.is_empty());
-    Drawing {
-        name: "spectra of the bridge",
-        title: Some(title.to_owned()),
-        panels,
-        columns: 1,
-        axes: (640.0, 150.0),
-        legend: vec![entries(&labels, ink)?],
     }
     .draw()
 }

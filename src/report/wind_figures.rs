@@ -3,13 +3,14 @@
 use super::axis::Axis;
 use super::drawing::{Drawing, titled};
 use super::figure::Figure;
-use super::legend::Entry;
+use super::legend::{Entry, entries};
 use super::panel::Panel;
 use super::style::{BLACK, Ink, Shape, colour, dash};
 use crate::aeroelastic::EquilibriumPath;
+use crate::buffeting::SpectrumCurve;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::study::{BuffetingStudy, SpectrumCurve};
+use crate::study::BuffetingStudy;
 
 /// Components of the turbulence in words.
 const GUSTS: [&str; 2] = ["u", "w"];
@@ -116,13 +117,15 @@ fn has_gust(study: &BuffetingStudy, j: usize) -> bool {
         .any(|r| r.rms_by_gust[j].iter().any(|x| *x > 0.0))
 }
 
-/// Spectra at one wind speed, logarithmic: `f S` of the turbulence above, of each displacement below.
+/// Spectra at one wind speed, logarithmic, `f S`: of the turbulence of a section above, of each displacement below, of each of the
+/// `nodes` of a bridge.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for no points and numbers that are not finite.
+/// [`crate::Error::Input`] for no points, more nodes than colours and numbers that are not finite.
 pub(crate) fn buffeting_spectra_figure(
     title: &str,
     dofs: &[Dof],
+    nodes: &[String],
     spectra: &SpectrumCurve,
 ) -> Result<Figure> {
     const PLACE: &str = "spectra";
@@ -130,40 +133,49 @@ pub(crate) fn buffeting_spectra_figure(
         logarithmic: true,
         ..Axis::new(label)
     };
-    let power = |density: &[f64], factor: f64| -> Vec<(f64, f64)> {
+    let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
+    let labels: Vec<String> = nodes.iter().map(|n| format!("node {n}")).collect();
+    let mut legend = entries(&labels, ink)?;
+    let mut panels = Vec::new();
+    let add = |panel: &mut Panel, label: &str, density: &[f64], factor: f64, ink: Ink| {
         let pairs = spectra.frequency_hz.iter().zip(density);
-        pairs.map(|(f, s)| (*f, factor * f * s)).collect()
-    };
-    let mut turbulence = Panel::new(logarithmic(""), logarithmic("f S of the gusts (m²/s²)"));
-    let mut legend = Vec::new();
-    for (j, density) in spectra.gust.iter().enumerate() {
-        if density.iter().any(|s| *s > 0.0) {
-            let ink = Ink::line(colour(PLACE, j + 1)?, dash(j + 1));
-            turbulence.add(GUSTS[j], power(density, 1.0), ink);
-            legend.push(Entry::new(format!("gusts {}", GUSTS[j]), ink));
+        // zero has no place on a logarithmic scale
+        let above = pairs.filter(|(f, s)| **f > 0.0 && **s > 0.0);
+        let points: Vec<(f64, f64)> = above.map(|(f, s)| (*f, factor * f * s)).collect();
+        let any = !points.is_empty();
+        if any {
+            panel.add(label, points, ink);
         }
+        any
+    };
+    if nodes.is_empty() {
+        let mut turbulence = Panel::new(logarithmic(""), logarithmic("f S of the gusts (m²/s²)"));
+        for (j, density) in spectra.gust.iter().enumerate() {
+            if add(&mut turbulence, GUSTS[j], density, 1.0, ink(j + 1)?) {
+                legend.push(Entry::new(format!("gusts {}", GUSTS[j]), ink(j + 1)?));
+            }
+        }
+        panels.push(turbulence);
+        legend.push(Entry::new("motion", ink(0)?));
     }
-    let line = Ink::line(colour(PLACE, 0)?, None);
-    let mut panels = vec![turbulence];
     for (i, dof) in dofs.iter().enumerate() {
         let (label, factor, unit) = match dof {
             Dof::Torsion => ("f S_θ", 1f64.to_degrees().powi(2), "deg²"),
             Dof::Lateral => ("f S_x", 1.0, "m²"),
             Dof::Vertical => ("f S_y", 1.0, "m²"),
         };
-        let frequency = if i + 1 == dofs.len() {
-            "Frequency f (Hz)"
-        } else {
-            ""
-        };
-        let mut panel = Panel::new(
-            logarithmic(frequency),
-            logarithmic(&format!("{label} ({unit})")),
-        );
-        panel.add(dof.name(), power(&spectra.motion[i], factor), line);
+        let last = i + 1 == dofs.len();
+        let frequency = if last { "Frequency f (Hz)" } else { "" };
+        let ordinate = logarithmic(&format!("{label} ({unit})"));
+        let mut panel = Panel::new(logarithmic(frequency), ordinate);
+        let of_nodes = spectra.motion.iter().skip(i).step_by(dofs.len());
+        for (n, density) in of_nodes.enumerate() {
+            let label = labels.get(n).map_or(dof.name(), String::as_str);
+            add(&mut panel, label, density, factor, ink(n)?);
+        }
         panels.push(panel);
     }
-    legend.push(Entry::new("motion", line));
+    panels.retain(|p| !p.series.is_empty());
     stacked(PLACE, title, panels, 150.0, legend)
 }
 

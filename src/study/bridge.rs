@@ -16,7 +16,7 @@ mod untested;
 pub use answers::{
     BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
 };
-pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
+pub use buffeting::{BridgeBuffeting, BuffetingBlock, ModelsBesideTables};
 pub use envelope::{SectionForceResponse, SpanEnvelope};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForceModels;

@@ -3,7 +3,7 @@
 mod buffeting;
 mod quasi_steady;
 
-pub(crate) use buffeting::{BuffetingStudy, SpectrumCurve, buffeting_study};
+pub(crate) use buffeting::{BuffetingStudy, buffeting_study};
 pub(crate) use quasi_steady::{
     QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion,
 };

@@ -53,8 +53,8 @@ fn agreed(text: &str) -> Vec<[f64; 3]> {
             );
             // the spectrum holds the variance
             let (f, s) = (
-                &found.spectra.frequencies_hz,
-                &found.spectra.densities[n][i],
+                &found.spectra.frequency_hz,
+                &found.spectra.motion[3 * n + i],
             );
             let trapezoid: f64 = (1..f.len())
                 .map(|k| 0.5 * (s[k] + s[k - 1]) * (f[k] - f[k - 1]))

@@ -8,7 +8,7 @@ use aerodeck::aerodynamics::RationalModel;
 use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
 use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, tributary_lengths};
 use aerodeck::buffeting::{
-    Coherence, Gust, GustSpectrum, SpanProblem, SpectrumShape, Turbulence, span_record,
+    BuffetingProblem, Coherence, Gust, GustSpectrum, SpectrumShape, Turbulence, span_record,
     turbulence_field,
 };
 use aerodeck::flutter::trace_modes;
@@ -242,7 +242,7 @@ pub(crate) fn beam(nodes: usize, modes: usize) -> Bridge {
 }
 
 /// Turbulence along and across it.
-pub(crate) fn problem(bridge: &Bridge) -> SpanProblem<'_> {
+pub(crate) fn problem(bridge: &Bridge) -> BuffetingProblem<'static> {
     let gust = |length_m, intensity| {
         Some(Gust {
             spectrum: GustSpectrum {
@@ -253,15 +253,13 @@ pub(crate) fn problem(bridge: &Bridge) -> SpanProblem<'_> {
             admittance: Default::default(),
         })
     };
-    SpanProblem {
-        bridge,
-        gust_matrices: vec![[[-0.2, 4.1], [0.16, 0.1], [0.04, 1.1]]],
-        turbulence: Turbulence {
-            along: gust(150.0, 0.12),
-            vertical: gust(15.0, 0.06),
-        },
-        coherence: Coherence::default(),
-    }
+    let turbulence = Turbulence {
+        along: gust(150.0, 0.12),
+        vertical: gust(15.0, 0.06),
+    };
+    let matrices = [[[-0.2, 4.1], [0.16, 0.1], [0.04, 1.1]]];
+    BuffetingProblem::of_bridge(bridge, &matrices, turbulence, Coherence::default())
+        .expect("a problem")
 }
 
 const TEN_MINUTES: usize = 12_000;

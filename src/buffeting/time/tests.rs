@@ -4,13 +4,14 @@ use super::*;
 use crate::aerodynamics::RationalModel;
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady};
 use crate::buffeting::{
-    Admittance, Gust, GustForces, GustSpectrum, SpectrumShape, Turbulence, buffeting_response,
+    Admittance, FrequencyDomain, Gust, GustSpectrum, SpectrumShape, Turbulence, turbulence_field,
 };
 use crate::files::coefficients::embedded;
+use crate::flutter::impedance;
 use crate::section::{SectionModel, Structure, Translation};
 use crate::signal::Fourier;
 use nalgebra::{Complex, DVector};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 fn turbulence(admittance: Admittance) -> Turbulence {
     let gust = |shape, length_m, intensity| Gust {
@@ -53,15 +54,12 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
         duration_s: Some(4000.0),
         ..TimePlan::default()
     };
-    let model = problem.model.realizable().unwrap();
-    let section = CoupledSection::with_model(problem.structure, model).unwrap();
-    let grid = grid(problem, &section, speed, &plan).unwrap();
-    let (stepped, _) = mean_squares(problem, &section, speed, &grid, 5).unwrap();
-    let sample = synthesise(problem, speed, grid.step_s, grid.samples, 5).unwrap();
+    let (section, slowest) = problem.coupled(speed).unwrap();
+    let grid = grid(problem, slowest, speed, &plan).unwrap();
+    let stepped = mean_squares(problem, &section, speed, &grid, 5).unwrap();
     let n = problem.structure.dofs.len();
     let forward = Fourier::new(grid.samples);
-    let spectra: Vec<Vec<Complex<f64>>> = sample
-        .forces
+    let spectra: Vec<Vec<Complex<f64>>> = forces(problem, speed, &grid, 5)
         .iter()
         .map(|force| forward.spectrum(force.iter().copied()))
         .collect();
@@ -72,8 +70,7 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
         let x = PI * f * grid.step_s;
         let line = (x.sin() / x).powi(2) / grid.samples as f64;
         let force = DVector::from_fn(n, |i, _| coefficient(i, k) * line);
-        let motion = problem
-            .impedance(f, speed)
+        let motion = impedance(&problem.structure, problem.model(), speed, TAU * f)
             .unwrap()
             .lu()
             .solve(&force)
@@ -92,26 +89,31 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
 fn one_record_is_the_sum_of_its_frequencies() {
     let (structure, theory) = three_dof();
     let linear = theory.linearised(0.01).unwrap();
-    let forces = GustForces::quasi_steady(&linear);
     exact_for_one_record(
-        &BuffetingProblem {
-            structure: &structure,
-            model: &linear,
-            forces: &forces,
-            turbulence: &turbulence(Admittance::Liepmann),
-        },
+        &BuffetingProblem::of_section(
+            &structure,
+            &linear,
+            Some(&linear),
+            &turbulence(Admittance::Liepmann),
+        )
+        .unwrap(),
         30.0,
     );
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     exact_for_one_record(
-        &BuffetingProblem {
-            structure: &structure,
-            model: &RationalModel::jones_flat_plate(),
-            forces: &GustForces::flat_plate(),
-            turbulence: &turbulence(Admittance::Sears),
-        },
+        &BuffetingProblem::of_section(
+            &structure,
+            &RationalModel::jones_flat_plate(),
+            None,
+            &turbulence(Admittance::Sears),
+        )
+        .unwrap(),
         45.0,
     );
+}
+
+fn section_response(problem: &BuffetingProblem<'_>, speed: f64) -> Result<BuffetingResponse> {
+    FrequencyDomain::new(problem, speed)?.section_response(None)
 }
 
 fn agrees(problem: &BuffetingProblem<'_>, speed: f64, largest_error: f64) {
@@ -119,7 +121,7 @@ fn agrees(problem: &BuffetingProblem<'_>, speed: f64, largest_error: f64) {
         records: 64,
         ..TimePlan::default()
     };
-    let frequency = buffeting_response(problem, speed, None).unwrap();
+    let frequency = section_response(problem, speed).unwrap();
     let time = time_ensemble(problem, speed, &plan, &|_, _| ()).unwrap();
     for c in compare(&problem.structure.dofs, &frequency, &time) {
         // within three standard errors, which are small enough for this to say something
@@ -134,26 +136,22 @@ fn agrees(problem: &BuffetingProblem<'_>, speed: f64, largest_error: f64) {
 fn domains_agree_within_the_sampling_error() {
     let (structure, theory) = three_dof();
     let linear = theory.linearised(0.0).unwrap();
-    let forces = GustForces::quasi_steady(&linear);
     let davenport = Admittance::Davenport { decay: 7.0 };
     agrees(
-        &BuffetingProblem {
-            structure: &structure,
-            model: &linear,
-            forces: &forces,
-            turbulence: &turbulence(davenport),
-        },
+        &BuffetingProblem::of_section(&structure, &linear, Some(&linear), &turbulence(davenport))
+            .unwrap(),
         30.0,
         0.02,
     );
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     agrees(
-        &BuffetingProblem {
-            structure: &structure,
-            model: &RationalModel::jones_flat_plate(),
-            forces: &GustForces::flat_plate(),
-            turbulence: &turbulence(Admittance::Sears),
-        },
+        &BuffetingProblem::of_section(
+            &structure,
+            &RationalModel::jones_flat_plate(),
+            None,
+            &turbulence(Admittance::Sears),
+        )
+        .unwrap(),
         45.0,
         0.02,
     );
@@ -164,22 +162,14 @@ fn domains_agree_within_the_sampling_error() {
 fn gusts_have_the_stated_variance() {
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
-    let problem = BuffetingProblem {
-        structure: &structure,
-        model: &jones,
-        forces: &GustForces::flat_plate(),
-        turbulence: &turbulence(Admittance::None),
-    };
+    let gusts = turbulence(Admittance::None);
+    let problem = BuffetingProblem::of_section(&structure, &jones, None, &gusts).unwrap();
     let variance = |series: &[f64]| series.iter().map(|x| x * x).sum::<f64>() / series.len() as f64;
-    let mut expected = [0.0; 2];
+    let expected = problem.expected_variance(40.0, 0.1, 6000);
     let variances: Vec<[f64; 2]> = (0..200)
         .map(|seed| {
-            let sample = synthesise(&problem, 40.0, 0.1, 6000, seed).unwrap();
-            expected = sample.expected_variance;
-            [
-                variance(sample.gusts.along_m_s()),
-                variance(sample.gusts.vertical_m_s()),
-            ]
+            let field = turbulence_field(&problem, 40.0, 0.1, 6000, seed).unwrap();
+            field.gusts.map(|rows| variance(&rows[0]))
         })
         .collect();
     let whole = [16.0, (0.06 * 40.0f64).powi(2)];
@@ -204,13 +194,9 @@ fn gusts_have_the_stated_variance() {
 fn records_repeat_with_their_seed_and_plans_are_checked() {
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
-    let problem = BuffetingProblem {
-        structure: &structure,
-        model: &jones,
-        forces: &GustForces::flat_plate(),
-        turbulence: &turbulence(Admittance::None),
-    };
-    let record = |seed| synthesise(&problem, 40.0, 0.1, 64, seed).unwrap();
+    let gusts = turbulence(Admittance::None);
+    let problem = BuffetingProblem::of_section(&structure, &jones, None, &gusts).unwrap();
+    let record = |seed| turbulence_field(&problem, 40.0, 0.1, 64, seed).unwrap();
     assert_eq!(record(3), record(3));
     assert_ne!(record(3), record(4));
     let plan = TimePlan {
@@ -221,7 +207,7 @@ fn records_repeat_with_their_seed_and_plans_are_checked() {
     assert!(message.to_string().contains("decay times"), "{message}");
     let message = time_ensemble(&problem, 80.0, &TimePlan::default(), &|_, _| ()).unwrap_err();
     assert!(matches!(message, Error::Unstable(_)), "{message}");
-    let message = buffeting_response(&problem, 80.0, None).unwrap_err();
+    let message = section_response(&problem, 80.0).unwrap_err();
     assert!(message.to_string().contains("2 growing roots"), "{message}");
-    assert!(synthesise(&problem, 40.0, 0.1, 63, 1).is_err());
+    assert!(turbulence_field(&problem, 40.0, 0.1, 63, 1).is_err());
 }

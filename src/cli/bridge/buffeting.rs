@@ -12,7 +12,7 @@ use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
 use crate::report::sections_page;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
-use crate::verdict::Verdict;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -81,17 +81,10 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     let file = args.bridge.text()?;
     let page = buffeting_page::page(&study, &file, &all)?;
     out.write(BUFFETING_PAGE, sections_page(&page)?)?;
-    let verdict = required(&study)?;
-    let json = serde_json::json!({
-        "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
-    });
     let folder = out.target("");
-    let answer = out.answer(
-        headline::stated(&study.file.name, verdict.as_ref()) + &text,
-        json,
-    )?;
+    let answer = judged(&study, &text, &results, |text, json| out.answer(text, json))?;
     page::renew(&folder, &file)?;
-    Ok(answer.with_outcome_of(verdict.as_ref()))
+    Ok(answer)
 }
 
 impl BridgeBuffetingArgs {
@@ -112,10 +105,20 @@ impl BridgeBuffetingArgs {
     }
 }
 
-/// The verdict on what the file requires: judged where it is stated, also beside a response to turbulence.
-fn required(study: &BridgeStudy) -> Result<Option<Verdict>> {
+/// The answer with the verdict on what the file requires: judged where it is stated, also beside a response to turbulence.
+fn judged(
+    study: &BridgeStudy,
+    text: &str,
+    results: &impl Serialize,
+    answer: impl FnOnce(String, serde_json::Value) -> Result<Answer>,
+) -> Result<Answer> {
     let required = study.file.flutter.required_speed_m_s;
-    required.map(|_| study.verdict()).transpose()
+    let verdict = required.map(|_| study.verdict()).transpose()?;
+    let json = serde_json::json!({
+        "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
+    });
+    let text = headline::stated(&study.file.name, verdict.as_ref()) + text;
+    Ok(answer(text, json)?.with_outcome_of(verdict.as_ref()))
 }
 
 /// The response to the turbulence of a file.
@@ -139,27 +142,28 @@ fn by_file(
         "RMS",
         "peak f."
     );
-    for (n, name) in found.nodes.iter().enumerate() {
-        for (i, motion) in MOTIONS.into_iter().enumerate() {
-            let (rms, peak) = (found.record.rms[n][i], found.record.peak_factor[n][i]);
-            let _ = writeln!(text, "{name:<8} {motion:<14} {rms:>12.5e} {peak:>8.3}");
-        }
-    }
-    let verdict = required(study)?;
-    let json = serde_json::json!({
-        "verdict": verdict, "buffeting": found, "notes": study.warnings(), "findings": study.findings
+    text += &rows(&found.nodes, |n, i| {
+        let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
+        format!("{rms:>12.5e} {peak:>8.3}")
     });
-    let answer = Answer::new(
-        headline::stated(&study.file.name, verdict.as_ref()) + &text,
-        &json,
-    )?;
-    Ok(answer.with_outcome_of(verdict.as_ref()))
+    judged(study, &text, &found, |text, json| Answer::new(text, &json))
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
 
+/// A line for each motion of each node, with what `of` says of them.
+fn rows(nodes: &[String], of: impl Fn(usize, usize) -> String) -> String {
+    let mut text = String::new();
+    for (n, name) in nodes.iter().enumerate() {
+        for (i, motion) in MOTIONS.into_iter().enumerate() {
+            let _ = writeln!(text, "{name:<8} {motion:<14} {}", of(n, i));
+        }
+    }
+    text
+}
+
 fn table(results: &BridgeBuffeting) -> String {
-    let mut text = format!(
+    let header = format!(
         "{:<8} {:<14} {:>12} {:>11} {:>8} {:>12} {:>11} {:>8} {:>12}\n",
         "node",
         "motion",
@@ -171,29 +175,21 @@ fn table(results: &BridgeBuffeting) -> String {
         "peak f.",
         "accel., /s²"
     );
-    for (n, name) in results.nodes.iter().enumerate() {
-        let at = results.frequency.nodes[n];
-        for (i, motion) in MOTIONS.into_iter().enumerate() {
-            let _ = write!(
-                text,
-                "{name:<8} {motion:<14} {:>12.5e} {:>11.4} {:>8.3}",
-                results.frequency.rms[n][i],
-                results.frequency.crossing_frequency_hz[n][i],
-                results.expected_peak_factor[n][i]
-            );
-            let _ = match &results.time {
-                Some(time) => write!(
-                    text,
-                    " {:>12.5e} {:>11.2e} {:>8.3}",
+    let frequency = &results.frequency;
+    header
+        + &rows(&results.nodes, |n, i| {
+            let (rms, hertz) = (frequency.rms[n][i], frequency.crossing_frequency_hz[n][i]);
+            let expected = results.expected_peak_factor[n][i];
+            let time = match &results.time {
+                Some(time) => format!(
+                    "{:>12.5e} {:>11.2e} {:>8.3}",
                     time.rms[n][i], time.standard_error[n][i], time.peak_factor[n][i]
                 ),
-                None => write!(text, " {:>12} {:>11} {:>8}", "-", "-", "-"),
+                None => format!("{:>12} {:>11} {:>8}", "-", "-", "-"),
             };
-            let acceleration = results.envelope.acceleration_rms[at][i];
-            let _ = writeln!(text, " {acceleration:>12.4e}");
-        }
-    }
-    text
+            let acceleration = results.envelope.acceleration_rms[frequency.nodes[n]][i];
+            format!("{rms:>12.5e} {hertz:>11.4} {expected:>8.3} {time} {acceleration:>12.4e}")
+        })
 }
 
 /// Which forces each domain takes, and how far that of the time domain leaves the answer.
@@ -250,9 +246,9 @@ fn spectra_csv(results: &BridgeBuffeting) -> String {
     }
     text.push('\n');
     let spectra = &results.spectra;
-    for (i, frequency) in spectra.frequencies_hz.iter().enumerate() {
+    for (i, frequency) in spectra.frequency_hz.iter().enumerate() {
         let _ = write!(text, "{frequency}");
-        for density in spectra.densities.iter().flatten() {
+        for density in &spectra.motion {
             let _ = write!(text, ",{:e}", density[i]);
         }
         text.push('\n');

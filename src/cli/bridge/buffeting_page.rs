@@ -2,7 +2,8 @@
 
 use crate::cli::report::folder::{digest, today};
 use crate::error::Result;
-use crate::report::{PageSection, SectionsPage, envelope_figure, span_spectra_figure};
+use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
+use crate::section::Dof;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
 
 /// Motions with their unit and the factor to it.
@@ -59,15 +60,15 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
             ]);
         }
     }
+    let envelope = envelope_figure(of, &format!("Along the span at {speed} m/s"))?;
+    let title = format!("Spectra at {speed} m/s");
+    let spectra = buffeting_spectra_figure(&title, &Dof::THREE, &of.nodes, &of.spectra)?;
     let figures = [
         (
-            "Mean, and mean ± expected peak, along the girder.".to_owned(),
-            envelope_figure(of, &format!("Along the span at {speed} m/s"))?,
+            "Mean, and mean ± expected peak, along the girder.",
+            envelope,
         ),
-        (
-            "Spectra of the displacements times the frequency.".to_owned(),
-            span_spectra_figure(of, &format!("Spectra at {speed} m/s"))?,
-        ),
+        ("Spectra of the displacements times the frequency.", spectra),
     ];
     let forces = of.envelope.section_forces.iter().map(|f| {
         let peak = f.peak_factor * f.rms;
@@ -99,7 +100,7 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
         rows,
         figures: figures
             .into_iter()
-            .map(|(caption, figure)| (caption, figure.svg().to_owned()))
+            .map(|(caption, figure)| (caption.to_owned(), figure.svg().to_owned()))
             .collect(),
     })
 }

@@ -2,12 +2,12 @@
 
 use super::BridgeStudy;
 use super::envelope::{SpanEnvelope, envelope};
-use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, motion_index};
 use crate::buffeting::{
-    Coherence, Gust, SpanEnsemble, SpanFrequency, SpanPlan, SpanProblem, SpanRecord, SpanResponse,
-    SpanSpectra, Turbulence, TurbulenceField, span_ensemble, span_record, turbulence_field,
+    BuffetingProblem, Coherence, FrequencyDomain, Gust, SpanEnsemble, SpanPlan, SpanRecord,
+    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, span_ensemble, span_record,
+    turbulence_field,
 };
 use crate::error::{Error, Result, positive};
 use crate::files::bridge::FieldTable;
@@ -57,7 +57,7 @@ pub struct BridgeBuffeting {
     pub expected_peak_factor: Vec<[f64; 3]>,
     /// Spectra of the nodes; too many numbers for the JSON of a command.
     #[serde(skip)]
-    pub spectra: SpanSpectra,
+    pub spectra: SpectrumCurve,
     /// Time domain, by models.
     pub time: Option<SpanEnsemble>,
     /// Why there is none in time.
@@ -83,16 +83,6 @@ impl ModelsBesideTables {
         all.filter(|c| c.2.is_finite())
             .max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))
     }
-}
-
-/// Response to turbulence of a file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BridgeRecord {
-    /// Names of the nodes.
-    pub nodes: Vec<String>,
-    /// Response of each.
-    #[serde(flatten)]
-    pub record: SpanRecord,
 }
 
 impl BridgeStudy {
@@ -142,25 +132,17 @@ impl BridgeStudy {
         self.section_of_group.iter().map(matrix).collect()
     }
 
-    /// The problem with models.
-    fn problem(&self, block: &BuffetingBlock) -> Result<SpanProblem<'_>> {
-        self.problem_of(&self.by_model, block)
-    }
-
-    fn problem_of<'a>(
-        &'a self,
-        bridge: &'a Bridge,
+    /// The problem with the forces of a bridge: by models, or by tables.
+    fn problem(
+        &self,
+        bridge: &Bridge,
         block: &BuffetingBlock,
-    ) -> Result<SpanProblem<'a>> {
-        Ok(SpanProblem {
-            bridge,
-            gust_matrices: self.gust_matrices()?,
-            turbulence: Turbulence {
-                along: block.along,
-                vertical: block.vertical,
-            },
-            coherence: block.coherence,
-        })
+    ) -> Result<BuffetingProblem<'static>> {
+        let turbulence = Turbulence {
+            along: block.along,
+            vertical: block.vertical,
+        };
+        BuffetingProblem::of_bridge(bridge, &self.gust_matrices()?, turbulence, block.coherence)
     }
 
     /// A field at the nodes of the bridge.
@@ -182,14 +164,16 @@ impl BridgeStudy {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<BridgeBuffeting> {
         let nodes = self.named(&block.nodes)?;
-        let models = self.problem(block)?;
-        let answering = self.by_table.as_ref().unwrap_or(&self.by_model);
-        let problem = self.problem_of(answering, block)?;
-        let tables = problem.bridge.forces().known_range();
+        let models = self.problem(&self.by_model, block)?;
+        let tables = self.by_table.as_ref();
+        let tables = tables.map(|bridge| self.problem(bridge, block));
+        let tables = tables.transpose()?;
+        let problem = tables.as_ref().unwrap_or(&models);
+        let known = problem.model().known_range();
         let of_frequencies = || -> Result<_> {
-            let domain = SpanFrequency::new(&problem, speed_m_s)?;
-            let frequency = domain.response(&nodes, tables.or_else(|| self.tested_range()))?;
-            let beside = self.by_table.is_some();
+            let domain = FrequencyDomain::new(problem, speed_m_s)?;
+            let frequency = domain.response(&nodes, known.or_else(|| self.tested_range()))?;
+            let beside = tables.is_some();
             let beside = beside.then(|| self.beside_tables(&models, &frequency));
             let spectra = domain.spectra(&nodes)?;
             let envelope = envelope(
@@ -214,7 +198,7 @@ impl BridgeStudy {
             Err(e) => return Err(e),
         };
         Ok(BridgeBuffeting {
-            nodes: self.names_of(&nodes),
+            nodes: problem.names_of(&nodes),
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
             envelope,
             spectra,
@@ -228,10 +212,10 @@ impl BridgeStudy {
     /// The models in the frequency domain, where the tables have given `answer`.
     fn beside_tables(
         &self,
-        problem: &SpanProblem<'_>,
+        problem: &BuffetingProblem<'_>,
         answer: &SpanResponse,
     ) -> Result<ModelsBesideTables> {
-        let response = match SpanFrequency::new(problem, answer.speed_m_s) {
+        let response = match FrequencyDomain::new(problem, answer.speed_m_s) {
             Ok(domain) => Some(domain.response(&answer.nodes, self.tested_range())?),
             Err(Error::Unstable(_)) => None,
             Err(e) => return Err(e),
@@ -251,11 +235,6 @@ impl BridgeStudy {
         })
     }
 
-    fn names_of(&self, nodes: &[usize]) -> Vec<String> {
-        let names = nodes.iter().map(|n| self.by_model.nodes[*n].name.clone());
-        names.collect()
-    }
-
     /// Response to the turbulence of a file, at the nodes of the bridge.
     ///
     /// # Errors
@@ -265,18 +244,15 @@ impl BridgeStudy {
         block: &BuffetingBlock,
         speed_m_s: f64,
         field: &FieldTable,
-    ) -> Result<BridgeRecord> {
+    ) -> Result<SpanRecord> {
         let field = self.at_nodes(field)?;
         let field = TurbulenceField {
             step_s: field.step_s,
             along_m: field.along_m,
             gusts: field.gusts,
         };
-        let places = self.named(&block.nodes)?;
-        Ok(BridgeRecord {
-            nodes: self.names_of(&places),
-            record: span_record(&self.problem(block)?, &places, speed_m_s, &field)?,
-        })
+        let problem = self.problem(&self.by_model, block)?;
+        span_record(&problem, &self.named(&block.nodes)?, speed_m_s, &field)
     }
 
     /// The turbulence of the first record.
@@ -287,7 +263,7 @@ impl BridgeStudy {
         let plan = &block.time;
         let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
         turbulence_field(
-            &self.problem(block)?,
+            &self.problem(&self.by_model, block)?,
             speed_m_s,
             plan.step_s,
             samples,

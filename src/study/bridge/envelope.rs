@@ -3,7 +3,7 @@
 use super::BridgeStudy;
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
-use crate::buffeting::{ModalCovariance, SpanFrequency, peak_factor};
+use crate::buffeting::{FrequencyDomain, ModalCovariance, peak_factor};
 use crate::error::{Error, Result};
 use crate::files::bridge::read_section_forces;
 use crate::flutter::static_deflection;
@@ -46,13 +46,13 @@ pub struct SectionForceResponse {
 /// The envelope of the bridge that answers; `forces` is the file of the section forces of the modes.
 pub(super) fn envelope(
     study: &BridgeStudy,
-    domain: &SpanFrequency<'_>,
+    domain: &FrequencyDomain<'_>,
     speed_m_s: f64,
     duration_s: f64,
     forces: Option<&Path>,
 ) -> Result<SpanEnvelope> {
     let covariance = ModalCovariance::new(domain)?;
-    let bridge = domain.bridge();
+    let bridge = study.by_table.as_ref().unwrap_or(&study.by_model);
     let nodes: Vec<usize> = (0..bridge.nodes.len()).collect();
     let shapes = bridge.shapes_at(&nodes);
     let moved = |n: &usize| -> [[f64; 3]; 3] {

@@ -4,12 +4,12 @@ mod verdict;
 
 use super::{QUASI_STEADY, WindStudy};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
-use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::{StaticEquilibrium, static_equilibria};
 use crate::buffeting::{
-    BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, GustComponent, GustForces,
-    TimePlan, buffeting_response, compare, response_spectrum, time_ensemble, unstable_roots,
+    BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, FrequencyDomain,
+    SpectrumCurve, compare, time_ensemble,
 };
 use crate::error::{Error, Result};
 use crate::files::derivatives::{TableWords, embedded, is_table_file};
@@ -24,6 +24,8 @@ const FLAT_PLATE: &str = "flat plate";
 const JONES: &str = "flat plate (Jones)";
 /// Frequencies of the spectra, over this range about the natural ones.
 const SPECTRUM_POINTS: usize = 600;
+/// Lines of a table at most.
+const TABLE_LINES: usize = 15;
 const SPECTRUM_REACH: (f64, f64) = (0.05, 8.0);
 
 /// Response to turbulence over wind speed.
@@ -49,6 +51,14 @@ pub(crate) struct BuffetingStudy {
     pub fit: Option<String>,
 }
 
+impl BuffetingStudy {
+    /// Responses for a table: at most fifteen, of finer lists of speeds every second, third, …
+    pub(crate) fn shown(&self) -> impl Iterator<Item = &BuffetingResponse> {
+        let every = self.responses.len().div_ceil(TABLE_LINES).max(1);
+        self.responses.iter().step_by(every)
+    }
+}
+
 /// A wind speed without a stationary response.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct SpeedLeftOut {
@@ -56,19 +66,6 @@ pub(crate) struct SpeedLeftOut {
     pub speed_m_s: f64,
     /// Why.
     pub reason: String,
-}
-
-/// Spectra at one wind speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct SpectrumCurve {
-    /// Mean wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Frequencies, Hz.
-    pub frequency_hz: Vec<f64>,
-    /// `S_u` and `S_w`, m²/s² per Hz; zero for a component that is left out.
-    pub gust: [Vec<f64>; 2],
-    /// Spectra of the displacements (n): m²/Hz, rad²/Hz.
-    pub motion: Vec<Vec<f64>>,
 }
 
 /// Both domains at one wind speed.
@@ -96,12 +93,6 @@ struct Setting<'a> {
     findings: Vec<Finding>,
 }
 
-/// Everything about one wind speed.
-struct ForcesAtSpeed {
-    moving: Option<Box<dyn Transfer>>,
-    forces: GustForces,
-}
-
 /// RMS over these mean wind speeds, m/s, spectra, and the time domain where it is asked for. `progress` gets records done and
 /// all of them.
 pub(crate) fn buffeting_study(
@@ -113,14 +104,28 @@ pub(crate) fn buffeting_study(
     let mut responses = Vec::new();
     let mut left_out = Vec::new();
     for speed in speeds_m_s {
-        responses.extend(setting.answered(*speed, &mut left_out)?);
+        responses.extend(answered(*speed, setting.response(*speed), &mut left_out)?);
     }
     // the same test for the speeds of the time domain, in which an unstable section would only grow
     let mut timed = Vec::new();
     for speed in &study.time.speeds_m_s {
-        timed.extend(setting.answered(*speed, &mut left_out)?);
+        timed.extend(answered(*speed, setting.response(*speed), &mut left_out)?);
     }
-    let time = setting.time(&timed, progress, &mut left_out)?;
+    let records = study.time.plan.records;
+    let mut time = Vec::with_capacity(timed.len());
+    for (i, response) in timed.iter().enumerate() {
+        let of_all = |done: usize, _: usize| progress(i * records + done, timed.len() * records);
+        let domains = setting
+            .both_domains(response, &of_all)
+            .map_err(|e| match e {
+                // the table knows of no growth at this speed
+                Error::Unstable(why) if setting.fitted.is_some() => Error::Unstable(format!(
+                    "no time domain, the model fitted to the table grows: {why}"
+                )),
+                other => other,
+            });
+        time.extend(answered(response.speed_m_s, domains, &mut left_out)?);
+    }
     left_out.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
     left_out.dedup_by(|a, b| a.speed_m_s == b.speed_m_s);
     let mut of_spectra: Vec<f64> = timed.iter().map(|r| r.speed_m_s).collect();
@@ -142,6 +147,21 @@ pub(crate) fn buffeting_study(
         time,
         fit: setting.fitted.map(|(_, how)| how),
     })
+}
+
+/// What was found at a speed, unless nothing is stationary there, which is noted.
+fn answered<T>(
+    speed_m_s: f64,
+    found: Result<T>,
+    left_out: &mut Vec<SpeedLeftOut>,
+) -> Result<Option<T>> {
+    match found {
+        Err(Error::Unstable(reason)) => {
+            left_out.push(SpeedLeftOut { speed_m_s, reason });
+            Ok(None)
+        }
+        found => found.map(Some),
+    }
 }
 
 impl<'a> Setting<'a> {
@@ -212,34 +232,24 @@ impl<'a> Setting<'a> {
         Ok(())
     }
 
-    /// The forces at one speed: gust forces about the equilibrium with quasi-steady theory, else at rotation zero; without
-    /// coefficients those of the thin plate. The inner error says that there is no equilibrium.
-    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<ForcesAtSpeed, String>> {
+    /// Quasi-steady theory at one speed, where there are coefficients: about the equilibrium, where it is the self-excited forces as
+    /// well, else at rotation zero.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] where there is no equilibrium.
+    fn at(&self, speed_m_s: f64) -> Result<Option<LinearQuasiSteady>> {
         let Some(theory) = &self.theory else {
-            return Ok(Ok(ForcesAtSpeed {
-                moving: None,
-                forces: GustForces::flat_plate(),
-            }));
+            return Ok(None);
         };
         if self.fixed.is_some() {
-            let forces = GustForces::quasi_steady(&theory.linearised(0.0)?);
-            return Ok(Ok(ForcesAtSpeed {
-                moving: None,
-                forces,
-            }));
+            return theory.linearised(0.0).map(Some);
         }
         let path = static_equilibria(&self.structure, theory, &[speed_m_s])?;
-        let Some(point) = path.points.first() else {
-            let why = path
-                .end
-                .map_or("no equilibrium".to_owned(), |e| e.explain());
-            return Ok(Err(why));
-        };
-        let linear = theory.linearised(point.rotation_rad)?;
-        Ok(Ok(ForcesAtSpeed {
-            forces: GustForces::quasi_steady(&linear),
-            moving: Some(Box::new(linear)),
-        }))
+        let none = || path.end.map(|end| end.explain());
+        let point = path.points.first().ok_or_else(|| {
+            Error::Unstable(none().unwrap_or_else(|| "no equilibrium".to_owned()))
+        })?;
+        theory.linearised(point.rotation_rad).map(Some)
     }
 
     /// About which the responses are.
@@ -254,149 +264,79 @@ impl<'a> Setting<'a> {
         responses.iter().flat_map(at).collect()
     }
 
-    /// The problem of the frequency domain.
-    fn problem<'b>(&'b self, at: &'b ForcesAtSpeed) -> Result<BuffetingProblem<'b>> {
-        self.problem_of(at.moving.as_deref().or(self.fixed.as_deref()), at)
-    }
-
-    fn problem_of<'b>(
+    /// The problem with the forces of the file, or with a model fitted to them.
+    fn problem<'b>(
         &'b self,
-        model: Option<&'b dyn Transfer>,
-        at: &'b ForcesAtSpeed,
+        fitted: Option<&'b dyn Transfer>,
+        at: Option<&'b LinearQuasiSteady>,
     ) -> Result<BuffetingProblem<'b>> {
+        let moving = at.map(|linear| linear as &dyn Transfer);
+        let model = fitted.or(self.fixed.as_deref()).or(moving);
         let turbulence = self.study.turbulence.as_ref();
-        Ok(BuffetingProblem {
-            structure: &self.structure,
-            model: model.ok_or_else(|| Error::input("aerodynamics", "a model", "none"))?,
-            forces: &at.forces,
-            turbulence: turbulence
+        BuffetingProblem::of_section(
+            &self.structure,
+            model.ok_or_else(|| Error::input("aerodynamics", "a model", "none"))?,
+            at,
+            turbulence
                 .ok_or_else(|| Error::input("turbulence", "`along`, `vertical` or both", "none"))?,
-        })
+        )
     }
 
-    /// The response, or why there is none.
-    fn response(&self, speed: f64) -> Result<std::result::Result<BuffetingResponse, String>> {
-        let at = match self.at(speed)? {
-            Ok(at) => at,
-            Err(why) => return Ok(Err(why)),
-        };
-        let problem = self.problem(&at)?;
-        problem.validate()?;
-        let unstable = match unstable_roots(&problem, speed) {
+    /// The response.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] where none is stationary.
+    fn response(&self, speed: f64) -> Result<BuffetingResponse> {
+        let at = self.at(speed)?;
+        let problem = self.problem(None, at.as_ref())?;
+        let domain = FrequencyDomain::turned(&problem, speed).map_err(|e| match e {
             // at an onset itself nothing can be told, which is no reason to end the other speeds
-            Err(Error::Numerical(why)) => return Ok(Err(why)),
-            other => other?,
-        };
-        if unstable > 0 {
-            return Ok(Err(format!(
+            Error::Numerical(why) => Error::Unstable(why),
+            other => other,
+        })?;
+        match domain.growing() {
+            0 => domain.section_response(self.tested),
+            unstable => Err(Error::Unstable(format!(
                 "the section is unstable ({unstable} growing roots): no stationary response"
-            )));
+            ))),
         }
-        buffeting_response(&problem, speed, self.tested).map(Ok)
     }
 
-    /// The response, unless there is none, which is noted.
-    fn answered(
-        &self,
-        speed_m_s: f64,
-        left_out: &mut Vec<SpeedLeftOut>,
-    ) -> Result<Option<BuffetingResponse>> {
-        Ok(match self.response(speed_m_s)? {
-            Ok(response) => Some(response),
-            Err(reason) => {
-                left_out.push(SpeedLeftOut { speed_m_s, reason });
-                None
-            }
-        })
-    }
-
-    /// The forces at a speed that was asked for by name.
-    fn required(&self, speed: f64) -> Result<ForcesAtSpeed> {
-        self.at(speed)?
-            .map_err(|why| Error::Numerical(format!("buffeting at {speed} m/s: {why}")))
-    }
-
-    fn time(
-        &self,
-        responses: &[BuffetingResponse],
-        progress: &(dyn Fn(usize, usize) + Sync),
-        left_out: &mut Vec<SpeedLeftOut>,
-    ) -> Result<Vec<TimeDomain>> {
-        let plan = &self.study.time.plan;
-        let all = responses.len() * plan.records;
-        let mut found = Vec::with_capacity(responses.len());
-        for (i, response) in responses.iter().enumerate() {
-            let of_all = |done: usize, _: usize| progress(i * plan.records + done, all);
-            match self.both_domains(response, plan, &of_all) {
-                Ok(domain) => found.push(domain),
-                // the table knows of no growth at this speed
-                Err(Error::Unstable(why)) if self.fitted.is_some() => left_out.push(SpeedLeftOut {
-                    speed_m_s: response.speed_m_s,
-                    reason: format!("no time domain, the model fitted to the table grows: {why}"),
-                }),
-                Err(e) => return Err(e),
-            }
-        }
-        Ok(found)
-    }
-
+    /// The records of a speed, beside its response.
     fn both_domains(
         &self,
         frequency: &BuffetingResponse,
-        plan: &TimePlan,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<TimeDomain> {
         let speed = frequency.speed_m_s;
-        let at = self.required(speed)?;
-        let (problem, model_change) = match &self.fitted {
-            None => (self.problem(&at)?, None),
-            Some((model, _)) => {
-                let problem = self.problem_of(Some(model.as_ref()), &at)?;
-                let by_model = buffeting_response(&problem, speed, self.tested)?;
-                let both = by_model.rms.iter().zip(&frequency.rms);
-                (problem, Some(both.map(|(m, t)| m / t - 1.0).collect()))
-            }
-        };
-        let ensemble = time_ensemble(&problem, speed, plan, progress)?;
+        let at = self.at(speed)?;
+        let fitted = self.fitted.as_ref().map(|(model, _)| model.as_ref());
+        let problem = self.problem(fitted, at.as_ref())?;
+        let by_model = fitted
+            .map(|_| FrequencyDomain::new(&problem, speed)?.section_response(self.tested))
+            .transpose()?;
+        let ensemble = time_ensemble(&problem, speed, &self.study.time.plan, progress)?;
         Ok(TimeDomain {
             comparison: compare(&self.structure.dofs, frequency, &ensemble),
             ensemble,
-            model_change,
+            model_change: by_model.map(|by_model| {
+                let both = by_model.rms.iter().zip(&frequency.rms);
+                both.map(|(m, t)| m / t - 1.0).collect()
+            }),
         })
     }
 
     fn spectra(&self, speed: f64) -> Result<SpectrumCurve> {
-        let at = self.required(speed)?;
-        let problem = self.problem(&at)?;
+        let at = self.at(speed)?;
         let still_air_hz = || self.structure.still_air_rad_s().map(|w| w / TAU);
         let low = still_air_hz().fold(f64::INFINITY, f64::min);
         let high = still_air_hz().fold(0.0, f64::max);
         let (low, high) = (low * SPECTRUM_REACH.0, high * SPECTRUM_REACH.1);
         let last = (SPECTRUM_POINTS - 1) as f64;
-        let frequency_hz: Vec<f64> = (0..SPECTRUM_POINTS)
+        let frequencies = (0..SPECTRUM_POINTS)
             .map(|i| low * (high / low).powf(i as f64 / last))
             .collect();
-        let gust = GustComponent::BOTH.map(|component| {
-            let density = |f: &f64| {
-                problem
-                    .turbulence
-                    .component(component)
-                    .map_or(0.0, |gust| gust.spectrum.density(component, *f, speed))
-            };
-            frequency_hz.iter().map(density).collect()
-        });
-        let rows = frequency_hz
-            .iter()
-            .map(|f| response_spectrum(&problem, *f, speed))
-            .collect::<Result<Vec<_>>>()?;
-        let motion = (0..self.structure.dofs.len())
-            .map(|i| rows.iter().map(|row| row[i]).collect())
-            .collect();
-        Ok(SpectrumCurve {
-            speed_m_s: speed,
-            frequency_hz,
-            gust,
-            motion,
-        })
+        let problem = self.problem(None, at.as_ref())?;
+        problem.spectra_over(frequencies, speed, &[0])
     }
 }

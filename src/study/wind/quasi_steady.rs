@@ -6,7 +6,7 @@ use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt, LinearQu
 use crate::aeroelastic::{
     CoupledSection, EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria,
 };
-use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
+use crate::buffeting::{BuffetingProblem, turbulence_field};
 use crate::error::{Error, Result};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
@@ -194,23 +194,13 @@ fn gusts(
     let Some(turbulence) = &study.turbulence else {
         return GustSeries::calm(run.duration_s + run.step_s);
     };
-    let forces = GustForces::quasi_steady(linear);
-    let problem = BuffetingProblem {
-        structure,
-        model: linear,
-        forces: &forces,
-        turbulence,
-    };
+    let problem = BuffetingProblem::of_section(structure, linear, Some(linear), turbulence)?;
     // an even number of samples that reaches beyond the end
     let samples = 2 * (0.5 * run.duration_s / run.step_s).ceil() as usize + 2;
-    let sample = synthesise(
-        &problem,
-        run.wind_speed_m_s,
-        run.step_s,
-        samples.max(16),
-        run.seed,
-    )?;
-    Ok(sample.gusts)
+    let (speed, step_s) = (run.wind_speed_m_s, run.step_s);
+    let field = turbulence_field(&problem, speed, step_s, samples.max(16), run.seed)?;
+    let [along, vertical] = field.gusts.map(|rows| rows.concat());
+    GustSeries::new(step_s, along, vertical)
 }
 
 /// Motion about the equilibrium under linear forces and gusts on straight lines, by exact steps.

@@ -1,7 +1,7 @@
 //! Covariances of all modal coordinates in turbulence, from which follows everything that is linear in them: motion and
 //! accelerations along the whole span, section forces.
 
-use super::SpanFrequency;
+use super::frequency::FrequencyDomain;
 use crate::error::Result;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
@@ -24,8 +24,8 @@ impl ModalCovariance {
     ///
     /// # Errors
     /// Those of the spectra.
-    pub(crate) fn new(domain: &SpanFrequency<'_>) -> Result<Self> {
-        let count = domain.bridge().coordinates();
+    pub(crate) fn new(domain: &FrequencyDomain<'_>) -> Result<Self> {
+        let count = domain.problem.structure.dofs.len();
         let unit = DMatrix::<Complex<f64>>::identity(count, count);
         let zero =
             || -> [DMatrix<f64>; 3] { std::array::from_fn(|_| DMatrix::zeros(count, count)) };
@@ -72,15 +72,16 @@ impl ModalCovariance {
 /// Real part of the one-sided spectra of the modal coordinates: with `w_n` the answer of all modes to a gust at node `n`,
 /// `Σ_nn' w_nᴴ C_nn' w_n'`, in one pass along the span.
 fn spectrum(
-    domain: &SpanFrequency<'_>,
+    domain: &FrequencyDomain<'_>,
     frequency: f64,
     unit: &DMatrix<Complex<f64>>,
 ) -> Result<DMatrix<f64>> {
     let count = unit.nrows();
-    let parts = domain.parts_of_rows(frequency, unit)?;
+    let (problem, speed) = (domain.problem, domain.speed_m_s);
+    let parts = problem.parts_of_rows(frequency, speed, unit)?;
     let mut total = DMatrix::zeros(count, count);
-    for gust in domain.gusts_at(frequency) {
-        let answers = gust.forces * &parts;
+    for gust in problem.gusts_at(frequency, speed) {
+        let answers = &problem.gust_forces[gust.component as usize] * &parts;
         let nodes = answers.nrows();
         // real parts above, imaginary ones below, so that one product adds both
         let mut own = DMatrix::zeros(2 * nodes, count);

@@ -11,17 +11,18 @@
 //! the transform of the `N` matrices `C Φⁿ (I − Φᴺ)⁻¹ (B₀ + Φ B₁)`, which are products of a few `C Φⁱ` with a few `Φ^{sj} …`: no record
 //! is stepped.
 
-use super::field::{check, coefficients};
-use super::{SpanProblem, TurbulenceField};
+use super::problem::BuffetingProblem;
+use super::response::by_node;
+use super::spectrum::GustComponent;
+use super::synthesis::{TurbulenceField, parts_in_time};
+use super::time::{all_records, root_and_error};
 use crate::aeroelastic::CoupledSection;
-use crate::buffeting::spectrum::GustComponent;
 use crate::error::{Error, Result, counted, positive};
 use crate::signal::Fourier;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How many records, how long, how fine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -68,6 +69,8 @@ pub struct SpanEnsemble {
 /// Response of named nodes to one field: vertical, lateral (m), rotation (rad).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpanRecord {
+    /// Names of the nodes.
+    pub nodes: Vec<String>,
     /// Mean wind speed, m/s.
     pub speed_m_s: f64,
     /// Root mean square about the mean over the record.
@@ -82,13 +85,12 @@ pub struct SpanRecord {
 /// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
 /// unstable at this speed.
 pub fn span_record(
-    problem: &SpanProblem<'_>,
+    problem: &BuffetingProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
     field: &TurbulenceField,
 ) -> Result<SpanRecord> {
-    problem.validate(speed_m_s)?;
-    let (count, samples) = (problem.bridge.nodes.len(), field.samples());
+    let (count, samples) = (problem.nodes.len(), field.samples());
     let fits =
         |rows: &Vec<Vec<f64>>| rows.len() == count && rows.iter().all(|r| r.len() == samples);
     if samples < 2 || !field.gusts.iter().all(fits) {
@@ -107,15 +109,11 @@ pub fn span_record(
         let rows = field.gusts[component as usize].par_iter();
         rows.map(|row| bridge.amplitudes(row)).collect()
     });
-    let list = |of: fn(&(f64, f64)) -> f64| -> Vec<[f64; 3]> {
-        (0..nodes.len())
-            .map(|n| std::array::from_fn(|i| of(&found[3 * n + i])))
-            .collect()
-    };
     Ok(SpanRecord {
+        nodes: problem.names_of(nodes),
         speed_m_s,
-        rms: list(|r| r.0.sqrt()),
-        peak_factor: list(|r| r.1 / r.0.sqrt()),
+        rms: by_node(nodes.len(), |row| found[row].0.sqrt()),
+        peak_factor: by_node(nodes.len(), |row| found[row].1 / found[row].0.sqrt()),
     })
 }
 
@@ -125,35 +123,23 @@ pub fn span_record(
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
 /// at this speed.
 pub(crate) fn span_ensemble(
-    problem: &SpanProblem<'_>,
+    problem: &BuffetingProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
     plan: &SpanPlan,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<SpanEnsemble> {
-    problem.validate(speed_m_s)?;
     let (duration, step) = (plan.duration_s, plan.step_s);
     positive("duration_s", duration)?;
     positive("step_s", step)?;
-    if plan.records < 2 {
-        return Err(Error::input(
-            "records",
-            "at least 2",
-            plan.records.to_string(),
-        ));
-    }
     let samples = 2 * (0.5 * duration / step).round() as usize;
-    check(problem, speed_m_s, step, samples)?;
+    problem.check_record(speed_m_s, step, samples)?;
     let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, step, samples)?;
-    let done = AtomicUsize::new(0);
-    let record = |i: usize| {
-        let seed = plan.seed.wrapping_add(i as u64);
-        let run = bridge
-            .run(|component| coefficients(problem, component, speed_m_s, step, samples, seed));
-        progress(1 + done.fetch_add(1, Ordering::Relaxed), plan.records);
-        run
+    let record = |seed: u64| {
+        let gusts = |component| problem.coefficients(component, speed_m_s, step, samples, seed);
+        Ok(bridge.run(gusts))
     };
-    let runs: Vec<Run> = (0..plan.records).into_par_iter().map(record).collect();
+    let runs = all_records(plan.records, plan.seed, progress, record)?;
     Ok(gathered(speed_m_s, plan, nodes, &runs))
 }
 
@@ -162,7 +148,7 @@ type Run = Vec<(f64, f64)>;
 
 /// A stable bridge that is driven by gusts of one period.
 struct PeriodicBridge<'a> {
-    problem: &'a SpanProblem<'a>,
+    problem: &'a BuffetingProblem<'a>,
     speed_m_s: f64,
     step_s: f64,
     fourier: Fourier,
@@ -174,14 +160,14 @@ struct PeriodicBridge<'a> {
 
 impl<'a> PeriodicBridge<'a> {
     fn new(
-        problem: &'a SpanProblem<'a>,
+        problem: &'a BuffetingProblem<'a>,
         nodes: &[usize],
         speed_m_s: f64,
         step_s: f64,
         samples: usize,
     ) -> Result<Self> {
-        let coupled = problem.coupled(speed_m_s)?;
-        let shapes = problem.bridge.shapes_at(nodes);
+        let (coupled, _) = problem.coupled(speed_m_s)?;
+        let shapes = problem.shapes_at(nodes);
         let fourier = Fourier::new(samples);
         let (rows, modes) = shapes.shape();
         let (motions, of_motions) = match rows > modes {
@@ -215,7 +201,7 @@ impl<'a> PeriodicBridge<'a> {
     /// What the rows do in gusts, of which a row per node is made for each component.
     fn run(&self, gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>) -> Run {
         let samples = self.fourier.length();
-        let forces = self.modal_forces(gusts);
+        let forces = (self.problem).forces(self.speed_m_s, self.step_s, samples, gusts);
         let (motions, rows) = self.of_motions.shape();
         // real and imaginary parts one after the other, as those of the forces
         let mut parts = DMatrix::<f64>::zeros(forces.nrows(), motions);
@@ -231,56 +217,13 @@ impl<'a> PeriodicBridge<'a> {
         }
         let row = |row: usize| {
             let column = &parts * self.of_motions.column(row);
-            let pairs = column.as_slice().chunks_exact(2);
-            let mut spectrum: Vec<_> = pairs.map(|z| Complex::new(z[0], z[1])).collect();
-            spectrum.resize(samples, Complex::default());
-            let values = self.fourier.sums(spectrum);
+            let values = parts_in_time(&self.fourier, column.as_slice());
             let mean = values.iter().sum::<f64>() / samples as f64;
             let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples as f64;
             let peak = values.iter().map(|x| (x - mean).abs()).fold(0.0, f64::max);
             (square, peak)
         };
         (0..rows).map(row).collect()
-    }
-
-    /// Forces on the mass-normalised modes, one column each, real and imaginary parts of every frequency one after the other; the
-    /// admittance is exact at each.
-    fn modal_forces(
-        &self,
-        gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>,
-    ) -> DMatrix<f64> {
-        let (problem, speed) = (self.problem, self.speed_m_s);
-        let bridge = problem.bridge;
-        let frequencies = self.fourier.length() / 2 + 1;
-        let width_hz = 1.0 / (self.fourier.length() as f64 * self.step_s);
-        let mut forces = DMatrix::zeros(2 * frequencies, bridge.coordinates());
-        for component in GustComponent::BOTH {
-            let Some(gust) = problem.turbulence.component(component) else {
-                continue;
-            };
-            let rows = gusts(component);
-            // long gusts of the same forces
-            let mut long = DMatrix::<f64>::zeros(2 * frequencies, bridge.nodes.len());
-            for group in problem.blown() {
-                let factor = |k| problem.admittance(gust, group, k as f64 * width_hz, speed);
-                let factors: Vec<Complex<f64>> = (0..frequencies).map(factor).collect();
-                for &n in &group.nodes {
-                    let mut column = long.column_mut(n);
-                    let parts = column.as_mut_slice().chunks_exact_mut(2);
-                    for ((part, x), factor) in parts.zip(&rows[n]).zip(&factors) {
-                        let force = factor * x;
-                        (part[0], part[1]) = (force.re, force.im);
-                    }
-                }
-            }
-            forces.gemm(
-                1.0,
-                &long,
-                &problem.force_of_long_gusts(component, speed),
-                1.0,
-            );
-        }
-        forces
     }
 }
 
@@ -354,19 +297,14 @@ fn power(matrix: &DMatrix<f64>, exponent: usize) -> DMatrix<f64> {
 }
 
 fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> SpanEnsemble {
-    let count = runs.len() as f64;
     let of = |row: usize| {
-        let mean = runs.iter().map(|r| r[row].0).sum::<f64>() / count;
-        let scatter = runs.iter().map(|r| (r[row].0 - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        let rms = mean.sqrt();
-        let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / count;
-        [rms, (scatter / count).sqrt() / (2.0 * rms), peak / rms]
+        let squares: Vec<f64> = runs.iter().map(|r| r[row].0).collect();
+        let (rms, error) = root_and_error(&squares);
+        let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / runs.len() as f64;
+        [rms, error, peak / rms]
     };
-    let list = |which: usize| -> Vec<[f64; 3]> {
-        (0..nodes.len())
-            .map(|n| std::array::from_fn(|i| of(3 * n + i)[which]))
-            .collect()
-    };
+    let each: Vec<[f64; 3]> = (0..3 * nodes.len()).map(of).collect();
+    let list = |which: usize| by_node(nodes.len(), |row| each[row][which]);
     SpanEnsemble {
         speed_m_s,
         plan: *plan,
