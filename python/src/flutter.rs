@@ -108,7 +108,7 @@ pub fn flutter(
     Onset::new(&found, method, &against(evidence, of_deck))
 }
 
-/// What is known of a section in the forces of a trained model.
+/// Evidence for the verdict on a section in the forces of a trained model.
 fn model_evidence(
     section: &SectionModel,
     model: &Model,

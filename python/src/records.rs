@@ -183,7 +183,7 @@ impl Records {
         Ok((time, array(&record.motion)?, array(&record.force)?))
     }
 
-    /// What is known of a record besides its samples.
+    /// Run, section, air, wind speed and sampling of a record: everything but its samples.
     fn header<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.get(index)?.header)
     }

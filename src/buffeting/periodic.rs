@@ -227,7 +227,7 @@ impl<'a> PeriodicBridge<'a> {
     }
 }
 
-/// See the module: for each mode what its force does to the rows of `shapes`.
+/// Transfer of a coupled bridge, for each mode what its force does to the rows of `shapes`.
 fn transfer(
     coupled: &CoupledSection,
     shapes: &DMatrix<f64>,

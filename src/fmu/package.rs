@@ -62,7 +62,7 @@ pub struct Export {
     pub gusts: Option<GustForce>,
     /// 95 % interval of the onset of the section, where it is known.
     pub bounds: Option<OnsetBounds>,
-    /// What is known of the section, for the page that documents it; without, what its own searches say.
+    /// Verdict on the section, for the page that documents it; without, what its own searches say.
     pub verdict: Option<Verdict>,
     /// Which variables its description lists.
     pub listing: Listing,
@@ -174,7 +174,7 @@ pub struct BridgeExport {
     pub bridge: BridgeOptions,
     /// Turbulence that blows on it.
     pub turbulence: Option<TurbulenceOptions>,
-    /// What is known of the bridge, for the page that documents it; `None` where nothing was judged.
+    /// Verdict on the bridge, for the page that documents it; `None` where nothing was judged.
     pub verdict: Option<Verdict>,
     /// Which variables its description lists.
     pub listing: Listing,

@@ -45,7 +45,7 @@ use judgement::Judgement;
 use sentences::{explanation, headline};
 use serde::{Deserialize, Serialize};
 
-/// What is known of the safety of a structure in the wind, in one value.
+/// Safety of a structure in the wind, in one value: outcome, critical speed and every doubt.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// The answer in one line; begins with the outcome where a speed is required.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Speeds below the onset, as parts of it, at which the damping of all modes is compared with that of the search.
 pub(super) const COMPARED_AT: [f64; 2] = [0.6, 0.85];
 
-/// See the module.
+/// A point next to the onset from which its search can start: wind speed, frequency, and the damping of all modes below it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnsetStart {

@@ -8,7 +8,7 @@ use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
-/// See the module.
+/// Forces of a model, each entry multiplied by a factor.
 pub(super) struct Scaled {
     dofs: Vec<Dof>,
     realization: Realization,

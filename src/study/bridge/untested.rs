@@ -12,7 +12,7 @@ use crate::verdict::{ModesLeftOut, UntestedPart, UntestedParts};
 const IN_NO_SECTION: &str = "nodes in no section";
 
 impl BridgeStudy {
-    /// See the module; `None` where every part was tested, or none: then the whole answer is in doubt.
+    /// Parts of the onset's energy that nothing was tested for; `None` where every part was tested, or none: then the whole answer is in doubt.
     ///
     /// # Errors
     /// As [`find_onset`].

@@ -82,7 +82,7 @@ impl StableRange {
     }
 }
 
-/// What is known of motions that are faster than every test, so that slower wind than any test is known to be harmless or not.
+/// Motions faster than every test: whether the forces damp them, so that slower wind than any test is harmless or not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FastMotion {
     /// The forces of the fit take energy out of each of them.
@@ -100,7 +100,7 @@ pub struct TestedFrom {
     pub speed_m_s: f64,
     /// Its branch.
     pub branch: String,
-    /// What is known of it at lower speeds.
+    /// Motions at lower speeds than any test.
     pub below: FastMotion,
 }
 

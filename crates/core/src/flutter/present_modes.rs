@@ -40,7 +40,7 @@ const MOST_DISTANCES: usize = 200;
 /// What is left of a turn at the ends, rad, where it has to be none.
 const AT_THE_ENDS: f64 = 0.5;
 
-/// See the module.
+/// Modes of a bridge at the present wind speed, followed from the last one.
 #[derive(Debug)]
 pub struct PresentModes {
     problem: Arc<ModalCharacteristic>,

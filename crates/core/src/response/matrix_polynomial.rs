@@ -19,7 +19,7 @@ pub(super) fn terms_of_exponential(norm: f64) -> usize {
     terms
 }
 
-/// See the module.
+/// A matrix as a polynomial of one number, such as the wind speed or the duration of a step.
 #[derive(Debug, Clone)]
 pub(super) struct MatrixPolynomial {
     /// By the power, from the lowest on.

@@ -26,7 +26,7 @@ use nalgebra::DMatrix;
 /// Numbers of the state that all strips share: points known, wind at the newest, times of the points.
 const SHARED: usize = 2 + POINTS;
 
-/// What is known of the motion of one coordinate at a point of time.
+/// Motion of one coordinate at a point of time, as far as it is given.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct KnownMotion {
     /// Displacement (m or rad), rate, acceleration.

@@ -6,7 +6,7 @@ use super::speed_scatter::Effect;
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
-/// See the module.
+/// An estimate of the coefficients with the data that it was made from.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct UncertaintyWithData {
     estimates: CoefficientUncertainty,

@@ -16,7 +16,7 @@ pub struct Segment {
     pub end_s: f64,
 }
 
-/// What is known of a record besides its samples.
+/// Run, section, air, wind speed and sampling of a record: everything but its samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordHeader {
@@ -52,7 +52,7 @@ pub struct RecordBlock<'a> {
 
 /// Something that yields a record block by block, as often as asked, in bounded memory.
 pub trait RecordSource: Sync {
-    /// What is known of the record.
+    /// Everything but the samples.
     fn header(&self) -> &RecordHeader;
 
     /// Calls `f` with consecutive blocks from the first sample to the last.
@@ -76,7 +76,7 @@ pub trait RecordSource: Sync {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// What is known besides the samples.
+    /// Everything but the samples.
     pub header: RecordHeader,
     /// Motion, one vector per degree of freedom: m, rad.
     pub motion: Vec<Vec<f64>>,

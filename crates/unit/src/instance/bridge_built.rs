@@ -14,7 +14,7 @@ const MAX_PIECES: f64 = 1e4;
 /// Part of a step that is not worth a piece of its own.
 const LAST_PIECE: f64 = 1e-9;
 
-/// See the module.
+/// A bridge with the parameters of its FMU: its stepper, the search for its onset and its present modes.
 #[derive(Debug)]
 pub(super) struct Built {
     pub bridge: Bridge,

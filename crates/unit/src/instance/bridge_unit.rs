@@ -23,7 +23,7 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::variables::{LINEAR_ROTATION_RAD, ModeOutput, Response, Role};
 use nalgebra::DMatrix;
 
-/// See the module.
+/// A bridge in its modes: its variables, and what has been said of the parameters as they are.
 #[derive(Debug)]
 pub(super) struct ModalBridge {
     /// Motions and modes: indices, and what they stand for.

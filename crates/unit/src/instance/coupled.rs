@@ -185,7 +185,7 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     fn write_outputs(unit: &Coupled<Self>, memory: &mut Memory);
 }
 
-/// See the module.
+/// A structure coupled with its self-excited forces, rebuilt when parameters change.
 #[derive(Debug)]
 pub(super) struct Coupled<S: CoupledKind> {
     pub own: S,

@@ -7,7 +7,7 @@ use crate::response::{Inputs, Stepper};
 use crate::state_space::{RepeatedEigenvalues, damping_ratio};
 use nalgebra::{Complex, DMatrix};
 
-/// What is known of it; made anew, as [`Default`] is, where the system is.
+/// Damping of the present modes with room for its computation; made anew, as [`Default`] is, where the system is.
 #[derive(Debug, Default)]
 pub(super) struct PresentDamping {
     way: Option<Way>,

@@ -27,7 +27,7 @@ pub(super) const SET: f64 = 1.0;
 /// A rate by the derivative of the input below it.
 pub(super) const SET_AS_DERIVATIVE: f64 = 2.0;
 
-/// See the module. The state is the time from the newest motion to the instant of the forces (s), how each number of
+/// Self-excited forces on strips whose motion the importer gives. The state is the time from the newest motion to the instant of the forces (s), how each number of
 /// the motion has been set since, then the state of the forces, of the strips of one model after those of another.
 #[derive(Debug)]
 pub(super) struct ForceUnit {

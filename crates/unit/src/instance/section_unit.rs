@@ -23,7 +23,7 @@ const GROWTH_SEARCHES: usize = 32;
 /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
 type ResponseIndices = Vec<[usize; 4]>;
 
-/// What is known of the inputs.
+/// Whether the loaded inputs are those of the memory, and whether a step can be repeated with them.
 #[derive(Debug, Clone, Copy)]
 enum LoadedInputs {
     /// Those of the memory may be others.
@@ -34,7 +34,7 @@ enum LoadedInputs {
     Repeatable(RepeatableStep),
 }
 
-/// See the module.
+/// A suspended section: its forces, and what has been looked for and said with the parameters as they are.
 #[derive(Debug)]
 pub(super) struct SuspendedSection {
     responses: ResponseIndices,

@@ -131,7 +131,7 @@ pub(super) trait Prepared: Unit {
     }
 }
 
-/// What is known of the present, and of how a unit changes, in time and with its inputs, states and parameters.
+/// Numbers of the present moment, and derivatives of a unit in time and with respect to inputs, states and parameters.
 pub(super) trait Differentiable: Prepared {
     /// First time derivatives of these outputs, per second.
     ///

@@ -48,7 +48,7 @@ pub struct WorkbookOptions {
     pub name: Option<String>,
     /// Width of the section model, m; `None` takes it from the workbook or derives it from `frequencies_hz`.
     pub width_m: Option<f64>,
-    /// What is known about notation, argument and axes of the figures; a sheet `Notes` must not contradict it.
+    /// Notation, argument and axes of the figures, as far as they are known; a sheet `Notes` must not contradict it.
     pub convention: StatedConvention,
     /// Frequencies of motion, Hz, in test order, repeated for every further speed; `None` tries those of Table 3.2.
     pub frequencies_hz: Option<Vec<f64>>,
