@@ -2,8 +2,8 @@
 //! `aerodeck` exports FMUs without source tree or Rust toolchain.
 //!
 //! `aerodeck-runtime` is a dependency like others and shares all of their builds. Ready-made runtimes, also for other platforms, can be
-//! embedded besides. Where Rust has a target for WebAssembly, cargo is called once more for the module that answers the sliders of a
-//! report; without it reports have no sliders.
+//! embedded besides. Where Rust has a target for WebAssembly, a release build calls cargo once more for the module that answers the
+//! sliders of a report; without it reports have no sliders.
 
 use std::env;
 use std::fs::{self, File};
@@ -51,7 +51,10 @@ fn embed_runtimes() -> Result<(), String> {
             runtimes.push((here.to_owned(), own(&out)?));
         }
         let wasm = WASM.0.into_iter().find(|target| has_target(target));
-        let wanted = cfg!(feature = "sliders") && env::var_os(READY_MADE).is_none();
+        // not for a trial of a change, which it would make wait longer than all the rest
+        let wanted = cfg!(feature = "sliders")
+            && env::var_os(READY_MADE).is_none()
+            && variable("PROFILE")? == "release";
         if let Some(target) = wasm.filter(|_| wanted) {
             let module = build_live(&source, &out, target)?;
             watch(&module)?;

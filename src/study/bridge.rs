@@ -303,7 +303,7 @@ fn ends(block: &BridgeSectionBlock, modes: &BridgeModes, section: usize) -> Resu
     let last = modes.nodes.len().saturating_sub(1);
     let place = |key: &str, name: &Option<String>, otherwise: usize| match name {
         None => Ok(otherwise),
-        Some(name) => modes.place_of(format!("section[{section}].{key}"), name),
+        Some(name) => modes.index_of(format!("section[{section}].{key}"), name),
     };
     let ends = (
         place("from", &block.from, 0)?,

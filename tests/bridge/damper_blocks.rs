@@ -31,7 +31,7 @@ fn wrong_dampers_are_refused() {
     refused(
         &good.replace("1156", "7"),
         0,
-        ", damper[0].node: expected a node of the bridge, 1001 to 1311, found `7`",
+        ", damper[0].node: expected a node of the bridge, 1001 to 1311; next to it are 1001 and 1006, found `7`",
     );
     refused(
         &good.replace("1e4", "-1e4"),

@@ -310,7 +310,9 @@ fn wrong_bridge_files_are_named_with_their_line() {
     );
     refused(
         |_| text("csv", "from = \"99\"\n"),
-        &["section[0].from: expected a node of the bridge, 11 to 14, found `99`"],
+        &[
+            "section[0].from: expected a node of the bridge, 11 to 14; next to it are 14 and 13, found `99`",
+        ],
     );
 }
 

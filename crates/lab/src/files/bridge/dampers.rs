@@ -81,7 +81,7 @@ impl DamperBlock {
     /// Adds what the block stands for; `place` is that of the block.
     fn add(&self, place: &str, modes: &BridgeModes, all: &mut Dampers) -> Result<()> {
         let point = |key: &str, name: &str, motion: Dof, offset_m: f64| {
-            let node = modes.place_of(format!("{place}.{key}"), name)?;
+            let node = modes.index_of(format!("{place}.{key}"), name)?;
             Ok::<_, Error>(DampedPoint {
                 node,
                 motion,

@@ -134,15 +134,32 @@ impl BridgeModes {
         }
     }
 
-    /// Place of a node by its name; `key` is the place in the bridge file that states it.
+    /// Index of a node by its name; `key` is the place in the bridge file that states it.
     ///
     /// # Errors
-    /// [`Error::Input`] for a name that no node has.
-    pub fn place_of(&self, key: String, name: &str) -> Result<usize> {
-        let (a, b) = (&self.nodes[0].name, &self.nodes[self.nodes.len() - 1].name);
-        let expected = || format!("a node of the bridge, {a} to {b}");
-        let place = self.nodes.iter().position(|n| n.name == *name);
-        place.ok_or_else(|| Error::input(key, expected(), format!("`{name}`")))
+    /// [`Error::Input`] for a name that no node has, with the nodes next to it where names are numbers.
+    pub fn index_of(&self, key: String, name: &str) -> Result<usize> {
+        let index = self.nodes.iter().position(|n| n.name == *name);
+        index.ok_or_else(|| {
+            let (a, b) = (&self.nodes[0].name, &self.nodes[self.nodes.len() - 1].name);
+            let away =
+                |n: &Node| Some((n.name.parse::<f64>().ok()? - name.parse::<f64>().ok()?).abs());
+            let mut near: Vec<(f64, &str)> = self
+                .nodes
+                .iter()
+                .filter_map(|n| Some((away(n)?, n.name.as_str())))
+                .collect();
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let nearest = match near.as_slice() {
+                [(_, first), (_, second), ..] => format!("; next to it are {first} and {second}"),
+                _ => String::new(),
+            };
+            Error::input(
+                key,
+                format!("a node of the bridge, {a} to {b}{nearest}"),
+                format!("`{name}`"),
+            )
+        })
     }
 
     /// What is odd about them.
