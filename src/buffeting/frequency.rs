@@ -106,7 +106,13 @@ impl BuffetingProblem<'_> {
         sides: &DMatrix<Complex<f64>>,
     ) -> Result<DMatrix<f64>> {
         let z = impedance(&self.structure, self.model(), speed_m_s, TAU * frequency_hz)?;
-        let rows = solve_complex(&z.transpose(), sides).ok_or_else(|| {
+        let z = z.transpose();
+        // of few coordinates nothing is gained by vectors of the processor
+        let rows = match z.nrows() > FEW {
+            true => solve_complex(&z, sides),
+            false => z.lu().solve(sides),
+        };
+        let rows = rows.ok_or_else(|| {
             Error::Numerical(format!(
                 "buffeting: the impedance is singular at {frequency_hz} Hz and {speed_m_s} m/s"
             ))
