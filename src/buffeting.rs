@@ -11,6 +11,7 @@ mod frequency;
 mod periodic;
 mod problem;
 mod quadrature;
+mod records;
 mod response;
 mod spectrum;
 mod stability;
