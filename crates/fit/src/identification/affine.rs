@@ -88,6 +88,9 @@ impl AffineSpace {
     /// Orthonormal basis of the directions that are left, n×(n − taken).
     pub(crate) fn basis(&self) -> DMatrix<f64> {
         let n = self.start.len();
+        if self.taken.is_empty() {
+            return DMatrix::identity(n, n);
+        }
         let mut left: Vec<DVector<f64>> = Vec::new();
         // the unit vectors that stick out furthest come first
         let out = |i: usize| 1.0 - self.taken.iter().map(|q| q[i] * q[i]).sum::<f64>();
