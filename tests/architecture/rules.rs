@@ -25,6 +25,7 @@ const fn row(module: &'static str, may_use: &'static [&'static str]) -> Row {
 pub const ARROWS: &[Row] = &[
     row("error", &[]),
     row("threads", &[]),
+    row("numbered", &[]),
     row("json", &[]),
     row("units", &[]),
     row("state_space", &[]),
@@ -58,6 +59,7 @@ pub const ARROWS: &[Row] = &[
             "signal",
             "wind_tunnel::Record*",
             "wind_tunnel::Segment",
+            "numbered",
             // what a fit returns
             "trained_model::Model",
             // what its account of constraints says of an onset, once the section is known

@@ -40,6 +40,7 @@ mod statistics;
 mod table_covariance;
 mod with_data;
 
+pub use crate::numbered::{OnDone, numbered};
 pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, coverage};
 pub use draws::ModelDraws;
@@ -50,7 +51,7 @@ pub use onset::{OnsetError, ResampledOnset, Resampling};
 pub use parameters::{Coordinates, Parameter, SearchedPole};
 pub use record_covariance::discrete_uncertainty;
 pub use record_covariance::record_uncertainty;
-pub use sampling::{OnSamples, SampledOnsets, sampled};
+pub use sampling::SampledOnsets;
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
 pub use statistics::sample_quantile;

@@ -2,7 +2,7 @@
 
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
-    CompareOptions, ForceMetrics, OnRecords, Score, ScoreSummary, Scoring, Statement,
+    CompareOptions, ForceMetrics, OnDone, Score, ScoreSummary, Scoring, Statement,
 };
 use crate::error::Result;
 use crate::identification::DiscreteFit;
@@ -67,7 +67,7 @@ impl Common {
 
 /// The results of a comparison, with the records that are done shown as those of `what`.
 pub(super) fn compared<T>(
-    compare: fn(&CompareOptions, OnRecords<'_>) -> Result<T>,
+    compare: fn(&CompareOptions, OnDone<'_>) -> Result<T>,
     options: &CompareOptions,
     progress: &Progress,
     what: &'static str,

@@ -9,7 +9,7 @@ use crate::error::{Error, Result, non_negative};
 use crate::files::bridge::BridgeSectionBlock;
 use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
 use crate::signal::random_stream;
-use crate::uncertainty::{ModelDraws, OnSamples, SampledOnsets, sampled};
+use crate::uncertainty::{ModelDraws, OnDone, SampledOnsets, numbered};
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -92,7 +92,7 @@ impl BridgeStudy {
         &self,
         onset: &Onset,
         scatter: &Scatter,
-        progress: OnSamples<'_>,
+        progress: OnDone<'_>,
     ) -> Result<ScatteredOnset> {
         non_negative("scatter of the frequencies", scatter.frequency)?;
         non_negative("scatter of the damping", scatter.damping)?;
@@ -112,7 +112,7 @@ impl BridgeStudy {
             forces: self.drawn_forces(scatter.derivatives)?,
             nearby: NearbyOnset::new(&self.by_model, &onset.at)?,
         };
-        let found = sampled(scatter.samples, progress, |i| sampler.onset(i as u64))?;
+        let found = numbered(scatter.samples, progress, |i| sampler.onset(i as u64))?;
         let onsets = SampledOnsets::from(found);
         if onsets.speeds_m_s.len() < 2 {
             return Err(Error::Numerical(

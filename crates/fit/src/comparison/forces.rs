@@ -13,6 +13,7 @@ mod score;
 mod statements;
 mod tested_deck;
 
+pub use crate::numbered::OnDone;
 pub use decks::DecksComparison;
 pub use decks::compare_decks;
 pub use entries::BandCheck;
@@ -21,7 +22,6 @@ pub use models::History;
 pub use models::ModelsComparison;
 pub use models::compare_models;
 pub use options::CompareOptions;
-pub use options::OnRecords;
 pub use options::Scoring;
 pub use options::THESIS_DECKS;
 pub use score::ForceMetrics;

@@ -64,19 +64,20 @@ impl LinearProblem {
             .filter(|&c| self.ridge[c] > 0.0)
             .map(|c| (c, self.ridge[c] * norms[c]))
             .collect();
+        let (measured, n) = (self.rows.len(), self.columns());
+        let all = DMatrix::from_fn(measured + ridge.len(), n, |r, c| match self.rows.get(r) {
+            Some(row) => row[c],
+            None if ridge[r - measured].0 == c => ridge[r - measured].1,
+            None => 0.0,
+        });
+        let at_start = &all * DVector::from_column_slice(&space.values);
+        let right = self.right.iter().chain(std::iter::repeat(&0.0));
+        let right: Vec<f64> = right.zip(&at_start).map(|(b, fitted)| b - fitted).collect();
+        let free = &all * &space.spread;
+        let mut columns: Vec<&[f64]> = free.as_slice().chunks_exact(right.len().max(1)).collect();
+        columns.push(&right);
         let mut qr = StreamingQr::new(unknowns, 1);
-        let mut push = |row: &[f64], right: f64| {
-            let dot = |column: &[f64]| row.iter().zip(column).map(|(a, c)| a * c).sum::<f64>();
-            let columns = space.spread.column_iter().map(|c| dot(c.as_slice()));
-            let line: Vec<f64> = columns.chain([right - dot(&space.values)]).collect();
-            qr.push_row(&line);
-        };
-        for (row, right) in self.rows.iter().zip(&self.right) {
-            push(row, *right);
-        }
-        for (c, factor) in &ridge {
-            push(unit(self.columns(), *c, *factor).as_slice(), 0.0);
-        }
+        qr.push_columns(&columns);
         let factor = qr.finish();
         if let Some(z) = factor.undetermined(unknowns) {
             let what = match self.constraints.is_empty() {

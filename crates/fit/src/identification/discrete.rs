@@ -131,7 +131,7 @@ pub fn fit_discrete(
             records.each.len()
         ),
         weights: fit.weights.describe().into(),
-        samples: fitted.systems.whole(0).rows(),
+        samples: fitted.systems.whole(0).rows,
         tested_range: tested,
         condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
         entries,
@@ -289,7 +289,7 @@ fn memory(
         let resampled = record.at_step(Some(delta_s))?.0;
         let signals = resampled.as_ref().unwrap_or(&record.signals);
         Ok(MemoryReport {
-            record: record.name().to_owned(),
+            record: record.header.name.to_owned(),
             memory_samples: longest,
             available_samples: signals.still_samples()?,
             step_s: delta_s / record.rate,

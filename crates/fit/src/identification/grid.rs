@@ -45,12 +45,16 @@ pub struct StretchLabel {
 /// Factors of all candidates and stretches.
 pub struct Grid {
     axis: GridAxis,
-    dofs: Vec<Dof>,
-    filters_max: usize,
-    tested: ReducedFrequencyRange,
+    /// Degrees of freedom of rows and columns.
+    pub(crate) dofs: Vec<Dof>,
+    /// Greatest number of filters.
+    pub(crate) filters_max: usize,
+    /// Reduced frequencies of the records.
+    pub(crate) tested: ReducedFrequencyRange,
     delta_s: f64,
     pass: Pass,
-    labels: Vec<StretchLabel>,
+    /// The stretches, in the order in which `keep` sees them.
+    pub(crate) labels: Vec<StretchLabel>,
 }
 
 /// Fit of one cell.
@@ -90,8 +94,8 @@ impl Grid {
         let label = |s: &Stretch| {
             let record = &records.each[s.record];
             StretchLabel {
-                mean_speed_m_s: record.mean_speed_m_s(),
-                frequency_hz: s.segment.map(|i| record.segments()[i].frequency_hz),
+                mean_speed_m_s: record.header.mean_speed_m_s,
+                frequency_hz: s.segment.map(|i| record.header.segments[i].frequency_hz),
             }
         };
         ensure(
@@ -119,26 +123,6 @@ impl Grid {
     /// Symbol of the axis.
     pub(crate) fn symbol(&self) -> &'static str {
         self.axis.symbol()
-    }
-
-    /// Greatest number of filters.
-    pub(crate) fn filters_max(&self) -> usize {
-        self.filters_max
-    }
-
-    /// Reduced frequencies of the records.
-    pub(crate) fn tested_range(&self) -> ReducedFrequencyRange {
-        self.tested
-    }
-
-    /// Degrees of freedom of rows and columns.
-    pub(crate) fn dofs(&self) -> &[Dof] {
-        &self.dofs
-    }
-
-    /// The stretches, in the order in which `keep` sees them.
-    pub(crate) fn labels(&self) -> &[StretchLabel] {
-        &self.labels
     }
 
     /// All numbers of filters, from one to the greatest, of one value of the axis, fitted to the stretches for which

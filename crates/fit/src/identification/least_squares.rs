@@ -193,33 +193,19 @@ pub(crate) fn subtract(to: &mut [f64], factor: f64, v: &[f64]) {
 #[derive(Debug, Clone)]
 pub(crate) struct Factor {
     /// Upper triangular, n×n.
-    r: DMatrix<f64>,
+    pub r: DMatrix<f64>,
     /// n×m.
-    qtb: DMatrix<f64>,
+    pub qtb: DMatrix<f64>,
     /// Sum of squares of each right-hand side outside the span of all columns.
     rest: Vec<f64>,
-    rows: usize,
+    /// Number of rows that went in.
+    pub rows: usize,
 }
 
 impl Factor {
     /// Number of columns.
     pub(crate) fn columns(&self) -> usize {
         self.r.ncols()
-    }
-
-    /// Upper triangular `R`, n×n.
-    pub(crate) fn upper(&self) -> &DMatrix<f64> {
-        &self.r
-    }
-
-    /// `Qᵀb`, n×m.
-    pub(crate) fn projected(&self) -> &DMatrix<f64> {
-        &self.qtb
-    }
-
-    /// Number of rows that went in.
-    pub(crate) fn rows(&self) -> usize {
-        self.rows
     }
 
     /// The system of some of its columns, in the given order.

@@ -71,7 +71,7 @@ pub fn fit_records(
             records.each.len()
         ),
         weights: fit.weights.describe().into(),
-        samples: found.fitted.systems.whole(0).rows(),
+        samples: found.fitted.systems.whole(0).rows,
         tested_range: tested,
         condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
         entries,
@@ -216,7 +216,7 @@ impl FitAtPoles<'_> {
             }
             let discarded = (self.task.fit.discard_s / record.step_s).ceil() as usize;
             Ok(MemoryReport {
-                record: record.name().to_owned(),
+                record: record.header.name.to_owned(),
                 memory_samples,
                 available_samples: discarded.max(record.signals.still_samples()?),
                 step_s: record.step_s,

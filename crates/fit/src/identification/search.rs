@@ -9,6 +9,7 @@
 use super::form::PoleSearch;
 use super::report::{SearchPoint, SearchReport};
 use crate::error::{Error, Result, ensure};
+use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::state_space::golden_section;
 use crate::units::ReducedFrequencyRange;
@@ -187,14 +188,11 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn evaluate_all(&mut self, sets: Vec<Vec<f64>>) -> Result<()> {
-        let point = |poles: Vec<f64>| {
-            let objective = (self.residuals)(&poles)?.norm();
-            Ok(SearchPoint { poles, objective })
-        };
-        // the first error of their order, whichever came first in time
-        let found: Vec<Result<SearchPoint>> = sets.into_par_iter().map(point).collect();
-        let found: Result<Vec<SearchPoint>> = found.into_iter().collect();
-        self.points.extend(found?);
+        let objective = |at: usize| Ok((self.residuals)(&sets[at])?.norm());
+        let found = numbered(sets.len(), &|_, _| (), objective)?;
+        let points = sets.into_iter().zip(found);
+        self.points
+            .extend(points.map(|(poles, objective)| SearchPoint { poles, objective }));
         Ok(())
     }
 

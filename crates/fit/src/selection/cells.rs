@@ -5,10 +5,9 @@ use super::guards::judge;
 use crate::error::Result;
 use crate::flutter::OnsetSearch;
 use crate::identification::Grid;
+use crate::numbered::numbered;
 use crate::section::Structure;
-use rayon::prelude::*;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What a selection needs besides the grid.
 #[derive(Debug, Clone)]
@@ -59,7 +58,7 @@ pub struct Selection {
 
 /// Judges every cell, in parallel over the values of the axis.
 ///
-/// `done` is called after each value with the number of those that are through.
+/// `done` is called before and after each value with the number of those that are through.
 ///
 /// # Errors
 /// None at present: cells that cannot be fitted are refused with their reason.
@@ -68,17 +67,12 @@ pub fn select(
     plan: &SelectionPlan,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Selection> {
-    let folds = Folds::new(grid.labels());
-    let finished = AtomicUsize::new(0);
-    let cells: Vec<Cell> = (0..grid.values().len())
-        .into_par_iter()
-        .flat_map_iter(|value| {
-            let cells = cells_of(grid, plan, &folds, value);
-            done(1 + finished.fetch_add(1, Ordering::Relaxed));
-            cells
-        })
-        .collect();
-    let filters_max = grid.filters_max();
+    let folds = Folds::new(&grid.labels);
+    let cells = numbered(grid.values().len(), &|all, _| done(all), |value| {
+        Ok(cells_of(grid, plan, &folds, value))
+    })?;
+    let cells = cells.concat();
+    let filters_max = grid.filters_max;
     let free = (0..filters_max)
         .map(|l| {
             (0..grid.values().len())
@@ -119,9 +113,9 @@ fn cells_of(grid: &Grid, plan: &SelectionPlan, folds: &Folds, value: usize) -> V
             };
             match fit {
                 Ok(fit) => {
-                    let verdict = judge(&fit, &plan.structure, &plan.search, grid.tested_range());
                     cell.residual = Some(fit.objective);
                     cell.cancellation = Some(fit.cancellation);
+                    let verdict = judge(&fit, &plan.structure, &plan.search, grid.tested);
                     cell.onset_m_s = verdict.onset_m_s;
                     cell.rejected = verdict.rejected;
                     if cross_validation.is_none() {

@@ -41,7 +41,7 @@ impl Folds {
     pub(crate) fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<CrossValidation>> {
         // none of a fit that failed, of those that did not perhaps nothing to leave out
         let errors = |folds: &[Vec<usize>]| -> Vec<Option<Option<Vec<f64>>>> {
-            let mut of_filters = vec![Some(Vec::new()); grid.filters_max()];
+            let mut of_filters = vec![Some(Vec::new()); grid.filters_max];
             if folds.len() < 2 {
                 return vec![Some(None); of_filters.len()];
             }
@@ -71,7 +71,7 @@ fn held_out(grid: &Grid, value: usize, fold: &[usize], fit: &Result<CellFit>) ->
         let Some(motion) = grid.motion(stretch) else {
             continue;
         };
-        let j = grid.dofs().iter().position(|d| *d == motion)?;
+        let j = grid.dofs.iter().position(|d| *d == motion)?;
         for (i, (residual, total)) in grid.residuals(stretch, value, fit)?.into_iter().enumerate() {
             let sum = sums.entry((i, j)).or_insert((0.0, 0.0));
             *sum = (sum.0 + residual, sum.1 + total);

@@ -9,12 +9,12 @@ use crate::comparison::{
     PhaseParameters, SignalPair, WarpingParameters, magnitude, magnitude_warped, peak, phase,
 };
 use crate::error::{Error, Result, ensure};
-use crate::identification::Grid;
+use crate::identification::{CellFit, Grid};
+use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordSource};
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -61,28 +61,24 @@ pub fn metric_grid(
     frequency_hz: f64,
 ) -> Result<Vec<MetricGrid>> {
     let mut grids = Vec::new();
-    for (i, dof) in grid.dofs().iter().enumerate() {
+    for (i, dof) in grid.dofs.iter().enumerate() {
         let Some(steady) = SteadySegment::new(records, *dof, frequency_hz)? else {
             continue;
         };
-        let cells: Vec<Vec<Option<CellMetrics>>> = (0..grid.values().len())
-            .into_par_iter()
-            .map(|value| {
-                grid.fits(value, &|_| true)
-                    .into_iter()
-                    .map(|fit| match fit {
-                        Ok(fit) => steady.compare(&fit.model, i).map(Some),
-                        Err(_) => Ok(None),
-                    })
-                    .collect::<Result<Vec<_>>>()
-            })
-            .collect::<Result<_>>()?;
+        let metrics = |fit: Result<CellFit>| {
+            let fit = fit.ok();
+            fit.map(|fit| steady.compare(&fit.model, i)).transpose()
+        };
+        let cells = numbered(grid.values().len(), &|_, _| (), |value| {
+            let fits = grid.fits(value, &|_| true).into_iter();
+            fits.map(metrics).collect::<Result<Vec<_>>>()
+        })?;
         grids.push(MetricGrid {
             record: steady.record,
             force: *dof,
             motion: *dof,
             frequency_hz: steady.frequency_hz,
-            cells: cells.into_iter().flatten().collect(),
+            cells: cells.concat(),
         });
     }
     ensure(

@@ -334,7 +334,7 @@ impl CoefficientUncertainty {
         let Some(design) = &self.design else {
             return Vec::new();
         };
-        let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
+        let Some((groups, speeds_m_s)) = speed_groups(&design.blocks) else {
             return Vec::new();
         };
         let alone = |(g, speed): (usize, f64)| (speed, self.alone(design, &groups, g));
@@ -343,7 +343,7 @@ impl CoefficientUncertainty {
 
     /// Reduced frequencies of the blocks, where they have one and are known.
     pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
-        let ks = self.design.as_ref()?.blocks().iter().filter_map(|b| b.k);
+        let ks = self.design.as_ref()?.blocks.iter().filter_map(|b| b.k);
         ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
     }
 

@@ -10,7 +10,6 @@ use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
 use super::onset::onset_error;
 use super::record_covariance::record_uncertainty;
-use super::sampling::{OnSamples, sampled};
 use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
@@ -18,6 +17,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::{Fitted, TimeFit, fit_records};
+use crate::numbered::{OnDone, numbered};
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
@@ -31,9 +31,9 @@ const DERIVATIVE_POINTS: usize = 8;
 ///
 /// # Errors
 /// [`Error::Input`] for impossible plans; [`Error::Numerical`] when no fit or no search gives an onset.
-pub fn coverage(plan: &CoveragePlan, progress: OnSamples<'_>) -> Result<CoverageReport> {
+pub fn coverage(plan: &CoveragePlan, progress: OnDone<'_>) -> Result<CoverageReport> {
     let campaign = KnownDeck::new(plan)?;
-    let runs = sampled(plan.repetitions, progress, |r| campaign.repeat(r))?;
+    let runs = numbered(plan.repetitions, progress, |r| campaign.repeat(r))?;
     campaign.summary(plan, &runs)
 }
 

@@ -103,13 +103,14 @@ impl Block {
 /// Blocks of one fit with what is common to all of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Design {
-    blocks: Vec<Block>,
+    pub blocks: Vec<Block>,
     /// `M⁻¹`, or what is left of it along the tangent, P×P.
     #[serde(with = "crate::state_space::rows")]
-    inverse: DMatrix<f64>,
-    /// Orthonormal directions that active constraints leave to the parameters, P×q; none where nothing holds them.
-    #[serde(with = "super::columns_in_files::perhaps_rows")]
-    tangent: Option<DMatrix<f64>>,
+    pub inverse: DMatrix<f64>,
+    /// Orthonormal directions that active constraints leave to the parameters, P×q; those of the parameters where nothing holds
+    /// them.
+    #[serde(with = "crate::state_space::rows")]
+    tangent: DMatrix<f64>,
     /// `Σ AᵀDA` with the working variances, P×P.
     #[serde(with = "crate::state_space::rows")]
     working: DMatrix<f64>,
@@ -123,31 +124,26 @@ impl Design {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the blocks do not determine all parameters or are fewer than two.
-    pub(crate) fn new(blocks: Vec<Block>, tangent: Option<DMatrix<f64>>) -> Result<Self> {
+    pub(crate) fn new(blocks: Vec<Block>, tangent: DMatrix<f64>) -> Result<Self> {
         if blocks.len() < 2 {
             return Err(Error::Numerical(format!(
                 "covariance: {} independent block(s), at least two are needed",
                 blocks.len()
             )));
         }
-        let parameters = blocks[0].rows.ncols();
-        let free = tangent.as_ref().map_or(parameters, DMatrix::ncols);
+        let (parameters, free) = tangent.shape();
         let mut qr = StreamingQr::new(free, 0);
         let mut working = DMatrix::zeros(parameters, parameters);
         for block in &blocks {
-            let columns: Vec<Vec<f64>> = along(&block.rows, tangent.as_ref())
-                .column_iter()
-                .map(|c| c.iter().copied().collect())
-                .collect();
-            let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-            qr.push_columns(&slices);
+            let along = &block.rows * &tangent;
+            if along.nrows() > 0 {
+                let columns = along.as_slice().chunks_exact(along.nrows());
+                qr.push_columns(&columns.collect::<Vec<_>>());
+            }
             working += block.rows.transpose() * scaled(&block.rows, &block.variance);
         }
         let inner = qr.finish().inverse_gram(free)?;
-        let inverse = match &tangent {
-            Some(t) => t * inner * t.transpose(),
-            None => inner,
-        };
+        let inverse = &tangent * inner * tangent.transpose();
         Self::of(blocks, inverse, tangent, working)
     }
 
@@ -163,7 +159,7 @@ impl Design {
     fn of(
         blocks: Vec<Block>,
         inverse: DMatrix<f64>,
-        tangent: Option<DMatrix<f64>>,
+        tangent: DMatrix<f64>,
         working: DMatrix<f64>,
     ) -> Result<Self> {
         let mut design = Self {
@@ -234,16 +230,6 @@ impl Design {
             .collect()
     }
 
-    /// The blocks.
-    pub(crate) fn blocks(&self) -> &[Block] {
-        &self.blocks
-    }
-
-    /// `M⁻¹`, P×P.
-    pub(crate) fn inverse(&self) -> &DMatrix<f64> {
-        &self.inverse
-    }
-
     /// The blocks of each of `count` groups as one block, with the residuals of the common fit.
     pub(crate) fn clusters(&self, groups: &[usize], count: usize) -> Vec<Block> {
         let of = |group: usize| -> Vec<Block> {
@@ -273,19 +259,16 @@ impl Design {
                 ..block.clone()
             });
         }
-        let tangent = self.tangent.as_ref().map(|t| held_at_zero(t, kept));
+        let tangent = held_at_zero(&self.tangent, kept);
         // determines the parameters, or says that it does not
         Self::new(blocks.clone(), tangent.clone())?;
         let all = Block::joined(String::new(), &blocks);
-        let qr = along(&all.rows, tangent.as_ref()).qr();
+        let qr = (&all.rows * &tangent).qr();
         let inner = qr
             .r()
             .solve_upper_triangular(&qr.q().tr_mul(&all.residual))
             .ok_or_else(|| Error::Numerical("covariance: one speed alone".into()))?;
-        let step = match &tangent {
-            Some(t) => t * inner,
-            None => inner,
-        };
+        let step = &tangent * inner;
         for block in &mut blocks {
             block.residual -= &block.rows * &step;
         }
@@ -342,18 +325,14 @@ impl Design {
     /// # Errors
     /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
     pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<DVector<f64>> {
-        let inner = |rows: &DMatrix<f64>| along(rows, self.tangent.as_ref());
-        let own = match &self.tangent {
-            Some(t) => t.tr_mul(&(&self.inverse * t)),
-            None => self.inverse.clone(),
-        };
+        let own = self.tangent.tr_mul(&(&self.inverse * &self.tangent));
         // in units in which the whole system is near the identity, so that the normal equations lose no digits
         let unit = own.diagonal().map(f64::sqrt);
         let n = unit.len();
         let mut gram = DMatrix::zeros(n, n);
         let mut right = DVector::zeros(n);
         for (block, weight) in self.blocks.iter().zip(weights) {
-            let rows = inner(&block.rows) * DMatrix::from_diagonal(&unit);
+            let rows = &block.rows * &self.tangent * DMatrix::from_diagonal(&unit);
             gram.gemm(*weight, &rows.transpose(), &rows, 1.0);
             right.gemv(*weight, &rows.transpose(), &block.residual, 1.0);
         }
@@ -362,18 +341,7 @@ impl Design {
             .ok_or_else(|| Error::Numerical("bootstrap: a replicate is singular".into()))?
             .solve(&right)
             .component_mul(&unit);
-        Ok(match &self.tangent {
-            Some(t) => t * step,
-            None => step,
-        })
-    }
-}
-
-/// Rows seen along the tangent.
-fn along(rows: &DMatrix<f64>, tangent: Option<&DMatrix<f64>>) -> DMatrix<f64> {
-    match tangent {
-        Some(t) => rows * t,
-        None => rows.clone(),
+        Ok(&self.tangent * step)
     }
 }
 

@@ -13,12 +13,12 @@ pub use plan::FamilyPlan;
 use super::coverage::IntervalCoverage;
 use super::forms::{FormEnsemble, interval_with_forms};
 use super::onset::onset_error;
-use super::sampling::{OnSamples, sampled};
 use super::table_covariance::table_uncertainty;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Result, ensure};
 use crate::flutter::{FlutterSearch, OnsetInterval, OnsetSearch, find_onset};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
+use crate::numbered::{OnDone, numbered};
 use deck::{SEARCHED, SyntheticDeck};
 use serde::Serialize;
 
@@ -92,9 +92,9 @@ pub struct FamilyReport {
 ///
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) for a family without decks; [`Error::Numerical`](crate::error::Error::Numerical) when no deck that flutters can be drawn.
-pub fn family_coverage(plan: &FamilyPlan, progress: OnSamples<'_>) -> Result<FamilyReport> {
+pub fn family_coverage(plan: &FamilyPlan, progress: OnDone<'_>) -> Result<FamilyReport> {
     ensure(plan.decks != 0, "decks", "at least 1", "0")?;
-    let decks = sampled(plan.decks, progress, |number| {
+    let decks = numbered(plan.decks, progress, |number| {
         Ok(judged(number, &SyntheticDeck::draw(plan, number)?))
     })?;
     let mut ranges: Vec<RangeCount> = FamilyRange::ALL

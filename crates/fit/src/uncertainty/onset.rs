@@ -6,14 +6,13 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::draws::ModelDraws;
-use super::sampling::{SampledOnsets, sampled};
+use super::sampling::SampledOnsets;
 use super::statistics::two_sided_quantile;
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::flutter::{
-    BetweenSpeeds, ErrorParts, FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset,
-};
+use crate::flutter::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval, OnsetSearch, find_onset};
+use crate::numbered::numbered;
 use crate::section::Structure;
 use crate::signal::random_stream;
 use crate::state_space::{ValueAt, complex, eigenvector, secant};
@@ -196,7 +195,7 @@ pub(crate) fn resample_onset(
             solve(&m, structure, speed_m_s, omega, plan)
         })))
     };
-    let found = sampled(plan.replicates, &|_, _| (), onset_of)?;
+    let found = numbered(plan.replicates, &|_, _| (), onset_of)?;
     let found: Option<Vec<Option<f64>>> = found.into_iter().collect();
     Ok(found.map(SampledOnsets::from).map(|onsets| ResampledOnset {
         resampling: plan.resampling,
@@ -218,13 +217,9 @@ fn solve(
     plan: &ResamplingPlan,
 ) -> Option<f64> {
     let section = CoupledSection::with_model(structure, model).ok()?;
-    if let Ok(Some(speed)) = onset_nearby(&section, speed_m_s, omega) {
-        return Some(speed);
-    }
-    match find_onset("", &section, &plan.search, plan.tested) {
-        Ok(FlutterSearch::Onset(onset)) => Some(onset.at.speed_m_s),
-        _ => None,
-    }
+    let near = [speed_m_s, omega];
+    let found = followed(&section, near, &plan.search, plan.tested);
+    found.ok().flatten().map(|[speed, _]| speed)
 }
 
 /// Parameters of one replicate; `None` for blocks of an estimate that no longer knows its data.
@@ -334,13 +329,25 @@ fn nearest(system: &CoupledSystem, target: Complex<f64>) -> Result<Complex<f64>>
         .ok_or_else(|| Error::Numerical("onset: no eigenvalues".into()))
 }
 
+/// Speed (m/s) and circular frequency of the onset that is followed from those of another, or else of the one that a search finds;
+/// `None` where that has none.
+pub(super) fn followed(
+    section: &CoupledSection,
+    [speed_m_s, omega]: [f64; 2],
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<Option<[f64; 2]>> {
+    if let Ok(Some(speed)) = onset_nearby(section, speed_m_s, omega) {
+        return Ok(Some([speed, omega]));
+    }
+    let found = find_onset("", section, search, tested)?;
+    let other = found.onset().map(|o| &o.at);
+    Ok(other.map(|at| [at.speed_m_s, TAU * at.frequency_hz]))
+}
+
 /// Onset speed near a known one: the zero of the growth rate of the same eigenvalue, by secants. `None` when it does not
 /// settle or ends up far away.
-pub(super) fn onset_nearby(
-    section: &CoupledSection,
-    speed_m_s: f64,
-    omega: f64,
-) -> Result<Option<f64>> {
+fn onset_nearby(section: &CoupledSection, speed_m_s: f64, omega: f64) -> Result<Option<f64>> {
     let mut followed = Complex::new(0.0, omega);
     let mut growth = |speed: f64| -> Result<Option<f64>> {
         if (speed / speed_m_s - 1.0).abs() >= REACH {

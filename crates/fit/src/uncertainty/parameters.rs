@@ -33,6 +33,19 @@ pub struct Parameter {
     pub standard_error: f64,
 }
 
+impl Parameter {
+    /// Before its error is known.
+    pub(super) fn new(name: String, force: Option<Dof>, motion: Option<Dof>, value: f64) -> Self {
+        Self {
+            name,
+            force,
+            motion,
+            value,
+            standard_error: 0.0,
+        }
+    }
+}
+
 /// A pole among the parameters.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -102,14 +115,10 @@ pub enum Coordinates {
 pub(crate) const SEARCHED_POLES: &str =
     "searched poles are parameters through their Jacobian columns";
 
-/// Name of a pole and its transfer function (force, motion); none when all share it.
-pub(super) type PoleName = (String, Option<(Dof, Dof)>);
-
 /// Poles among the parameters.
 pub(super) struct FreePoles {
     pub searched: Vec<SearchedPole>,
-    /// Name, transfer function and value of each.
-    pub values: Vec<(PoleName, f64)>,
+    pub parameters: Vec<Parameter>,
     /// Poles that the bounds or the least ratio of the search hold.
     pub held: usize,
 }
@@ -118,7 +127,7 @@ pub(super) struct FreePoles {
 pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) -> FreePoles {
     let mut poles = FreePoles {
         searched: Vec::new(),
-        values: Vec::new(),
+        parameters: Vec::new(),
         held: 0,
     };
     let mut dofs: Vec<Dof> = report.entries.iter().map(|e| e.motion).collect();
@@ -149,9 +158,9 @@ pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) 
                 entry: search.entry.map(|(f, m)| (place(f), place(m))),
                 index,
             });
-            poles
-                .values
-                .push(((format!("pole {index}"), search.entry), *pole));
+            let (force, motion) = search.entry.unzip();
+            let parameter = Parameter::new(format!("pole {index}"), force, motion, *pole);
+            poles.parameters.push(parameter);
         }
     }
     poles
@@ -188,21 +197,13 @@ pub(super) fn moved_pole(form: &Form, free: &[f64], index: usize) -> Result<(Bas
 /// The coefficients of a fit row by row, then its searched poles; and the first parameter of every transfer function.
 pub(super) fn parameters_of(report: &FitReport, poles: &FreePoles) -> (Vec<Parameter>, Vec<usize>) {
     let (mut all, mut first) = (Vec::new(), Vec::new());
-    let parameter = |name: &str, entry: Option<(Dof, Dof)>, value: f64| Parameter {
-        name: name.to_owned(),
-        force: entry.map(|e| e.0),
-        motion: entry.map(|e| e.1),
-        value,
-        standard_error: 0.0,
-    };
     for entry in &report.entries {
         first.push(all.len());
-        let own = Some((entry.force, entry.motion));
+        let (force, motion) = (Some(entry.force), Some(entry.motion));
         let coefficients = entry.coefficients.iter();
-        all.extend(coefficients.map(|c| parameter(&c.name, own, c.value)));
+        all.extend(coefficients.map(|c| Parameter::new(c.name.clone(), force, motion, c.value)));
     }
-    let searched = poles.values.iter();
-    all.extend(searched.map(|((name, entry), value)| parameter(name, *entry, *value)));
+    all.extend_from_slice(&poles.parameters);
     (all, first)
 }
 
@@ -222,17 +223,16 @@ pub(super) fn coordinates_of(
     }
 }
 
-/// Orthonormal directions that the active constraints of a fit leave to its parameters, P×q; `None` where nothing holds
-/// it. `first` is the first parameter of every transfer function; searched poles are the last.
+/// Orthonormal directions that the active constraints of a fit leave to its parameters, P×q; all where nothing holds it. `first` is the first parameter of every transfer function; searched poles are the last.
 pub(super) fn tangent_of(
     report: &FitReport,
     form: &Form,
     poles: &FreePoles,
     first: &[usize],
     parameters: usize,
-) -> Result<Option<DMatrix<f64>>> {
+) -> Result<DMatrix<f64>> {
     let Some(constraints) = &report.constraints else {
-        return Ok(None);
+        return Ok(DMatrix::identity(parameters, parameters));
     };
     let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
     // squares of the gradients of what is held, whatever the limit does
@@ -268,7 +268,7 @@ pub(super) fn tangent_of(
             space.hold(gradient, 0.0, SAME_DIRECTION);
         }
     }
-    Ok(Some(space.basis()))
+    Ok(space.basis())
 }
 
 /// What a transfer function adds to what a constraint holds beyond its limit.

@@ -9,7 +9,6 @@ use super::parameters::{
 use super::segments::{StretchRows, Stretched, gather, sandwich};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
-use crate::identification::DiscreteFit;
 use crate::identification::discrete::discrete_pass;
 use crate::identification::form::Form;
 use crate::identification::options::TimeFit;
@@ -18,7 +17,7 @@ use crate::identification::report::FitReport;
 use crate::identification::time::continuous::{RecordFit, Rows, padded};
 use crate::identification::time::pass::{ColumnOrder, OnProgress, Stretch};
 use crate::identification::time::record::{DimensionlessRecord, Records};
-use crate::section::Dof;
+use crate::identification::{DiscreteFit, EntryReport};
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
@@ -62,10 +61,8 @@ pub fn record_uncertainty(
         stretches: STRETCHES,
     };
     let closed = task.pass(&entries.candidates(), rows, 1, 1)?.stretches;
-    let (design, blocks) = sandwich(
-        entries.blocks(&records.each, &closed)?,
-        entries.tangent.clone(),
-    )?;
+    let tangent = tangent_of(report, &form, &poles, &entries.first, parameters.len())?;
+    let (design, blocks) = sandwich(entries.blocks(&records.each, &closed)?, tangent)?;
     let searched = poles.sentence() + &held_sentence(report);
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; {searched}"),
@@ -80,17 +77,20 @@ pub fn record_uncertainty(
 /// Transfer functions with their columns in the chains of the pass.
 struct Entries {
     inputs: usize,
-    expansions: Vec<Expansion>,
+    /// Chain of each, of one length where they share it.
+    chains: Vec<Vec<f64>>,
+    /// Columns of the model in those of the chain.
+    natives: Vec<DMatrix<f64>>,
     values: Vec<Vec<f64>>,
     /// Slopes with respect to the searched poles, E×(number of searched poles).
     slopes: Vec<DMatrix<f64>>,
     /// First parameter of each entry.
     first: Vec<usize>,
+    /// Parameter and value of the constant of each force; none where none was estimated along.
+    constants: Vec<(usize, f64)>,
     parameters: usize,
     /// Whether all entries share one chain.
     shared: bool,
-    /// What active constraints leave free.
-    tangent: Option<DMatrix<f64>>,
 }
 
 impl Entries {
@@ -102,37 +102,65 @@ impl Entries {
         poles: &FreePoles,
     ) -> Result<Self> {
         let inputs = report.entries.len().isqrt();
-        let searched = !poles.searched.is_empty();
         let mut entries = Self {
             inputs,
-            expansions: Vec::new(),
-            values: Vec::new(),
+            chains: Vec::new(),
+            natives: Vec::new(),
+            values: report.entries.iter().map(EntryReport::values).collect(),
             slopes: Vec::new(),
-            tangent: tangent_of(report, form, poles, &first, parameters)?,
             first,
+            constants: Vec::new(),
             parameters,
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
         };
-        for (e, entry) in report.entries.iter().enumerate() {
-            let expansion = Expansion::new(form, &entry.poles, searched)?;
-            let values: Vec<f64> = entry.coefficients.iter().map(|c| c.value).collect();
-            let (i, j, searched) = (e / inputs, e % inputs, &poles.searched);
-            let slopes = expansion.slopes(form, &entry.poles, &values, i, j, searched)?;
-            entries.expansions.push(expansion);
-            entries.values.push(values);
+        let searched = &poles.searched;
+        for (e, (entry, values)) in report.entries.iter().zip(&entries.values).enumerate() {
+            let expansion = Expansion::new(form, &entry.poles, !searched.is_empty())?;
+            let (i, j) = (e / inputs, e % inputs);
+            let slopes = expansion.slopes(form, &entry.poles, values, i, j, searched)?;
+            entries.chains.push(expansion.extended);
+            entries.natives.push(expansion.native);
             entries.slopes.push(slopes);
         }
         Ok(entries)
     }
 
+    /// Those of a discrete model, whose columns are the filters themselves, and its parameters: of each force its constant, then
+    /// the filters of every input.
+    fn discrete(model: &DiscreteLaguerre, filters: usize) -> (Self, Vec<Parameter>) {
+        let inputs = model.dofs.len();
+        let (mut parameters, mut first, mut constants) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, &force) in model.dofs.iter().enumerate() {
+            let parameter =
+                |name: String, motion, value| Parameter::new(name, Some(force), motion, value);
+            constants.push((parameters.len(), model.static_term[i]));
+            parameters.push(parameter("static".into(), None, model.static_term[i]));
+            for (term, &motion) in model.terms.iter().zip(&model.dofs) {
+                first.push(parameters.len());
+                let coefficients = term.coefficients.row(i);
+                let named = coefficients.iter().enumerate();
+                parameters.extend(named.map(|(l, c)| parameter(format!("c{l}"), Some(motion), *c)));
+            }
+        }
+        let of_entry = |&at: &usize| parameters[at..at + filters].iter().map(|p| p.value);
+        let entries = Self {
+            inputs,
+            chains: Vec::new(),
+            natives: vec![DMatrix::identity(filters, filters); first.len()],
+            values: first.iter().map(|at| of_entry(at).collect()).collect(),
+            slopes: vec![DMatrix::zeros(filters, 0); first.len()],
+            first,
+            constants,
+            parameters: parameters.len(),
+            shared: true,
+        };
+        (entries, parameters)
+    }
+
     /// Chains of the pass, for all inputs: one, or one an entry.
     fn candidates(&self) -> Vec<Vec<Vec<f64>>> {
-        let count = if self.shared {
-            1
-        } else {
-            self.expansions.len()
-        };
-        let chains = self.expansions.iter().map(|e| &e.extended).take(count);
+        let count = if self.shared { 1 } else { self.chains.len() };
+        let chains = self.chains.iter().take(count);
         let longest = chains.clone().map(Vec::len).max().unwrap_or(0);
         chains
             .map(|c| vec![padded(c, longest); self.inputs])
@@ -141,7 +169,9 @@ impl Entries {
 
     fn blocks(&self, records: &[DimensionlessRecord], closed: &[Stretch]) -> Result<Stretched> {
         let mut parts = Vec::new();
-        for stretch in closed.iter().filter(|c| !c.set.is_empty()) {
+        // a stretch at rest tells of the constants alone
+        let tells = |c: &&Stretch| !(c.set.is_empty() && self.constants.is_empty());
+        for stretch in closed.iter().filter(tells) {
             if !self.shared && stretch.set.len() > 1 {
                 return Err(Error::Numerical(
                     "covariance: poles per transfer function need records of single motions".into(),
@@ -150,11 +180,8 @@ impl Entries {
             for i in 0..self.inputs {
                 let (rows, residual, total) = self.part(stretch, i)?;
                 parts.push(StretchRows {
-                    record: stretch.record,
-                    stretch: stretch.stretch,
-                    segment: stretch.segment,
-                    group: (stretch.set.clone(), i),
-                    weight: stretch.weights[i],
+                    of: stretch,
+                    force: i,
                     rows,
                     residual,
                     total,
@@ -176,11 +203,16 @@ impl Entries {
         let weight = stretch.weights[i];
         let mut columns = DMatrix::zeros(factor.columns(), self.parameters);
         let mut fitted = DVector::zeros(factor.columns());
+        let constant = self.constants.get(i);
+        if let Some((at, value)) = constant {
+            columns[(0, *at)] = 1.0;
+            fitted[0] = *value;
+        }
         for (s, &j) in stretch.set.iter().enumerate() {
             let e = i * self.inputs + j;
-            let (native, slopes) = (&self.expansions[e].native, &self.slopes[e]);
+            let (native, slopes) = (&self.natives[e], &self.slopes[e]);
             for c in 0..native.nrows() {
-                let row = c * moving + s;
+                let row = usize::from(constant.is_some()) + c * moving + s;
                 for a in 0..native.ncols() {
                     columns[(row, self.first[e] + a)] = native[(c, a)];
                     fitted[row] += native[(c, a)] * self.values[e][a];
@@ -190,8 +222,8 @@ impl Entries {
                 }
             }
         }
-        let rows = factor.upper() * columns * weight;
-        let residual = (factor.projected().column(i) - factor.upper() * fitted) * weight;
+        let rows = &factor.r * columns * weight;
+        let residual = (factor.qtb.column(i) - &factor.r * fitted) * weight;
         Ok((rows, residual, factor.total_sum(i) * weight * weight))
     }
 }
@@ -235,14 +267,9 @@ pub fn discrete_uncertainty(
         progress,
     )?
     .stretches;
-    let parameters = discrete_parameters(order, model, &records.dofs);
-    let values = DVector::from_iterator(parameters.len(), parameters.iter().map(|p| p.value));
-    let parts = closed
-        .iter()
-        .flat_map(|stretch| (0..inputs).map(move |i| (stretch, i)))
-        .map(|(stretch, i)| discrete_rows(order, stretch, i, &values))
-        .collect();
-    let (design, blocks) = sandwich(gather(&records.each, parts), None)?;
+    let (entries, parameters) = Entries::discrete(model, filters);
+    let free = DMatrix::identity(parameters.len(), parameters.len());
+    let (design, blocks) = sandwich(entries.blocks(&records.each, &closed)?, free)?;
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; α is given"),
         Some(records.tested_range()?),
@@ -255,62 +282,4 @@ pub fn discrete_uncertainty(
         parameters,
         design,
     )
-}
-
-/// The parameters of a discrete model, force by force: its constant, then the filters of every input.
-fn discrete_parameters(
-    order: ColumnOrder,
-    model: &DiscreteLaguerre,
-    dofs: &[Dof],
-) -> Vec<Parameter> {
-    let mut parameters = Vec::with_capacity(order.inputs * order.width(order.inputs));
-    for (i, &force) in dofs.iter().enumerate() {
-        let mut push = |name: String, motion, value| {
-            parameters.push(Parameter {
-                name,
-                force: Some(force),
-                motion,
-                value,
-                standard_error: 0.0,
-            });
-        };
-        push("static".into(), None, model.static_term[i]);
-        for (term, &motion) in model.terms.iter().zip(dofs) {
-            for l in 0..order.per_input {
-                push(format!("c{l}"), Some(motion), term.coefficients[(i, l)]);
-            }
-        }
-    }
-    parameters
-}
-
-/// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
-fn discrete_rows(
-    order: ColumnOrder,
-    stretch: &Stretch,
-    i: usize,
-    values: &DVector<f64>,
-) -> StretchRows {
-    let factor = &stretch.factors[0];
-    let weight = stretch.weights[i];
-    let first = i * order.width(order.inputs);
-    let mut columns = DMatrix::zeros(factor.columns(), values.len());
-    columns[(0, first)] = 1.0;
-    for (s, &j) in stretch.set.iter().enumerate() {
-        for l in 0..order.per_input {
-            let row = 1 + l * stretch.set.len() + s;
-            columns[(row, first + 1 + j * order.per_input + l)] = 1.0;
-        }
-    }
-    let fitted = &columns * values;
-    StretchRows {
-        record: stretch.record,
-        stretch: stretch.stretch,
-        segment: stretch.segment,
-        group: (stretch.set.clone(), i),
-        weight,
-        rows: factor.upper() * columns * weight,
-        residual: (factor.projected().column(i) - factor.upper() * fitted) * weight,
-        total: factor.total_sum(i) * weight * weight,
-    }
 }

@@ -11,6 +11,7 @@
 
 use super::design::{Block, Design};
 use crate::error::Result;
+use crate::identification::time::pass::Stretch;
 use crate::identification::time::record::DimensionlessRecord;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -33,10 +34,7 @@ pub(super) struct Stretched {
 }
 
 /// The sandwich over stretches, or over segments where residuals repeat through them; and which, in words.
-pub(super) fn sandwich(
-    stretched: Stretched,
-    tangent: Option<DMatrix<f64>>,
-) -> Result<(Design, String)> {
+pub(super) fn sandwich(stretched: Stretched, tangent: DMatrix<f64>) -> Result<(Design, String)> {
     let Stretched {
         blocks,
         segments,
@@ -60,27 +58,23 @@ pub(super) fn sandwich(
 }
 
 /// Rows of one force in one stretch of a record.
-pub(super) struct StretchRows {
-    pub record: usize,
-    pub stretch: usize,
-    pub segment: Option<usize>,
-    /// Inputs that moved, and force: equations that share their scale.
-    pub group: (Vec<usize>, usize),
-    /// Weight that rows, residual and total already have.
-    pub weight: f64,
+pub(super) struct StretchRows<'a> {
+    pub of: &'a Stretch,
+    pub force: usize,
+    /// Weighted as the force is in that stretch; so are the others.
     pub rows: DMatrix<f64>,
     pub residual: DVector<f64>,
-    /// Weighted sum of squares of the data.
+    /// Sum of squares of the data.
     pub total: f64,
 }
 
 /// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
 /// them.
-pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows>) -> Stretched {
+pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows<'_>>) -> Stretched {
     let weights = weights(records, &parts);
     let mut stretches: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
-        let stretch = stretches.entry((part.record, part.stretch));
+        let stretch = stretches.entry((part.of.record, part.of.stretch));
         stretch.or_default().push(at);
     }
     let mut out = Stretched {
@@ -90,18 +84,18 @@ pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows>) -
     };
     let mut keys: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for ((record, stretch), members) in stretches {
-        let segment = parts[members[0]].segment;
+        let segment = parts[members[0]].of.segment;
         let record_of = &records[record];
-        let hertz = segment.map(|s| record_of.segments()[s].frequency_hz);
+        let hertz = segment.map(|s| record_of.header.segments[s].frequency_hz);
         let number = stretch + 1;
         let (of_segment, name) = match hertz {
             Some(f) => {
-                let segment = format!("{}, {f:.2} Hz", record_of.name());
+                let segment = format!("{}, {f:.2} Hz", record_of.header.name);
                 let stretch = format!("{segment}, stretch {number}");
                 (segment, stretch)
             }
             None => {
-                let stretch = format!("{}, stretch {number}", record_of.name());
+                let stretch = format!("{}, stretch {number}", record_of.header.name);
                 (stretch.clone(), stretch)
             }
         };
@@ -118,7 +112,7 @@ pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows>) -
             })
             .collect();
         let k = hertz.map(|f| TAU * f / record_of.rate);
-        let speed_m_s = Some(record_of.mean_speed_m_s());
+        let speed_m_s = Some(record_of.header.mean_speed_m_s);
         out.blocks.push(Block::stacked(name, speed_m_s, k, &scaled));
     }
     out
@@ -132,10 +126,12 @@ struct Weight {
 }
 
 /// The weights of all parts: equations of one group share their scale.
-fn weights(records: &[DimensionlessRecord], parts: &[StretchRows]) -> Vec<Weight> {
-    let mut groups: BTreeMap<&(Vec<usize>, usize), Vec<usize>> = BTreeMap::new();
+fn weights(records: &[DimensionlessRecord], parts: &[StretchRows<'_>]) -> Vec<Weight> {
+    // inputs that moved, and force: equations that share their scale
+    let mut groups: BTreeMap<(&[usize], usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
-        groups.entry(&part.group).or_default().push(at);
+        let group = groups.entry((&part.of.set, part.force));
+        group.or_default().push(at);
     }
     let alone = Weight {
         scale: 1.0,
@@ -149,7 +145,7 @@ fn weights(records: &[DimensionlessRecord], parts: &[StretchRows]) -> Vec<Weight
         } else {
             1.0
         };
-        let own: Vec<&StretchRows> = members.iter().map(|&m| &parts[m]).collect();
+        let own: Vec<&StretchRows<'_>> = members.iter().map(|&m| &parts[m]).collect();
         for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
             let variance = variance * scale * scale;
             weights[m] = Weight { scale, variance };
@@ -160,7 +156,7 @@ fn weights(records: &[DimensionlessRecord], parts: &[StretchRows]) -> Vec<Weight
 
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
 /// squares on the logarithms.
-fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows]) -> Vec<f64> {
+fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows<'_>]) -> Vec<f64> {
     let floor = 1e-12
         * parts
             .iter()
@@ -173,11 +169,12 @@ fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows]) ->
     let points: Vec<(usize, f64, f64)> = parts
         .iter()
         .map(|p| {
-            let hz = p
-                .segment
-                .map_or(1.0, |s| records[p.record].segments()[s].frequency_hz);
+            let hz = p.of.segment.map_or(1.0, |s| {
+                records[p.of.record].header.segments[s].frequency_hz
+            });
             let mean_square = p.residual.norm_squared().max(floor) / p.residual.len() as f64;
-            (p.record, hz.ln(), (mean_square / p.weight.powi(2)).ln())
+            let weight = p.of.weights[p.force];
+            (p.of.record, hz.ln(), (mean_square / weight.powi(2)).ln())
         })
         .collect();
     let mut means: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
@@ -205,7 +202,7 @@ fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows]) ->
         .zip(parts)
         .map(|((record, x, _), part)| {
             let (mx, my) = mean(record);
-            part.weight.powi(2) * (my + slope * (x - mx)).exp()
+            part.of.weights[part.force].powi(2) * (my + slope * (x - mx)).exp()
         })
         .collect()
 }

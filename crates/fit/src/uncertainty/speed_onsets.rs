@@ -1,12 +1,12 @@
 //! What the tests at each mean speed say of the onset alone, and whether they contradict each other.
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
-use super::onset::{CONFIDENCE, OnsetError, error_at, onset_gradient, onset_nearby};
+use super::onset::{CONFIDENCE, OnsetError, error_at, followed, onset_gradient};
 use super::statistics::two_sided_quantile;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{Onset, OnsetSearch, find_onset};
+use crate::flutter::{Onset, OnsetSearch};
 use crate::section::{Dof, Structure};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
@@ -136,17 +136,10 @@ fn own_onset(
 ) -> Result<OnsetError> {
     let model = own.model_at(&own.values())?;
     let section = CoupledSection::with_model(structure, &model)?;
-    let omega = TAU * onset.at.frequency_hz;
-    let (speed_m_s, omega) = match onset_nearby(&section, onset.at.speed_m_s, omega) {
-        Ok(Some(speed)) => (speed, omega),
-        _ => {
-            let found = find_onset("", &section, search, Some(tested))?;
-            let other = found.onset().ok_or_else(|| {
-                Error::Numerical(format!("no onset up to {} m/s", search.speed_max_m_s))
-            })?;
-            (other.at.speed_m_s, TAU * other.at.frequency_hz)
-        }
-    };
+    let near = [onset.at.speed_m_s, TAU * onset.at.frequency_hz];
+    let found = followed(&section, near, search, Some(tested))?;
+    let none = || Error::Numerical(format!("no onset up to {} m/s", search.speed_max_m_s));
+    let [speed_m_s, omega] = found.ok_or_else(none)?;
     error_at(own, structure, speed_m_s, omega, None)
 }
 

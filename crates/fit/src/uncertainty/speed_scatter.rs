@@ -126,7 +126,7 @@ pub(super) fn between_speeds(
     own: &[Vec<usize>],
     at: &[Slopes],
 ) -> Result<(SpeedScatter, Vec<Effect>)> {
-    let blocks = design.blocks();
+    let blocks = &design.blocks;
     let several = speed_groups(blocks);
     let source = match &several {
         Some(_) => BetweenSpeeds::Tests,
@@ -290,7 +290,7 @@ impl Judge<'_> {
             let of_each: Vec<DVector<f64>> = self
                 .grams
                 .iter()
-                .map(|gram| self.design.inverse() * (gram * &scattered))
+                .map(|gram| &self.design.inverse * (gram * &scattered))
                 .collect();
             weight += square(&DMatrix::from_columns(&of_each));
             of_speeds += size * self.of_speeds.as_ref().map_or(0.0, square);

@@ -7,6 +7,7 @@ use super::parameters::{
 };
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
+use crate::identification::EntryReport;
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
 use crate::identification::frequency_options::FrequencyFit;
@@ -52,13 +53,24 @@ pub fn table_uncertainty(
             .iter()
             .enumerate()
             .filter(|(_, pole)| pole.entry.is_none_or(|(i, j)| i * dofs.len() + j == e));
-        let columns = EntryColumns {
-            chain: &report.entries[e].poles,
-            values: report.entries[e].values(),
-            first: first[e],
-            poles: searched.map(|(m, p)| (first_pole + m, p.index)).collect(),
-        };
-        columns.add_to(&mut runs, &form, entry, parameters.len())?;
+        let searched: Vec<(usize, usize)> =
+            searched.map(|(m, p)| (first_pole + m, p.index)).collect();
+        let account = &report.entries[e];
+        let mut rows = vec![vec![0.0; parameters.len()]; entry.rows.len()];
+        let (residuals, variance) = rows_of(entry, account, &form, &searched, first[e], &mut rows)?;
+        for ((sample, line), residual) in entry.rows.iter().zip(rows).zip(residuals) {
+            let place = runs.iter().position(|run| run.holds(entry.motion, sample));
+            let place = place.unwrap_or_else(|| {
+                runs.push(MotionSamples {
+                    motion: entry.motion,
+                    k: sample.k,
+                    mean_speed_m_s: sample.mean_speed_m_s,
+                    rows: Vec::new(),
+                });
+                runs.len() - 1
+            });
+            runs[place].rows.push((line, residual, variance));
+        }
     }
     let tangent = tangent_of(report, &form, &poles, &first, parameters.len())?;
     let blocks = runs.into_iter().map(MotionSamples::block).collect();
@@ -112,74 +124,48 @@ impl MotionSamples {
     }
 }
 
-/// Where the columns of one transfer function stand among the parameters.
-struct EntryColumns<'a> {
-    chain: &'a [f64],
-    values: Vec<f64>,
+/// Weighted residuals of one transfer function and their variance; its columns are written into `rows`, from the parameter `first` on and
+/// where its searched poles are (parameter, place among the free poles).
+fn rows_of(
+    entry: &EntrySamples,
+    account: &EntryReport,
+    form: &Form,
+    searched: &[(usize, usize)],
     first: usize,
-    /// Parameter and place among the free poles.
-    poles: Vec<(usize, usize)>,
-}
-
-impl EntryColumns<'_> {
-    fn add_to(
-        &self,
-        runs: &mut Vec<MotionSamples>,
-        form: &Form,
-        entry: &EntrySamples,
-        width: usize,
-    ) -> Result<()> {
-        let basis = Basis::new(form, self.chain)?;
-        let free = form.collapse(self.chain);
-        let mut pairs = Vec::new();
-        for &(at, index) in &self.poles {
-            let (up, down) = moved_pole(form, &free, index)?;
-            pairs.push((at, index, up, down));
+    rows: &mut [Vec<f64>],
+) -> Result<(Vec<f64>, f64)> {
+    let (basis, values) = (Basis::new(form, &account.poles)?, account.values());
+    let free = form.collapse(&account.poles);
+    let total = entry.total();
+    let scale = if total > 0.0 {
+        total.sqrt().recip()
+    } else {
+        1.0
+    };
+    let weighted = |r: f64, row: &EntrySample| scale * row.weight * r;
+    let residuals = entry.residuals(&basis, &values);
+    let residuals = residuals.iter().zip(&entry.rows);
+    let residuals: Vec<f64> = residuals.map(|(r, row)| weighted(*r, row)).collect();
+    let seen = |b: &Basis, row: &EntrySample| -> Vec<f64> {
+        row.of(&b.columns(Complex::new(0.0, row.k))).collect()
+    };
+    for (line, row) in rows.iter_mut().zip(&entry.rows) {
+        for (to, x) in line[first..].iter_mut().zip(seen(&basis, row)) {
+            *to = weighted(x, row);
         }
-        let total = entry.total();
-        let scale = if total > 0.0 {
-            total.sqrt().recip()
-        } else {
-            1.0
-        };
-        let residuals = entry.residuals(&basis, &self.values);
-        let weighted = |r: f64, row: &EntrySample| scale * row.weight * r;
-        let sum: f64 = residuals
-            .iter()
-            .zip(&entry.rows)
-            .map(|(r, row)| weighted(*r, row).powi(2))
-            .sum();
-        let variance = if sum > 0.0 { sum } else { 1.0 };
-        for (row, residual) in entry.rows.iter().zip(&residuals) {
-            let p = Complex::new(0.0, row.k);
-            let seen = |b: &Basis| -> Vec<f64> { row.of(&b.columns(p)).collect() };
-            let mut line = vec![0.0; width];
-            for (to, x) in line[self.first..].iter_mut().zip(seen(&basis)) {
-                *to = weighted(x, row);
-            }
-            for (at, index, up, down) in &pairs {
-                let change: f64 = seen(up)
-                    .iter()
-                    .zip(seen(down))
-                    .zip(&self.values)
-                    .map(|((a, b), c)| (a - b) * c)
-                    .sum();
-                line[*at] = weighted(change / (2.0 * STEP * free[*index]), row);
-            }
-            let place = runs.iter().position(|run| run.holds(entry.motion, row));
-            let place = place.unwrap_or_else(|| {
-                runs.push(MotionSamples {
-                    motion: entry.motion,
-                    k: row.k,
-                    mean_speed_m_s: row.mean_speed_m_s,
-                    rows: Vec::new(),
-                });
-                runs.len() - 1
-            });
-            runs[place]
-                .rows
-                .push((line, weighted(*residual, row), variance));
-        }
-        Ok(())
     }
+    for &(at, index) in searched {
+        let (up, down) = moved_pole(form, &free, index)?;
+        for (line, row) in rows.iter_mut().zip(&entry.rows) {
+            let change: f64 = seen(&up, row)
+                .iter()
+                .zip(seen(&down, row))
+                .zip(&values)
+                .map(|((a, b), c)| (a - b) * c)
+                .sum();
+            line[at] = weighted(change / (2.0 * STEP * free[index]), row);
+        }
+    }
+    let sum: f64 = residuals.iter().map(|r| r.powi(2)).sum();
+    Ok((residuals, if sum > 0.0 { sum } else { 1.0 }))
 }

@@ -1,11 +1,12 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
-use super::options::{CompareOptions, OnRecords};
+use super::options::CompareOptions;
 use super::score::{ModelOnRecord, Score, ScoreSummary, run_all, summaries};
 use super::statements::{Statement, on_decks};
 use super::tested_deck::TestedDeck;
 use crate::error::{Result, ensure};
 use crate::identification::{FitReport, Fitted, fit_discrete};
+use crate::numbered::OnDone;
 use crate::trained_model::Model;
 use crate::wind_tunnel::Record;
 use serde::Serialize;
@@ -44,7 +45,7 @@ pub struct DecksComparison {
 
 /// Trains the discrete Laguerre model on the records of one speed, predicts the forces of every record of every deck, and
 /// compares them frequency by frequency. `progress` hears how many of how many records are done.
-pub fn compare_decks(options: &CompareOptions, progress: OnRecords<'_>) -> Result<DecksComparison> {
+pub fn compare_decks(options: &CompareOptions, progress: OnDone<'_>) -> Result<DecksComparison> {
     ensure(!options.decks.is_empty(), "decks", "at least one", "none")?;
     let teacher = options.trained_on.as_ref();
     let teacher = teacher.map(|name| Trained::new(&TestedDeck::new(name, options)?, options));

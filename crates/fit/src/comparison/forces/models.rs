@@ -1,7 +1,7 @@
 //! Several models on one girder, in the time and the frequency domain (sections 3.5.5 and 3.5.6 of the thesis).
 
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
-use super::options::{CompareOptions, OnRecords};
+use super::options::CompareOptions;
 use super::score::{ModelOnRecord, Score, ScoreSummary, run_all, summaries};
 use super::statements::{Statement, on_models};
 use super::tested_deck::TestedDeck;
@@ -12,6 +12,7 @@ use crate::identification::{
     Constraints, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
     fit_records, fit_table,
 };
+use crate::numbered::OnDone;
 use crate::section::Dof;
 use crate::wind_tunnel::{Record, RecordSource};
 use serde::Serialize;
@@ -80,10 +81,7 @@ pub struct ModelsComparison {
 
 /// Fits the thesis's discrete Laguerre model, its rational functions and the continuous Laguerre model of this program to
 /// one deck at one speed, and compares them with what was measured. `progress` hears how many of how many records are done.
-pub fn compare_models(
-    options: &CompareOptions,
-    progress: OnRecords<'_>,
-) -> Result<ModelsComparison> {
+pub fn compare_models(options: &CompareOptions, progress: OnDone<'_>) -> Result<ModelsComparison> {
     let [name] = options.decks.as_slice() else {
         return Err(Error::input(
             "decks",

@@ -7,9 +7,6 @@ use serde::{Deserialize, Serialize};
 /// The four girders of Table 3.1 of the thesis.
 pub const THESIS_DECKS: [&str; 4] = ["LN21-5200", "LN21-5500", "LN21-5800", "LN21-6100"];
 
-/// Called with the records that are done and all of them, from any thread.
-pub type OnRecords<'a> = &'a (dyn Fn(usize, usize) + Sync);
-
 /// How the metrics are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

@@ -1,6 +1,6 @@
 //! Models asked for the forces of records, and the metrics of these against what was measured, one set per frequency of the motion.
 
-use super::options::{CompareOptions, OnRecords, Scoring};
+use super::options::{CompareOptions, Scoring};
 use super::tested_deck::TestedDeck;
 use crate::comparison::{
     DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
@@ -8,14 +8,13 @@ use crate::comparison::{
 };
 use crate::error::{Result, ensure, positive};
 use crate::files::text::csv_cell;
+use crate::numbered::{OnDone, numbered};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::wind_tunnel::{Record, Segment, predicted_forces};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How alike two forces are: 1 for equal ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -221,17 +220,9 @@ pub(super) struct PredictedForces {
 pub(super) fn run_all(
     trials: &[ModelOnRecord<'_>],
     options: &CompareOptions,
-    progress: OnRecords<'_>,
+    progress: OnDone<'_>,
 ) -> Result<Vec<PredictedForces>> {
-    let done = AtomicUsize::new(0);
-    trials
-        .par_iter()
-        .map(|trial| {
-            let outcome = trial.run(options);
-            progress(1 + done.fetch_add(1, Ordering::Relaxed), trials.len());
-            outcome
-        })
-        .collect()
+    numbered(trials.len(), progress, |at| trials[at].run(options))
 }
 
 impl ModelOnRecord<'_> {

@@ -1,15 +1,16 @@
 //! Steady harmonic stretches of records, sorted into test points.
 
 use super::result::DerivativeOptions;
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Error, Result, ensure};
+use crate::identification::time::record::check_numbers;
 use crate::identification::time::signals::Signals;
+use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::signal::{
     HarmonicFit, Plateau, fit_harmonics, largest_about_mean, plateau, refine_frequency,
 };
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{RecordHeader, RecordSource};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -110,19 +111,17 @@ pub(super) fn collect(
         groups: Vec::new(),
         warnings: Vec::new(),
     };
-    let each = records.par_iter().map(|record| {
-        let header = record.header();
+    let each = numbered(records.len(), &|_, _| (), |r| {
+        let header = records[r].header();
         check(header, first)?;
-        let signals = Arc::new(Signals::of(*record)?);
-        let segments = (0..header.segments.len()).into_par_iter();
-        let stretches = segments.map(|i| stretch(header, &signals, i, options));
-        stretches.collect::<Result<Vec<_>>>()
-    });
-    // the first record that is wrong is named, whichever was read first
-    let each: Vec<Result<Vec<Option<TestRun>>>> = each.collect();
+        let signals = Arc::new(Signals::of(records[r])?);
+        numbered(header.segments.len(), &|_, _| (), |i| {
+            stretch(header, &signals, i, options)
+        })
+    })?;
     for (record, stretches) in records.iter().zip(each) {
         let header = record.header();
-        for (stretch, segment) in stretches?.into_iter().zip(&header.segments) {
+        for (stretch, segment) in stretches.into_iter().zip(&header.segments) {
             match stretch {
                 Some(stretch) => insert(&mut points.groups, stretch, options),
                 None => points.warnings.push(format!(
@@ -143,14 +142,7 @@ pub(super) fn collect(
 
 fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
     let place = |key: &str| format!("record {}: {key}", header.name);
-    for (key, value) in [
-        ("width_m", header.width_m),
-        ("air_density_kg_m3", header.air_density_kg_m3),
-        ("mean_speed_m_s", header.mean_speed_m_s),
-        ("sampling_hz", header.sampling_hz),
-    ] {
-        positive(place(key), value)?;
-    }
+    check_numbers(header)?;
     ensure(
         header.dofs == first.dofs,
         place("dofs"),

@@ -110,12 +110,7 @@ impl Equation {
     fn gradient(&self, entries: &[AffineMap], width: usize) -> DVector<f64> {
         let mut gradient = DVector::zeros(width);
         for (e, row) in &self.rows {
-            let entry = &entries[*e];
-            for (c, x) in row.iter().enumerate() {
-                for (m, s) in entry.spread.row(c).iter().enumerate() {
-                    gradient[entry.at + m] += x * s;
-                }
-            }
+            entries[*e].add_gradient(row, 1.0, &mut gradient);
         }
         gradient
     }

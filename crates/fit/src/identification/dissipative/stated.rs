@@ -124,13 +124,9 @@ impl Stated {
         let mut gradient = DVector::zeros(width);
         for (e, entry) in entries.iter().enumerate() {
             let weight = weights[(e / n, e % n)];
-            if weight == 0.0 {
-                continue;
+            if weight != 0.0 {
+                entry.add_gradient(&self.rows[motions.basis_of[e]], weight, &mut gradient);
             }
-            let row = DVector::from_column_slice(&self.rows[motions.basis_of[e]]);
-            let own = entry.spread.tr_mul(&row) * weight;
-            let mut place = gradient.rows_mut(entry.at, own.len());
-            place += own;
         }
         gradient
     }

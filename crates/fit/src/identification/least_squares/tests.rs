@@ -75,7 +75,7 @@ fn ways_of_stacking_agree() {
     let expected = whole.solve(4).unwrap();
     assert!((by_columns.solve(4).unwrap() - &expected).amax() < 1e-13);
     assert!((stacked.solve(4).unwrap() - expected.column(1)).amax() < 1e-13);
-    assert_eq!(stacked.rows(), 777);
+    assert_eq!(stacked.rows, 777);
     assert!((stacked.residual_sum(4, 0) / whole.residual_sum(4, 1) - 1.0).abs() < 1e-12);
 }
 

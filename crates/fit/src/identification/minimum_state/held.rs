@@ -97,13 +97,6 @@ impl LagSearch<'_> {
             .map(|c| (j * feed + c, 1.0))
             .chain((0..self.states).map(|l| (self.n * feed + l, e[(l, j)])))
             .collect();
-        let spread = &force.spread;
-        AffineMap {
-            values: places.iter().map(|&(c, f)| f * force.values[c]).collect(),
-            spread: DMatrix::from_fn(places.len(), spread.ncols(), |r, m| {
-                places[r].1 * spread[(places[r].0, m)]
-            }),
-            at: force.at,
-        }
+        force.picked(&places)
     }
 }

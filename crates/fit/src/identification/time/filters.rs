@@ -138,7 +138,7 @@ impl<'a> ContinuousColumns<'a> {
             "low_pass_hz",
             format_args!(
                 "less than half the sampling frequency of record {}",
-                record.name()
+                record.header.name
             ),
             cutoff_hz,
         )?;

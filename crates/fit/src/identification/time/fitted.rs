@@ -40,7 +40,7 @@ impl<'a> FittedSystems<'a> {
     ) -> Result<Self> {
         let solve = |i: usize| {
             let factor = systems.whole(i);
-            enough_rows("records", factor.rows(), factor.columns())?;
+            enough_rows("records", factor.rows, factor.columns())?;
             if let Some(column) = factor.undetermined(factor.columns()) {
                 let holds = |j: &usize| systems.places(i, *j).contains(&column);
                 let silent = (0..dofs.len()).find(holds);
@@ -116,7 +116,7 @@ impl<'a> FittedSystems<'a> {
             };
             let whole = self.systems.whole(i);
             let columns = whole.columns();
-            let residual = variance(whole.residual_sum(columns, 0), whole.rows(), columns);
+            let residual = variance(whole.residual_sum(columns, 0), whole.rows, columns);
             let gram = whole.inverse_gram(columns)?;
             reports.push(StaticReport {
                 force,
@@ -135,7 +135,7 @@ impl<'a> FittedSystems<'a> {
             Some(_) => whole.residual_sum_of(&self.coefficients[i], 0),
             None => whole.residual_sum(whole.columns(), 0),
         };
-        variance(residual_sum, whole.rows(), whole.columns()).map(|v| v * self.noise_ratio)
+        variance(residual_sum, whole.rows, whole.columns()).map(|v| v * self.noise_ratio)
     }
 
     /// Covariance of the coefficients of a transfer function.
@@ -260,12 +260,10 @@ impl JointTimeFit {
                 let linear = joint.add(&systems.whole(i), count, at)?;
                 at += linear.spread.ncols();
                 for j in 0..n {
-                    let places = systems.places(i, j);
-                    joint.entries.push(AffineMap {
-                        values: places.iter().map(|&p| linear.values[p]).collect(),
-                        spread: linear.spread.select_rows(&places),
-                        at: linear.at,
-                    });
+                    let places = systems.places(i, j).into_iter().map(|p| (p, 1.0));
+                    joint
+                        .entries
+                        .push(linear.picked(&places.collect::<Vec<_>>()));
                 }
                 joint.whole.push(linear);
             }
@@ -285,7 +283,7 @@ impl JointTimeFit {
         let columns = factor.columns();
         let (total, residual) = (factor.total_sum(0), factor.residual_sum(columns, 0));
         let share = if total > 0.0 {
-            let noise = relative_noise(residual, total, factor.rows(), columns);
+            let noise = relative_noise(residual, total, factor.rows, columns);
             (total * count).sqrt().recip() / noise
         } else {
             1.0

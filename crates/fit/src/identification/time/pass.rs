@@ -6,8 +6,8 @@ use super::signals::SignalBlock;
 use crate::error::{Result, ensure};
 use crate::identification::least_squares::{BLOCK_ROWS, Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
+use crate::numbered::numbered;
 use crate::wind_tunnel::Segment;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -165,20 +165,16 @@ pub(crate) fn pass_over<C: Columns>(
     make: impl Fn(&DimensionlessRecord) -> Result<C> + Sync,
 ) -> Result<Pass> {
     let finished = AtomicUsize::new(0);
-    let parts = records
-        .par_iter()
-        .enumerate()
-        .map(|(r, record)| {
-            let part = one_record(r, record, plan, &mut make(record)?);
-            progress(FitProgress {
-                pass: plan.number.0,
-                passes: plan.number.1,
-                records_done: 1 + finished.fetch_add(1, Ordering::Relaxed),
-                records: records.len(),
-            });
-            part
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let parts = numbered(records.len(), &|_, _| (), |r| {
+        let part = one_record(r, &records[r], plan, &mut make(&records[r])?);
+        progress(FitProgress {
+            pass: plan.number.0,
+            passes: plan.number.1,
+            records_done: 1 + finished.fetch_add(1, Ordering::Relaxed),
+            records: records.len(),
+        });
+        part
+    })?;
     Ok(Pass {
         order: plan.order,
         stretches: parts.into_iter().flatten().collect(),
@@ -225,7 +221,7 @@ fn one_record<C: Columns>(
     let least = plan.order.width(1).max(16) * plan.stride;
     ensure(
         rows >= least,
-        format_args!("record {}", record.name()),
+        format_args!("record {}", record.header.name),
         format_args!("at least {least} samples after discard_s"),
         rows,
     )?;
@@ -236,7 +232,7 @@ fn one_record<C: Columns>(
 /// Where stretches end: at the beginning of every segment and at even distances in it, or at even distances without
 /// segments; and where the filters have settled.
 fn boundaries_s(record: &DimensionlessRecord, plan: &PassPlan) -> Vec<f64> {
-    let segments = record.segments();
+    let segments = &record.header.segments;
     let mut ends = vec![plan.discard_s];
     if plan.stretches > 0 || plan.weights == TimeWeights::PerSegment {
         ends.extend(segments.iter().skip(1).map(|s| s.start_s));
@@ -356,7 +352,7 @@ impl OpenStretch {
 
 /// Finds the segments of the stretches and gives all stretches of one segment, or of one record, the same weights.
 fn weigh(stretches: &mut [Stretch], record: &DimensionlessRecord, weights: TimeWeights) {
-    let segments = record.segments();
+    let segments = &record.header.segments;
     for stretch in stretches.iter_mut() {
         // rest before the first segment belongs to it; half a step, since boundaries fall between samples
         let begun = |s: &&Segment| s.start_s <= stretch.start_s + 0.5 * record.step_s;

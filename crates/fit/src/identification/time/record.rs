@@ -6,11 +6,11 @@ use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
 use crate::identification::own::StaticTerm;
 use crate::identification::report::StaticReport;
+use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::signal::{Fourier, mean, resampled};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
@@ -23,7 +23,7 @@ const GROWTH: f64 = 1.01;
 
 /// A record whose numbers have been checked, with degrees of freedom in the order of every matrix of the crate.
 pub(crate) struct DimensionlessRecord {
-    header: RecordHeader,
+    pub header: RecordHeader,
     pub signals: Signals,
     /// `V/B`, 1/s.
     pub rate: f64,
@@ -55,18 +55,15 @@ impl Records {
         dofs.dedup();
         let mut heads = records.iter().map(|r| r.header());
         heads.try_for_each(|head| check_header(head, &dofs))?;
-        let read = records.par_iter();
-        let read = read.map(|r| DimensionlessRecord::read(*r, &dofs));
-        // the first that fails is named, whoever comes first
-        let read: Vec<Result<_>> = read.collect();
-        let mut each = read.into_iter().collect::<Result<Vec<_>>>()?;
+        let read = |r: usize| DimensionlessRecord::read(records[r], &dofs);
+        let mut each = numbered(records.len(), &|_, _| (), read)?;
         let mut removed_means = Vec::new();
         let without_mean = each.iter_mut();
         for record in without_mean.filter(|_| static_term == StaticTerm::Removed) {
             for (value, &force) in record.remove_means()?.into_iter().zip(&dofs) {
                 removed_means.push(StaticReport {
                     force,
-                    record: Some(record.name().to_owned()),
+                    record: Some(record.header.name.to_owned()),
                     value,
                     standard_error: None,
                 });
@@ -106,12 +103,22 @@ impl Records {
     }
 }
 
+/// Refuses what has to be positive and is not.
+pub(crate) fn check_numbers(header: &RecordHeader) -> Result<()> {
+    for (key, value) in [
+        ("width_m", header.width_m),
+        ("air_density_kg_m3", header.air_density_kg_m3),
+        ("mean_speed_m_s", header.mean_speed_m_s),
+        ("sampling_hz", header.sampling_hz),
+    ] {
+        positive(format!("record {}: {key}", header.name), value)?;
+    }
+    Ok(())
+}
+
 fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
     let place = |key: &str| format!("record {}: {key}", header.name);
-    positive(place("width_m"), header.width_m)?;
-    positive(place("air_density_kg_m3"), header.air_density_kg_m3)?;
-    positive(place("mean_speed_m_s"), header.mean_speed_m_s)?;
-    positive(place("sampling_hz"), header.sampling_hz)?;
+    check_numbers(header)?;
     for segment in &header.segments {
         positive(place("segments: frequency_hz"), segment.frequency_hz)?;
     }
@@ -167,36 +174,21 @@ impl DimensionlessRecord {
         })
     }
 
-    /// Name of the record.
-    pub(crate) fn name(&self) -> &str {
-        &self.header.name
-    }
-
-    /// Mean wind speed, m/s.
-    pub(crate) fn mean_speed_m_s(&self) -> f64 {
-        self.header.mean_speed_m_s
-    }
-
     /// Sampling step in dimensionless time.
     pub(crate) fn delta_s(&self) -> f64 {
         self.rate * self.step_s
     }
 
-    /// Stretches of harmonic motion that the record states.
-    pub(crate) fn segments(&self) -> &[Segment] {
-        &self.header.segments
-    }
-
     /// Reduced frequencies of the segments; for other motions the band that holds their power.
     fn tested(&self) -> Result<Vec<ReducedFrequencyRange>> {
         let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
-        if self.segments().is_empty() {
+        if self.header.segments.is_empty() {
             let whole = |(low, high)| ReducedFrequencyRange::between(k(low), k(high));
             return Ok(band(&self.signals)?.map(whole).into_iter().collect());
         }
         let of_hertz = |f: f64| ReducedFrequency::from_full_width(TAU * f / self.rate);
         let tone = |s: &Segment| of_hertz(s.frequency_hz);
-        let tones = self.segments().iter().map(tone);
+        let tones = self.header.segments.iter().map(tone);
         Ok(tones
             .map(|k| ReducedFrequencyRange::between(k, k))
             .collect())

@@ -46,7 +46,7 @@ fn variance_is_unbiased_and_its_degrees_of_freedom_are_those_stated() {
     let (mut sum, mut squares, mut truth, mut stated) = (0.0, 0.0, 0.0, 0.0);
     for _ in 0..RUNS {
         let errors = DVector::from_fn(30, |_, _| normal(&mut random));
-        let design = Design::new(blocks(&errors, &SIZES), None).unwrap();
+        let design = Design::new(blocks(&errors, &SIZES), DMatrix::identity(2, 2)).unwrap();
         let along = design.contributions().transpose() * &contrast;
         let variance = along.norm_squared();
         sum += variance;
@@ -69,7 +69,7 @@ fn a_weight_of_zero_leaves_a_block_out() {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     let errors = DVector::from_fn(20, |_, _| normal(&mut random));
     let all = blocks(&errors, &[5, 7, 8]);
-    let design = Design::new(all.clone(), None).unwrap();
+    let design = Design::new(all.clone(), DMatrix::identity(2, 2)).unwrap();
     let step = design.reweighted(&[1.0, 0.0, 1.0]).unwrap();
     let x = DMatrix::from_fn(13, 2, |i, j| {
         if i < 5 {
@@ -97,12 +97,12 @@ fn a_tangent_is_the_fit_in_its_own_coordinates() {
     let errors = DVector::from_fn(30, |_, _| normal(&mut random));
     let all = blocks(&errors, &[5, 7, 8, 10]);
     let tangent = DMatrix::from_column_slice(2, 1, &[0.6, -0.8]);
-    let held = Design::new(all.clone(), Some(tangent.clone())).unwrap();
+    let held = Design::new(all.clone(), tangent.clone()).unwrap();
     let inner = all.iter().map(|b| Block {
         rows: &b.rows * &tangent,
         ..b.clone()
     });
-    let own = Design::new(inner.collect(), None).unwrap();
+    let own = Design::new(inner.collect(), DMatrix::identity(1, 1)).unwrap();
     let expected = &tangent * own.contributions();
     assert!((held.contributions() - expected).amax() < 1e-12);
     let weights = [0.5, 2.0, 1.0, 0.3];

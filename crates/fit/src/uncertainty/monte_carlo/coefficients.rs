@@ -5,36 +5,33 @@ use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 
 /// The model as a linear combination; `None` for the sampled one.
-pub(super) fn linear(model: &Model, tested: ReducedFrequencyRange) -> Option<LinearForces> {
+pub(super) fn linear(model: &Model, tested: Option<ReducedFrequencyRange>) -> Option<LinearForces> {
     match model {
-        Model::Laguerre(m) => Some(LinearForces::of_laguerre(m, Some(tested))),
-        Model::Rational(m) => Some(LinearForces::of_rational(m, Some(tested))),
-        Model::MinimumState(m) => Some(LinearForces::of_rational(&m.to_roger(), Some(tested))),
+        Model::Laguerre(m) => Some(LinearForces::of_laguerre(m, tested)),
+        Model::Rational(m) => Some(LinearForces::of_rational(m, tested)),
+        Model::MinimumState(m) => Some(LinearForces::of_rational(&m.to_roger(), tested)),
         Model::DiscreteLaguerre(_) => None,
     }
 }
 
 /// Coefficients and their names, `force.motion.term`.
 pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
-    let forces = match model {
-        Model::Laguerre(m) => LinearForces::of_laguerre(m, None),
-        Model::Rational(m) => LinearForces::of_rational(m, None),
-        Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), None),
-        Model::DiscreteLaguerre(m) => {
-            let (mut values, mut names) = (Vec::new(), Vec::new());
-            for term in &m.terms {
-                for (l, column) in term.coefficients.column_iter().enumerate() {
-                    for (i, value) in column.iter().enumerate() {
-                        let (force, motion) = (m.dofs[i].name(), m.dofs[term.input].name());
-                        values.push(*value);
-                        names.push(format!("{force}.{motion}.c{l}"));
-                    }
+    let (mut values, mut names) = (Vec::new(), Vec::new());
+    if let Model::DiscreteLaguerre(m) = model {
+        for term in &m.terms {
+            for (l, column) in term.coefficients.column_iter().enumerate() {
+                for (i, value) in column.iter().enumerate() {
+                    let (force, motion) = (m.dofs[i].name(), m.dofs[term.input].name());
+                    values.push(*value);
+                    names.push(format!("{force}.{motion}.c{l}"));
                 }
             }
-            return (values, names);
         }
-    };
-    (forces.coefficients().to_vec(), forces.names())
+    } else if let Some(forces) = linear(model, None) {
+        values = forces.coefficients().to_vec();
+        names = forces.names();
+    }
+    (values, names)
 }
 
 /// Puts `values`, in the order of [`of`], into the model. Coefficients of their own have no place in the minimum-state

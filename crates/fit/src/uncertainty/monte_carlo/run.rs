@@ -10,9 +10,9 @@ use crate::error::{Error, Result, ensure};
 use crate::flutter::{
     FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
 };
+use crate::numbered::{OnDone, numbered_in_parts};
 use crate::section::SectionModel;
 use crate::trained_model::{Model, TrainedModel};
-use crate::uncertainty::sampling::{OnSamples, sampled_in_parts};
 use std::ops::Range;
 
 /// Samples or sections that a thread takes at once.
@@ -38,7 +38,7 @@ pub(super) struct Finder<'a> {
 pub fn monte_carlo(
     plan: &MonteCarloPlan,
     model: &TrainedModel,
-    progress: OnSamples<'_>,
+    progress: OnDone<'_>,
 ) -> Result<MonteCarloResult> {
     let tally = tally(plan, model, 0..plan.samples, progress)?;
     summarise(plan, model, [tally])
@@ -53,7 +53,7 @@ pub fn tally(
     plan: &MonteCarloPlan,
     model: &TrainedModel,
     samples: Range<usize>,
-    progress: OnSamples<'_>,
+    progress: OnDone<'_>,
 ) -> Result<Tally> {
     ensure(
         samples.start <= samples.end && samples.end <= plan.samples,
@@ -67,7 +67,7 @@ pub fn tally(
     let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
     // a number for each sample, and nothing twice: those of a part stand in its places until all are closed up
     let mut onsets = vec![0.0; samples.len()];
-    let tallies = sampled_in_parts(&mut onsets, PART, progress, |first, places| {
+    let tallies = numbered_in_parts(&mut onsets, PART, progress, |first, places| {
         let from = samples.start + first;
         let mut tally = finder.tally(&sampler, from..from + places.len());
         let found = std::mem::take(&mut tally.onsets);
@@ -130,7 +130,7 @@ fn drawn(
 
 impl<'a> Finder<'a> {
     pub(super) fn new(model: &'a TrainedModel, speed_max_m_s: f64) -> Result<Self> {
-        let sweep = coefficients::linear(&model.model, model.tested_range)
+        let sweep = coefficients::linear(&model.model, Some(model.tested_range))
             .map(|forces| OnsetSweep::new(forces, &model.section.structure()?, speed_max_m_s))
             .transpose()?;
         Ok(Self {
@@ -245,12 +245,12 @@ pub fn many_onsets(
     count: usize,
     section: &(dyn Fn(usize, &mut SectionModel) + Sync),
     speed_max_m_s: f64,
-    progress: OnSamples<'_>,
+    progress: OnDone<'_>,
 ) -> Result<ManyOnsets> {
     let finder = Finder::new(model, speed_max_m_s)?;
     let (values, _) = coefficients::of(&model.model);
     let mut outcomes = vec![SweepOutcome::Unresolved; count];
-    sampled_in_parts(&mut outcomes, PART, progress, |first, places| {
+    numbered_in_parts(&mut outcomes, PART, progress, |first, places| {
         let mut one = model.section.clone();
         for (i, place) in (first..).zip(places) {
             section(i, &mut one);
