@@ -5,6 +5,7 @@
 
 mod bridge;
 mod bridge_scatter;
+mod buffeting;
 mod command;
 mod convert;
 mod derivatives;
@@ -37,7 +38,7 @@ fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<sweep::Sweep>()?;
     m.add_class::<onsets::Onsets>()?;
     m.add_class::<bridge::Bridge>()?;
-    m.add_class::<bridge::Buffeting>()?;
+    m.add_class::<buffeting::Buffeting>()?;
     m.add_class::<bridge_scatter::BridgeScatter>()?;
     m.add_class::<response::Motion>()?;
     m.add_class::<response::Stepper>()?;

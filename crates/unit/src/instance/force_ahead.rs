@@ -1,9 +1,9 @@
 //! Forces alone in co-simulation: where the motion goes on until the instant at which they act.
 
 use super::force_parts::StripsUnderModel;
-use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE, check_forces};
+use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE};
 use super::memory::Memory;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::response::{
     ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow,
 };
@@ -158,4 +158,12 @@ impl ForceUnit {
         let newest = PrescribedForces::newest_s(state);
         newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))
     }
+}
+
+/// Refuses forces that no number holds any more.
+pub(super) fn check_forces(found: &[ForceAhead]) -> Result<()> {
+    if found.iter().all(|f| f.force.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::Numerical("the forces have overflowed".into()))
 }

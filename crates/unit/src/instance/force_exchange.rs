@@ -3,8 +3,9 @@
 //! Nothing is predicted and nothing derived from earlier motion, so that the rates of the motion have to be set. A displacement
 //! that moves while its rate has never been set is a motion that was not connected: it ends the run.
 
+use super::force_ahead::check_forces;
 use super::force_parts::StripsUnderModel;
-use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET, check_forces};
+use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET};
 use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::lifecycle::State;

@@ -3,6 +3,7 @@
 use crate::aerodynamics::Realizable;
 use crate::force_options::StripsOfModel;
 use crate::response::{PrescribedForces, StripGusts};
+use crate::section::Dof;
 use std::ops::Range;
 
 /// Strips that lie side by side under the forces of one model. A unit has one of these for each of its models.
@@ -89,4 +90,11 @@ impl StripsUnderModel {
         let own = index - self.inner.start;
         [self.strips.start + own / per_strip, own % per_strip]
     }
+}
+
+/// Which of all coordinates a degree of freedom of strip `s` is.
+pub(super) fn coordinate(parts: &[StripsUnderModel], s: usize, dof: Dof) -> usize {
+    let part = StripsUnderModel::new(parts, s);
+    let of_strip = part.forces.dofs().iter().position(|d| *d == dof);
+    part.coordinates_of(s).start + of_strip.unwrap_or(0)
 }

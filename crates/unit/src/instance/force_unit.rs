@@ -4,18 +4,17 @@
 //! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well. Where
 //! the importer integrates, they are those of its instant.
 
-use super::force_parts::StripsUnderModel;
+use super::force_parts::{StripsUnderModel, coordinate};
 use super::layout::{Source, index_of};
 use super::memory::Memory;
 use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::force_options::StripsOfModel;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
 use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow, wind_at_rest};
-use crate::section::Dof;
 use crate::variables::{
     ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
     strip_states,
@@ -27,8 +26,8 @@ pub(super) const SET: f64 = 1.0;
 /// A rate by the derivative of the input below it.
 pub(super) const SET_AS_DERIVATIVE: f64 = 2.0;
 
-/// Self-excited forces on strips whose motion the importer gives. The state is the time from the newest motion to the instant of the forces (s), how each number of
-/// the motion has been set since, then the state of the forces, of the strips of one model after those of another.
+/// Self-excited forces on strips whose motion the importer gives. The state is the time from the newest motion to the instant of
+/// the forces (s), how each number of the motion has been set since, then the state of the forces, model by model.
 #[derive(Debug)]
 pub(super) struct ForceUnit {
     pub parts: Vec<StripsUnderModel>,
@@ -359,38 +358,27 @@ impl Prepared for ForceUnit {
     }
 }
 
-/// Which of all coordinates a degree of freedom of strip `s` is.
-fn coordinate(parts: &[StripsUnderModel], s: usize, dof: Dof) -> usize {
-    let part = StripsUnderModel::new(parts, s);
-    let of_strip = part.forces.dofs().iter().position(|d| *d == dof);
-    part.coordinates_of(s).start + of_strip.unwrap_or(0)
-}
-
-/// Refuses forces that no number holds any more.
-pub(super) fn check_forces(found: &[ForceAhead]) -> Result<()> {
-    if found.iter().all(|f| f.force.is_finite()) {
-        return Ok(());
-    }
-    Err(Error::Numerical("the forces have overflowed".into()))
-}
-
 impl ForceUnit {
     /// Finds the forces of all strips as they are put out, see the module.
     pub(super) fn present(&mut self, memory: &Memory, renewed: bool) -> Result<()> {
-        let mut work = std::mem::take(&mut self.work);
-        let found = if self.integrated {
-            self.at_instant(memory, &mut work)
-        } else {
-            self.ahead_into(memory, renewed, &mut work)
-        };
-        self.work = work;
-        found
+        if self.integrated {
+            return self.with_work(|unit, work| unit.at_instant(memory, work));
+        }
+        self.ahead(memory, renewed)
     }
 
     /// Those of co-simulation.
     pub(super) fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<()> {
+        self.with_work(|unit, work| unit.ahead_into(memory, renewed, work))
+    }
+
+    #[inline(always)]
+    fn with_work(
+        &mut self,
+        find: impl FnOnce(&mut Self, &mut ForceWork) -> Result<()>,
+    ) -> Result<()> {
         let mut work = std::mem::take(&mut self.work);
-        let found = self.ahead_into(memory, renewed, &mut work);
+        let found = find(self, &mut work);
         self.work = work;
         found
     }

@@ -1,0 +1,53 @@
+//! Products and steps against the plain sums of their rows.
+
+use super::*;
+use crate::response::lanes::on_plain_numbers;
+
+/// One row of `W v` in the order of the partial sums.
+fn row(w: &DMatrix<f64>, i: usize, v: &[f64]) -> f64 {
+    let mut sums = [0.0; PARTIAL_SUMS];
+    for (j, x) in v.iter().enumerate() {
+        sums[j % PARTIAL_SUMS] += w[(i, j)] * x;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+#[test]
+fn products_of_every_shape_have_the_bits_of_their_rows_whatever_the_vectors() {
+    for (rows, columns) in
+        (0..28).flat_map(|rows| (1..15).chain([64, 65, 71]).map(move |c| (rows, c)))
+    {
+        let w = DMatrix::from_fn(rows, columns, |i, j| {
+            (3.7 * i as f64 + 1.3 * j as f64).sin()
+        });
+        let packed = Packed::from_matrix(&w);
+        let v: Vec<f64> = (0..columns).map(|j| (0.7 * j as f64).cos()).collect();
+        for v in [&v[..], &v[..columns / 2]] {
+            let expected: Vec<_> = (0..rows).map(|i| row(&w, i, v)).collect();
+            let (mut wide, mut plain) = (vec![9.0; rows + 1], vec![9.0; rows + 1]);
+            apply(&packed, v, &mut wide);
+            let (w, y) = (&packed, &mut plain[..]);
+            on_plain_numbers(Apply { w, v, y });
+            for y in [&wide, &plain] {
+                assert_eq!(&y[..rows], expected, "{rows} by {columns}");
+                assert_eq!(y[rows], 9.0, "{rows} by {columns}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_died_out_is_zero_and_what_has_outgrown_numbers_is_said_in_every_row() {
+    for rows in 1..28 {
+        for spoilt in 0..rows {
+            let unit = Packed::new(rows, rows, |i, j| f64::from(u8::from(i == j)));
+            let (mut v, mut y) = (vec![1e-260; rows], vec![9.0; rows]);
+            assert!(advanced(&unit, &v, &mut y));
+            assert_eq!(y, vec![0.0; rows]);
+            for bad in [f64::INFINITY, f64::NAN] {
+                v[spoilt] = bad;
+                assert!(!advanced(&unit, &v, &mut y), "row {spoilt} of {rows}");
+            }
+        }
+    }
+}
