@@ -135,7 +135,7 @@ impl Design {
         let mut qr = StreamingQr::new(free, 0);
         let mut working = DMatrix::zeros(parameters, parameters);
         for block in &blocks {
-            let along = &block.rows * &tangent;
+            let along = along(&block.rows, &tangent);
             if along.nrows() > 0 {
                 let columns = along.as_slice().chunks_exact(along.nrows());
                 qr.push_columns(&columns.collect::<Vec<_>>());
@@ -263,7 +263,7 @@ impl Design {
         // determines the parameters, or says that it does not
         Self::new(blocks.clone(), tangent.clone())?;
         let all = Block::joined(String::new(), &blocks);
-        let qr = (&all.rows * &tangent).qr();
+        let qr = along(&all.rows, &tangent).qr();
         let inner = qr
             .r()
             .solve_upper_triangular(&qr.q().tr_mul(&all.residual))
@@ -332,7 +332,7 @@ impl Design {
         let mut gram = DMatrix::zeros(n, n);
         let mut right = DVector::zeros(n);
         for (block, weight) in self.blocks.iter().zip(weights) {
-            let rows = &block.rows * &self.tangent * DMatrix::from_diagonal(&unit);
+            let rows = along(&block.rows, &self.tangent) * DMatrix::from_diagonal(&unit);
             gram.gemm(*weight, &rows.transpose(), &rows, 1.0);
             right.gemv(*weight, &rows.transpose(), &block.residual, 1.0);
         }
@@ -343,6 +343,14 @@ impl Design {
             .component_mul(&unit);
         Ok(&self.tangent * step)
     }
+}
+
+/// Rows over the directions of a tangent; those of a fit without active constraints are the parameters themselves.
+fn along(rows: &DMatrix<f64>, tangent: &DMatrix<f64>) -> DMatrix<f64> {
+    if tangent.is_identity(0.0) {
+        return rows.clone();
+    }
+    rows * tangent
 }
 
 /// The directions of a tangent in which all parameters from `kept` on stay as they are, without these.
