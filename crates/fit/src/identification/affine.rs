@@ -82,7 +82,7 @@ impl AffineSpace {
 
     /// Takes away from a vector what lies along the gradients of the equations.
     pub(crate) fn project(&self, vector: &mut DVector<f64>) {
-        take_away(vector, &self.taken);
+        project_out(vector, &self.taken);
     }
 
     /// Orthonormal basis of the directions that are left, n×(n − taken).
@@ -104,7 +104,7 @@ impl AffineSpace {
             unit[i] = 1.0;
             for _ in 0..2 {
                 self.project(&mut unit);
-                take_away(&mut unit, &left);
+                project_out(&mut unit, &left);
             }
             let norm = unit.norm();
             if norm > 1e-3 {
@@ -141,7 +141,7 @@ impl AffineSpace {
     }
 }
 
-fn take_away(vector: &mut DVector<f64>, directions: &[DVector<f64>]) {
+fn project_out(vector: &mut DVector<f64>, directions: &[DVector<f64>]) {
     for q in directions {
         let along = q.dot(vector);
         vector.axpy(-along, q, 1.0);

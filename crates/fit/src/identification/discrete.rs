@@ -6,7 +6,7 @@ use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
 use super::report::{AlphaGuideline, FitReport, Fitted, MemoryReport};
 use super::time::fitted::FittedSystems;
-use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass_over};
+use super::time::pass::{Chunk, ColumnOrder, Columns, OnProgress, Pass, PassPlan, pass_over};
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
@@ -212,27 +212,27 @@ impl Columns for DiscreteColumns {
         self.recursions.len()
     }
 
-    fn advance(&mut self, _: &Piece<'_>, _: &[usize]) {}
+    fn advance(&mut self, _: &Chunk<'_>, _: &[usize]) {}
 
     fn columns<'a>(
         &'a mut self,
-        piece: &Piece<'a>,
+        chunk: &Chunk<'a>,
         candidate: usize,
         active: &[usize],
     ) -> Vec<&'a [f64]> {
         for &j in active {
             let state = &mut self.states[candidate][j];
             let recursion = self.recursions[candidate][j];
-            recursion.advance(state, piece.motion[j], &mut self.columns[j], BLOCK_ROWS);
+            recursion.advance(state, chunk.motion[j], &mut self.columns[j], BLOCK_ROWS);
         }
-        let rows = piece.rows();
+        let rows = chunk.rows();
         let mut columns: Vec<&[f64]> = Vec::new();
         columns.extend(self.ones.as_ref().map(|ones| &ones[..rows]));
         for l in 0..self.filters {
             let stretch = l * BLOCK_ROWS..l * BLOCK_ROWS + rows;
             columns.extend(active.iter().map(|&j| &self.columns[j][stretch.clone()]));
         }
-        columns.extend(&piece.force);
+        columns.extend(&chunk.force);
         columns
     }
 }
@@ -285,7 +285,7 @@ fn memory(
 ) -> Result<Vec<MemoryReport>> {
     let memories = parameters.iter().map(|(a, l)| discrete_memory(*a, *l));
     let longest = memories.max().unwrap_or(0);
-    let account = |record: &DimensionlessRecord| {
+    let memory_of = |record: &DimensionlessRecord| {
         let resampled = record.at_step(Some(delta_s))?.0;
         let signals = resampled.as_ref().unwrap_or(&record.signals);
         Ok(MemoryReport {
@@ -295,7 +295,7 @@ fn memory(
             step_s: delta_s / record.rate,
         })
     };
-    records.each.iter().map(account).collect()
+    records.each.iter().map(memory_of).collect()
 }
 
 /// (2.36) at the highest reduced frequency: `f_max/f_s = K Δs/2π`, whatever the speed; for the smallest `α` in use.

@@ -15,20 +15,21 @@
 //!
 //! This is less than passivity, which a flat plate does not have either. All conditions are convex in the
 //! coefficients. For given poles the fit minimises the sum over the transfer functions of weighted squared residuals, each
-//! relative to the weighted data of its own — the objective of the search of poles. Condition 3 is stated at 40 `K` from
+//! relative to the weighted data of its own — the objective of the search of poles. Condition 3 is conditions at 40 `K` from
 //! `K_max` to `200 K_max`, and then at every `K` at which the answer still breaks it ([`everywhere`]), until there is none.
 
+mod condition;
 mod conic;
 mod edge;
 mod equations;
 mod everywhere;
 mod motions;
 mod report;
-mod stated;
 
 use super::affine::{AffineMap, AffineSpace};
 use super::basis::Basis;
 use crate::error::{Error, Result};
+use condition::{Condition, ConditionRows};
 use conic::shortest;
 use edge::TestedRangeEnd;
 pub use equations::Constraints;
@@ -37,7 +38,6 @@ use equations::{Equation, equations, satisfy};
 use motions::Motions;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use report::GrowthLimit;
-use stated::{Condition, Stated};
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport};
 
@@ -49,13 +49,13 @@ const ACTIVE: f64 = 1e-7;
 pub(crate) const NOTHING_HELD: f64 = 1e-6;
 /// Part of a gradient outside those of other constraints below which it adds no direction.
 pub(crate) const SAME_DIRECTION: f64 = 1e-8;
-/// Times that further `K` are stated; two or three are the rule.
+/// Times that further `K` are conditions; two or three are the rule.
 const ROUNDS: usize = 30;
 
 /// Where condition 3 is to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Strictness {
-    /// At the `K` that are stated first: for the search of poles.
+    /// At the `K` that are conditions first: for the search of poles.
     Sampled,
     /// At every `K ≥ K_max`.
     Everywhere,
@@ -66,7 +66,7 @@ pub(crate) struct Dissipation<'a> {
     bases: &'a [Basis],
     k_max: f64,
     motions: Motions<'a>,
-    stated: Vec<Stated>,
+    conditions: Vec<ConditionRows>,
     equations: Vec<Equation>,
 }
 
@@ -84,27 +84,27 @@ pub(crate) struct Solution {
 
 impl<'a> Dissipation<'a> {
     /// For the bases of all transfer functions, row by row.
-    pub(crate) fn new(bases: &'a [Basis], wishes: &FitRequirements) -> Self {
-        let motions = Motions::new(bases, &wishes.dofs);
-        let mut stated = Vec::new();
-        if wishes.constraints == Constraints::Dissipative {
+    pub(crate) fn new(bases: &'a [Basis], requirements: &FitRequirements) -> Self {
+        let motions = Motions::new(bases, &requirements.dofs);
+        let mut conditions = Vec::new();
+        if requirements.constraints == Constraints::Dissipative {
             for part in 0..motions.parts.len() {
-                let all = Condition::all(bases[0].feed(), wishes.k_max, part);
-                stated.extend(all.into_iter().map(|c| Stated::new(c, &motions)));
+                let all = Condition::all(bases[0].feed(), requirements.k_max, part);
+                conditions.extend(all.into_iter().map(|c| ConditionRows::new(c, &motions)));
             }
         }
         Self {
-            equations: equations(bases, motions.count, wishes),
-            k_max: wishes.k_max,
+            equations: equations(bases, motions.count, requirements),
+            k_max: requirements.k_max,
             bases,
             motions,
-            stated,
+            conditions,
         }
     }
 
     /// The end of the tested range for every part, from the fit that the data alone give.
     fn edges(&self, alone: &[Vec<f64>]) -> Vec<TestedRangeEnd> {
-        let first = |part: usize| self.stated.iter().find(|s| s.condition.part == part);
+        let first = |part: usize| self.conditions.iter().find(|s| s.condition.part == part);
         (0..self.motions.parts.len())
             .filter_map(first)
             .map(|s| TestedRangeEnd::new(s.matrix(&self.motions, alone)))
@@ -126,11 +126,11 @@ impl<'a> Dissipation<'a> {
         let equalities = satisfy(&self.equations, entries, width)?;
         let start = &equalities.start;
         let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(start)).collect();
-        let mut stated = self.stated.clone();
+        let mut conditions = self.conditions.clone();
         let (mut free, mut coefficients) = (start.clone(), at_start.clone());
-        let mut holds = vec![false; stated.len()];
-        let broken = |s: &Stated| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
-        let mut more = match stated.iter().any(broken) {
+        let mut holds = vec![false; conditions.len()];
+        let broken = |s: &ConditionRows| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
+        let mut more = match conditions.iter().any(broken) {
             true => None,
             false => Some(self.broken_between(&at_start, &edges, strictness)),
         };
@@ -139,16 +139,16 @@ impl<'a> Dissipation<'a> {
                 if free.amax() == 0.0 {
                     return Ok(None);
                 }
-                let held = held(&stated, &holds);
+                let held = held(&conditions, &holds);
                 let solution = self.solution(entries, free, coefficients, &edges, held, equalities);
                 return Ok(Some(solution));
             }
-            stated.extend(more.into_iter().flatten());
-            let cone = |s: &Stated| {
+            conditions.extend(more.into_iter().flatten());
+            let cone = |s: &ConditionRows| {
                 let edge = &edges[s.condition.part];
                 s.cone(&self.motions, entries, &at_start, edge, &equalities)
             };
-            let cones: Vec<_> = stated.iter().map(cone).collect();
+            let cones: Vec<_> = conditions.iter().map(cone).collect();
             let found = shortest(&cones, width)?;
             free = start + found.w;
             coefficients = entries.iter().map(|e| e.coefficients(&free)).collect();
@@ -160,13 +160,13 @@ impl<'a> Dissipation<'a> {
         )))
     }
 
-    /// Condition 3 where it is broken although it is not stated there.
+    /// Condition 3 where it is broken although it is not conditions there.
     fn broken_between(
         &self,
         coefficients: &[Vec<f64>],
         edges: &[TestedRangeEnd],
         strictness: Strictness,
-    ) -> Vec<Stated> {
+    ) -> Vec<ConditionRows> {
         if strictness == Strictness::Sampled {
             return Vec::new();
         }
@@ -174,7 +174,7 @@ impl<'a> Dissipation<'a> {
         for (part, edge) in edges.iter().enumerate() {
             for k in self.broken_at(part, coefficients, edge) {
                 let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
-                all.push(Stated::new(condition, &self.motions));
+                all.push(ConditionRows::new(condition, &self.motions));
             }
         }
         all
@@ -183,7 +183,7 @@ impl<'a> Dissipation<'a> {
     /// Eigenvalues of a condition's matrix beyond what it may have, over its scale, and eigenvectors.
     fn excesses(
         &self,
-        stated: &Stated,
+        conditions: &ConditionRows,
         coefficients: &[Vec<f64>],
         edges: &[TestedRangeEnd],
     ) -> (DVector<f64>, DMatrix<f64>) {
@@ -193,8 +193,8 @@ impl<'a> Dissipation<'a> {
             own,
             part,
             ..
-        } = stated.condition;
-        let beyond = stated.matrix(&self.motions, coefficients) - &edges[part].own * own;
+        } = conditions.condition;
+        let beyond = conditions.matrix(&self.motions, coefficients) - &edges[part].own * own;
         let eigen = SymmetricEigen::new(beyond / (edges[part].size * scale));
         (eigen.eigenvalues.add_scalar(margin), eigen.eigenvectors)
     }
@@ -205,7 +205,7 @@ impl<'a> Dissipation<'a> {
         free: DVector<f64>,
         coefficients: Vec<Vec<f64>>,
         edges: &[TestedRangeEnd],
-        held: Vec<&Stated>,
+        held: Vec<&ConditionRows>,
         mut space: AffineSpace,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
@@ -218,7 +218,8 @@ impl<'a> Dissipation<'a> {
                     continue;
                 }
                 let direction = directions.column(m).into_owned();
-                let constraint = self.held_back(s, &direction, edges, &alone, &coefficients);
+                let constraint =
+                    self.active_constraint(s, &direction, edges, &alone, &coefficients);
                 if let Some(gradient) = self.free_gradient(s, &constraint, entries) {
                     space.hold(&gradient, gradient.dot(&free), SAME_DIRECTION);
                 }
@@ -234,9 +235,9 @@ impl<'a> Dissipation<'a> {
     }
 
     /// The constraint that a condition is in one direction of its motions.
-    fn held_back(
+    fn active_constraint(
         &self,
-        stated: &Stated,
+        conditions: &ConditionRows,
         direction: &DVector<f64>,
         edges: &[TestedRangeEnd],
         alone: &[Vec<f64>],
@@ -244,8 +245,9 @@ impl<'a> Dissipation<'a> {
     ) -> ActiveConstraint {
         let Condition {
             kind, k, part, own, ..
-        } = stated.condition;
-        let value = |x: &[Vec<f64>]| direction.dot(&(stated.matrix(&self.motions, x) * direction));
+        } = conditions.condition;
+        let value =
+            |x: &[Vec<f64>]| direction.dot(&(conditions.matrix(&self.motions, x) * direction));
         let follows = (own > 0.0).then(|| edges[part].change(direction)).flatten();
         ActiveConstraint {
             kind,
@@ -264,18 +266,18 @@ impl<'a> Dissipation<'a> {
     /// Its gradient in the free numbers; none where it holds nothing but the growth that the tests end with.
     fn free_gradient(
         &self,
-        stated: &Stated,
+        conditions: &ConditionRows,
         constraint: &ActiveConstraint,
         entries: &[AffineMap],
     ) -> Option<DVector<f64>> {
         let v = DVector::from_column_slice(&constraint.direction);
-        let held = stated.gradient(&self.motions, &(&v * v.transpose()), entries);
+        let held = conditions.gradient(&self.motions, &(&v * v.transpose()), entries);
         let Some(limit) = &constraint.limit else {
             return Some(held);
         };
-        let part = stated.condition.part;
+        let part = conditions.condition.part;
         let end = Condition::above(self.k_max, 1.0, self.bases[0].feed(), part);
-        let follows = Stated::new(end, &self.motions);
+        let follows = ConditionRows::new(end, &self.motions);
         let norm = held.norm();
         let free = held - follows.gradient(&self.motions, &limit.weights, entries);
         (free.norm() > NOTHING_HELD * norm).then_some(free)
@@ -283,9 +285,9 @@ impl<'a> Dissipation<'a> {
 }
 
 /// The conditions that hold something, in their order.
-fn held<'a>(stated: &'a [Stated], holds: &[bool]) -> Vec<&'a Stated> {
-    let pairs = stated.iter().zip(holds);
-    let mut held: Vec<&Stated> = pairs.filter_map(|(s, held)| held.then_some(s)).collect();
+fn held<'a>(conditions: &'a [ConditionRows], holds: &[bool]) -> Vec<&'a ConditionRows> {
+    let pairs = conditions.iter().zip(holds);
+    let mut held: Vec<&ConditionRows> = pairs.filter_map(|(s, held)| held.then_some(s)).collect();
     held.sort_by(|a, b| a.condition.order(&b.condition));
     held
 }

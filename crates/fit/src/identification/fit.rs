@@ -43,8 +43,8 @@ pub fn fit<Data: ?Sized>(data: &Data, options: &impl FitOptions<Data>) -> Result
 impl FitOptions<[TransferSample]> for FrequencyFit {
     /// Of the motions and forces of the samples.
     fn fit(&self, samples: &[TransferSample]) -> Result<Fitted> {
-        let held = |d: &Dof| samples.iter().any(|s| s.motion == *d || s.force == *d);
-        let dofs: Vec<Dof> = Dof::THREE.into_iter().filter(held).collect();
+        let sampled = |d: &Dof| samples.iter().any(|s| s.motion == *d || s.force == *d);
+        let dofs: Vec<Dof> = Dof::THREE.into_iter().filter(sampled).collect();
         fit_table(samples, &dofs, self)
     }
 }

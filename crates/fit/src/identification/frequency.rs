@@ -13,7 +13,7 @@ use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
 use super::report::{FitReport, Fitted, FittedTable, variance};
-use super::samples::{EntrySamples, sizes, sort_by_entry, state_wishes};
+use super::samples::{EntrySamples, sizes, sort_by_entry, state_requirements};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -48,7 +48,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     let (mut entries, mut notes) = sort_by_entry(samples, dofs, fit.weights)?;
     let fewest = entries.iter().map(|e| e.rows.len()).min();
     let fit = &fit.with_filters_for(fewest.unwrap_or(0));
-    state_wishes(&mut entries, dofs, fit)?;
+    state_requirements(&mut entries, dofs, fit)?;
     let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
     let fitted = match fit.form {
@@ -122,7 +122,7 @@ fn fit_linear(
         entries,
         form: &fit.form,
         shares: by_noise(entries, &fit.form, &poles)?,
-        wishes: FitRequirements {
+        requirements: FitRequirements {
             dofs: dofs.to_vec(),
             k_max: tested.max.full_width(),
             constraints: fit.constraints,
@@ -131,14 +131,17 @@ fn fit_linear(
         },
     };
     let bound = joint.at(&poles)?;
-    if bound.held.is_none() {
+    if bound.constrained.is_none() {
         return Ok(alone);
     }
     let (poles, search) = choose_poles_together(&joint, &forms, fit, tested, poles)?;
-    let held = joint.at(&poles)?;
-    let reports = held_reports(&held, entries, &poles)?;
+    let together = joint.at(&poles)?;
+    let reports = constrained_reports(&together, entries, &poles)?;
     let model = model_of(dofs, fit, &reports)?;
-    let active = held.held.map(|h| h.active).unwrap_or_default();
+    let active = together
+        .constrained
+        .map(|solution| solution.active)
+        .unwrap_or_default();
     let constraints = ConstraintReport::new(
         active,
         dofs,
@@ -168,29 +171,29 @@ fn model_of(dofs: &[Dof], fit: &FrequencyFit, reports: &[EntryReport]) -> Result
 }
 
 /// Accounts of all entries of a fit that constraints hold together.
-fn held_reports(
-    held: &JointFit<'_>,
+fn constrained_reports(
+    together: &JointFit<'_>,
     entries: &[EntrySamples],
     poles: &[Vec<f64>],
 ) -> Result<Vec<EntryReport>> {
     let mut reports = Vec::new();
     let mut variances = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
-        let (report, variance) = account(
+        let (report, variance) = entry_report(
             entry,
-            &held.bases[e],
-            &held.solutions[e],
-            held.coefficients(e),
+            &together.bases[e],
+            &together.solutions[e],
+            together.coefficients(e),
         );
         reports.push(report);
         variances.push(variance);
     }
     let finish = |(e, report): (usize, EntryReport)| {
-        let values = held.coefficients(e);
+        let values = together.coefficients(e);
         let mut report = report.with_coefficients(
-            held.bases[e].names(),
+            together.bases[e].names(),
             values,
-            held.covariance(e, &variances),
+            together.covariance(e, &variances),
         );
         report.poles.clone_from(&poles[e]);
         report
@@ -210,7 +213,7 @@ fn describe(weights: FrequencyWeights) -> &'static str {
 fn fit_entry(entry: &EntrySamples, form: &Form, poles: &[f64]) -> Result<EntryReport> {
     let basis = Basis::new(form, poles)?;
     let fit = entry.fit(&basis)?;
-    let (mut report, variance) = account(entry, &basis, &fit, &fit.coefficients);
+    let (mut report, variance) = entry_report(entry, &basis, &fit, &fit.coefficients);
     report.poles = poles.to_vec();
     let covariance = variance
         .map(|v| fit.inverse_gram().map(|gram| gram * v))
@@ -219,7 +222,7 @@ fn fit_entry(entry: &EntrySamples, form: &Form, poles: &[f64]) -> Result<EntryRe
 }
 
 /// Account of given coefficients of one entry but for their covariance, and the variance of the weighted residuals.
-fn account(
+fn entry_report(
     entry: &EntrySamples,
     basis: &Basis,
     fit: &LinearSolution,

@@ -158,11 +158,15 @@ impl Grid {
             .map(|factor| factor.solve(leading))
             .collect::<Result<Vec<_>>>()?;
         let mut objective = systems.objective(per_input, &|_, _| true);
-        if let Some(held) = self.constrained(systems, value, filters)? {
-            objective = held.objective();
+        if let Some(constrained) = self.constrained(systems, value, filters)? {
+            objective = constrained.objective();
             for (i, all) in coefficients.iter_mut().enumerate() {
                 for j in 0..self.dofs.len() {
-                    for (c, x) in held.values(i * self.dofs.len() + j).iter().enumerate() {
+                    for (c, x) in constrained
+                        .values(i * self.dofs.len() + j)
+                        .iter()
+                        .enumerate()
+                    {
                         all[self.pass.order.index(c, j)] = *x;
                     }
                 }
@@ -193,8 +197,8 @@ impl Grid {
         let GridAxis::Continuous(poles, fit) = &self.axis else {
             return Ok(None);
         };
-        let wishes = fit.wishes(&self.dofs, self.tested)?;
-        if !wishes.any() {
+        let requirements = fit.requirements(&self.dofs, self.tested)?;
+        if !requirements.any() {
             return Ok(None);
         }
         let entries = self.dofs.len() * self.dofs.len();
@@ -207,10 +211,10 @@ impl Grid {
         let joint = JointTimeFit::new(
             &systems,
             &vec![basis; entries],
-            &wishes,
+            &requirements,
             Strictness::Sampled,
         )?;
-        Ok(Some(joint).filter(|j| j.held.is_some()))
+        Ok(Some(joint).filter(|j| j.constrained.is_some()))
     }
 
     /// Coefficients that a system of input `j` alone takes: the constant, if any, then that input's.

@@ -5,7 +5,7 @@
 //! are reduced to rank one, and Karpel's choice, every state driven by one motion. Columns of `D` and rows of `E` may be
 //! scaled against each other; `E` gets rows of unit length.
 
-mod held;
+mod constrained;
 
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
@@ -37,7 +37,7 @@ struct LagSearch<'a> {
     /// Bounds of the search, or the lags that were given.
     lags: SearchedLags,
     /// What is asked besides, once least squares alone are known.
-    wishes: Option<FitRequirements>,
+    requirements: Option<FitRequirements>,
 }
 
 enum SearchedLags {
@@ -66,7 +66,7 @@ pub(super) fn fit_minimum_state(
             Some(fixed) => SearchedLags::Given(fixed.clone()),
             None => SearchedLags::Within(Bounds::resolve(&fit.poles, tested, states)?),
         },
-        wishes: None,
+        requirements: None,
     };
     let (best, points) = task.search(fit)?;
     let search = match &task.lags {
@@ -84,7 +84,7 @@ pub(super) fn fit_minimum_state(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    task.wishes = Some(FitRequirements {
+    task.requirements = Some(FitRequirements {
         dofs: dofs.to_vec(),
         k_max: tested.max.full_width(),
         constraints: fit.constraints,

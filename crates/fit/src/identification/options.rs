@@ -105,7 +105,7 @@ impl TimeFit {
     ///
     /// # Errors
     /// [`crate::Error::Input`] for limits of degrees of freedom that are not there.
-    pub(crate) fn wishes(
+    pub(crate) fn requirements(
         &self,
         dofs: &[Dof],
         tested: ReducedFrequencyRange,

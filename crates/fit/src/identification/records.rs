@@ -148,21 +148,21 @@ impl<'a> RecordFit<'a> {
         let ChosenPoles {
             unconstrained,
             constrained,
-            wishes,
+            requirements,
         } = poles;
         let mut fits = fits.into_iter();
         let none = || Error::Numerical("fit to records: no fit".into());
         let mut found = fits.next().ok_or_else(none)?;
         let (reports, model, bases) = (found.reports()?, found.model()?, found.bases()?);
         if constrained.is_some() {
-            found.fitted.constrain(&bases, &wishes)?;
+            found.fitted.constrain(&bases, &requirements)?;
         }
         let Some(constrained) = constrained.filter(|_| found.fitted.active().is_some()) else {
             return Ok((found, unconstrained.search, None));
         };
         if let Some(other) = fits.next() {
             found = other;
-            found.fitted.constrain(&found.bases()?, &wishes)?;
+            found.fitted.constrain(&found.bases()?, &requirements)?;
         }
         let active = found.fitted.active().unwrap_or_default();
         let with = found.reports()?;
@@ -208,7 +208,7 @@ impl FitAtPoles<'_> {
 
     /// Memory of the slowest chain against the rest, or what is discarded, before the motion.
     fn memory(&self) -> Result<Vec<MemoryReport>> {
-        let account = |record: &DimensionlessRecord| {
+        let memory_of = |record: &DimensionlessRecord| {
             let mut memory_samples = 0;
             for chain in &self.chains {
                 let own = FilterBank::new(chain.clone())?.memory(record.delta_s())?;
@@ -222,7 +222,7 @@ impl FitAtPoles<'_> {
                 step_s: record.step_s,
             })
         };
-        self.task.records.each.iter().map(account).collect()
+        self.task.records.each.iter().map(memory_of).collect()
     }
 
     /// Fewer filters (shared poles only).

@@ -197,7 +197,7 @@ pub(crate) fn sort_by_entry(
 ///
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) for weights of another shape and limits of degrees of freedom that are not there.
-pub(crate) fn state_wishes(
+pub(crate) fn state_requirements(
     entries: &mut [EntrySamples],
     dofs: &[Dof],
     fit: &FrequencyFit,

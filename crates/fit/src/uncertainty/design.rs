@@ -259,7 +259,7 @@ impl Design {
                 ..block.clone()
             });
         }
-        let tangent = held_at_zero(&self.tangent, kept);
+        let tangent = constrained_to_zero(&self.tangent, kept);
         // determines the parameters, or says that it does not
         Self::new(blocks.clone(), tangent.clone())?;
         let all = Block::joined(String::new(), &blocks);
@@ -354,7 +354,7 @@ fn along(rows: &DMatrix<f64>, tangent: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The directions of a tangent in which all parameters from `kept` on stay as they are, without these.
-fn held_at_zero(tangent: &DMatrix<f64>, kept: usize) -> DMatrix<f64> {
+fn constrained_to_zero(tangent: &DMatrix<f64>, kept: usize) -> DMatrix<f64> {
     let held = tangent.rows(kept, tangent.nrows() - kept).into_owned();
     let eigen = SymmetricEigen::new(held.tr_mul(&held));
     let still = |i: &usize| eigen.eigenvalues[*i] < LEVERAGE_TOLERANCE;

@@ -236,14 +236,14 @@ pub(super) fn tangent_of(
     };
     let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
     // squares of the gradients of what is held, whatever the limit does
-    let mut held_squares = vec![0.0; gradients.len()];
+    let mut constrained_squares = vec![0.0; gradients.len()];
     let n = report.entries.len().isqrt();
     for (e, entry) in report.entries.iter().enumerate() {
         let (i, j) = (e / n, e % n);
         let values = entry.values();
         let free = form.collapse(&entry.poles);
         let basis = Basis::new(form, &entry.poles)?;
-        let each = gradients.iter_mut().zip(&mut held_squares);
+        let each = gradients.iter_mut().zip(&mut constrained_squares);
         for ((gradient, square), active) in each.zip(&constraints.active) {
             let own = active.gradient_beyond_limit(i, j, &basis);
             gradient.as_mut_slice()[first[e]..][..own.len()].copy_from_slice(&own);
@@ -263,7 +263,7 @@ pub(super) fn tangent_of(
         }
     }
     let mut space = AffineSpace::whole(parameters);
-    for (gradient, square) in gradients.iter().zip(held_squares) {
+    for (gradient, square) in gradients.iter().zip(constrained_squares) {
         if gradient.norm_squared() > NOTHING_HELD.powi(2) * square {
             space.hold(gradient, 0.0, SAME_DIRECTION);
         }
@@ -288,7 +288,7 @@ fn norm_squared(numbers: &[f64]) -> f64 {
 }
 
 /// How active constraints enter, in words.
-pub(super) fn held_sentence(report: &FitReport) -> String {
+pub(super) fn constraint_sentence(report: &FitReport) -> String {
     match &report.constraints {
         Some(c) => {
             let follows = if c.active.iter().any(|a| a.limit.is_some()) {

@@ -3,8 +3,8 @@
 use super::coefficients::CoefficientUncertainty;
 use super::columns::Expansion;
 use super::parameters::{
-    Coordinates, FreePoles, Parameter, coordinates_of, free_poles, held_sentence, parameters_of,
-    tangent_of,
+    Coordinates, FreePoles, Parameter, constraint_sentence, coordinates_of, free_poles,
+    parameters_of, tangent_of,
 };
 use super::segments::{StretchRows, Stretched, gather, sandwich};
 use crate::aerodynamics::DiscreteLaguerre;
@@ -63,7 +63,7 @@ pub fn record_uncertainty(
     let closed = task.pass(&entries.candidates(), rows, 1, 1)?.stretches;
     let tangent = tangent_of(report, &form, &poles, &entries.first, parameters.len())?;
     let (design, blocks) = sandwich(entries.blocks(&records.each, &closed)?, tangent)?;
-    let searched = poles.sentence() + &held_sentence(report);
+    let searched = poles.sentence() + &constraint_sentence(report);
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; {searched}"),
         Some(report.tested_range),

@@ -3,7 +3,7 @@
 use super::coefficients::CoefficientUncertainty;
 use super::design::{Block, Design};
 use super::parameters::{
-    STEP, coordinates_of, free_poles, held_sentence, moved_pole, parameters_of, tangent_of,
+    STEP, constraint_sentence, coordinates_of, free_poles, moved_pole, parameters_of, tangent_of,
 };
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
@@ -55,9 +55,9 @@ pub fn table_uncertainty(
             .filter(|(_, pole)| pole.entry.is_none_or(|(i, j)| i * dofs.len() + j == e));
         let searched: Vec<(usize, usize)> =
             searched.map(|(m, p)| (first_pole + m, p.index)).collect();
-        let account = &report.entries[e];
+        let report = &report.entries[e];
         let mut rows = vec![vec![0.0; parameters.len()]; entry.rows.len()];
-        let (residuals, variance) = rows_of(entry, account, &form, &searched, first[e], &mut rows)?;
+        let (residuals, variance) = rows_of(entry, report, &form, &searched, first[e], &mut rows)?;
         for ((sample, line), residual) in entry.rows.iter().zip(rows).zip(residuals) {
             let place = runs.iter().position(|run| run.holds(entry.motion, sample));
             let place = place.unwrap_or_else(|| {
@@ -74,7 +74,7 @@ pub fn table_uncertainty(
     }
     let tangent = tangent_of(report, &form, &poles, &first, parameters.len())?;
     let blocks = runs.into_iter().map(MotionSamples::block).collect();
-    let searched = poles.sentence() + &held_sentence(report);
+    let searched = poles.sentence() + &constraint_sentence(report);
     CoefficientUncertainty::new(
         format!(
             "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
@@ -128,14 +128,14 @@ impl MotionSamples {
 /// where its searched poles are (parameter, place among the free poles).
 fn rows_of(
     entry: &EntrySamples,
-    account: &EntryReport,
+    report: &EntryReport,
     form: &Form,
     searched: &[(usize, usize)],
     first: usize,
     rows: &mut [Vec<f64>],
 ) -> Result<(Vec<f64>, f64)> {
-    let (basis, values) = (Basis::new(form, &account.poles)?, account.values());
-    let free = form.collapse(&account.poles);
+    let (basis, values) = (Basis::new(form, &report.poles)?, report.values());
+    let free = form.collapse(&report.poles);
     let total = entry.total();
     let scale = if total > 0.0 {
         total.sqrt().recip()

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// What was done on one deck.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DeckAccount {
+pub struct TestedDeckScores {
     /// Deck.
     pub deck: String,
     /// Width of the section model, m.
@@ -34,7 +34,7 @@ pub struct DecksComparison {
     /// What was asked for.
     pub options: CompareOptions,
     /// The decks.
-    pub decks: Vec<DeckAccount>,
+    pub decks: Vec<TestedDeckScores>,
     /// One entry per deck, speed, motion, force and frequency.
     pub scores: Vec<Score>,
     /// Over the frequencies.
@@ -75,7 +75,7 @@ pub fn compare_decks(options: &CompareOptions, progress: OnDone<'_>) -> Result<D
     let outcomes = run_all(&trials, options, progress)?;
     let scores: Vec<Score> = outcomes.into_iter().flat_map(|o| o.scores).collect();
     Ok(DecksComparison {
-        decks: decks.into_iter().map(|(d, t)| t.account(d)).collect(),
+        decks: decks.into_iter().map(|(d, t)| t.scores_of(d)).collect(),
         summaries: summaries(&scores),
         statements: on_decks(&scores),
         options: options.clone(),
@@ -107,8 +107,8 @@ impl Trained {
         self.deck != deck.table.name || self.speed_m_s != record.header.mean_speed_m_s
     }
 
-    fn account(self, deck: TestedDeck) -> DeckAccount {
-        DeckAccount {
+    fn scores_of(self, deck: TestedDeck) -> TestedDeckScores {
+        TestedDeckScores {
             deck: deck.table.name,
             width_m: deck.table.width_m,
             speeds_m_s: deck.speeds_m_s,

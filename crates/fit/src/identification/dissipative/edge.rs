@@ -18,8 +18,8 @@ impl TestedRangeEnd {
         let n = matrix.nrows();
         let norm = matrix.norm();
         let eigen = SymmetricEigen::new(matrix);
-        let fed = eigen.eigenvalues.iter().any(|value| *value > 0.0);
-        let own = fed.then(|| {
+        let grows = eigen.eigenvalues.iter().any(|value| *value > 0.0);
+        let own = grows.then(|| {
             let mut positive = eigen.clone();
             positive.eigenvalues.apply(|value| *value = value.max(0.0));
             positive.recompose()
@@ -27,11 +27,11 @@ impl TestedRangeEnd {
         Self {
             size: if norm > 0.0 { norm } else { 1.0 },
             own: own.unwrap_or_else(|| DMatrix::zeros(n, n)),
-            eigen: fed.then_some(eigen),
+            eigen: grows.then_some(eigen),
         }
     }
 
-    /// Weights `W` with which a change `dS` of the whole matrix changes `vᵀ P v` by `Σ W ∘ dS`; none where nothing is fed in.
+    /// Weights `W` with which a change `dS` of the whole matrix changes `vᵀ P v` by `Σ W ∘ dS`; none where nothing is grows in.
     ///
     /// Derivative of a function of a symmetric matrix by divided differences (Daleckii & Krein, 1965).
     pub(super) fn change(&self, v: &DVector<f64>) -> Option<DMatrix<f64>> {
@@ -76,11 +76,11 @@ mod tests {
         let matrix = DMatrix::from_row_slice(2, 2, &[-3.0, 0.4, 0.4, 0.2]);
         let change = DMatrix::from_row_slice(2, 2, &[0.7, -0.3, -0.3, 1.1]);
         let v = DVector::from_vec(vec![0.6, 0.8]);
-        let fed = |step: f64| {
+        let grows = |step: f64| {
             let own = TestedRangeEnd::new(&matrix + &change * step).own;
             v.dot(&(own * &v))
         };
-        let expected = (fed(1e-5) - fed(-1e-5)) / 2e-5;
+        let expected = (grows(1e-5) - grows(-1e-5)) / 2e-5;
         let weights = TestedRangeEnd::new(matrix.clone()).change(&v);
         let found = weights.map(|w| w.component_mul(&change).sum());
         assert!(

@@ -67,9 +67,13 @@ pub(super) struct Equation {
 }
 
 /// The equations of a model with given bases, row by row.
-pub(super) fn equations(bases: &[Basis], n: usize, wishes: &FitRequirements) -> Vec<Equation> {
+pub(super) fn equations(
+    bases: &[Basis],
+    n: usize,
+    requirements: &FitRequirements,
+) -> Vec<Equation> {
     let mut all = Vec::new();
-    if wishes.constraints == Constraints::Dissipative && bases[0].feed().e2 {
+    if requirements.constraints == Constraints::Dissipative && bases[0].feed().e2 {
         let row = |e: usize, sign: f64| {
             let row = ConstraintKind::SymmetricAddedMass.row(None, &bases[e]);
             (e, row.into_iter().map(|x| sign * x).collect())
@@ -83,7 +87,7 @@ pub(super) fn equations(bases: &[Basis], n: usize, wishes: &FitRequirements) -> 
             }));
         }
     }
-    for (e, limits) in wishes.limits.iter().enumerate() {
+    for (e, limits) in requirements.limits.iter().enumerate() {
         for (kind, target) in [ConstraintKind::ValueAtZero, ConstraintKind::SlopeAtZero]
             .into_iter()
             .zip(limits)

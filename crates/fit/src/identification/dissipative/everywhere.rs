@@ -6,9 +6,9 @@
 //! eigenvalue of `H` changes its sign.
 
 use super::Dissipation;
+use super::condition::{Condition, ConditionRows};
 use super::edge::TestedRangeEnd;
 use super::report::ConstraintKind;
-use super::stated::{Condition, Stated};
 use crate::state_space::{eigenvalues, golden_section};
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -71,8 +71,8 @@ impl Dissipation<'_> {
         edge: &TestedRangeEnd,
     ) -> f64 {
         let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
-        let stated = Stated::new(condition, &self.motions);
-        let beyond = stated.matrix(&self.motions, coefficients) - &edge.own * condition.own;
+        let conditions = ConditionRows::new(condition, &self.motions);
+        let beyond = conditions.matrix(&self.motions, coefficients) - &edge.own * condition.own;
         SymmetricEigen::new(beyond / edge.size).eigenvalues.max()
     }
 
@@ -90,7 +90,7 @@ impl Dissipation<'_> {
             k: None,
             ..Condition::above(self.k_max, 1.0, self.bases[0].feed(), part)
         };
-        let e1 = Stated::new(fast, &self.motions).matrix(&self.motions, coefficients);
+        let e1 = ConditionRows::new(fast, &self.motions).matrix(&self.motions, coefficients);
         let inverse = e1.try_inverse()?;
         let filters: usize = self.motions.distinct.iter().map(|b| b.poles().len()).sum();
         let states = n * (filters + 1);

@@ -17,7 +17,7 @@ const LEAST_SHARE: f64 = 1e-6;
 pub(super) struct Joint<'a> {
     pub entries: &'a [EntrySamples],
     pub form: &'a Form,
-    pub wishes: FitRequirements,
+    pub requirements: FitRequirements,
     /// What the weighted residuals of each entry are multiplied with, see [`by_noise`].
     pub shares: Vec<f64>,
 }
@@ -29,7 +29,7 @@ pub(super) struct JointFit<'a> {
     pub bases: Vec<Basis>,
     pub solutions: Vec<LinearSolution>,
     linear: Vec<AffineMap>,
-    pub held: Option<Solution>,
+    pub constrained: Option<Solution>,
 }
 
 /// Shares of the entries by their own scatter instead of their own size: under constraints the poles and the coefficients of
@@ -102,14 +102,15 @@ impl<'a> Joint<'a> {
             at += solution.unknowns;
             solutions.push(solution);
         }
-        let held = Dissipation::new(&bases, &self.wishes).solve(&linear, strictness)?;
+        let constrained =
+            Dissipation::new(&bases, &self.requirements).solve(&linear, strictness)?;
         Ok(JointFit {
             entries: self.entries,
             shares,
             bases,
             solutions,
             linear,
-            held,
+            constrained,
         })
     }
 }
@@ -117,8 +118,8 @@ impl<'a> Joint<'a> {
 impl JointFit<'_> {
     /// Coefficients of an entry.
     pub(crate) fn coefficients(&self, e: usize) -> &[f64] {
-        match &self.held {
-            Some(held) => &held.coefficients[e],
+        match &self.constrained {
+            Some(constrained) => &constrained.coefficients[e],
             None => &self.solutions[e].coefficients,
         }
     }
@@ -137,13 +138,13 @@ impl JointFit<'_> {
     /// Covariance of the coefficients of an entry from the variances of the weighted residuals of all entries: what the
     /// active constraints take is known.
     pub(crate) fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Option<DMatrix<f64>> {
-        let held = self.held.as_ref()?;
+        let constrained = self.constrained.as_ref()?;
         variances[e]?;
         let all = self.linear.iter().zip(&self.shares).zip(variances);
         let free = all.map(|((linear, share), v)| {
             let variance = v.unwrap_or(0.0) * share * share;
             (linear.spread.ncols(), variance)
         });
-        Some(held.space.covariance(&self.linear[e], free))
+        Some(constrained.space.covariance(&self.linear[e], free))
     }
 }

@@ -169,9 +169,9 @@ fn own_poles_from_records() {
 }
 
 /// Samples cut into uneven blocks, as a file reader would hand them over.
-struct Pieces(Record);
+struct Chunks(Record);
 
-impl RecordSource for Pieces {
+impl RecordSource for Chunks {
     fn header(&self) -> &RecordHeader {
         &self.0.header
     }
@@ -197,8 +197,8 @@ impl RecordSource for Pieces {
 #[test]
 fn blocks_do_not_matter() {
     let whole = records(&FlatPlate::default(), &[8.17], 0.05, 3);
-    let pieces: Vec<Pieces> = whole.iter().cloned().map(Pieces).collect();
-    let streams: Vec<&dyn RecordSource> = pieces.iter().map(|p| p as _).collect();
+    let chunks: Vec<Chunks> = whole.iter().cloned().map(Chunks).collect();
+    let streams: Vec<&dyn RecordSource> = chunks.iter().map(|p| p as _).collect();
     let fit = TimeFit {
         poles: PoleSearch::fixed(&[0.3]),
         weights: TimeWeights::PerSegment,

@@ -8,7 +8,7 @@
 //! the sampling frequency (about 1e-5 with the default cut-off).
 
 use super::low_pass::{Filtered, Hold, LowPassStep, ORDER, low_pass};
-use super::pass::{Columns, Piece};
+use super::pass::{Chunk, Columns};
 use super::record::DimensionlessRecord;
 use crate::error::{Error, Result, ensure};
 use crate::identification::basis::Basis;
@@ -30,7 +30,7 @@ struct FilterStep {
 }
 
 impl FilterStep {
-    /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole piece; `out` holds one stretch of
+    /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole chunk; `out` holds one stretch of
     /// [`BLOCK_ROWS`] per filter.
     fn advance(&self, input: &Filtered, state: &mut [f64], out: &mut [f64]) {
         drive(self, input, out);
@@ -217,21 +217,21 @@ impl Columns for ContinuousColumns<'_> {
         self.bases.len()
     }
 
-    fn advance(&mut self, piece: &Piece<'_>, active: &[usize]) {
+    fn advance(&mut self, chunk: &Chunk<'_>, active: &[usize]) {
         for &j in active {
             // an input that was zero so far has started from rest, unless the record begins with it
-            if piece.first > 0 {
+            if chunk.first > 0 {
                 self.motion[j].started = true;
             }
             if !self.motion[j].started {
-                let first = piece.motion[j][0];
+                let first = chunk.motion[j][0];
                 for (steps, states) in self.steps.iter().zip(&mut self.states) {
                     states[j] = steps[j].rest.iter().map(|x| x * first).collect();
                 }
             }
-            self.motion[j].take(piece.motion[j]);
+            self.motion[j].take(chunk.motion[j]);
         }
-        for (filter, samples) in self.force.iter_mut().zip(&piece.force) {
+        for (filter, samples) in self.force.iter_mut().zip(&chunk.force) {
             filter.take(samples);
         }
         let motions = self.motion.iter_mut().enumerate();
@@ -242,7 +242,7 @@ impl Columns for ContinuousColumns<'_> {
 
     fn columns<'a>(
         &'a mut self,
-        piece: &Piece<'a>,
+        chunk: &Chunk<'a>,
         candidate: usize,
         active: &[usize],
     ) -> Vec<&'a [f64]> {
@@ -250,7 +250,7 @@ impl Columns for ContinuousColumns<'_> {
             let state = &mut self.states[candidate][j];
             self.steps[candidate][j].advance(&self.motion[j], state, &mut self.filters[j]);
         }
-        let rows = piece.rows();
+        let rows = chunk.rows();
         let (feed, count) = self.bases[candidate]
             .first()
             .map_or((FeedThrough::none(), 0), |b| (b.feed(), b.poles().len()));

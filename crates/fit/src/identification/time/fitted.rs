@@ -69,9 +69,13 @@ impl<'a> FittedSystems<'a> {
     ///
     /// # Errors
     /// Constraints that no coefficients satisfy.
-    pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &FitRequirements) -> Result<()> {
-        let joint = JointTimeFit::new(&self.systems, bases, wishes, Strictness::Everywhere)?;
-        if joint.held.is_none() {
+    pub(crate) fn constrain(
+        &mut self,
+        bases: &[Basis],
+        requirements: &FitRequirements,
+    ) -> Result<()> {
+        let joint = JointTimeFit::new(&self.systems, bases, requirements, Strictness::Everywhere)?;
+        if joint.constrained.is_none() {
             return Ok(());
         }
         let n = self.dofs.len();
@@ -92,7 +96,7 @@ impl<'a> FittedSystems<'a> {
 
     /// What holds the constrained fit; `None` where nothing does.
     pub(crate) fn active(&self) -> Option<Vec<ActiveConstraint>> {
-        Some(self.joint.as_ref()?.held.as_ref()?.active.clone())
+        Some(self.joint.as_ref()?.constrained.as_ref()?.active.clone())
     }
 
     /// Coefficients of a transfer function.
@@ -228,7 +232,7 @@ pub(crate) struct JointTimeFit {
     shares: Vec<f64>,
     /// Sums of the squares of the residuals without constraints and of the data of each.
     residuals: Vec<(f64, f64)>,
-    pub held: Option<Solution>,
+    pub constrained: Option<Solution>,
 }
 
 impl JointTimeFit {
@@ -240,7 +244,7 @@ impl JointTimeFit {
     pub(crate) fn new(
         systems: &ForceSystems,
         bases: &[Basis],
-        wishes: &FitRequirements,
+        requirements: &FitRequirements,
         strictness: Strictness,
     ) -> Result<Self> {
         let n = bases.len().isqrt();
@@ -251,7 +255,7 @@ impl JointTimeFit {
             entries: Vec::new(),
             shares: Vec::new(),
             residuals: Vec::new(),
-            held: None,
+            constrained: None,
         };
         let count = if apart { n * n } else { n } as f64;
         let mut at = 0;
@@ -275,7 +279,8 @@ impl JointTimeFit {
                 joint.whole.push(linear);
             }
         }
-        joint.held = Dissipation::new(bases, wishes).solve(&joint.entries, strictness)?;
+        joint.constrained =
+            Dissipation::new(bases, requirements).solve(&joint.entries, strictness)?;
         Ok(joint)
     }
 
@@ -306,11 +311,11 @@ impl JointTimeFit {
             self.whole.iter().zip(&self.shares).zip(&self.residuals)
         {
             if *total > 0.0 {
-                let moved = |held: &Solution| {
-                    let own = held.free.rows(linear.at, linear.spread.ncols());
+                let moved = |constrained: &Solution| {
+                    let own = constrained.free.rows(linear.at, linear.spread.ncols());
                     own.norm_squared() / (share * share)
                 };
-                let added = self.held.as_ref().map_or(0.0, moved);
+                let added = self.constrained.as_ref().map_or(0.0, moved);
                 logarithms += ((residual + added) / total + LEAST_NOISE * LEAST_NOISE).ln();
                 count += 1.0;
             }
@@ -320,30 +325,34 @@ impl JointTimeFit {
 
     /// Coefficients of a transfer function.
     pub(crate) fn values(&self, e: usize) -> &[f64] {
-        match &self.held {
-            Some(held) => &held.coefficients[e],
+        match &self.constrained {
+            Some(constrained) => &constrained.coefficients[e],
             None => &self.entries[e].values,
         }
     }
 
     /// The constant of force `i` where one is estimated along with the coefficients.
     pub(crate) fn constant(&self, i: usize) -> f64 {
-        match &self.held {
-            Some(held) => self.whole[i].coefficients(&held.free)[0],
+        match &self.constrained {
+            Some(constrained) => self.whole[i].coefficients(&constrained.free)[0],
             None => self.whole[i].values[0],
         }
     }
 
     /// Covariance of the coefficients of a transfer function, from the variances of the weighted residuals of all forces.
     pub(crate) fn covariance(&self, e: usize, variances: &[f64]) -> Option<DMatrix<f64>> {
-        let held = self.held.as_ref()?;
+        let constrained = self.constrained.as_ref()?;
         let per_force = self.whole.len() / variances.len();
         let free = |(w, (linear, share)): (usize, (&AffineMap, &f64))| {
             let variance = variances[w / per_force] * share * share;
             (linear.spread.ncols(), variance)
         };
         let all = self.whole.iter().zip(&self.shares).enumerate();
-        Some(held.space.covariance(&self.entries[e], all.map(free)))
+        Some(
+            constrained
+                .space
+                .covariance(&self.entries[e], all.map(free)),
+        )
     }
 }
 

@@ -56,12 +56,12 @@ impl Hold {
     }
 }
 
-/// The low-pass of one channel and what it has put out for the current piece.
+/// The low-pass of one channel and what it has put out for the current chunk.
 pub(super) struct Filtered {
     state: [f64; ORDER],
-    /// Samples of the piece after the one before it.
+    /// Samples of the chunk after the one before it.
     pub input: Vec<f64>,
-    /// States at the same instants as `input`, the one before the piece first.
+    /// States at the same instants as `input`, the one before the chunk first.
     pub states: [Vec<f64>; ORDER],
     pub started: bool,
 }
@@ -76,7 +76,7 @@ impl Filtered {
         }
     }
 
-    /// Takes the samples of a piece; states of the instants after the first are still to come.
+    /// Takes the samples of a chunk; states of the instants after the first are still to come.
     pub(super) fn take(&mut self, samples: &[f64]) {
         let before = self.input[self.input.len() - 1];
         self.input.clear();
@@ -113,7 +113,7 @@ impl LowPassStep {
         }
     }
 
-    /// The piece that all channels have taken, some channels side by side: a sample waits for the one before it.
+    /// The chunk that all channels have taken, some channels side by side: a sample waits for the one before it.
     pub(super) fn advance(&self, channels: Vec<&mut Filtered>) {
         let mut channels = channels.into_iter();
         let arch = pulp::Arch::new();

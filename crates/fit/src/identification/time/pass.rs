@@ -69,7 +69,7 @@ pub struct FitProgress {
 pub type OnProgress<'a> = &'a (dyn Fn(FitProgress) + Sync);
 
 /// Consecutive samples, at most [`BLOCK_ROWS`], one slice per degree of freedom.
-pub(crate) struct Piece<'a> {
+pub(crate) struct Chunk<'a> {
     pub motion: Vec<&'a [f64]>,
     pub force: Vec<&'a [f64]>,
     /// Index of the first sample in the (resampled) record.
@@ -77,10 +77,10 @@ pub(crate) struct Piece<'a> {
 }
 
 impl SignalBlock {
-    fn piece(&self, range: Range<usize>) -> Piece<'_> {
+    fn chunk(&self, range: Range<usize>) -> Chunk<'_> {
         let (motion, force) = self.channels.split_at(self.channels.len() / 2);
         let within = range.start - self.first..range.end - self.first;
-        Piece {
+        Chunk {
             motion: motion.iter().map(|c| &c[within.clone()]).collect(),
             force: force.iter().map(|c| &c[within.clone()]).collect(),
             first: range.start,
@@ -88,24 +88,24 @@ impl SignalBlock {
     }
 }
 
-impl Piece<'_> {
+impl Chunk<'_> {
     /// Number of samples.
     pub(crate) fn rows(&self) -> usize {
         self.motion[0].len()
     }
 }
 
-/// Makes the columns of one record, piece after piece.
+/// Makes the columns of one record, chunk after chunk.
 pub(crate) trait Columns {
     /// Number of candidate models.
     fn candidates(&self) -> usize;
-    /// Takes the next piece; inputs that are not `active` have been zero so far.
-    fn advance(&mut self, piece: &Piece<'_>, active: &[usize]);
-    /// Columns of a candidate for the active inputs, in [`ColumnOrder`], followed by one per force. Called once per piece and
+    /// Takes the next chunk; inputs that are not `active` have been zero so far.
+    fn advance(&mut self, chunk: &Chunk<'_>, active: &[usize]);
+    /// Columns of a candidate for the active inputs, in [`ColumnOrder`], followed by one per force. Called once per chunk and
     /// candidate, with the candidates in order.
     fn columns<'a>(
         &'a mut self,
-        piece: &Piece<'a>,
+        chunk: &Chunk<'a>,
         candidate: usize,
         active: &[usize],
     ) -> Vec<&'a [f64]>;
@@ -206,12 +206,12 @@ fn one_record<C: Columns>(
             let whole = (at / BLOCK_ROWS + 1) * BLOCK_ROWS;
             let end = ends.peek().map_or(whole, |e| whole.min(*e));
             let range = at..end.min(stop);
-            let piece = block.piece(range.clone());
-            let moving = activate(&piece, &mut active);
-            maker.advance(&piece, &active);
+            let chunk = block.chunk(range.clone());
+            let moving = activate(&chunk, &mut active);
+            maker.advance(&chunk, &active);
             if at >= discard {
-                open.take(&piece, moving, plan, &active, maker, at as f64 * step_s);
-                rows += piece.rows();
+                open.take(&chunk, moving, plan, &active, maker, at as f64 * step_s);
+                rows += chunk.rows();
             }
             at = range.end;
         }
@@ -248,11 +248,11 @@ fn boundaries_s(record: &DimensionlessRecord, plan: &PassPlan) -> Vec<f64> {
     ends
 }
 
-/// Adds the inputs that begin to move in this piece to `active`; returns from which row on something has moved.
-fn activate(piece: &Piece<'_>, active: &mut Vec<usize>) -> usize {
+/// Adds the inputs that begin to move in this chunk to `active`; returns from which row on something has moved.
+fn activate(chunk: &Chunk<'_>, active: &mut Vec<usize>) -> usize {
     let at_rest = active.is_empty();
-    let mut first = piece.rows();
-    for (j, motion) in piece.motion.iter().enumerate() {
+    let mut first = chunk.rows();
+    for (j, motion) in chunk.motion.iter().enumerate() {
         if let Some(row) = motion.iter().position(|x| *x != 0.0) {
             first = first.min(row);
             if !active.contains(&j) {
@@ -285,7 +285,7 @@ impl OpenStretch {
 
     fn take<C: Columns>(
         &mut self,
-        piece: &Piece<'_>,
+        chunk: &Chunk<'_>,
         moving: usize,
         plan: &PassPlan,
         active: &[usize],
@@ -303,20 +303,20 @@ impl OpenStretch {
         }
         let systems = self.sets.last_mut().into_iter().flat_map(|(_, s)| s);
         for (candidate, system) in systems.enumerate() {
-            let columns = maker.columns(piece, candidate, active);
+            let columns = maker.columns(chunk, candidate, active);
             if candidate == 0 {
                 let filtered = &columns[columns.len() - forces..];
                 for (sum, force) in self.squares.iter_mut().zip(filtered) {
                     *sum += force[moving..].iter().map(|x| x * x).sum::<f64>();
                 }
-                self.moving_rows += piece.rows() - moving;
+                self.moving_rows += chunk.rows() - moving;
             }
             if plan.stride == 1 {
                 system.push_columns(&columns);
                 continue;
             }
-            let skip = (plan.stride - piece.first % plan.stride) % plan.stride;
-            let mut thinned = Vec::with_capacity(columns.len() * (piece.rows() / plan.stride + 1));
+            let skip = (plan.stride - chunk.first % plan.stride) % plan.stride;
+            let mut thinned = Vec::with_capacity(columns.len() * (chunk.rows() / plan.stride + 1));
             for column in &columns {
                 thinned.extend(column.iter().skip(skip).step_by(plan.stride));
             }

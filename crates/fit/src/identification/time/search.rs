@@ -33,7 +33,7 @@ struct PoleGroup {
     /// Logarithmic distance of neighbours in the last grid.
     step: f64,
     /// What is asked besides, where the objective is that of the fit under its constraints.
-    held: Option<FitRequirements>,
+    constrained: Option<FitRequirements>,
 }
 
 /// Poles of the filters of every transfer function, row by row, and how they were found.
@@ -50,7 +50,7 @@ pub(crate) struct ChosenPoles {
     /// Under the constraints, where some are asked for.
     pub constrained: Option<EntryPoles>,
     /// The constraints.
-    pub wishes: FitRequirements,
+    pub requirements: FitRequirements,
 }
 
 /// Poles of every transfer function, by least squares alone and under the constraints of the fit. Both searches
@@ -66,7 +66,7 @@ pub(crate) fn choose_poles(
 ) -> Result<ChosenPoles> {
     let (fit, dofs) = (task.fit, &task.records.dofs);
     let entries = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
-    let wishes = fit.wishes(dofs, tested)?;
+    let requirements = fit.requirements(dofs, tested)?;
     let group = |members| PoleGroup::new(&fit.poles, &entries, tested, members);
     let together = searched_together(&entries);
     let mut groups = together
@@ -74,10 +74,10 @@ pub(crate) fn choose_poles(
         .map(group)
         .collect::<Result<Vec<_>>>()?;
     let unconstrained = groups.len();
-    if wishes.any() && unconstrained == 1 && groups[0].members.len() == entries.len() {
+    if requirements.any() && unconstrained == 1 && groups[0].members.len() == entries.len() {
         let members = groups[0].members.clone();
         groups.push(PoleGroup {
-            held: Some(wishes.clone()),
+            constrained: Some(requirements.clone()),
             ..group(members)?
         });
     }
@@ -91,7 +91,7 @@ pub(crate) fn choose_poles(
     }
     let constrained = groups.split_off(unconstrained);
     let unconstrained = choice(&entries, dofs, groups)?;
-    let constrained = match (wishes.any(), constrained.is_empty()) {
+    let constrained = match (requirements.any(), constrained.is_empty()) {
         (false, _) => None,
         (true, true) => Some(unconstrained.clone()),
         (true, false) => Some(choice(&entries, dofs, constrained)?),
@@ -99,7 +99,7 @@ pub(crate) fn choose_poles(
     Ok(ChosenPoles {
         unconstrained,
         constrained,
-        wishes,
+        requirements,
     })
 }
 
@@ -175,7 +175,7 @@ impl PoleGroup {
             members,
             options,
             bounds,
-            held: None,
+            constrained: None,
         })
     }
 
@@ -196,7 +196,7 @@ impl PoleGroup {
             .whole
             .iter()
             .all(|f| f.undetermined(f.columns()).is_none());
-        if let Some(wishes) = self.held.as_ref().filter(|_| known) {
+        if let Some(requirements) = self.constrained.as_ref().filter(|_| known) {
             let basis = Basis::orthonormal(&self.form, &self.form.expand(poles))?;
             let systems = ForceSystems {
                 counts: vec![columns; self.members.len()],
@@ -204,7 +204,7 @@ impl PoleGroup {
             };
             let bases = vec![basis; self.members.len()];
             return Ok(
-                JointTimeFit::new(&systems, &bases, wishes, Strictness::Sampled)?.objective(),
+                JointTimeFit::new(&systems, &bases, requirements, Strictness::Sampled)?.objective(),
             );
         }
         let Some((i, j)) = self.entry else {

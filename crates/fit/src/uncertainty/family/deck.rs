@@ -197,9 +197,9 @@ fn truth(random: &mut ChaCha8Rng, sways: bool, third: bool) -> RationalModel {
         lags = vec![(lags[0] * lags[1]).sqrt()];
     }
     if third {
-        let mut fed = DMatrix::zeros(2, 2);
-        fed[(1, 1)] = random.random_range(0.1..0.6);
-        lag_terms.push(fed);
+        let mut lag_term = DMatrix::zeros(2, 2);
+        lag_term[(1, 1)] = random.random_range(0.1..0.6);
+        lag_terms.push(lag_term);
         lags.push(random.random_range(0.05..0.3));
     }
     let mut a1 = a1;

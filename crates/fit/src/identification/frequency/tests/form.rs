@@ -228,15 +228,17 @@ fn degenerate_lags_are_said_and_a_ridge_holds_them() {
         "degenerate lags: 0.5000 and 0.5050 are nearly equal"
     ));
     assert!(said(&free, "coefficients cancel"), "{:?}", free.notes);
-    let held = fit_table(&samples, &Dof::TWO, &fit(0.05)).unwrap().report;
+    let constrained = fit_table(&samples, &Dof::TWO, &fit(0.05)).unwrap().report;
     assert!(
-        largest(&held) < 0.02 * largest(&free),
+        largest(&constrained) < 0.02 * largest(&free),
         "{} {}",
-        largest(&held),
+        largest(&constrained),
         largest(&free)
     );
-    assert!(said(&held, "regularised with 0.05") && !said(&held, "coefficients cancel"));
-    for (a, b) in held.entries.iter().zip(&free.entries) {
+    assert!(
+        said(&constrained, "regularised with 0.05") && !said(&constrained, "coefficients cancel")
+    );
+    for (a, b) in constrained.entries.iter().zip(&free.entries) {
         assert!(a.relative_rms.unwrap() < b.relative_rms.unwrap() + 0.05);
     }
     let own = FrequencyFit {

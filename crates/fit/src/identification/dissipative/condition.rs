@@ -10,7 +10,7 @@ use crate::identification::form::FeedThrough;
 use nalgebra::{DMatrix, DVector};
 use std::cmp::Ordering;
 
-/// Reduced frequencies at which condition 3 is stated from the start.
+/// Reduced frequencies at which condition 3 is conditions from the start.
 const SAMPLES: usize = 40;
 /// Highest of them over the highest tested one: beyond, condition 2 is more than what is left of the filters.
 const REACH: f64 = 200.0;
@@ -84,12 +84,12 @@ impl Condition {
 
 /// A condition with what a transfer function of each distinct basis contributes, as a row over its columns.
 #[derive(Debug, Clone)]
-pub(super) struct Stated {
+pub(super) struct ConditionRows {
     pub condition: Condition,
     pub rows: Vec<Vec<f64>>,
 }
 
-impl Stated {
+impl ConditionRows {
     pub(super) fn new(condition: Condition, motions: &Motions<'_>) -> Self {
         let row = |basis: &&Basis| condition.kind.row(condition.k, basis);
         Self {

@@ -68,7 +68,7 @@ impl LagSearch<'_> {
             solutions,
             active: None,
         };
-        let Some(wishes) = &self.wishes else {
+        let Some(requirements) = &self.requirements else {
             return Ok(rows);
         };
         let (mut forces, mut entries, mut at) = (Vec::new(), Vec::new(), 0);
@@ -83,9 +83,14 @@ impl LagSearch<'_> {
             forces.push(force);
         }
         let bases = vec![self.roger_basis(&lags)?; self.entries.len()];
-        if let Some(held) = Dissipation::new(&bases, wishes).solve(&entries, strictness)? {
-            rows.values = forces.iter().map(|f| f.coefficients(&held.free)).collect();
-            rows.active = Some(held.active);
+        if let Some(constrained) =
+            Dissipation::new(&bases, requirements).solve(&entries, strictness)?
+        {
+            rows.values = forces
+                .iter()
+                .map(|f| f.coefficients(&constrained.free))
+                .collect();
+            rows.active = Some(constrained.active);
         }
         Ok(rows)
     }
