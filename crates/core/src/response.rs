@@ -114,18 +114,15 @@ impl Stepper {
         Self::with_gusts(section, gusts)
     }
 
-    /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `convection_per_width` is the wind factor over the width (1/m) of each group
+    /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `per_width` is the wind factor over the width (1/m) of each group
     /// of strips, so many inputs as there are modes for each.
     pub fn in_modal_gusts(
         section: CoupledSection,
-        convection_per_width: &[f64],
+        per_width: &[f64],
         admittance: RationalAdmittance,
     ) -> Self {
         let modes = section.structure().dofs.len();
-        Self::with_gusts(
-            section,
-            Some(Gusts::on_modes(modes, convection_per_width, admittance)),
-        )
+        Self::with_gusts(section, Some(Gusts::on_modes(modes, per_width, admittance)))
     }
 
     fn with_gusts(section: CoupledSection, gusts: Option<Gusts>) -> Self {

@@ -3,12 +3,24 @@
 //! `G_yy = K²(H4* + iH1*)`, `G_yθ = K²(H3* + iH2*)`, `G_θy = K²(A4* + iA1*)`, `G_θθ = K²(A3* + iA2*)`, likewise
 //! `P*` and the pairs 5, 6 of `H*`, `A*` for sway (equation 1.17).
 
-/// `Display` of a type that has a name.
-macro_rules! displayed_by_name {
-    ($type:ty) => {
+/// `Display` and `FromStr` of a type that has names: how the trimmed text is found among them, and what is expected where it is not.
+macro_rules! read_by_name {
+    ($(#[$text:meta])* $type:ty, $key:literal, $find:expr, $expected:expr) => {
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $type {
+            type Err = crate::error::Error;
+
+            $(#[$text])*
+            fn from_str(text: &str) -> crate::error::Result<Self> {
+                let find = $find;
+                find(text.trim()).ok_or_else(|| {
+                    crate::error::Error::input($key, $expected, format!("`{text}`"))
+                })
             }
         }
     };

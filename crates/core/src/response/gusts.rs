@@ -67,34 +67,31 @@ impl Gusts {
         let by_gust = DMatrix::from_fn(n, 2, |i, j| {
             half_rho * structure.dofs[i].force_scale(structure.width_m) * about_axis[(i, j)]
         });
-        let convection_per_width = vec![structure.width_m.recip(); 2];
+        let per_width = vec![structure.width_m.recip(); 2];
         Self {
             on_section: true,
-            ..Self::by_channel(&by_gust, &convection_per_width, force.admittance)
+            ..Self::by_channel(&by_gust, &per_width, force.admittance)
         }
     }
 
-    /// On a bridge, whose channels are forces per 1 m/s of wind on each mode: `convection_per_width` is the wind factor over the width of each
-    /// group of `modes` channels.
+    /// On a bridge, whose channels are forces per 1 m/s of wind on each mode: `per_width` is the wind factor over the width of
+    /// each group of `modes` channels.
     pub(super) fn on_modes(
         modes: usize,
-        convection_per_width: &[f64],
+        per_width: &[f64],
         admittance: RationalAdmittance,
     ) -> Self {
-        let convection_per_width: Vec<f64> = convection_per_width
-            .iter()
-            .flat_map(|p| vec![*p; modes])
-            .collect();
-        let by_gust = DMatrix::from_fn(modes, convection_per_width.len(), |i, j| {
+        let per_width: Vec<f64> = per_width.iter().flat_map(|p| vec![*p; modes]).collect();
+        let by_gust = DMatrix::from_fn(modes, per_width.len(), |i, j| {
             f64::from(u8::from(j % modes == i))
         });
-        Self::by_channel(&by_gust, &convection_per_width, admittance)
+        Self::by_channel(&by_gust, &per_width, admittance)
     }
 
-    /// `Q` by channel; `convection_per_width`: 1/m of each.
+    /// `Q` by channel; `per_width`: 1/m of each.
     fn by_channel(
         by_gust: &DMatrix<f64>,
-        convection_per_width: &[f64],
+        per_width: &[f64],
         admittance: RationalAdmittance,
     ) -> Self {
         let (lags, (motions, channels)) = (admittance.lags(), by_gust.shape());
@@ -105,7 +102,7 @@ impl Gusts {
             channels,
             on_section: false,
             weights: array::from_fn(|lag| lags.get(lag).map_or(0.0, |[_, weight]| *weight)),
-            speeds: convection_per_width.iter().flat_map(of_channel).collect(),
+            speeds: per_width.iter().flat_map(of_channel).collect(),
             series: LagSeries::default(),
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{QuasiSteady, RelativeWind};
-use crate::error::{Error, Result, finite_numbers, positive};
+use crate::error::{Error, Result, ensure, finite_numbers, positive};
 use crate::section::{Dof, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -98,25 +98,15 @@ impl NonlinearSection {
         finite_numbers("initial state", initial, 2 * n)?;
         let duration = step_s * steps as f64;
         // the last step may end on the last gust but for rounding
-        if duration > wind.gusts.duration_s() * (1.0 + 1e-9) {
-            return Err(Error::input(
-                "gusts",
-                format!("at least {duration} s of them"),
-                format!("{} s", wind.gusts.duration_s()),
-            ));
-        }
-        self.refined(initial, wind, step_s, steps, tolerance)
-    }
-
-    fn refined(
-        &self,
-        initial: &[f64],
-        wind: GustyWind<'_>,
-        step_s: f64,
-        steps: usize,
-        tolerance: f64,
-    ) -> Result<NonlinearRun> {
-        let fastest = (0..self.structure.dofs.len())
+        let recorded = wind.gusts.duration_s();
+        let expected = format_args!("at least {duration} s of them");
+        ensure(
+            duration <= recorded * (1.0 + 1e-9),
+            "gusts",
+            expected,
+            format_args!("{recorded} s"),
+        )?;
+        let fastest = (0..n)
             .map(|i| (self.structure.stiffness[(i, i)] * self.inverse_mass[(i, i)]).sqrt())
             .fold(0.0, f64::max);
         let period = std::f64::consts::TAU / fastest;
@@ -150,13 +140,9 @@ impl NonlinearSection {
         steps: usize,
         substeps: usize,
     ) -> Result<Vec<Vec<f64>>> {
-        if steps as f64 * substeps as f64 > MAX_STEPS {
-            return Err(Error::input(
-                "run",
-                format!("at most {MAX_STEPS:.0e} steps"),
-                format!("{:.1e}", steps as f64 * substeps as f64),
-            ));
-        }
+        let all = steps as f64 * substeps as f64;
+        let expected = format_args!("at most {MAX_STEPS:.0e} steps");
+        ensure(all <= MAX_STEPS, "run", expected, format_args!("{all:.1e}"))?;
         let mut state = DVector::from_column_slice(initial);
         let mut rows = Vec::with_capacity(steps + 1);
         rows.push(initial.to_vec());

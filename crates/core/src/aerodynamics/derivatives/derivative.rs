@@ -1,9 +1,7 @@
 //! The 18 derivatives: their places in the transfer matrix, equation (1.17).
 
-use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
-use std::str::FromStr;
 
 /// One of the 18 aerodynamic derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -101,26 +99,16 @@ impl Derivative {
     }
 }
 
-displayed_by_name!(Derivative);
-
-impl FromStr for Derivative {
-    type Err = Error;
-
+read_by_name!(
     /// Reads `H1` or `H1*`, in either case, blanks around it ignored.
-    fn from_str(text: &str) -> Result<Self> {
-        let name = text.trim().trim_end_matches('*');
-        Self::ALL
-            .into_iter()
-            .find(|d| d.name().eq_ignore_ascii_case(name))
-            .ok_or_else(|| {
-                Error::input(
-                    "name of a derivative",
-                    "one of P1 to P6, H1 to H6, A1 to A6",
-                    format!("`{text}`"),
-                )
-            })
-    }
-}
+    Derivative,
+    "name of a derivative",
+    |text: &str| {
+        let name = text.trim_end_matches('*');
+        Self::ALL.into_iter().find(|d| d.name().eq_ignore_ascii_case(name))
+    },
+    "one of P1 to P6, H1 to H6, A1 to A6"
+);
 
 #[cfg(test)]
 mod tests {

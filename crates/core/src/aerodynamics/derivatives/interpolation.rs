@@ -7,7 +7,6 @@
 
 use super::{DerivativePoint, Part};
 use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
-use crate::error::{Error, Result};
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 
@@ -97,23 +96,12 @@ impl Interpolation {
     }
 }
 
-displayed_by_name!(Interpolation);
-
-impl std::str::FromStr for Interpolation {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|i| i.name() == text.trim());
-        found.ok_or_else(|| {
-            let all = Self::ALL.map(Self::name).join(", ");
-            Error::input(
-                "interpolation",
-                format!("one of {all}"),
-                format!("`{text}`"),
-            )
-        })
-    }
-}
+read_by_name!(
+    Interpolation,
+    "interpolation",
+    |text: &str| Self::ALL.into_iter().find(|i| i.name() == text),
+    format!("one of {}", Self::ALL.map(Self::name).join(", "))
+);
 
 /// One derivative between its points.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,10 +1,8 @@
 //! Tables without `H4*`, `A4*`: what stands in their place.
 
 use super::{Derivative, DerivativePoint};
-use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::str::FromStr;
 
 /// What is taken for `H4*`, `A4*` when a table does not hold them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -28,18 +26,14 @@ impl Missing {
     }
 }
 
-displayed_by_name!(Missing);
-
-impl FromStr for Missing {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        [Self::Zero, Self::QuasiSteady]
-            .into_iter()
-            .find(|m| m.name() == text.trim())
-            .ok_or_else(|| Error::input("missing", "zero or quasi_steady", format!("`{text}`")))
-    }
-}
+read_by_name!(
+    Missing,
+    "missing",
+    |text: &str| [Self::Zero, Self::QuasiSteady]
+        .into_iter()
+        .find(|m| m.name() == text),
+    "zero or quasi_steady"
+);
 
 /// Fills in `H4*`, `A4*` where the other derivatives of their row are there; a note says so.
 pub fn fill_in(

@@ -24,12 +24,10 @@ pub use expressed::ExpressedPoint;
 pub use expressed::{ExpressedDerivative, ExpressedTable};
 
 use super::{Derivative, Part};
-use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use std::str::FromStr;
 
 /// A way of writing the 18 numbers of a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -167,19 +165,14 @@ impl Notation {
     }
 }
 
-displayed_by_name!(Notation);
-
-impl FromStr for Notation {
-    type Err = Error;
-
+read_by_name!(
     /// Reads the word for a notation, or another word for it.
-    fn from_str(text: &str) -> Result<Self> {
-        let word = text.trim().to_lowercase();
+    Notation,
+    "notation",
+    |text: &str| {
+        let word = text.to_lowercase();
         let is_meant = |n: &Self| n.name() == word || n.aliases().contains(&word.as_str());
-        let found = Self::NAMED.into_iter().find(is_meant);
-        found.ok_or_else(|| {
-            let expected = format!("one of {}", Self::words());
-            Error::input("notation", expected, format!("`{text}`"))
-        })
-    }
-}
+        Self::NAMED.into_iter().find(is_meant)
+    },
+    format!("one of {}", Self::words())
+);

@@ -1,9 +1,7 @@
 //! What a table is tabulated over: one of the four numbers with two names.
 
-use crate::error::{Error, Result};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use serde::{Deserialize, Serialize};
-use std::str::FromStr;
 
 /// Reduced velocity or reduced frequency of a test point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -66,20 +64,10 @@ impl Argument {
     }
 }
 
-displayed_by_name!(Argument);
-
-impl FromStr for Argument {
-    type Err = Error;
-
+read_by_name!(
     /// Reads the word, alone or with its definition.
-    fn from_str(text: &str) -> Result<Self> {
-        let text = text.trim();
-        Self::ALL
-            .into_iter()
-            .find(|a| a.name() == text || a.definition() == text)
-            .ok_or_else(|| {
-                let all = Self::ALL.map(Self::definition).join("; ");
-                Error::input("argument", format!("one of {all}"), format!("`{text}`"))
-            })
-    }
-}
+    Argument,
+    "argument",
+    |text: &str| Self::ALL.into_iter().find(|a| a.name() == text || a.definition() == text),
+    format!("one of {}", Self::ALL.map(Self::definition).join("; "))
+);

@@ -1,10 +1,8 @@
 //! Which way heave and lift point.
 
 use crate::aerodynamics::derivatives::Derivative;
-use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
-use std::str::FromStr;
 
 /// Which way heave and lift point. Rotation and moment are nose-up (windward edge up), sway and drag downwind in both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -54,17 +52,10 @@ impl Axes {
     }
 }
 
-displayed_by_name!(Axes);
-
-impl FromStr for Axes {
-    type Err = Error;
-
+read_by_name!(
     /// Reads the word, or the axes in words.
-    fn from_str(text: &str) -> Result<Self> {
-        let text = text.trim();
-        Self::ALL
-            .into_iter()
-            .find(|a| a.name() == text || a.words() == text)
-            .ok_or_else(|| Error::input("axes", "heave_up or heave_down", format!("`{text}`")))
-    }
-}
+    Axes,
+    "axes",
+    |text: &str| Self::ALL.into_iter().find(|a| a.name() == text || a.words() == text),
+    "heave_up or heave_down"
+);
