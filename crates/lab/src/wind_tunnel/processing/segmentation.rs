@@ -236,8 +236,8 @@ mod tests {
 
     #[test]
     fn noise_has_no_segments_and_stated_frequencies_are_kept_only() {
-        let wild: Vec<f64> = (0..2000)
-            .map(|k| f64::from((k * k * 7919) % 1009) - 504.0)
+        let wild: Vec<f64> = (0..2000_u64)
+            .map(|k| ((k * k * 7919) % 1009) as f64 - 504.0)
             .collect();
         assert!(find_segments(&wild, 200.0, &SegmentOptions::default()).is_empty());
         let sine: Vec<f64> = (0..4000).map(|k| (0.05 * f64::from(k)).sin()).collect();
