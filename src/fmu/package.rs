@@ -23,7 +23,7 @@ pub use growth::GrowthPolicy;
 pub(crate) use growth::growth_of;
 pub use label::Label;
 pub use runtime::Runtime;
-pub(crate) use runtime::live_module;
+pub(crate) use runtime::{COMPONENT, live_module};
 
 use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};

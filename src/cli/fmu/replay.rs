@@ -4,6 +4,7 @@ use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
 use crate::error::{Error, Result};
 use crate::fmu::importer::{Fmu, LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
+use crate::fmu::package::COMPONENT;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -102,18 +103,15 @@ fn difference(worst: Option<&ReplayedRun>) -> String {
 fn text(file: &str, platforms: &[PlatformReplay]) -> String {
     let mut text = String::new();
     for p in platforms {
+        let platform = &p.platform;
+        let why_not = match platform == COMPONENT {
+            true => "a component for WebAssembly needs a host of its own",
+            false => "it does not load on this machine",
+        };
         let _ = match (p.ran, &p.refusal, worst(&p.runs)) {
-            (false, ..) => writeln!(
-                text,
-                "{}: not run, it does not load on this machine",
-                p.platform
-            ),
+            (false, ..) => writeln!(text, "{platform}: not run, {why_not}"),
             (true, Some(why), _) => {
-                writeln!(
-                    text,
-                    "{file}, {}: not as the exporter meant: {why}",
-                    p.platform
-                )
+                writeln!(text, "{file}, {platform}: not as the exporter meant: {why}")
             }
             (true, None, Some(w)) if !w.same => writeln!(
                 text,

@@ -16,7 +16,7 @@ pub(crate) const RUNTIME_DIR_VARIABLE: &str = "AERODECK_RUNTIME_DIR";
 const LIVE: &str = "wasm32";
 
 /// Folder of the runtime as a component for WebAssembly, of the draft FMI-LS-WASM: it is packed only where it is asked for.
-const COMPONENT: &str = "wasm32-wasip2";
+pub(crate) const COMPONENT: &str = "wasm32-wasip2";
 
 /// Platform folders below `binaries/`, ending of the library, how it may begin, name in words.
 const PLATFORMS: [(&str, &str, &[&[u8]], &str); 8] = [
