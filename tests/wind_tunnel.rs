@@ -70,7 +70,7 @@ fn errors(made: &VirtualCampaign, found: &IdentifiedDerivatives) -> Errors {
                 p.force, p.motion, part,
             );
             let e = found
-                .of(derivative)
+                .each(derivative)
                 .find(|e| e.run == p.run && (e.frequency_hz / p.frequency_hz - 1.0).abs() < 0.01)
                 .unwrap();
             e.value / (e.v_hat * e.v_hat)
@@ -201,7 +201,7 @@ fn drift_of_the_cells_leaves_drag_due_to_rotation_and_its_errors() {
             Derivative::H2,
             Derivative::H3,
         ] {
-            for (a, b) in still.of(d).zip(drifting.of(d)) {
+            for (a, b) in still.each(d).zip(drifting.each(d)) {
                 let size = (b.value - a.value).abs() / b.standard_error;
                 ratios.push(size);
                 assert!(

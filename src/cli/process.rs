@@ -279,7 +279,7 @@ fn plot(
         DerivativePlot {
             name: d.name().to_owned(),
             measured: measured(found, &groups, d),
-            bars: found.of(d).map(bar).collect(),
+            bars: found.each(d).map(bar).collect(),
             reference: lines_of(&theories, d),
             ..DerivativePlot::default()
         }
@@ -294,7 +294,7 @@ fn measured(
 ) -> Vec<PlottedSeries> {
     let mut series: Vec<PlottedSeries> = Vec::new();
     let mut last = None;
-    for e in found.of(d) {
+    for e in found.each(d) {
         let group = group_of(groups, e.mean_speed_m_s);
         if last.replace(group) != Some(group) {
             series.push(PlottedSeries::new(speeds_label(&groups[group]), Vec::new()));
@@ -355,7 +355,7 @@ fn text(
             "  {} derivatives at {} test points, median standard error {:.2} %",
             Derivative::ALL
                 .iter()
-                .filter(|d| found.of(**d).next().is_some())
+                .filter(|d| found.each(**d).next().is_some())
                 .count(),
             found.estimates.len(),
             100.0 * median

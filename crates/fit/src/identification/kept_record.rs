@@ -25,7 +25,7 @@ impl<S: RecordSource> KeptRecord<S> {
         if let Some(signals) = &*kept {
             return Ok(signals.clone());
         }
-        let signals = Arc::new(Signals::of(&self.source)?);
+        let signals = Arc::new(Signals::from_record(&self.source)?);
         *kept = Some(signals.clone());
         Ok(signals)
     }

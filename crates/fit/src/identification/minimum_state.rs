@@ -288,7 +288,7 @@ impl LagSearch<'_> {
                 let weight = row.weight * share;
                 problem
                     .rows
-                    .push(row.of(&columns).map(|x| weight * x).collect());
+                    .push(row.seen(&columns).map(|x| weight * x).collect());
                 problem.right.push(weight * row.value);
             }
             for (order, target) in entry.limit.into_iter().enumerate() {

@@ -67,7 +67,7 @@ pub(crate) struct EntrySample {
 
 impl EntrySample {
     /// The part of complex columns that the sample sees.
-    pub(crate) fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
+    pub(crate) fn seen<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
         let part = self.part;
         columns.iter().map(move |z| match part {
             Part::Real => z.re,
@@ -105,7 +105,7 @@ impl EntrySamples {
         };
         for row in &self.rows {
             let columns = basis.columns(Complex::new(0.0, row.k));
-            let weighted = row.of(&columns).map(|x| row.weight * x).collect();
+            let weighted = row.seen(&columns).map(|x| row.weight * x).collect();
             problem.rows.push(weighted);
             problem.right.push(row.weight * row.value);
         }
@@ -135,7 +135,8 @@ impl EntrySamples {
             .iter()
             .map(|row| {
                 let columns = basis.columns(Complex::new(0.0, row.k));
-                let fit: f64 = row.of(&columns).zip(coefficients).map(|(x, c)| x * c).sum();
+                let terms = row.seen(&columns).zip(coefficients);
+                let fit: f64 = terms.map(|(x, c)| x * c).sum();
                 row.value - fit
             })
             .collect()

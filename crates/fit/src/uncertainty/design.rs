@@ -144,7 +144,7 @@ impl Design {
         }
         let inner = qr.finish().inverse_gram(free)?;
         let inverse = &tangent * inner * tangent.transpose();
-        Self::of(blocks, inverse, tangent, working)
+        Self::assembled(blocks, inverse, tangent, working)
     }
 
     /// The same fit with its rows put together in other blocks.
@@ -153,10 +153,10 @@ impl Design {
         let working = blocks.iter().fold(DMatrix::zeros(p, p), |sum, b| {
             sum + b.rows.tr_mul(&scaled(&b.rows, &b.variance))
         });
-        Self::of(blocks, self.inverse.clone(), self.tangent.clone(), working)
+        Self::assembled(blocks, self.inverse.clone(), self.tangent.clone(), working)
     }
 
-    fn of(
+    fn assembled(
         blocks: Vec<Block>,
         inverse: DMatrix<f64>,
         tangent: DMatrix<f64>,

@@ -24,7 +24,7 @@ impl<'a> ModelDraws<'a> {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the covariance has no square root, or columns of the basis cannot be told apart.
-    pub fn of(estimate: &'a CoefficientUncertainty) -> Result<Self> {
+    pub fn new(estimate: &'a CoefficientUncertainty) -> Result<Self> {
         let (root, _) = covariance_root(estimate.covariance.clone())
             .ok_or_else(|| Error::Numerical("draws: the covariance has no square root".into()))?;
         Ok(Self {

@@ -99,9 +99,9 @@ pub fn family_coverage(plan: &FamilyPlan, progress: OnDone<'_>) -> Result<Family
     })?;
     let mut ranges: Vec<RangeCount> = FamilyRange::ALL
         .iter()
-        .filter_map(|range| RangeCount::of(*range, &decks))
+        .filter_map(|range| RangeCount::count(*range, &decks))
         .collect();
-    ranges.extend(RangeCount::of(FamilyRange::All, &decks));
+    ranges.extend(RangeCount::count(FamilyRange::All, &decks));
     Ok(FamilyReport {
         plan: *plan,
         ranges,
@@ -194,7 +194,7 @@ impl DeckOutcome {
 }
 
 impl RangeCount {
-    fn of(range: FamilyRange, decks: &[DeckOutcome]) -> Option<Self> {
+    fn count(range: FamilyRange, decks: &[DeckOutcome]) -> Option<Self> {
         let own = decks
             .iter()
             .filter(|d| range == FamilyRange::All || d.range == range);

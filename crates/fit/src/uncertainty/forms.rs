@@ -164,7 +164,7 @@ impl FormEnsemble {
             .filter_map(|r| by_table(r).ok())
             .collect();
         forms.extend(told(read, &forms));
-        Ok(FormSpread::of(forms))
+        Ok(FormSpread::new(forms))
     }
 }
 
@@ -186,7 +186,7 @@ fn lowest(forms: &[FormOnset]) -> Option<f64> {
 }
 
 impl FormSpread {
-    fn of(forms: Vec<FormOnset>) -> Self {
+    fn new(forms: Vec<FormOnset>) -> Self {
         let onsets: Vec<f64> = forms.iter().filter_map(|f| f.onset_m_s).collect();
         let low = lowest(&forms);
         let high = onsets.iter().copied().reduce(f64::max);

@@ -184,7 +184,7 @@ pub(crate) fn resample_onset(
     onset: &Onset,
     plan: &ResamplingPlan,
 ) -> Result<Option<ResampledOnset>> {
-    let draws = ModelDraws::of(estimate)?;
+    let draws = ModelDraws::new(estimate)?;
     let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     let onset_of = |r: usize| -> Result<Option<Option<f64>>> {
         let Some(values) = drawn(estimate, &draws, plan, r)? else {

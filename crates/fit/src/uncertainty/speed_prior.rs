@@ -45,11 +45,11 @@ impl SpeedPrior {
     pub(super) fn measured(without: Option<&str>) -> Self {
         let decks = MEASURED.iter().filter(|(name, _)| Some(*name) != without);
         let ratios: Vec<f64> = decks.flat_map(|(_, ratios)| *ratios).collect();
-        Self::of(&ratios, MEASURED_FREEDOM)
+        Self::from_ratios(&ratios, MEASURED_FREEDOM)
     }
 
     /// From ratios that were estimated with `freedom` degrees of freedom each.
-    fn of(ratios: &[f64], freedom: f64) -> Self {
+    fn from_ratios(ratios: &[f64], freedom: f64) -> Self {
         let logs: f64 = ratios.iter().map(|r| r.ln()).sum();
         // mean of ln χ²(ν)/ν
         let bias = |nu: f64| digamma(0.5 * nu) - (0.5 * nu).ln();
@@ -106,7 +106,7 @@ mod tests {
             scale * 0.5 * nu * ((1.0 - u).powf(-2.0 / nu) - 1.0)
         };
         let ratios: Vec<f64> = (0..20_000).map(quantile).collect();
-        let found = SpeedPrior::of(&ratios, 2.0);
+        let found = SpeedPrior::from_ratios(&ratios, 2.0);
         // the ends of the distribution are missing between the probabilities
         assert!((found.ratio / scale - 1.0).abs() < 1e-3, "{found:?}");
     }

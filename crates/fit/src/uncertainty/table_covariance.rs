@@ -147,7 +147,7 @@ fn rows_of(
     let residuals = residuals.iter().zip(&entry.rows);
     let residuals: Vec<f64> = residuals.map(|(r, row)| weighted(*r, row)).collect();
     let seen = |b: &Basis, row: &EntrySample| -> Vec<f64> {
-        row.of(&b.columns(Complex::new(0.0, row.k))).collect()
+        row.seen(&b.columns(Complex::new(0.0, row.k))).collect()
     };
     for (line, row) in rows.iter_mut().zip(&entry.rows) {
         for (to, x) in line[first..].iter_mut().zip(seen(&basis, row)) {

@@ -1,8 +1,7 @@
 //! Forces alone: strips of deck whose structure is the importer's.
 //!
-//! The forces put out are those at the instant at which they will act, `prediction` communication steps after the
-//! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well. Where
-//! the importer integrates, they are those of its instant.
+//! The forces put out are those at the instant at which they will act, `prediction` communication steps after the newest motion that
+//! has been set. Where the importer integrates, they are those of its instant.
 
 use super::force_parts::{StripsUnderModel, coordinate};
 use super::layout::{Source, index_of};
@@ -200,14 +199,14 @@ impl ForceUnit {
         let Role::Force(s, kind, dof) = role else {
             return ForceAhead::default();
         };
-        let ForceAhead { force, rate } = forces[coordinate(&self.parts, s, dof)];
+        let found = forces[coordinate(&self.parts, s, dof)];
         let factor = match kind {
             ForceOutput::PerLength => 1.0,
             ForceOutput::Total => memory.values[self.strips[s][1]],
         };
         ForceAhead {
-            force: factor * force,
-            rate: factor * rate,
+            force: factor * found.force,
+            rate: factor * found.rate,
         }
     }
 }
@@ -372,7 +371,7 @@ impl ForceUnit {
         self.with_work(|unit, work| unit.ahead_into(memory, renewed, work))
     }
 
-    #[inline(always)]
+    #[inline]
     fn with_work(
         &mut self,
         find: impl FnOnce(&mut Self, &mut ForceWork) -> Result<()>,

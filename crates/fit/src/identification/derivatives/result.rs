@@ -88,7 +88,7 @@ pub struct IdentifiedDerivatives {
 
 impl IdentifiedDerivatives {
     /// The estimates of one derivative, by speed group and frequency.
-    pub fn of(&self, derivative: Derivative) -> impl Iterator<Item = &DerivativeEstimate> {
+    pub fn each(&self, derivative: Derivative) -> impl Iterator<Item = &DerivativeEstimate> {
         self.estimates
             .iter()
             .filter(move |e| e.derivative == derivative)

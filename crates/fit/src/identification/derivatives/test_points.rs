@@ -114,7 +114,7 @@ pub(super) fn collect(
     let each = numbered(records.len(), &|_, _| (), |r| {
         let header = records[r].header();
         check(header, first)?;
-        let signals = Arc::new(Signals::of(records[r])?);
+        let signals = Arc::new(Signals::from_record(records[r])?);
         numbered(header.segments.len(), &|_, _| (), |i| {
             stretch(header, &signals, i, options)
         })

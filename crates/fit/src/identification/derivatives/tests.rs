@@ -63,7 +63,7 @@ fn three_speeds_close_to_each_other_are_one_group() {
     let groups = found.speed_groups();
     assert_eq!(groups.len(), 1);
     for d in Derivative::ALL {
-        let v_hat: Vec<f64> = found.of(d).map(|e| e.v_hat).collect();
+        let v_hat: Vec<f64> = found.each(d).map(|e| e.v_hat).collect();
         assert!(v_hat.windows(2).all(|w| w[1] < w[0]), "{d}: {v_hat:?}");
     }
     // each heave and its rotation are one test point
@@ -97,7 +97,7 @@ fn all_eighteen_come_back_from_the_records_of_a_table() {
             let at = |p| table.points(pair(p))[i].value;
             at(Part::Real).hypot(at(Part::Imaginary))
         };
-        for (i, (e, truth)) in found.of(d).zip(table.points(d)).enumerate() {
+        for (i, (e, truth)) in found.each(d).zip(table.points(d)).enumerate() {
             // the records have the mean K of the derivatives of one motion and the mean speed of the group
             assert!((e.v_hat / truth.v_hat - 1.0).abs() < 0.02);
             let scale = (e.v_hat / truth.v_hat).powi(2);
@@ -131,7 +131,7 @@ fn standard_errors_are_the_scatter() {
         for d in found.dofs.clone().iter().flat_map(|f| {
             [Part::Real, Part::Imaginary].map(|p| Derivative::from_entry(*f, Dof::Vertical, p))
         }) {
-            for (i, e) in found.of(d).enumerate() {
+            for (i, e) in found.each(d).enumerate() {
                 let sum = sums.entry((d, i)).or_default();
                 sum.0 += e.value;
                 sum.1 += e.value * e.value;

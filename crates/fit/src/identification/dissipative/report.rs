@@ -145,7 +145,7 @@ impl ActiveConstraint {
     }
 
     /// What it would hold in another model, from its bases and coefficients, row by row.
-    fn of(&self, bases: &[Basis], coefficients: &[Vec<f64>]) -> f64 {
+    fn value_in(&self, bases: &[Basis], coefficients: &[Vec<f64>]) -> f64 {
         let n = self.direction.len();
         let part = |(e, (basis, values)): (usize, (&Basis, &Vec<f64>))| -> f64 {
             let gradient = self.gradient(e / n, e % n, basis);
@@ -189,7 +189,7 @@ impl ConstraintReport {
     ) -> Self {
         let values: Vec<Vec<f64>> = alone.iter().map(EntryReport::values).collect();
         for constraint in &mut active {
-            constraint.alone = constraint.of(bases, &values);
+            constraint.alone = constraint.value_in(bases, &values);
         }
         let cost = |(a, b): (&EntryReport, &EntryReport)| ConstraintCost {
             force: b.force,

@@ -129,7 +129,7 @@ impl Signals {
     ///
     /// # Errors
     /// Those of the record; [`Error::Input`] naming a sample that is not finite.
-    pub(crate) fn of(record: &dyn RecordSource) -> Result<Self> {
+    pub(crate) fn from_record(record: &dyn RecordSource) -> Result<Self> {
         let header = record.header();
         let mut signals = SignalWriter::new(header.dofs.len());
         record.for_each_block(&mut |block| {

@@ -15,7 +15,7 @@ pub(super) fn linear(model: &Model, tested: Option<ReducedFrequencyRange>) -> Op
 }
 
 /// Coefficients and their names, `force.motion.term`.
-pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
+pub(super) fn list(model: &Model) -> (Vec<f64>, Vec<String>) {
     let (mut values, mut names) = (Vec::new(), Vec::new());
     if let Model::DiscreteLaguerre(m) = model {
         for term in &m.terms {
@@ -108,7 +108,7 @@ mod tests {
         };
         let k = ReducedFrequency::from_full_width(0.3);
         for model in [Model::Rational(own), Model::MinimumState(small)] {
-            let (mut values, names) = of(&model);
+            let (mut values, names) = list(&model);
             assert_eq!(values.len(), names.len());
             let mut same = model.clone();
             replace(&mut same, &values);

@@ -63,7 +63,7 @@ pub fn tally(
     )?;
     let (limit, model, covariance) = drawn(plan, model)?;
     let finder = Finder::new(&model, limit)?;
-    let (values, _) = coefficients::of(&model.model);
+    let (values, _) = coefficients::list(&model.model);
     let sampler = Sampler::new(plan, &model.section, &values, covariance)?;
     // a number for each sample, and nothing twice: those of a part stand in its places until all are closed up
     let mut onsets = vec![0.0; samples.len()];
@@ -98,7 +98,7 @@ pub fn summarise(
     tallies: impl IntoIterator<Item = Tally>,
 ) -> Result<MonteCarloResult> {
     let (limit, model, _) = drawn(plan, model)?;
-    let (values, _) = coefficients::of(&model.model);
+    let (values, _) = coefficients::list(&model.model);
     let (nominal, _) = Finder::new(&model, limit)?.onset(&model.section, &values)?;
     let total = Tally::joined(tallies.into_iter().collect());
     ensure(
@@ -248,7 +248,7 @@ pub fn many_onsets(
     progress: OnDone<'_>,
 ) -> Result<ManyOnsets> {
     let finder = Finder::new(model, speed_max_m_s)?;
-    let (values, _) = coefficients::of(&model.model);
+    let (values, _) = coefficients::list(&model.model);
     let mut outcomes = vec![SweepOutcome::Unresolved; count];
     numbered_in_parts(&mut outcomes, PART, progress, |first, places| {
         let mut one = model.section.clone();

@@ -42,7 +42,7 @@ pub(super) fn drawn_model(
         let (model, factor) = follow(&saved.coefficients, trained).map_err(|e| e.in_file(&file))?;
         return Ok((model, Some(factor)));
     }
-    let (_, names) = coefficients::of(&trained.model);
+    let (_, names) = coefficients::list(&trained.model);
     let factor = from_file(&path, &text, &names)?;
     Ok((trained.model.clone(), Some(factor)))
 }
@@ -73,7 +73,7 @@ fn follow(
     estimate: &CoefficientUncertainty,
     trained: &TrainedModel,
 ) -> Result<(Model, CovarianceFactor)> {
-    let (values, draws) = (estimate.values(), ModelDraws::of(estimate)?);
+    let (values, draws) = (estimate.values(), ModelDraws::new(estimate)?);
     let model = draws.model_at(&values)?;
     ensure(
         estimate.makes(&trained.model, trained.tested_range.min)?,
@@ -81,13 +81,13 @@ fn follow(
         format_args!("that of the training of {}", trained.name),
         "that of another model",
     )?;
-    let (base, _) = coefficients::of(&model);
+    let (base, _) = coefficients::list(&model);
     let mut slopes = DMatrix::zeros(base.len(), values.len());
     for p in 0..values.len() {
         let mut moved = values.clone();
         // the model is linear in its parameters: any step is exact
         moved[p] += 1.0;
-        let (there, _) = coefficients::of(&draws.model_at(&moved)?);
+        let (there, _) = coefficients::list(&draws.model_at(&moved)?);
         for (row, (a, b)) in there.iter().zip(&base).enumerate() {
             slopes[(row, p)] = a - b;
         }

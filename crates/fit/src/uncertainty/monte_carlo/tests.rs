@@ -121,7 +121,7 @@ fn the_number_of_threads_changes_nothing() {
 fn samples_are_those_of_single_searches() {
     let plan = plan(EVERYTHING);
     let model = jones();
-    let (values, _) = coefficients::of(&model.model);
+    let (values, _) = coefficients::list(&model.model);
     let sampler = sampler::Sampler::new(&plan, &model.section, &values, None).unwrap();
     let mut sample = sampler.empty();
     let mut speeds = Vec::new();
@@ -129,7 +129,7 @@ fn samples_are_those_of_single_searches() {
         sampler.draw(index, &mut sample);
         let mut changed = model.model.clone();
         coefficients::replace(&mut changed, &sample.coefficients);
-        assert_eq!(coefficients::of(&changed).0, sample.coefficients);
+        assert_eq!(coefficients::list(&changed).0, sample.coefficients);
         let structure = sample.section.structure().unwrap();
         let coupled = CoupledSection::new(structure, changed.realize()).unwrap();
         let search = OnsetSearch {
