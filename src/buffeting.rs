@@ -11,7 +11,6 @@ mod frequency;
 mod periodic;
 mod problem;
 mod quadrature;
-mod records;
 mod response;
 mod spectrum;
 mod stability;

@@ -1,4 +1,4 @@
-//! Response in the time domain to a turbulence field that repeats itself, many records.
+//! Response of a bridge in the time domain to a turbulence field that repeats itself, many records.
 //!
 //! The forces run on straight lines between samples, for which the steps `z⁺ = Φ z + Γ₀ u + Γ₁ (u⁺ − u)/h` are exact. A period of `N`
 //! steps that repeats itself is as many numbers `ζ = e^{2πik/N}`, and the response to each is
@@ -12,10 +12,10 @@
 //! is stepped.
 
 use super::problem::BuffetingProblem;
-use super::records::{all_records, root_and_error};
 use super::response::by_node;
 use super::spectrum::GustComponent;
 use super::synthesis::{TurbulenceField, parts_in_time};
+use super::time::{all_records, root_and_error};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted, positive};
 use crate::signal::Fourier;
@@ -104,7 +104,7 @@ pub fn span_record(
             counted(field.gusts[0].len(), "node"),
         ));
     }
-    let bridge = PeriodicResponse::new(problem, nodes, speed_m_s, field.step_s, samples)?;
+    let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, field.step_s, samples)?;
     let found = bridge.run(|component| {
         let rows = field.gusts[component as usize].par_iter();
         rows.map(|row| bridge.amplitudes(row)).collect()
@@ -134,17 +134,20 @@ pub(crate) fn span_ensemble(
     positive("step_s", step)?;
     let samples = 2 * (0.5 * duration / step).round() as usize;
     problem.check_record(speed_m_s, step, samples)?;
-    let bridge = PeriodicResponse::new(problem, nodes, speed_m_s, step, samples)?;
-    let record = |seed: u64| Ok(bridge.record(seed));
+    let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, step, samples)?;
+    let record = |seed: u64| {
+        let gusts = |component| problem.coefficients(component, speed_m_s, step, samples, seed);
+        Ok(bridge.run(gusts))
+    };
     let runs = all_records(plan.records, plan.seed, progress, record)?;
     Ok(gathered(speed_m_s, plan, nodes, &runs))
 }
 
 /// Variance and greatest departure of each row over one record.
-pub(super) type Run = Vec<(f64, f64)>;
+type Run = Vec<(f64, f64)>;
 
-/// A stable structure that is driven by gusts of one period.
-pub(super) struct PeriodicResponse<'a> {
+/// A stable bridge that is driven by gusts of one period.
+struct PeriodicBridge<'a> {
     problem: &'a BuffetingProblem<'a>,
     speed_m_s: f64,
     step_s: f64,
@@ -155,8 +158,8 @@ pub(super) struct PeriodicResponse<'a> {
     of_motions: DMatrix<f64>,
 }
 
-impl<'a> PeriodicResponse<'a> {
-    pub(super) fn new(
+impl<'a> PeriodicBridge<'a> {
+    fn new(
         problem: &'a BuffetingProblem<'a>,
         nodes: &[usize],
         speed_m_s: f64,
@@ -180,12 +183,6 @@ impl<'a> PeriodicResponse<'a> {
             transfer,
             of_motions,
         })
-    }
-
-    /// What the rows do in the gusts of a seed.
-    pub(super) fn record(&self, seed: u64) -> Run {
-        let (speed, step_s, samples) = (self.speed_m_s, self.step_s, self.fourier.length());
-        self.run(|component| (self.problem).coefficients(component, speed, step_s, samples, seed))
     }
 
     /// Numbers of a signal whose sum over the positive frequencies has it as its real part.

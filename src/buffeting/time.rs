@@ -1,17 +1,24 @@
-//! Response of a section in the time domain, many records.
+//! Response in the time domain: generated gust forces stepped through the coupled section, many records.
 
-use super::periodic::{PeriodicResponse, Run};
 use super::problem::BuffetingProblem;
-use super::records::{all_records, root_and_error};
 use super::response::BuffetingResponse;
-use crate::error::{Result, ensure, positive};
+use super::synthesis::parts_in_time;
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, ensure, positive};
+use crate::response::{Inputs, Stepper};
 use crate::section::Dof;
+use crate::signal::Fourier;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Samples in the shortest still-air period when no step is given: straight lines between them lose 0.4 % of the power there.
 const SAMPLES_PER_PERIOD: f64 = 40.0;
-/// Decay times of the least damped mode in a record at least: the error of frequencies at a distance of 1/T is e^(−10).
+/// Decay times of the least damped mode before the record counts, and least length of the record: what is left of the start,
+/// and the error of frequencies at a distance of 1/T, are e^(−10).
 const DECAY_TIMES: f64 = 10.0;
+/// More records than any average needs.
+const MOST_RECORDS: usize = 100_000;
 /// Decay times in a record when no length is given.
 const DECAY_TIMES_BY_DEFAULT: f64 = 40.0;
 
@@ -23,7 +30,7 @@ pub(crate) struct TimePlan {
     pub records: usize,
     /// Seed of the first record; the others follow.
     pub seed: u64,
-    /// Length of each record, s; left out, 40 decay times of the least damped mode.
+    /// Length of each record, s, after a warm-up; left out, 40 decay times of the least damped mode.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
     /// Time step, s; left out, a fortieth of the shortest still-air period.
@@ -51,6 +58,8 @@ pub struct Ensemble {
     pub step_s: f64,
     /// Length of each record, s.
     pub duration_s: f64,
+    /// Warm-up before each, s.
+    pub warm_up_s: f64,
     /// Root of the mean of the variances: m, rad.
     pub rms: Vec<f64>,
     /// Standard error of `rms` from the scatter of the records: m, rad.
@@ -94,13 +103,21 @@ pub fn compare(
         .collect()
 }
 
-/// Moves the section through `plan.records` records at a mean wind speed. Gust forces run on straight lines between samples, for which the
-/// motion is exact; force and motion of a record repeat themselves.
+/// Grid of the records of a plan.
+struct TimeGrid {
+    step_s: f64,
+    samples: usize,
+    fourier: Fourier,
+    warm_up: usize,
+}
+
+/// Steps `plan.records` records at a mean wind speed through the coupled section. Gust forces run on straight lines between
+/// samples, for which the steps are exact; each record is one period of its force after a warm-up by its own end.
 ///
 /// `progress` gets how many of all records are done.
 ///
 /// # Errors
-/// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than ten decay times;
+/// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than their warm-up;
 /// [`Error::Unstable`] when the section is unstable at this speed.
 pub(crate) fn time_ensemble(
     problem: &BuffetingProblem<'_>,
@@ -108,49 +125,141 @@ pub(crate) fn time_ensemble(
     plan: &TimePlan,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Ensemble> {
+    let (section, slowest) = problem.coupled(speed_m_s)?;
+    let grid = grid(problem, slowest, speed_m_s, plan)?;
+    let record = |seed: u64| mean_squares(problem, &section, speed_m_s, &grid, seed);
+    let runs = all_records(plan.records, plan.seed, progress, record)?;
+    Ok(gathered(problem, speed_m_s, &grid, runs))
+}
+
+/// Makes every record of a plan by its own seed, side by side; `progress` gets how many are done and how many there are.
+///
+/// # Errors
+/// [`Error::Input`] for a number of records that cannot be, and those of a record.
+pub(super) fn all_records<T: Send>(
+    records: usize,
+    seed: u64,
+    progress: &(dyn Fn(usize, usize) + Sync),
+    record: impl Fn(u64) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    let expected = format_args!("a number from 2 to {MOST_RECORDS}");
+    let fits = (2..=MOST_RECORDS).contains(&records);
+    ensure(fits, "records", expected, records)?;
+    let done = AtomicUsize::new(0);
+    let counted = |i: usize| {
+        let run = record(seed.wrapping_add(i as u64));
+        progress(1 + done.fetch_add(1, Ordering::Relaxed), records);
+        run
+    };
+    (0..records).into_par_iter().map(counted).collect()
+}
+
+/// Root of the mean of the mean squares of records, and its standard error by their scatter.
+pub(super) fn root_and_error(squares: &[f64]) -> (f64, f64) {
+    let count = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / count;
+    let scatter = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean.sqrt(), (scatter / count).sqrt() / (2.0 * mean.sqrt()))
+}
+
+fn grid(
+    problem: &BuffetingProblem<'_>,
+    slowest: f64,
+    speed_m_s: f64,
+    plan: &TimePlan,
+) -> Result<TimeGrid> {
     let step_s = match plan.step_s {
         Some(step) => positive("step_s", step)?,
         None => 1.0 / (SAMPLES_PER_PERIOD * problem.highest_hz),
     };
-    let samples = samples(problem, speed_m_s, plan, step_s)?;
-    let section = PeriodicResponse::new(problem, &[0], speed_m_s, step_s, samples)?;
-    let record = |seed: u64| Ok(section.record(seed));
-    let runs = all_records(plan.records, plan.seed, progress, record)?;
-    let n = problem.structure.dofs.len();
-    let column = |i: usize| runs.iter().map(|run| run[i].0).collect::<Vec<f64>>();
-    let (rms, standard_error) = (0..n).map(|i| root_and_error(&column(i))).unzip();
-    let roots = |run: &Run| run.iter().map(|motion| motion.0.sqrt()).collect();
-    Ok(Ensemble {
-        speed_m_s,
-        step_s,
-        duration_s: step_s * samples as f64,
-        rms,
-        standard_error,
-        rms_of_records: runs.iter().map(roots).collect(),
-        expected_gust_variance: problem.expected_variance(speed_m_s, step_s, samples),
-    })
-}
-
-/// Samples of a record, an even number.
-fn samples(
-    problem: &BuffetingProblem<'_>,
-    speed_m_s: f64,
-    plan: &TimePlan,
-    step_s: f64,
-) -> Result<usize> {
-    let (_, slowest) = problem.coupled(speed_m_s)?;
     let duration = match plan.duration_s {
         Some(duration) => positive("duration_s", duration)?,
         None => DECAY_TIMES_BY_DEFAULT / slowest,
     };
-    let least = DECAY_TIMES / slowest;
-    let expected = format!(
-        "at least {least:.1} s, {DECAY_TIMES} decay times of the least damped mode at {speed_m_s} m/s"
-    );
-    ensure(least <= duration, "duration_s", expected, duration)?;
+    let warm_up_s = DECAY_TIMES / slowest;
+    if warm_up_s > duration {
+        return Err(Error::input(
+            "duration_s",
+            format!(
+                "at least {warm_up_s:.1} s, {DECAY_TIMES} decay times of the least damped mode at {speed_m_s} m/s"
+            ),
+            format!("{duration}"),
+        ));
+    }
+    // an even number of samples
     let samples = 2 * (0.5 * duration / step_s).round() as usize;
     problem.check_record(speed_m_s, step_s, samples)?;
-    Ok(samples)
+    Ok(TimeGrid {
+        step_s,
+        samples,
+        fourier: Fourier::new(samples),
+        warm_up: ((warm_up_s / step_s).ceil() as usize).min(samples),
+    })
+}
+
+/// Mean squares of the displacements of one record (n).
+fn mean_squares(
+    problem: &BuffetingProblem<'_>,
+    section: &CoupledSection,
+    speed: f64,
+    grid: &TimeGrid,
+    seed: u64,
+) -> Result<Vec<f64>> {
+    let forces = forces(problem, speed, grid, seed);
+    let n = forces.len();
+    let mut stepper = Stepper::new(section.clone());
+    let mut state = stepper.released(&vec![0.0; n], &vec![0.0; n])?;
+    let mut inputs = Inputs::steady(speed, n);
+    let mut squares = vec![0.0; n];
+    for i in 0..grid.warm_up + grid.samples {
+        let now = (i + grid.samples - grid.warm_up) % grid.samples;
+        let next = (now + 1) % grid.samples;
+        for (dof, force) in forces.iter().enumerate() {
+            inputs.force[dof] = force[now];
+            inputs.force_rate[dof] = (force[next] - force[now]) / grid.step_s;
+        }
+        stepper.advance(&mut state, &inputs, grid.step_s)?;
+        if i >= grid.warm_up {
+            for (sum, q) in squares.iter_mut().zip(&state.values) {
+                *sum += q * q / grid.samples as f64;
+            }
+        }
+    }
+    Ok(squares)
+}
+
+/// Gust forces of one record (n), each at all samples: N/m, N·m/m.
+fn forces(problem: &BuffetingProblem<'_>, speed: f64, grid: &TimeGrid, seed: u64) -> Vec<Vec<f64>> {
+    let (step_s, samples) = (grid.step_s, grid.samples);
+    let parts = problem.forces(speed, step_s, samples, |component| {
+        problem.coefficients(component, speed, step_s, samples, seed)
+    });
+    let columns = parts.column_iter();
+    columns
+        .map(|c| parts_in_time(&grid.fourier, c.as_slice()))
+        .collect()
+}
+
+fn gathered(
+    problem: &BuffetingProblem<'_>,
+    speed_m_s: f64,
+    grid: &TimeGrid,
+    runs: Vec<Vec<f64>>,
+) -> Ensemble {
+    let n = problem.structure.dofs.len();
+    let column = |i: usize| runs.iter().map(|squares| squares[i]).collect::<Vec<f64>>();
+    let (rms, standard_error) = (0..n).map(|i| root_and_error(&column(i))).unzip();
+    let roots = |squares: &Vec<f64>| squares.iter().map(|s| s.sqrt()).collect();
+    Ensemble {
+        speed_m_s,
+        step_s: grid.step_s,
+        duration_s: grid.step_s * grid.samples as f64,
+        warm_up_s: grid.step_s * grid.warm_up as f64,
+        rms,
+        standard_error,
+        rms_of_records: runs.iter().map(roots).collect(),
+        expected_gust_variance: problem.expected_variance(speed_m_s, grid.step_s, grid.samples),
+    }
 }
 
 #[cfg(test)]

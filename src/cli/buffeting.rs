@@ -157,11 +157,12 @@ fn time_domain(results: &BuffetingStudy) -> String {
         let e = &domain.ensemble;
         let _ = writeln!(
             text,
-            "\ntime domain at {} m/s: {} of {:.0} s, step {:.4} s",
+            "\ntime domain at {} m/s: {} of {:.0} s, step {:.4} s, warm-up {:.0} s",
             e.speed_m_s,
             counted(e.rms_of_records.len(), "record"),
             e.duration_s,
-            e.step_s
+            e.step_s,
+            e.warm_up_s
         );
         for c in &domain.comparison {
             let (factor, unit) = c.dof.shown_in();
