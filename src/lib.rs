@@ -78,7 +78,7 @@ pub mod study;
 #[cfg(test)]
 mod tests;
 
-pub use aerodeck_fit::{comparison, identification, selection, uncertainty};
+pub use aerodeck_fit::{comparison, identification, numbered, selection, uncertainty};
 pub use aerodeck_lab::{files, signal, wind_tunnel};
 pub use aerodeck_live as live;
 

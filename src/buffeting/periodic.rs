@@ -18,6 +18,7 @@ use super::synthesis::{TurbulenceField, parts_in_time};
 use super::time::{all_records, root_and_error};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted, positive};
+use crate::numbered::OnDone;
 use crate::signal::Fourier;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
@@ -127,7 +128,7 @@ pub(crate) fn span_ensemble(
     nodes: &[usize],
     speed_m_s: f64,
     plan: &SpanPlan,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: OnDone<'_>,
 ) -> Result<SpanEnsemble> {
     let (duration, step) = (plan.duration_s, plan.step_s);
     positive("duration_s", duration)?;

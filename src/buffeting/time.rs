@@ -4,13 +4,12 @@ use super::problem::BuffetingProblem;
 use super::response::BuffetingResponse;
 use super::synthesis::parts_in_time;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Result, ensure, positive};
+use crate::numbered::{OnDone, numbered};
 use crate::response::{Inputs, Stepper};
 use crate::section::Dof;
 use crate::signal::Fourier;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Samples in the shortest still-air period when no step is given: straight lines between them lose 0.4 % of the power there.
 const SAMPLES_PER_PERIOD: f64 = 40.0;
@@ -123,7 +122,7 @@ pub(crate) fn time_ensemble(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     plan: &TimePlan,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: OnDone<'_>,
 ) -> Result<Ensemble> {
     let (section, slowest) = problem.coupled(speed_m_s)?;
     let grid = grid(problem, slowest, speed_m_s, plan)?;
@@ -139,19 +138,13 @@ pub(crate) fn time_ensemble(
 pub(super) fn all_records<T: Send>(
     records: usize,
     seed: u64,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: OnDone<'_>,
     record: impl Fn(u64) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
     let expected = format_args!("a number from 2 to {MOST_RECORDS}");
     let fits = (2..=MOST_RECORDS).contains(&records);
     ensure(fits, "records", expected, records)?;
-    let done = AtomicUsize::new(0);
-    let counted = |i: usize| {
-        let run = record(seed.wrapping_add(i as u64));
-        progress(1 + done.fetch_add(1, Ordering::Relaxed), records);
-        run
-    };
-    (0..records).into_par_iter().map(counted).collect()
+    numbered(records, progress, |i| record(seed.wrapping_add(i as u64)))
 }
 
 /// Root of the mean of the mean squares of records, and its standard error by their scatter.
@@ -177,15 +170,10 @@ fn grid(
         None => DECAY_TIMES_BY_DEFAULT / slowest,
     };
     let warm_up_s = DECAY_TIMES / slowest;
-    if warm_up_s > duration {
-        return Err(Error::input(
-            "duration_s",
-            format!(
-                "at least {warm_up_s:.1} s, {DECAY_TIMES} decay times of the least damped mode at {speed_m_s} m/s"
-            ),
-            format!("{duration}"),
-        ));
-    }
+    let expected = format!(
+        "at least {warm_up_s:.1} s, {DECAY_TIMES} decay times of the least damped mode at {speed_m_s} m/s"
+    );
+    ensure(warm_up_s <= duration, "duration_s", expected, duration)?;
     // an even number of samples
     let samples = 2 * (0.5 * duration / step_s).round() as usize;
     problem.check_record(speed_m_s, step_s, samples)?;

@@ -71,7 +71,10 @@ pub const ARROWS: &[Row] = &[
         &["signal", "identification+", "wind_tunnel+", "files"],
     ),
     row("response", &["aeroelastic+"]),
-    row("buffeting", &["flutter+", "response+", "signal"]),
+    row(
+        "buffeting",
+        &["flutter+", "response+", "signal", "numbered"],
+    ),
     row("live", &["flutter+", "trained_model+"]),
     row("verdict", &["flutter+", "plausibility"]),
     row(

@@ -287,35 +287,38 @@ fn wrong_static_tables_are_refused() {
     );
 }
 
-/// A trained model brings its section; the forces of gusts are then those of the plate, and the part of the response inside
-/// the tested range is told.
+/// A trained model of every kind brings its section and is stepped; the forces of gusts are those of the plate, and the part of the
+/// response inside the tested range is told.
 #[test]
-fn a_trained_model_buffets() {
+fn a_trained_model_of_every_kind_buffets() {
     let folder = TempDir::new().unwrap();
-    let model = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/data/models/continuous_laguerre.json"
-    );
-    fs::copy(model, folder.path().join("model.json")).unwrap();
     let gust = "spectrum = { shape = { kind = \"von_karman\" }, length_m = 2.0, intensity = 0.08 }";
     let wind = format!(
         "schema = 1\nname = \"model\"\naerodynamics = \"model.json\"\n[speeds]\nspeed_min_m_s = 10\nspeed_max_m_s = 30\nspeeds = 5\n\
          [turbulence.vertical]\n{gust}\nadmittance = {{ kind = \"sears\" }}\n[time]\nspeeds_m_s = [20]\nplan = {{ records = 32 }}\n"
     );
     fs::write(folder.path().join("wind.toml"), wind).unwrap();
-    let text = succeeds(folder.path(), &["buffeting", "wind.toml"]);
-    assert!(
-        text.contains("variance inside the tested range of K"),
-        "{text}"
-    );
-    let text = succeeds(folder.path(), &["buffeting", "wind.toml", "--json"]);
-    let json: Value = serde_json::from_str(&text).unwrap();
-    let compared = json["buffeting"]["time"][0]["comparison"]
-        .as_array()
-        .unwrap();
-    assert_eq!(compared.len(), 2);
-    for c in compared {
-        assert!(c["deviations"].as_f64().unwrap().abs() < 3.5, "{c}");
+    for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
+        let models = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/models");
+        let model = format!("{models}/{kind}.json");
+        fs::copy(model, folder.path().join("model.json")).unwrap();
+        let text = succeeds(folder.path(), &["buffeting", "wind.toml", "--force"]);
+        assert!(
+            text.contains("variance inside the tested range of K"),
+            "{kind}: {text}"
+        );
+        let text = succeeds(
+            folder.path(),
+            &["buffeting", "wind.toml", "--json", "--force"],
+        );
+        let json: Value = serde_json::from_str(&text).unwrap();
+        let compared = json["buffeting"]["time"][0]["comparison"].as_array();
+        let compared = compared.unwrap();
+        assert_eq!(compared.len(), 2);
+        for c in compared {
+            let deviations = c["deviations"].as_f64().unwrap();
+            assert!(deviations.abs() < 3.5, "{kind}: {c}");
+        }
     }
 }
 

@@ -10,6 +10,6 @@ use error::Error;
 
 pub mod comparison;
 pub mod identification;
-mod numbered;
+pub mod numbered;
 pub mod selection;
 pub mod uncertainty;

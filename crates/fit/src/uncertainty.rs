@@ -40,7 +40,6 @@ mod statistics;
 mod table_covariance;
 mod with_data;
 
-pub use crate::numbered::{OnDone, numbered};
 pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, coverage};
 pub use draws::ModelDraws;

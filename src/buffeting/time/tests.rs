@@ -6,6 +6,7 @@ use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady};
 use crate::buffeting::{
     Admittance, FrequencyDomain, Gust, GustSpectrum, SpectrumShape, Turbulence, turbulence_field,
 };
+use crate::error::Error;
 use crate::files::coefficients::embedded;
 use crate::flutter::impedance;
 use crate::section::{SectionModel, Structure, Translation};

@@ -2,10 +2,11 @@
 
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
-    CompareOptions, ForceMetrics, OnDone, Score, ScoreSummary, Scoring, Statement,
+    CompareOptions, ForceMetrics, Score, ScoreSummary, Scoring, Statement,
 };
 use crate::error::Result;
 use crate::identification::DiscreteFit;
+use crate::numbered::OnDone;
 use crate::report::{Figure, MetricPanel, PageSection, PlottedSeries, metrics_figure};
 use crate::section::Dof;
 use std::fmt::Write as _;

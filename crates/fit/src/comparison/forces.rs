@@ -13,7 +13,6 @@ mod score;
 mod statements;
 mod tested_deck;
 
-pub use crate::numbered::OnDone;
 pub use decks::DecksComparison;
 pub use decks::compare_decks;
 pub use entries::BandCheck;
