@@ -100,8 +100,7 @@ impl AffineSpace {
             if left.len() + self.taken.len() == n {
                 break;
             }
-            let mut unit = DVector::zeros(n);
-            unit[i] = 1.0;
+            let mut unit = unit(n, i);
             for _ in 0..2 {
                 self.project(&mut unit);
                 project_out(&mut unit, &left);
@@ -139,6 +138,11 @@ impl AffineSpace {
         });
         weighted * spread.transpose()
     }
+}
+
+/// The unit vector along `i`.
+pub(super) fn unit(n: usize, i: usize) -> DVector<f64> {
+    DVector::from_fn(n, |row, _| f64::from(u8::from(row == i)))
 }
 
 fn project_out(vector: &mut DVector<f64>, directions: &[DVector<f64>]) {

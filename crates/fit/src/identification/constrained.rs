@@ -3,7 +3,7 @@
 //! Constraints `C c = d` are met exactly by the null-space method (Golub & Van Loan, *Matrix Computations*, section
 //! 6.2.3): `c = c₀ + N z` with `C c₀ = d`, `C N = 0`, and least squares for the free `z`.
 
-use super::affine::{AffineMap, AffineSpace};
+use super::affine::{AffineMap, AffineSpace, unit};
 use super::least_squares::{Factor, StreamingQr};
 use super::report::enough_rows;
 use crate::error::{Error, Result};
@@ -130,7 +130,7 @@ impl LinearProblem {
         let bound = |c: usize| self.constraints.iter().any(|(row, _)| row[c] != 0.0);
         let mut space = AffineSpace::whole(n);
         for c in (0..n).filter(|&c| !seen(c) && !bound(c)) {
-            space.hold(&unit(n, c, 1.0), 0.0, RANK_TOLERANCE);
+            space.hold(&unit(n, c), 0.0, RANK_TOLERANCE);
         }
         for (row, target) in &self.constraints {
             let gradient = DVector::from_column_slice(row);
@@ -148,13 +148,6 @@ impl LinearProblem {
             at: 0,
         })
     }
-}
-
-/// `factor` times a unit vector.
-fn unit(n: usize, c: usize, factor: f64) -> DVector<f64> {
-    let mut unit = DVector::zeros(n);
-    unit[c] = factor;
-    unit
 }
 
 impl LinearSolution {

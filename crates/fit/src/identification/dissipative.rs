@@ -15,7 +15,7 @@
 //!
 //! This is less than passivity, which a flat plate does not have either. All conditions are convex in the
 //! coefficients. For given poles the fit minimises the sum over the transfer functions of weighted squared residuals, each
-//! relative to the weighted data of its own — the objective of the search of poles. Condition 3 is conditions at 40 `K` from
+//! relative to the weighted data of its own — the objective of the search of poles. Condition 3 is stated at 40 `K` from
 //! `K_max` to `200 K_max`, and then at every `K` at which the answer still breaks it ([`everywhere`]), until there is none.
 
 mod condition;
@@ -49,13 +49,13 @@ const ACTIVE: f64 = 1e-7;
 pub(crate) const NOTHING_HELD: f64 = 1e-6;
 /// Part of a gradient outside those of other constraints below which it adds no direction.
 pub(crate) const SAME_DIRECTION: f64 = 1e-8;
-/// Times that further `K` are conditions; two or three are the rule.
+/// Times that further `K` are stated; two or three are the rule.
 const ROUNDS: usize = 30;
 
 /// Where condition 3 is to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Strictness {
-    /// At the `K` that are conditions first: for the search of poles.
+    /// At the `K` that are stated first: for the search of poles.
     Sampled,
     /// At every `K ≥ K_max`.
     Everywhere,
@@ -160,7 +160,7 @@ impl<'a> Dissipation<'a> {
         )))
     }
 
-    /// Condition 3 where it is broken although it is not conditions there.
+    /// Condition 3 where it is broken although it is not stated there.
     fn broken_between(
         &self,
         coefficients: &[Vec<f64>],

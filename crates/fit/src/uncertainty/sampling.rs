@@ -4,7 +4,7 @@ use super::statistics::sample_quantile;
 use crate::signal::mean_and_deviation;
 use serde::Serialize;
 
-/// See the module.
+/// Mean, scatter and interval of the onsets of many samples.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SampledOnsets {
     /// Mean, m/s.

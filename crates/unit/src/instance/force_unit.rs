@@ -1,7 +1,7 @@
 //! Forces alone: strips of deck whose structure is the importer's.
 //!
-//! The forces put out are those at the instant at which they will act, `prediction` communication steps after the newest motion that
-//! has been set. Where the importer integrates, they are those of its instant.
+//! The forces put out are those of the instant at which they act, `prediction` communication steps after the motion of the last step;
+//! they follow from newer motion as well where it has been set since. Where the importer integrates, the instant is its own.
 
 use super::force_parts::{StripsUnderModel, coordinate};
 use super::layout::{Source, index_of};

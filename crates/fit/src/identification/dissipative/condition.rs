@@ -10,7 +10,7 @@ use crate::identification::form::FeedThrough;
 use nalgebra::{DMatrix, DVector};
 use std::cmp::Ordering;
 
-/// Reduced frequencies at which condition 3 is conditions from the start.
+/// Reduced frequencies at which condition 3 is stated from the start.
 const SAMPLES: usize = 40;
 /// Highest of them over the highest tested one: beyond, condition 2 is more than what is left of the filters.
 const REACH: f64 = 200.0;

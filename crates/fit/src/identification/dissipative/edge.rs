@@ -31,7 +31,7 @@ impl TestedRangeEnd {
         }
     }
 
-    /// Weights `W` with which a change `dS` of the whole matrix changes `vᵀ P v` by `Σ W ∘ dS`; none where nothing is grows in.
+    /// Weights `W` with which a change `dS` of the whole matrix changes `vᵀ P v` by `Σ W ∘ dS`; none where nothing is fed in.
     ///
     /// Derivative of a function of a symmetric matrix by divided differences (Daleckii & Krein, 1965).
     pub(super) fn change(&self, v: &DVector<f64>) -> Option<DMatrix<f64>> {

@@ -243,7 +243,7 @@ fn sentence(run: &[ActiveConstraint], whose: &str, dofs: &[Dof]) -> String {
     let (force, motion) = (dofs[i].name(), dofs[j].name());
     let at_zero = |what: &str| {
         format!(
-            "{what} of the {force} force due to {motion} motion at K → 0 is {:.4} as conditions: the data alone would make it {:.4}",
+            "{what} of the {force} force due to {motion} motion at K → 0 is {:.4} as stated: the data alone would make it {:.4}",
             first.held, first.alone
         )
     };
