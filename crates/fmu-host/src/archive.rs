@@ -44,11 +44,12 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
             return Err(refused(&name, "a file or a folder", "a link"));
         }
         method(&name, entry.compression(), &mut findings);
-        let target = folder.path().join(inside);
+        let target = folder.path().join(&inside);
         if entry.is_dir() {
-            std::fs::create_dir_all(&target).map_err(|e| Error::io(&target, e))?;
+            make_folders(folder.path(), &inside)?;
             continue;
         }
+        make_folders(folder.path(), inside.parent().unwrap_or(Path::new("")))?;
         let stated = entry.size();
         left = write(&mut entry, &name, &target, Room { stated, left })?;
         names.push(name.replace('\\', "/"));
@@ -85,6 +86,19 @@ fn safe_path(name: &str, findings: &mut FmuFindings) -> Result<PathBuf> {
         .collect())
 }
 
+/// The folders of `inside` below `root`, which is not made: a program that ends has removed it meanwhile, and it must
+/// not come again.
+fn make_folders(root: &Path, inside: &Path) -> Result<()> {
+    let mut folder = root.to_path_buf();
+    for part in inside {
+        folder.push(part);
+        if !folder.is_dir() {
+            std::fs::create_dir(&folder).map_err(|e| Error::io(&folder, e))?;
+        }
+    }
+    Ok(())
+}
+
 fn method(name: &str, method: CompressionMethod, findings: &mut FmuFindings) {
     if !matches!(
         method,
@@ -113,9 +127,6 @@ fn write(entry: &mut impl Read, name: &str, target: &Path, room: Room) -> Result
         let expected = format!("at most {MAX_BYTES} bytes unpacked in all");
         return Err(refused(name, expected, "more"));
     }
-    if let Some(parent) = target.parent() {
-        std::fs::create_dir_all(parent).map_err(|e| Error::io(parent, e))?;
-    }
     let mut file = File::create_new(target).map_err(|e| Error::io(target, e))?;
     // the size in the directory is only a claim
     let written = std::io::copy(&mut entry.take(stated + 1), &mut file)
@@ -125,4 +136,21 @@ fn write(entry: &mut impl Read, name: &str, target: &Path, room: Room) -> Result
         return Err(refused(name, expected, "more"));
     }
     Ok(left - written)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_removed_folder_does_not_come_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("root");
+        assert!(make_folders(&root, Path::new("binaries/linux64")).is_err());
+        assert!(!root.exists());
+        std::fs::create_dir(&root).unwrap();
+        make_folders(&root, Path::new("binaries/linux64")).unwrap();
+        make_folders(&root, Path::new("binaries/x86_64-linux")).unwrap();
+        assert!(root.join("binaries/linux64").is_dir());
+    }
 }
