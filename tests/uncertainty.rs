@@ -4,8 +4,16 @@
 #[allow(dead_code)] // each room needs a part of it
 mod command;
 
-use aerodeck::uncertainty::{CoveragePlan, CoverageReport, Truth, coverage};
-use aerodeck::wind_tunnel::TunnelPlan;
+use aerodeck::aerodynamics::FlatPlate;
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::flutter::{OnsetInterval, OnsetSearch, find_onset};
+use aerodeck::identification::{DiscreteFit, Fitted, fit_discrete};
+use aerodeck::section::SectionModel;
+use aerodeck::uncertainty::{
+    CoveragePlan, CoverageReport, FamilyPlan, FamilyRange, ModelUncertainty, Truth, coverage,
+    discrete_uncertainty, family_coverage,
+};
+use aerodeck::wind_tunnel::{RecordSource, TunnelPlan};
 use command::{onset_of, succeeds};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -96,6 +104,59 @@ fn bias_is_told_from_scatter_outside_the_class() {
         !kept(report.derivatives_hold_truth.percent)
     );
     assert!(!report.warnings.is_empty(), "{report:?}");
+}
+
+/// Forty decks of the family, eight of each range: nothing false is said of any, and every deck whose tests surround its onset is
+/// answered.
+#[test]
+fn a_family_of_decks_is_told_nothing_false() {
+    let plan = FamilyPlan {
+        decks: 40,
+        ..FamilyPlan::default()
+    };
+    let report = family_coverage(&plan, &|_, _| ()).unwrap();
+    for r in &report.ranges {
+        assert_eq!(r.false_no_flutter, 0, "{r:?}");
+        assert_eq!(r.met_against_truth, 0, "{r:?}");
+        assert_eq!(r.unsafe_side, 0, "{r:?}");
+    }
+    let normal = &report.ranges[0];
+    assert_eq!((normal.range, normal.decks), (FamilyRange::Normal, 8));
+    assert_eq!((normal.refused, normal.held.inside), (0, 8));
+}
+
+/// A form whose bias is known shows no interval, but its reason and the scatter.
+#[test]
+fn a_known_bias_leaves_no_bare_interval() {
+    let plan = TunnelPlan {
+        speeds_m_s: vec![8.17],
+        noise_fraction: 0.02,
+        ..TunnelPlan::default()
+    };
+    let records = plan
+        .records_from_model(&FlatPlate::default(), "plate", 0.5)
+        .unwrap();
+    let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+    let fit = DiscreteFit::default();
+    let Fitted { model, report } = fit_discrete(&sources, &fit, &|_| ()).unwrap();
+    let estimate = discrete_uncertainty(&sources, &fit, &model, &|_| ()).unwrap();
+    let structure = SectionModel::table_4_1().structure().unwrap();
+    let section = CoupledSection::with_model(&structure, &model).unwrap();
+    let search = OnsetSearch::default();
+    let found = find_onset("", &section, &search, None).unwrap();
+    let at = found.onset().unwrap();
+    let known =
+        ModelUncertainty::new(estimate, &structure, Some(at), search, report.tested_range).unwrap();
+    let interval = known.interval(&model, &structure, &at).unwrap();
+    let OnsetInterval::None { reason } = interval else {
+        panic!("{interval:?}");
+    };
+    assert!(
+        reason.contains("no feed-through") && reason.contains("standard error"),
+        "{reason}"
+    );
+    let text = known.explain().unwrap();
+    assert!(text.contains("no 95 % interval"), "{text}");
 }
 
 /// Training, and flutter from the saved files alone, state the same intervals; the table shows the spread between interpolations.

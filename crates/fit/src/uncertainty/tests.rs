@@ -90,43 +90,6 @@ fn scattered(seed: u64) -> Vec<TransferSample> {
     samples
 }
 
-/// A form whose bias is known shows no interval, but its reason and the scatter.
-#[test]
-fn a_known_bias_leaves_no_bare_interval() {
-    let plan = TunnelPlan {
-        speeds_m_s: vec![8.17],
-        noise_fraction: 0.02,
-        ..TunnelPlan::default()
-    };
-    let records = plan
-        .records_from_model(&FlatPlate::default(), "plate", 0.5)
-        .unwrap();
-    let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
-    let fit = DiscreteFit::default();
-    let Fitted { model, report } = fit_discrete(&sources, &fit, &|_| ()).unwrap();
-    let estimate = discrete_uncertainty(&sources, &fit, &model, &|_| ()).unwrap();
-    let at = onset(&model);
-    let search = OnsetSearch::default();
-    let known = ModelUncertainty::new(
-        estimate,
-        &structure(),
-        Some(&at),
-        search,
-        report.tested_range,
-    )
-    .unwrap();
-    let interval = known.interval(&model, &structure(), &at).unwrap();
-    let crate::flutter::OnsetInterval::None { reason } = interval else {
-        panic!("{interval:?}");
-    };
-    assert!(
-        reason.contains("no feed-through") && reason.contains("standard error"),
-        "{reason}"
-    );
-    let text = known.explain().unwrap();
-    assert!(text.contains("no 95 % interval"), "{text}");
-}
-
 /// Every entry of the gradient against the difference of onsets searched anew.
 #[test]
 fn gradients_are_differences_of_onsets() {
@@ -260,27 +223,4 @@ fn saved_uncertainty_gives_the_same_interval() {
             .to_string()
             .contains("line 1")
     );
-}
-
-/// Forty decks of the family, eight of each range: nothing false is said of any, and every deck whose tests surround its onset is
-/// answered.
-#[test]
-fn a_family_of_decks_is_told_nothing_false() {
-    let plan = FamilyPlan {
-        decks: 40,
-        ..FamilyPlan::default()
-    };
-    let report = family_coverage(&plan, &|_, _| ()).unwrap();
-    for d in &report.decks {
-        println!("DECK {}", serde_json::to_string(d).unwrap());
-    }
-    for r in &report.ranges {
-        println!("{r:?}");
-        assert_eq!(r.false_no_flutter, 0, "{r:?}");
-        assert_eq!(r.met_against_truth, 0, "{r:?}");
-        assert_eq!(r.unsafe_side, 0, "{r:?}");
-    }
-    let normal = &report.ranges[0];
-    assert_eq!((normal.range, normal.decks), (FamilyRange::Normal, 8));
-    assert_eq!((normal.refused, normal.held.inside), (0, 8));
 }
