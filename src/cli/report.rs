@@ -23,7 +23,7 @@ use crate::identification::EntryReport;
 use crate::report::{PageFigure, PageFit, StudyPage, sections_of, study_page, summary_figure};
 use crate::study::Study;
 use curves::curves_of;
-use folder::{PagePlace, REPORT, SUMMARY, SummaryKind, digest, parsed};
+use folder::{PagePlace, REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, first_derivatives, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
@@ -89,8 +89,7 @@ pub(super) fn page_of(folder: &Path) -> Result<String> {
 fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> {
     let path = folder.join(SUMMARY);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-    let kind: SummaryKind = parsed(&path, &text)?;
-    if kind.bridge.is_some() {
+    if is_of_a_bridge(&parsed(&path, &text)?) {
         return bridge::page(folder, &text, place);
     }
     let summary: Summary = parsed(&path, &text)?;

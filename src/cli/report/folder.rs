@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::fmu::package::Label;
 use crate::json;
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::path::Path;
 
 /// The page.
@@ -22,8 +22,13 @@ pub(super) enum PagePlace {
 /// Whether a study, and no bridge, has left its summary at `path`.
 pub(in crate::cli) fn is_of_a_study(path: &Path) -> bool {
     let text = std::fs::read_to_string(path).ok();
-    let kind = text.and_then(|text| serde_json::from_str::<SummaryKind>(&text).ok());
-    kind.is_some_and(|kind| kind.bridge.is_none())
+    let summary = text.and_then(|text| serde_json::from_str(&text).ok());
+    summary.is_some_and(|summary: Value| summary.is_object() && !is_of_a_bridge(&summary))
+}
+
+/// Whether a bridge, and no study, has left the summary.
+pub(super) fn is_of_a_bridge(summary: &Value) -> bool {
+    summary["bridge"].is_string()
 }
 
 /// The day of the run, or that of the variable `SOURCE_DATE_EPOCH`, `YYYY-MM-DD`.
@@ -33,12 +38,6 @@ pub(in crate::cli) fn is_of_a_study(path: &Path) -> bool {
 pub(in crate::cli) fn today() -> Result<String> {
     let now = Label::default().dated()?.generated.unwrap_or_default();
     Ok(now.chars().take(10).collect())
-}
-
-/// Whose summary it is.
-#[derive(Deserialize)]
-pub(super) struct SummaryKind {
-    pub bridge: Option<String>,
 }
 
 /// The summary in `text`, which was read from `path`, as far as it is asked for.
