@@ -162,10 +162,11 @@ impl CoupledSection {
     /// [`Error::Input`] for a speed that is negative, not finite, or zero with the discrete model.
     pub fn at(&self, speed_m_s: f64) -> Result<CoupledSystem> {
         match &self.aerodynamics {
-            Realization::Continuous(c) => {
-                non_negative("wind speed", speed_m_s)?;
-                self.coupled_with(c, speed_m_s)
-                    .map(CoupledSystem::Continuous)
+            Realization::Continuous(_) => {
+                let StateEquation { a, b } = self.equation_at(speed_m_s)?;
+                let n = b.ncols();
+                let (c, d) = self.outputs(&a.rows(n, n).into_owned());
+                StateSpace::new(a, b, c, d, Continuous).map(CoupledSystem::Continuous)
             }
             Realization::Discrete(d) => {
                 positive("wind speed", speed_m_s)?;
@@ -174,19 +175,15 @@ impl CoupledSection {
         }
     }
 
-    /// The coupled system of a continuous model at the wind speed `V` (m/s).
-    pub fn continuous_at(&self, speed_m_s: f64) -> Result<StateSpace<Continuous>> {
-        match self.at(speed_m_s)? {
-            CoupledSystem::Continuous(s) => Ok(s),
-            CoupledSystem::Sampled(_) => Err(Error::Numerical("step: the model is sampled".into())),
-        }
-    }
-
-    fn coupled_with(
-        &self,
-        aero: &ContinuousRealization,
-        speed: f64,
-    ) -> Result<StateSpace<Continuous>> {
+    /// What moves in the coupled system of a continuous model at the wind speed `V` (m/s): the equation of its states.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is negative or not finite, [`Error::Numerical`] for a sampled model.
+    pub fn equation_at(&self, speed: f64) -> Result<StateEquation> {
+        non_negative("wind speed", speed)?;
+        let Realization::Continuous(aero) = &self.aerodynamics else {
+            return Err(Error::Numerical("step: the model is sampled".into()));
+        };
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let rate = speed / s.width_m;
@@ -216,8 +213,7 @@ impl CoupledSection {
             .copy_from(&(&aero.a * rate));
         let mut b = DMatrix::zeros(2 * n + filters, n);
         b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
-        let (c, d) = self.outputs(&acceleration);
-        StateSpace::new(a, b, c, d, Continuous)
+        Ok(StateEquation { a, b })
     }
 
     /// Output matrices of `[q, q̇, q̈, F]` from the rows that give `q̈` without external force.

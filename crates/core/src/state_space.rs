@@ -6,7 +6,7 @@ mod poles;
 mod roots;
 pub mod rows;
 
-pub use discretize::{StepMatrices, c2d};
+pub use discretize::{StepMatrices, c2d, step_matrix};
 pub use poles::{RepeatedEigenvalues, eigenvector};
 pub use poles::{balance, eigenvalues};
 pub use roots::golden_section;

@@ -19,7 +19,7 @@ use super::gusts::{Gusts, SeriesPart};
 use super::lanes::{FourLanes, OnLanes, on_lanes};
 use super::linked::Linked;
 use super::packed::{Packed, largest_of};
-use super::values::GustCourse;
+use super::values::Inputs;
 use crate::aeroelastic::CoupledSection;
 use matrices::matrices;
 use nalgebra::DMatrix;
@@ -40,15 +40,10 @@ pub(super) struct Drive<'a> {
     pub wind_rate: f64,
     /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
     pub force: [&'a [f64]; 3],
-    /// Gusts.
-    pub gust: GustCourse<'a>,
-}
-
-/// What moves in a step: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through the admittance. No gusts
-/// where none act.
-pub(super) struct Moving<'a> {
-    pub values: &'a mut [f64],
-    pub gusts: Option<&'a mut [f64]>,
+    /// Where the gusts stand.
+    pub inputs: &'a Inputs,
+    /// Time of the start after that of `inputs`, s.
+    pub after: f64,
 }
 
 /// Largest row sums of the scaled system, by the power of the wind speed that they go with.
@@ -66,7 +61,7 @@ struct Norms {
 /// motion scale, rates by a frequency as well.
 #[derive(Debug, Clone)]
 pub(super) struct PowerSeries {
-    dofs: usize,
+    pub dofs: usize,
     /// Factor from a displacement to its scaled value.
     scale: Vec<f64>,
     /// Unit of the rates, rad/s.
@@ -78,7 +73,8 @@ pub(super) struct PowerSeries {
     /// `M⁻¹`, scaled.
     force: Packed,
     norms: Norms,
-    gusts: Option<Gusts>,
+    /// Those of the section.
+    pub gusts: Option<Gusts>,
     work: Work,
 }
 
@@ -125,16 +121,16 @@ impl PowerSeries {
             filters: row_sum(&aerodynamic, n..n + filters),
             lags: gusts.as_ref().map_or(0.0, Gusts::fastest),
         };
-        let force = Packed::new(n, n, |i, j| {
+        let force = DMatrix::from_fn(n, n, |i, j| {
             section.inverse_mass()[(i, j)] * scale[i] / rate
         });
         Self {
             dofs: n,
             scale,
             rate,
-            structure: Packed::from_matrix(&structure),
+            structure: Packed::new(&structure),
             aerodynamic: Linked::new(&aerodynamic, n),
-            force,
+            force: Packed::new(&force),
             norms,
             gusts,
             work: Work {
@@ -149,11 +145,6 @@ impl PowerSeries {
                 none: vec![0.0; n],
             },
         }
-    }
-
-    /// The gusts of the section.
-    pub(super) fn gusts(&self) -> Option<&Gusts> {
-        self.gusts.as_ref()
     }
 
     /// Norm of a step in winds up to `wind`.
@@ -174,15 +165,16 @@ impl PowerSeries {
         if parts > 1.0 { parts.ceil() } else { 1.0 }
     }
 
-    /// Advances what moves by a step of so many parts. Says whether the result is finite; the values are changed only then.
+    /// Advances what moves by a step of so many parts: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through
+    /// the admittance, none where none act. Says whether the result is finite; the values are changed only then.
     pub(super) fn advance(
         &mut self,
-        moving: Moving<'_>,
+        values: &mut [f64],
+        gusts: Option<&mut [f64]>,
         drive: &Drive<'_>,
         step: f64,
         parts: f64,
     ) -> bool {
-        let Moving { values, gusts } = moving;
         let (n, rate) = (self.dofs, self.rate);
         for i in 0..n {
             self.work.sum[i] = values[n + i] * (self.scale[i] / rate);
@@ -228,7 +220,7 @@ impl PowerSeries {
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
         let part = SeriesPart {
-            start,
+            start: drive.after + start,
             tau,
             wind,
             change,
@@ -254,7 +246,7 @@ impl PowerSeries {
             self.aerodynamic.set(simd, &work.term[n..], g);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
-                let force = gusts.next(k, part, drive.gust, &mut work.gusts);
+                let force = gusts.next(k, part, drive.inputs, &mut work.gusts);
                 self.force.set(simd, force, &mut work.by_gusts);
                 pushed = tau * largest_of(&work.by_gusts);
             }

@@ -175,7 +175,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
         Ok(())
     };
     // SAFETY: by the contract of the interface
-    unsafe { guarded(c, Call::SetDebugLogging, body) }
+    unsafe { guarded(c, Call::SetDebugLogging, "SetDebugLogging", body) }
 }
 
 exported! {

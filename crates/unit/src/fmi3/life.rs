@@ -205,7 +205,7 @@ as_in_fmi2! {
 pub unsafe extern "C" fn fmi3Reset(c: fmi2Component) -> fmi2Status {
     // SAFETY: by the contract of the interface
     unsafe {
-        let as_exported = guarded(c, Call::Reset, |component| {
+        let as_exported = guarded(c, Call::Reset, "Reset", |component| {
             component.configuration = None;
             if component.instance.is_resized() {
                 component.replace(component.instance.resized(None)?);

@@ -1,6 +1,6 @@
 //! Numbers of the present moment of a section or bridge.
 
-use super::coupled::{Coupled, CoupledKind};
+use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
@@ -72,7 +72,9 @@ impl<S: CoupledKind> Coupled<S> {
 
     /// Smallest damping ratio; 0, with the reason, where it is not known.
     fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
-        let (stepper, damping) = S::parts(&mut self.built);
+        let Built {
+            stepper, damping, ..
+        } = &mut self.built;
         damping.at(stepper, wind).unwrap_or_else(|why| {
             notices.push(format!("damping_now is not known: {why}"));
             0.0

@@ -228,10 +228,6 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn changed(&mut self, _: Source) {
-        self.steady_flow_pending = true;
-    }
-
     fn begin_initialization(&mut self) {
         (self.warned, self.warned_of_mass) = (false, false);
         self.steady_flow_pending = true;
@@ -263,7 +259,8 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, index: usize, changed: bool) -> bool {
+    fn value_set(&mut self, memory: &mut Memory, index: usize, _: Source, changed: bool) -> bool {
+        self.steady_flow_pending |= changed;
         let input = self.input_at[index];
         if input > 0 && self.integrated {
             self.note_motion(memory, input, changed);
