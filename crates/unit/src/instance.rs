@@ -22,6 +22,7 @@ mod force_ahead;
 mod force_derivatives;
 mod force_exchange;
 mod force_parts;
+mod force_rows;
 mod force_unit;
 mod integration;
 mod layout;

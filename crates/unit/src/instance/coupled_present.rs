@@ -52,7 +52,7 @@ impl<S: CoupledKind> Coupled<S> {
                     self.calculate(resources, memory, notices);
                     present.onset = self.calculated.onset();
                 }
-                Known::Wind => {}
+                Known::Wind | Known::Length => {}
                 Known::Damping => present.damping_ratio = self.damping(wind, notices).into(),
                 Known::TestedWind => {
                     present.wind_is_tested = S::wind_is_tested(self, resources, memory, notices);
@@ -107,7 +107,7 @@ impl<S: CoupledKind> Coupled<S> {
                 Known::Motion(response, dof) => {
                     present.motion_mut(*response, *dof).slope = slope(*response, *dof);
                 }
-                Known::Onset | Known::Wind | Known::Damping | Known::TestedWind => {}
+                _ => {}
             }
         }
         present.onset.follow_limit(by.limit);

@@ -66,6 +66,7 @@ impl Source {
             Role::Constant => Self::Constant,
             Role::Response(..)
             | Role::Force(..)
+            | Role::OfStrip(..)
             | Role::NodeMotion(..)
             | Role::Mode(..)
             | Role::Damper(..) => Self::Response,
