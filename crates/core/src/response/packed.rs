@@ -28,11 +28,10 @@ pub(super) struct Packed {
 impl Packed {
     pub(super) fn new(matrix: &DMatrix<f64>) -> Self {
         let (rows, columns) = matrix.shape();
+        let entries = matrix.as_slice();
         let group = |group: usize, j: usize| -> [f64; LANES] {
-            std::array::from_fn(|lane| {
-                let i = group * LANES + lane;
-                if i < rows { matrix[(i, j)] } else { 0.0 }
-            })
+            let rest = &entries[j * rows + group * LANES..(j + 1) * rows];
+            std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0))
         };
         let groups = rows.div_ceil(LANES);
         let first_of_rest = groups - groups % GROUPS;
