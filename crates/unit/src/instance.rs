@@ -185,9 +185,7 @@ impl Instance {
     pub fn exit_initialization(&mut self) -> CallResult<()> {
         self.unit.prepared(&self.resources, &mut self.memory)?;
         // whatever is read between steps is read without a further look
-        if !self.memory.system.all().iter().all(|x| x.is_finite()) {
-            return Err(sensitivity::overgrown());
-        }
+        sensitivity::check_finite(&self.memory.system.all())?;
         self.unit
             .watch(&self.resources, &self.memory, &mut self.notices);
         self.memory.state = match self.interface {

@@ -233,7 +233,11 @@ impl PowerSeries {
             Some(gusts) => gusts.begin(&work.gusts),
             None => work.by_gusts.fill(0.0),
         }
-        let mut largest = work.begin();
+        // the sum so far is the first term, with none before it
+        work.term.copy_from_slice(&work.sum);
+        work.structure[0].fill(0.0);
+        work.aerodynamic[..2].iter_mut().for_each(|g| g.fill(0.0));
+        let mut largest = largest_of(&work.term);
         let [mut s, mut s_before] = work.structure.each_mut().map(Vec::as_mut_slice);
         let [mut g, mut g_before, mut g_first] = work.aerodynamic.each_mut().map(Vec::as_mut_slice);
         let mut last = [0.0; 3];
@@ -251,12 +255,9 @@ impl PowerSeries {
                 pushed = tau * largest_of(&work.by_gusts);
             }
             let push = [work.push.get(k).unwrap_or(&work.none), &work.by_gusts].map(Vec::as_slice);
-            let made_from = MadeFrom {
-                push,
-                structure: [s, s_before],
-                aerodynamic: [g, g_before, g_first],
-            };
-            made_from.next_term(&mut work.term, part, self.rate, k);
+            let (structure, aerodynamic) = ([&*s, s_before], [&*g, g_before, g_first]);
+            let scale = [self.rate, tau / (k + 1) as f64];
+            next_term(&mut work.term, push, structure, aerodynamic, part, scale);
             for (sum, term) in work.sum.iter_mut().zip(&work.term) {
                 *sum += term;
             }
@@ -305,48 +306,34 @@ impl OnLanes for SeriesTerms<'_, '_> {
     }
 }
 
-impl Work {
-    /// Makes the sum so far the first term, with none before it; gives its largest entry.
-    fn begin(&mut self) -> f64 {
-        self.term.copy_from_slice(&self.sum);
-        self.structure[0].fill(0.0);
-        self.aerodynamic[..2].iter_mut().for_each(|g| g.fill(0.0));
-        largest_of(&self.term)
+/// Replaces a term by the next one. What that is made from, of this term and those before: accelerations by external forces and by
+/// gusts, `[A₀[q̇, q]; d]`, `[f; g]`; `rates` are the unit of the rates and `τ/(k + 1)`.
+#[inline(always)]
+fn next_term(
+    term: &mut [f64],
+    [push, by_gusts]: [&[f64]; 2],
+    structure: [&[f64]; 2],
+    aerodynamic: [&[f64]; 3],
+    part: SeriesPart,
+    [rate, factor]: [f64; 2],
+) {
+    let SeriesPart { wind, change, .. } = part;
+    let n = push.len();
+    let [(s, d), (_, d_before)] = structure.map(|s| s.split_at(n));
+    let [(f, g), (f_before, g_before), (f_first, _)] = aerodynamic.map(|g| g.split_at(n));
+    let (velocity, behind) = term.split_at_mut(n);
+    let (displacement, filters) = behind.split_at_mut(n);
+    for i in 0..n {
+        let mut sum = s[i] + (push[i] + by_gusts[i]) + wind * (d[i] + wind * f[i]);
+        if change != 0.0 {
+            sum += change * (d_before[i] + 2.0 * wind * f_before[i] + change * f_first[i]);
+        }
+        displacement[i] = factor * rate * velocity[i];
+        velocity[i] = factor * sum;
     }
-}
-
-/// What the next term is made from, of this term and those before.
-struct MadeFrom<'a> {
-    /// Accelerations by external forces and by gusts.
-    push: [&'a [f64]; 2],
-    structure: [&'a [f64]; 2],
-    aerodynamic: [&'a [f64]; 3],
-}
-
-impl MadeFrom<'_> {
-    /// Replaces the term by the next one.
-    #[inline(always)]
-    fn next_term(self, term: &mut [f64], part: SeriesPart, rate: f64, k: usize) {
-        let SeriesPart { wind, change, .. } = part;
-        let factor = part.tau / (k + 1) as f64;
-        let [push, by_gusts] = self.push;
-        let n = push.len();
-        let [(s, d), (_, d_before)] = self.structure.map(|s| s.split_at(n));
-        let [(f, g), (f_before, g_before), (f_first, _)] = self.aerodynamic.map(|g| g.split_at(n));
-        let (velocity, behind) = term.split_at_mut(n);
-        let (displacement, filters) = behind.split_at_mut(n);
-        for i in 0..n {
-            let mut sum = s[i] + (push[i] + by_gusts[i]) + wind * (d[i] + wind * f[i]);
-            if change != 0.0 {
-                sum += change * (d_before[i] + 2.0 * wind * f_before[i] + change * f_first[i]);
-            }
-            displacement[i] = factor * rate * velocity[i];
-            velocity[i] = factor * sum;
-        }
-        let (now, before) = (factor * wind, factor * change);
-        for ((x, g), g_before) in filters.iter_mut().zip(g).zip(g_before) {
-            *x = now * g + before * g_before;
-        }
+    let (now, before) = (factor * wind, factor * change);
+    for ((x, g), g_before) in filters.iter_mut().zip(g).zip(g_before) {
+        *x = now * g + before * g_before;
     }
 }
 

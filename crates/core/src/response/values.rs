@@ -41,13 +41,8 @@ pub struct Inputs {
 impl SectionState {
     /// Becomes equal to `other`; takes no memory where there is room.
     pub fn set_to(&mut self, other: &Self) {
-        for (to, from) in [
-            (&mut self.values, &other.values),
-            (&mut self.gusts, &other.gusts),
-        ] {
-            to.clear();
-            to.extend_from_slice(from);
-        }
+        self.values.clone_from(&other.values);
+        self.gusts.clone_from(&other.gusts);
         (self.phase, self.last_wind_m_s) = (other.phase, other.last_wind_m_s);
     }
 
@@ -99,15 +94,10 @@ impl Inputs {
     pub fn set_to(&mut self, other: &Self) {
         self.wind_speed_m_s = other.wind_speed_m_s;
         self.wind_speed_rate_m_s2 = other.wind_speed_rate_m_s2;
-        for (to, from) in [
-            (&mut self.force, &other.force),
-            (&mut self.force_rate, &other.force_rate),
-            (&mut self.gust_m_s, &other.gust_m_s),
-            (&mut self.gust_rate_m_s2, &other.gust_rate_m_s2),
-        ] {
-            to.clear();
-            to.extend_from_slice(from);
-        }
+        self.force.clone_from(&other.force);
+        self.force_rate.clone_from(&other.force_rate);
+        self.gust_m_s.clone_from(&other.gust_m_s);
+        self.gust_rate_m_s2.clone_from(&other.gust_rate_m_s2);
     }
 
     /// Whether they can be those of a step of so many seconds, or, of none, of an instant.

@@ -230,23 +230,18 @@ pub(crate) unsafe fn array_mut<'a, T>(
 }
 
 fn check_array<T>(pointer: *const T, count: usize, name: &str) -> CallResult<()> {
-    if pointer.is_null() {
-        return Err(no_array(count, name));
-    }
-    if count > isize::MAX as usize / size_of::<T>().max(1) {
-        return Err(array_too_long(count, name));
+    if pointer.is_null() || count > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(no_array(pointer.is_null(), count, name));
     }
     Ok(())
 }
 
 #[cold]
-fn no_array(count: usize, name: &str) -> Refusal {
-    Refusal::error(format!("{name}: expected {count} elements, found NULL"))
-}
-
-#[cold]
-fn array_too_long(count: usize, name: &str) -> Refusal {
-    Refusal::error(format!("{name}: {count} elements do not fit into memory"))
+fn no_array(is_null: bool, count: usize, name: &str) -> Refusal {
+    Refusal::error(match is_null {
+        true => format!("{name}: expected {count} elements, found NULL"),
+        false => format!("{name}: {count} elements do not fit into memory"),
+    })
 }
 
 /// One variable of the importer to be written.

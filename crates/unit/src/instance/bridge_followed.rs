@@ -40,13 +40,8 @@ pub(super) struct SearchedOnset {
 impl SearchedOnset {
     /// That of a search; `None` where there is more to say of it than a speed.
     pub(super) fn from_onset(built: &BuiltBridge, onset: &Onset) -> Option<Self> {
-        let plain = onset.warnings.is_empty() && onset.spurious_speeds_m_s.is_empty();
-        let at = &onset.at;
-        let section = built.stepper.section();
-        let start = OnsetStart::at(at.speed_m_s, at.frequency_hz, section).ok();
-        start
-            .filter(|_| plain)
-            .and_then(|start| Self::from(built, &start).ok())
+        let start = OnsetStart::from_onset(onset, built.stepper.section())?;
+        Self::from(built, &start).ok()
     }
 
     /// That which came with the archive, for the bridge as it was exported.

@@ -6,7 +6,7 @@ use super::damping::PresentDamping;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{SectionValues, check_finite, finite};
+use super::sensitivity::{SectionValues, check_finite};
 use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
@@ -263,14 +263,14 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
         S::load_inputs(self, memory);
         let stepper = &mut self.built.stepper;
         stepper.write_derivative(&memory.system, &self.inputs, rates)?;
-        finite(rates)
+        check_finite(&*rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
         self.load_inputs_once(memory);
         let stepper = &mut self.built.stepper;
         stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
-        check_finite(&self.outputs)?;
+        check_finite(self.outputs.lists().into_iter().flatten())?;
         S::write_outputs(self, memory);
         Ok(())
     }

@@ -34,7 +34,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         let mut rates = SectionValues::default();
         stepper.outputs(&velocity, inputs, &mut rates.outputs)?;
         add(&mut rates.outputs, &by_wind.outputs, wind_rate);
-        check_finite(&rates.outputs)?;
+        check_finite(rates.outputs.lists().into_iter().flatten())?;
         let by = PresentSlopes {
             wind: wind_rate,
             outputs: Some(&rates.outputs),

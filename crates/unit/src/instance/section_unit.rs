@@ -8,11 +8,12 @@ use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::sensitivity::SectionValues;
 use crate::aerodynamics::{Realizable, Realization};
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::resources::Resources;
 use crate::response::{Outputs, SectionState, Stepper};
-use crate::section::Dof;
+use crate::section::{Dof, SectionModel};
 use crate::variables::{Response, Role, VariableTable};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
@@ -87,14 +88,12 @@ impl SectionUnit {
 
     /// Growth below the onset for the parameters in `values`.
     fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
-        let Resources { model, table, .. } = resources;
-        let limit = values[self.indices.limit];
-        let section = section::coupled_section(model, table, &self.own.aerodynamics, values)?;
-        let forces = &self.own.aerodynamics;
-        if let Some(speed) = section::plainly_stable_to(model, table, forces, values, limit) {
-            return Ok(UnwantedGrowth::none_up_to(speed));
+        let (model, limit) = (&resources.model, values[self.indices.limit]);
+        let (section, coupled) = self.own.coupled(resources, values)?;
+        match section::plainly_stable_to(model, &section, &coupled, limit) {
+            Some(speed) => Ok(UnwantedGrowth::none_up_to(speed)),
+            None => section::growth_of(model, &coupled, limit),
         }
-        section::growth_of(model, &section, limit)
     }
 
     #[cold]
@@ -118,14 +117,26 @@ impl SectionUnit {
     }
 }
 
+impl SuspendedSection {
+    /// The section of the parameters in `values`, by itself and coupled with its forces.
+    fn coupled(
+        &self,
+        resources: &Resources,
+        values: &[f64],
+    ) -> Result<(SectionModel, CoupledSection)> {
+        let section = section::section_model(&resources.model, &resources.table, values);
+        let coupled = CoupledSection::new(section.structure()?, self.aerodynamics.clone())?;
+        Ok((section, coupled))
+    }
+}
+
 impl CoupledKind for SuspendedSection {
     /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
     type Own = Option<[f64; 2]>;
 
     fn build(&self, resources: &Resources, values: &[f64]) -> Result<Built<Self::Own>> {
-        let Resources { model, table, .. } = resources;
-        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        let stepper = Stepper::in_gusts(section, resources.gusts.as_ref());
+        let (_, coupled) = self.coupled(resources, values)?;
+        let stepper = Stepper::in_gusts(coupled, resources.gusts.as_ref());
         Ok(Built {
             own: tested_winds(&stepper, resources),
             stepper,
@@ -195,13 +206,11 @@ impl CoupledKind for SuspendedSection {
     }
 
     fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
-        let Resources { model, table, .. } = resources;
-        let (values, forces) = (&memory.values, &unit.own.aerodynamics);
-        let limit = unit.indices.limit(memory);
-        match section::coupled_section(model, table, forces, values) {
-            Ok(section) => {
-                let plain = section::plain_onset(model, table, forces, values, limit);
-                OnsetCard::search(model, &section, limit, plain)
+        let (model, limit) = (&resources.model, unit.indices.limit(memory));
+        match unit.own.coupled(resources, &memory.values) {
+            Ok((section, coupled)) => {
+                let plain = section::plain_onset(model, &section, &coupled, limit);
+                OnsetCard::search(model, &coupled, limit, plain)
             }
             Err(why) => OnsetCard::unknown(&why),
         }

@@ -4,7 +4,7 @@ use super::Instance;
 use super::layout::{DataType, Source};
 use super::memory::Memory;
 use super::section::OnsetCard;
-use super::sensitivity::overgrown;
+use super::sensitivity::check_finite;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
 use crate::response::wind_at_rest;
@@ -197,11 +197,7 @@ impl Instance {
 /// A number of the state, which may have overflowed at the release or in the hands of an importer that integrates.
 fn state_number(memory: &Memory, entry: usize) -> CallResult<f64> {
     let number = memory.system.number(entry);
-    if number.is_finite() {
-        Ok(number)
-    } else {
-        Err(overgrown())
-    }
+    check_finite(&[number]).map(|()| number)
 }
 
 /// Rates are known to the first order.
