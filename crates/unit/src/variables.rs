@@ -42,7 +42,6 @@ use crate::error::{Error, Result};
 use crate::response::Stepper;
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
-use variable::find;
 
 /// The variables of an exported section; see the module.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,7 +114,7 @@ impl VariableTable {
 
     /// Index of the variable with this role.
     pub fn find(&self, role: Role) -> Option<usize> {
-        find(&self.variables, role)
+        self.variables.iter().position(|v| v.role == role)
     }
 
     /// Index of the variable with this name.

@@ -245,8 +245,3 @@ impl Variable {
         )
     }
 }
-
-/// Index of the variable with this role.
-pub(super) fn find(variables: &[Variable], role: Role) -> Option<usize> {
-    variables.iter().position(|v| v.role == role)
-}
