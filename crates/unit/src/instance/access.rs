@@ -62,12 +62,6 @@ impl Instance {
         }
         Err(wrong_value(&self.table().variables()[index], value))
     }
-
-    /// Whether `value` may stand at `index` in a state read from a file.
-    pub(super) fn check_stored(&self, index: usize, value: f64) -> CallResult<()> {
-        self.check_value(index, self.layout.access[index], value)
-            .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
-    }
 }
 
 #[cold]

@@ -108,10 +108,13 @@ impl Instance {
         let mut memory = serialized::read(bytes, &guid, &self.fresh)
             .map_err(|e| Refusal::call(e.to_string()))?;
         for (index, value) in memory.values.iter_mut().enumerate() {
-            if self.layout.access[index].source == Source::Constant {
+            let access = self.layout.access[index];
+            if access.source == Source::Constant {
                 *value = self.fresh.values[index];
             }
-            self.check_stored(index, *value)?;
+            let within_limits = self.check_value(index, access, *value);
+            within_limits
+                .map_err(|why| Refusal::call(format!("serialised state: {}", why.message)))?;
         }
         Ok(Snapshot { guid, memory })
     }
