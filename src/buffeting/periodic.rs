@@ -20,6 +20,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted, positive};
 use crate::numbered::OnDone;
 use crate::signal::Fourier;
+use crate::state_space::{StateEquation, c2d};
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -237,7 +238,8 @@ fn transfer(
     fourier: &Fourier,
 ) -> Result<Vec<DMatrix<Complex<f64>>>> {
     let samples = fourier.length();
-    let step = coupled.continuous_at(speed)?.c2d(step_s)?;
+    let StateEquation { a, b } = coupled.equation_at(speed)?;
+    let step = c2d(&a, &b, step_s)?;
     let (rows, modes) = shapes.shape();
     let states = step.phi.nrows();
     let next = &step.gamma_1 / step_s;

@@ -3,6 +3,7 @@
 use crate::bridges::{TWO, langenuen};
 use crate::models;
 use aerodeck::fmu::description::model_description;
+use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Label;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
@@ -11,6 +12,7 @@ use aerodeck::fmu::variables::{
 };
 use aerodeck::section::Dof;
 use aerodeck::study::bridge::BridgeExportOptions;
+use aerodeck::trained_model::TrainedModel;
 
 /// Reads all that has a derivative.
 static ROW: ComputedNumber = ComputedNumber::new(
@@ -263,4 +265,114 @@ fn an_output_of_the_motion_is_one_row() {
         ("air_density", 1e-4),
     ];
     check_motion(bridge(), [&acceleration, &rate], &knowns);
+}
+
+/// Reads all that forces alone have of a strip.
+static OF_A_STRIP: ComputedNumber = ComputedNumber::new(
+    "power",
+    "Made up for a test",
+    Causality::Output,
+    &[
+        Known::Wind,
+        Known::Length,
+        Known::Rotation,
+        Known::Motion(Response::Rate, Dof::Vertical),
+        Known::Motion(Response::SelfExcitedForce, Dof::Vertical),
+    ],
+    Formula::Real(|p| {
+        let lift = p.motion(Response::SelfExcitedForce, Dof::Vertical);
+        lift * p.motion(Response::Rate, Dof::Vertical) * p.length_m + p.wind_m_s * p.rotation_rad
+    }),
+);
+
+/// Forces alone: of one strip, of several, of those of a bridge.
+fn forces(model: &[u8], strips: usize, nodes: Vec<u32>) -> Resources {
+    let text = std::str::from_utf8(model).unwrap();
+    let single = ForceOptions::single(TrainedModel::from_json(text).unwrap().section.width_m);
+    let like = |s: usize| StripOptions {
+        length_m: 2.0 + s as f64,
+        ..single.strips[0].clone()
+    };
+    let options = ForceOptions {
+        strips: (0..strips).map(like).collect(),
+        named_strips: strips > 1,
+        nodes,
+        ..single.clone()
+    };
+    let options = options.to_json().unwrap();
+    let files = OptionFiles {
+        force: Some(options.as_bytes()),
+        ..OptionFiles::default()
+    };
+    Resources::from_bytes(model, files).unwrap()
+}
+
+/// The row of the last strip, whose variables have names that begin with `strip`.
+fn check_strip(resources: Resources, strip: &str) {
+    let resources = with_row(resources, &OF_A_STRIP);
+    let name = |of: &str| format!("{strip}{of}");
+    let power = name("power");
+    let described = resources.described_table().unwrap();
+    let all = described.variables();
+    let of_row = &all[described.find_name(&power).unwrap()];
+    let names = |on: &[Dependency]| -> Vec<String> {
+        let mut names: Vec<_> = on.iter().map(|d| all[d.on].name.clone()).collect();
+        names.sort();
+        names
+    };
+    let lift = &all[described.find_name(&name("lift")).unwrap()];
+    assert_eq!(names(&of_row.direct_inputs), names(&lift.direct_inputs));
+    let mut knowns = names(&lift.initial_dependencies);
+    knowns.push(name("length"));
+    knowns.sort();
+    assert_eq!(names(&of_row.initial_dependencies), knowns);
+    let description = model_description(&resources, Listing::All, &Label::default()).unwrap();
+    let reference = described.find_name(&power).unwrap() + 1;
+    let listed = format!("<Unknown index=\"{reference}\"");
+    assert_eq!(description.matches(&listed).count(), 2);
+
+    let mut unit = Unit::new(resources);
+    let moved = [
+        ("heave", 0.02),
+        ("heave_rate", 0.3),
+        ("rotation", 0.01),
+        ("rotation_rate", -0.2),
+    ];
+    unit.set("wind_speed", 7.0);
+    for (of, value) in moved {
+        unit.set(&name(of), value);
+    }
+    let per_metre = unit.get(&name("lift")) * 0.3;
+    let length = unit.get(&name("length"));
+    assert_eq!(unit.get(&power), per_metre * length + 7.0 * 0.01);
+    let steps = [("wind_speed", 1e-3), ("air_density", 1e-3)].map(|(of, step)| (of.into(), step));
+    let of_strip = ["heave", "heave_rate", "rotation", "length", "width"];
+    let of_strip = of_strip.map(|of| (name(of), 1e-3));
+    for (known, step) in steps.into_iter().chain(of_strip) {
+        let slope = unit.slope(&power, &known);
+        let difference = unit.difference(&power, &known, step);
+        // forces of second degree, and what the differences of the unit leave
+        assert!(
+            (slope - difference).abs() <= 1e-6 * difference.abs().max(1e-3),
+            "{known}: {slope}, {difference}"
+        );
+    }
+    // put out with every step
+    unit.0.exit_initialization().unwrap();
+    unit.0.do_step(0.0, 0.01).unwrap();
+    let lift = unit.get(&name("lift"));
+    assert_eq!(unit.get(&power), lift * 0.3 * length + 7.0 * 0.01);
+}
+
+#[test]
+fn an_output_of_forces_alone_is_one_row() {
+    for kind in models::KINDS {
+        let model = std::fs::read(models::model_file(kind)).unwrap();
+        check_strip(forces(&model, 1, Vec::new()), "");
+        check_strip(forces(&model, 3, Vec::new()), "strip[3].");
+    }
+    let study = langenuen("LN21-5200", TWO);
+    let export = study.export(&BridgeExportOptions::default()).unwrap();
+    let model = export.model.to_json().unwrap();
+    check_strip(forces(model.as_bytes(), 2, vec![1081, 1156]), "node[1156].");
 }

@@ -178,8 +178,8 @@ pub(crate) fn sweep() -> Job {
 pub(crate) fn sweep_argument() -> Value {
     let section = langenuen();
     let matrix = |v: &f64| match section.at(*v).expect("a system") {
-        CoupledSystem::Continuous(s) => super::models::rows(&s.a),
-        CoupledSystem::Sampled(_) => panic!("not continuous"),
+        CoupledSystem::Continuous(a) => super::models::rows(&a),
+        CoupledSystem::Sampled { .. } => panic!("not continuous"),
     };
     json!({ "matrices": sixty().iter().map(matrix).collect::<Vec<_>>() })
 }

@@ -3,7 +3,7 @@
 use super::models::{coupled, model, text};
 use super::steps::gust_force;
 use crate::entry::Job;
-use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
+use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
@@ -94,10 +94,8 @@ fn exponential(section: CoupledSection) -> Job {
     let mut z = DVector::from_element(section.states(), 0.01);
     let mut i = 0;
     Job::new(move || {
-        let StateEquation { a, b } = match section.at(wind(i)).expect("a system") {
-            CoupledSystem::Continuous(s) => StateEquation { a: s.a, b: s.b },
-            CoupledSystem::Sampled(_) => section.structure_alone(),
-        };
+        let whole = section.equation_at(wind(i));
+        let StateEquation { a, b } = whole.unwrap_or_else(|_| section.structure_alone());
         let phi = c2d(&a, &b, STEP_S).expect("a step").phi;
         let head = &phi * z.rows(0, phi.ncols());
         z.rows_mut(0, phi.nrows()).copy_from(&head);

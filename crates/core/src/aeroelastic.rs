@@ -21,9 +21,7 @@ pub use equilibrium::{
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{
-    Continuous, Damping, Discrete, StateEquation, StateSpace, c2d, first_order,
-};
+use crate::state_space::{Damping, StateEquation, c2d, eigenvalues, first_order};
 use nalgebra::{Complex, DMatrix};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -50,23 +48,34 @@ pub struct CoupledSection {
     inverse_mass: DMatrix<f64>,
 }
 
-/// The coupled system at one wind speed. States `[q, q̇, x]`, inputs the external forces `w` (n, per unit length),
-/// outputs `[q, q̇, q̈, F]` (4n) with `F` the self-excited forces per unit length.
+/// The coupled system at one wind speed, with the states `[q, q̇, x]` and without external forces.
 #[derive(Debug, Clone)]
 pub enum CoupledSystem {
-    /// From a continuous model.
-    Continuous(StateSpace<Continuous>),
-    /// From the discrete Laguerre model; its step is in seconds.
-    Sampled(StateSpace<Discrete>),
+    /// `ż = A z`, from a continuous model.
+    Continuous(DMatrix<f64>),
+    /// `z(k+1) = A z(k)`, from the discrete Laguerre model.
+    Sampled {
+        /// `A`.
+        a: DMatrix<f64>,
+        /// From sample to sample, s.
+        step_s: f64,
+    },
 }
 
 impl CoupledSystem {
-    /// Natural frequencies (rad/s) and damping ratios of all eigenvalues.
+    /// Natural frequencies (rad/s) and damping ratios of all eigenvalues; of the sampled system of the rates `ln z/Δt`, exact when the
+    /// motion between two samples holds no frequency above half the sampling frequency. A pole at the origin has died out after
+    /// one sample and is left out: no finite rate describes it.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the iteration for the eigenvalues does not end.
     pub fn damp(&self) -> Result<Vec<Damping>> {
-        match self {
-            Self::Continuous(s) => s.damp(),
-            Self::Sampled(s) => s.damp(),
+        let mut poles = eigenvalues(self.state_matrix())?;
+        if let Self::Sampled { step_s, .. } = self {
+            poles.retain(|z| z.norm() > f64::MIN_POSITIVE);
+            poles.iter_mut().for_each(|z| *z = z.ln() / *step_s);
         }
+        Ok(poles.into_iter().map(Damping::from_pole).collect())
     }
 
     /// Eigenvalues in continuous time, rad/s (`ln z / Δt` for the sampled system).
@@ -77,8 +86,7 @@ impl CoupledSystem {
     /// The state matrix: of `ż = A z`, or of `z(k+1) = A z(k)`.
     pub fn state_matrix(&self) -> &DMatrix<f64> {
         match self {
-            Self::Continuous(s) => &s.a,
-            Self::Sampled(s) => &s.a,
+            Self::Continuous(a) | Self::Sampled { a, .. } => a,
         }
     }
 
@@ -86,7 +94,7 @@ impl CoupledSystem {
     pub fn matrix_eigenvalue(&self, lambda: Complex<f64>) -> Complex<f64> {
         match self {
             Self::Continuous(_) => lambda,
-            Self::Sampled(s) => (lambda * s.time.step).exp(),
+            Self::Sampled { step_s, .. } => (lambda * *step_s).exp(),
         }
     }
 }
@@ -161,32 +169,30 @@ impl CoupledSection {
     /// # Errors
     /// [`Error::Input`] for a speed that is negative, not finite, or zero with the discrete model.
     pub fn at(&self, speed_m_s: f64) -> Result<CoupledSystem> {
-        match &self.aerodynamics {
-            Realization::Continuous(c) => {
-                non_negative("wind speed", speed_m_s)?;
-                self.coupled_with(c, speed_m_s)
-                    .map(CoupledSystem::Continuous)
-            }
+        let system = match &self.aerodynamics {
+            Realization::Continuous(_) => CoupledSystem::Continuous(self.equation_at(speed_m_s)?.a),
             Realization::Discrete(d) => {
                 positive("wind speed", speed_m_s)?;
-                self.sampled_at(d, speed_m_s).map(CoupledSystem::Sampled)
+                self.sampled_at(d, speed_m_s)?
             }
+        };
+        if system.state_matrix().iter().all(|x| x.is_finite()) {
+            return Ok(system);
         }
+        Err(Error::Numerical(
+            "coupled system: a matrix entry is not finite".into(),
+        ))
     }
 
-    /// The coupled system of a continuous model at the wind speed `V` (m/s).
-    pub fn continuous_at(&self, speed_m_s: f64) -> Result<StateSpace<Continuous>> {
-        match self.at(speed_m_s)? {
-            CoupledSystem::Continuous(s) => Ok(s),
-            CoupledSystem::Sampled(_) => Err(Error::Numerical("step: the model is sampled".into())),
-        }
-    }
-
-    fn coupled_with(
-        &self,
-        aero: &ContinuousRealization,
-        speed: f64,
-    ) -> Result<StateSpace<Continuous>> {
+    /// What moves in the coupled system of a continuous model at the wind speed `V` (m/s): the equation of its states.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is negative or not finite, [`Error::Numerical`] for a sampled model.
+    pub fn equation_at(&self, speed: f64) -> Result<StateEquation> {
+        non_negative("wind speed", speed)?;
+        let Realization::Continuous(aero) = &self.aerodynamics else {
+            return Err(Error::Numerical("step: the model is sampled".into()));
+        };
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let rate = speed / s.width_m;
@@ -216,34 +222,10 @@ impl CoupledSection {
             .copy_from(&(&aero.a * rate));
         let mut b = DMatrix::zeros(2 * n + filters, n);
         b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
-        let (c, d) = self.outputs(&acceleration);
-        StateSpace::new(a, b, c, d, Continuous)
+        Ok(StateEquation { a, b })
     }
 
-    /// Output matrices of `[q, q̇, q̈, F]` from the rows that give `q̈` without external force.
-    /// The self-excited force is what accelerates the section beyond springs, dampers and external force:
-    /// `F = M q̈ + R q̇ + K q − w`, added mass included.
-    fn outputs(&self, acceleration: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
-        let s = &self.structure;
-        let n = s.dofs.len();
-        let states = acceleration.ncols();
-        let mut c = DMatrix::zeros(4 * n, states);
-        c.view_mut((0, 0), (2 * n, 2 * n)).fill_with_identity();
-        c.view_mut((2 * n, 0), (n, states)).copy_from(acceleration);
-        let mut force = &s.mass * acceleration;
-        let mut on_motion = force.view_mut((0, 0), (n, n));
-        on_motion += &s.stiffness;
-        let mut on_rate = force.view_mut((0, n), (n, n));
-        on_rate += &s.damping;
-        c.view_mut((3 * n, 0), (n, states)).copy_from(&force);
-        let mut d = DMatrix::zeros(4 * n, n);
-        d.view_mut((2 * n, 0), (n, n)).copy_from(&self.inverse_mass);
-        d.view_mut((3 * n, 0), (n, n))
-            .copy_from(&(&s.mass * &self.inverse_mass - DMatrix::identity(n, n)));
-        (c, d)
-    }
-
-    fn sampled_at(&self, aero: &DiscreteRealization, speed: f64) -> Result<StateSpace<Discrete>> {
+    fn sampled_at(&self, aero: &DiscreteRealization, speed: f64) -> Result<CoupledSystem> {
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let step = aero.delta_s * s.width_m / speed;
@@ -266,27 +248,7 @@ impl CoupledSection {
             .copy_from(&(&drive * &held.phi));
         a.view_mut((2 * n, 2 * n), (filters, filters))
             .copy_from(&(&aero.a + &drive * force_to_motion));
-        let mut b = DMatrix::zeros(2 * n + filters, n);
-        b.view_mut((0, 0), (2 * n, n)).copy_from(&held.gamma_0);
-        b.view_mut((2 * n, 0), (filters, n))
-            .copy_from(&(&drive * &held.gamma_0));
-        let (c, d) = self.sampled_outputs(&alone.a, &force);
-        StateSpace::new(a, b, c, d, Discrete { step })
-    }
-
-    /// Output matrices of `[q, q̇, q̈, F]` of the sampled system from the structure alone and the force of the filters.
-    fn sampled_outputs(
-        &self,
-        structure_alone: &DMatrix<f64>,
-        force: &DMatrix<f64>,
-    ) -> (DMatrix<f64>, DMatrix<f64>) {
-        let (n, filters) = force.shape();
-        let mut rows = DMatrix::zeros(n, 2 * n + filters);
-        rows.view_mut((0, 0), (n, 2 * n))
-            .copy_from(&structure_alone.view((n, 0), (n, 2 * n)));
-        rows.view_mut((0, 2 * n), (n, filters))
-            .copy_from(&(&self.inverse_mass * force));
-        self.outputs(&rows)
+        Ok(CoupledSystem::Sampled { a, step_s: step })
     }
 
     /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; zero for a
@@ -354,6 +316,37 @@ mod tests {
     use super::*;
     use crate::aerodynamics::{RationalModel, Realizable};
     use crate::section::SectionModel;
+
+    /// `ẍ + 2ζω₀ẋ + ω₀²x = u`, continuous and sampled with its input held: the damping table has the closed form for both, and
+    /// holding changes nothing of the answer to a constant input.
+    #[test]
+    fn a_sampled_oscillator_has_the_damping_of_the_continuous_one() {
+        let (frequency, ratio, h) = (3.0, 0.02, 0.1);
+        let restoring = [-frequency * frequency, -2.0 * ratio * frequency];
+        let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, restoring[0], restoring[1]]);
+        let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
+        let held = c2d(&a, &b, h).unwrap();
+        for z in eigenvalues(&held.phi).unwrap() {
+            assert!((z.norm() - (-ratio * frequency * h).exp()).abs() < 1e-14);
+        }
+        let static_gain = 1.0 / (frequency * frequency);
+        let passed = DMatrix::identity(2, 2) - &held.phi;
+        for (stiffness, push) in [(-&a, b), (passed, held.gamma_0)] {
+            let gain = stiffness.lu().solve(&push).unwrap()[0];
+            assert!((gain / static_gain - 1.0).abs() < 1e-12);
+        }
+        let sampled = CoupledSystem::Sampled {
+            a: held.phi,
+            step_s: h,
+        };
+        for modes in [CoupledSystem::Continuous(a), sampled].map(|s| s.damp().unwrap()) {
+            assert_eq!(modes.len(), 2);
+            for mode in modes {
+                assert!((mode.natural_frequency / frequency - 1.0).abs() < 1e-12);
+                assert!((mode.damping_ratio / ratio - 1.0).abs() < 1e-12);
+            }
+        }
+    }
 
     /// Eigenvalues of the IABSE 1.1a structure with Jones's rational function, six printed decimals.
     #[test]

@@ -28,13 +28,14 @@ pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 
 use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, finite_numbers, non_negative, positive};
+use crate::error::{Error, Result, finite_numbers, positive};
+use crate::state_space::{StateEquation, step_matrix};
 use gusts::Gusts;
 use matrix_polynomial::MatrixPolynomial;
 use nalgebra::{DMatrix, DVector};
 use packed::{advanced, flush_subnormals};
 use sampling::Sampling;
-use series::{Drive, Moving, PowerSeries};
+use series::{Drive, PowerSeries};
 use step_cache::{StepCache, active_columns, load};
 
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
@@ -47,13 +48,13 @@ const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// States at most whose step becomes a matrix: that of more takes seconds to make and leaves the caches of any processor.
 const STATES_OF_A_MATRIX: usize = 800;
 
-/// A step by a matrix that may be taken again as it is, as long as nobody touches inputs and state in between.
+/// A step by the newest matrix, that may be taken again as it is.
 #[derive(Debug, Clone, Copy)]
-pub struct RepeatableStep {
+struct RepeatableStep {
     /// Its size, s.
-    pub step_s: f64,
+    step_s: f64,
     /// Columns of the matrix that meet something other than zero.
-    pub columns: usize,
+    columns: usize,
 }
 
 /// Steps a coupled section.
@@ -80,7 +81,13 @@ pub struct RepeatableStep {
 #[derive(Debug, Clone)]
 pub struct Stepper {
     section: CoupledSection,
-    cache: StepCache,
+    /// Matrices by wind speed and step size: of the whole continuous system (of a sampled one the structure alone), of that with
+    /// its lagging gusts, and of many samples, also by their number.
+    steps: StepCache<2>,
+    steps_in_gusts: StepCache<2>,
+    samples: StepCache<3>,
+    /// The last step, where it was one by a matrix.
+    repeatable: Option<RepeatableStep>,
     series: PowerSeries,
     /// Of the discrete model.
     sampling: Option<Sampling>,
@@ -139,14 +146,17 @@ impl Stepper {
             sampling: Sampling::from_section(&section),
             structure: None,
             section,
-            cache: StepCache::default(),
+            steps: StepCache::default(),
+            steps_in_gusts: StepCache::default(),
+            samples: StepCache::default(),
+            repeatable: None,
             operand,
         }
     }
 
     /// Numbers of the state of the gusts.
     pub fn gust_states(&self) -> usize {
-        self.series.gusts().map_or(0, Gusts::states)
+        self.series.gusts.as_ref().map_or(0, Gusts::states)
     }
 
     /// The section that is stepped.
@@ -191,107 +201,75 @@ impl Stepper {
     /// [`Error::Input`] for a step that is not positive or inputs that are not finite, a wind speed that becomes
     /// negative by more than rounding, a step of more than ten thousand sub-steps; [`Error::Numerical`] when the motion has
     /// grown beyond what a number can hold.
-    #[inline]
     pub fn advance(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
         step_s: f64,
     ) -> Result<()> {
-        if let Some(step) = self.repeatable(state, inputs, step_s)
-            && self.repeat(state, inputs, step.columns)
-        {
-            return Ok(());
-        }
-        self.advance_anew(state, inputs, step_s)
-    }
-
-    /// A step of which nothing is known yet.
-    #[inline(never)]
-    fn advance_anew(
-        &mut self,
-        state: &mut SectionState,
-        inputs: &Inputs,
-        step_s: f64,
-    ) -> Result<()> {
+        self.repeatable = None;
         positive("step size", step_s)?;
-        inputs.check(self.section.structure().dofs.len())?;
-        if inputs.wind_speed_m_s < 0.0 {
+        inputs.check(self.series.dofs, step_s)?;
+        let (wind, wind_rate) = (inputs.wind_speed_m_s, inputs.wind_speed_rate_m_s2);
+        if wind < 0.0 {
             let mut at_rest = inputs.clone();
             at_rest.wind_speed_m_s = 0.0;
-            return self.advance_anew(state, &at_rest, step_s);
-        }
-        if inputs.wind_speed_rate_m_s2 != 0.0 {
-            let before = inputs.wind_speed_m_s;
-            let end = before + inputs.wind_speed_rate_m_s2 * step_s;
-            non_negative(
-                "wind speed at the end of the step",
-                wind_at_rest(end, before),
-            )?;
+            return self.advance(state, &at_rest, step_s);
         }
         if self.sampling.is_some() {
             return self.advance_sampled(state, inputs, step_s);
         }
-        let same_wind = state
-            .last_wind_m_s
-            .is_none_or(|last| last == inputs.wind_speed_m_s);
-        let steady = inputs.wind_speed_rate_m_s2 == 0.0 && same_wind;
-        if steady && self.may_have_matrix() && !self.gusts_act(state, inputs) {
-            self.advance_by_matrix(state, inputs, step_s)?;
-        } else if !(steady && self.advance_in_gusts(state, inputs, step_s)?) {
-            self.advance_by_series(state, inputs, step_s)?;
-        }
-        state.last_wind_m_s = Some(inputs.wind_speed_m_s);
+        let gusts = self.gusts_act(state, inputs);
+        let fastest = wind + wind_rate.abs() * step_s;
+        let parts = self.series.parts(fastest, step_s, gusts);
+        let same_wind = state.last_wind_m_s.is_none_or(|last| last == wind);
+        // where it stays, the wind is worth a matrix, and where a series would need many parts
+        let worth_a_matrix = wind_rate == 0.0
+            && self.next.len() <= STATES_OF_A_MATRIX
+            && match &self.series.gusts {
+                Some(of) if gusts => {
+                    same_wind && parts > 1.0 && parts <= MAX_SUBSTEPS && of.on_section
+                }
+                _ => same_wind || parts.is_nan() || parts > PARTS_OF_A_MATRIX,
+            };
+        match (worth_a_matrix, gusts) {
+            (true, false) => self.advance_by_matrix(state, inputs, step_s),
+            (true, true) => self.advance_in_gusts(state, inputs, step_s),
+            (false, _) => self.advance_by_series(state, inputs, step_s, parts, gusts),
+        }?;
+        state.last_wind_m_s = Some(wind);
         Ok(())
-    }
-
-    fn may_have_matrix(&self) -> bool {
-        self.section.states() <= STATES_OF_A_MATRIX
     }
 
     /// Whether a gust blows or has not yet passed.
     fn gusts_act(&self, state: &SectionState, inputs: &Inputs) -> bool {
         let blowing = inputs.gust_m_s.iter().chain(&inputs.gust_rate_m_s2);
-        self.series.gusts().is_some() && blowing.chain(&state.gusts).any(|x| *x != 0.0)
+        self.series.gusts.is_some() && blowing.chain(&state.gusts).any(|x| *x != 0.0)
     }
 
-    /// The step if wind and size are those of the last one by a matrix, and so are known to be right.
-    #[inline]
-    pub fn repeatable(
-        &self,
-        state: &SectionState,
-        inputs: &Inputs,
-        step_s: f64,
-    ) -> Option<RepeatableStep> {
-        let wind = inputs.wind_speed_m_s;
-        let forces = [inputs.force.len(), inputs.force_rate.len()];
-        let repeatable = inputs.wind_speed_rate_m_s2 == 0.0
-            && self.sampling.is_none()
-            && state.values.len() == self.next.len()
-            && forces == [(self.operand.len() - self.next.len()) / 2; 2]
-            && state.last_wind_m_s == Some(wind)
-            && self.cache.is_newest(wind, step_s)
-            && !self.gusts_act(state, inputs);
-        repeatable.then(|| RepeatableStep {
-            step_s,
-            columns: active_columns(inputs, state.values.len()),
-        })
+    /// Inputs or state are others than after the last step, which cannot be repeated.
+    pub fn forget_step(&mut self) {
+        self.repeatable = None;
     }
 
-    /// Takes the newest step of the cache with so many columns of its matrix, see [`RepeatableStep`]. Whatever is wrong
-    /// with the forces leaves the state as it was.
+    /// Takes the last step once more, where that was one by a matrix and of this size; for callers who
+    /// [say](Self::forget_step) when they have touched inputs or state since. Otherwise, and where the motion overflows, false and
+    /// a state as it was.
     #[inline(always)]
-    pub fn repeat(&mut self, state: &mut SectionState, inputs: &Inputs, columns: usize) -> bool {
-        let Some(step) = self.cache.newest() else {
+    pub fn repeat(&mut self, state: &mut SectionState, inputs: &Inputs, step_s: f64) -> bool {
+        let (Some(last), Some(matrix)) = (&self.repeatable, self.steps.newest()) else {
             return false;
         };
-        let operand = if columns == state.values.len() {
+        if last.step_s != step_s {
+            return false;
+        }
+        let operand = if last.columns == state.values.len() {
             &state.values
         } else {
             load(&mut self.operand, &state.values, inputs);
-            &self.operand[..columns]
+            &self.operand[..last.columns]
         };
-        let right = advanced(step, operand, &mut self.next);
+        let right = advanced(matrix, operand, &mut self.next);
         if right {
             std::mem::swap(&mut state.values, &mut self.next);
         }
@@ -302,32 +280,37 @@ impl Stepper {
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        step: f64,
+        step_s: f64,
     ) -> Result<()> {
-        self.cache
-            .full_system(&self.section, inputs.wind_speed_m_s, step)?;
+        let (section, wind) = (&self.section, inputs.wind_speed_m_s);
+        self.steps.get([wind, step_s], || {
+            let StateEquation { a, b } = section.equation_at(wind)?;
+            step_matrix(&a, &b, step_s)
+        })?;
         let columns = active_columns(inputs, state.values.len());
-        if self.repeat(state, inputs, columns) {
+        self.repeatable = Some(RepeatableStep { step_s, columns });
+        if self.repeat(state, inputs, step_s) {
             return Ok(());
         }
+        self.repeatable = None;
         Err(overgrown())
     }
 
-    /// A step under gusts by a matrix, where a series would need several parts; false where it is not worth one.
+    /// A step under gusts by a matrix, of the section with its lagging gusts.
     fn advance_in_gusts(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        step: f64,
-    ) -> Result<bool> {
-        let wind = inputs.wind_speed_m_s;
-        let parts = self.series.parts(wind, step, true);
-        let worth = parts > 1.0 && parts <= MAX_SUBSTEPS && self.may_have_matrix();
-        let gusts = self.series.gusts().filter(|g| worth && g.on_section);
-        let Some(gusts) = gusts else {
-            return Ok(false);
+        step_s: f64,
+    ) -> Result<()> {
+        let (section, wind) = (&self.section, inputs.wind_speed_m_s);
+        let Some(gusts) = &self.series.gusts else {
+            return self.advance_by_matrix(state, inputs, step_s);
         };
-        let matrix = self.cache.in_gusts(&self.section, gusts, wind, step)?;
+        let matrix = self.steps_in_gusts.get([wind, step_s], || {
+            let StateEquation { a, b } = gusts.system(section, wind)?;
+            step_matrix(&a, &b, step_s)
+        })?;
         let [operand, next] = &mut self.in_gusts;
         gusts.load(operand, state, inputs);
         next.resize(state.values.len() + state.gusts.len(), 0.0);
@@ -337,55 +320,45 @@ impl Stepper {
         let (values, lagging) = next.split_at(state.values.len());
         state.values.copy_from_slice(values);
         state.gusts.copy_from_slice(lagging);
-        Ok(true)
+        Ok(())
     }
 
+    /// A step by a series of so many parts, with or without gusts.
     fn advance_by_series(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
         step: f64,
+        parts: f64,
+        gusts: bool,
     ) -> Result<()> {
-        let (wind, wind_rate) = (inputs.wind_speed_m_s, inputs.wind_speed_rate_m_s2);
-        let gusts = self.gusts_act(state, inputs);
-        let parts = self
-            .series
-            .parts(wind + wind_rate.abs() * step, step, gusts);
-        let long = parts.is_nan() || parts > PARTS_OF_A_MATRIX;
-        if wind_rate == 0.0 && !gusts && long && self.may_have_matrix() {
-            return self.advance_by_matrix(state, inputs, step);
+        if parts.is_nan() || parts > MAX_SUBSTEPS {
+            return Err(too_long(step, parts));
         }
-        check_substeps(parts, step)?;
         let drive = Drive {
-            wind,
-            wind_rate,
+            wind: inputs.wind_speed_m_s,
+            wind_rate: inputs.wind_speed_rate_m_s2,
             force: [&inputs.force, &inputs.force_rate, &[]],
-            gust: inputs.gusts_from(0.0),
+            inputs,
+            after: 0.0,
         };
-        let moving = Moving {
-            values: &mut state.values,
-            gusts: gusts.then_some(&mut state.gusts),
-        };
-        if self.series.advance(moving, &drive, step, parts) {
-            flush_subnormals(&mut state.values);
-            flush_subnormals(&mut state.gusts);
-            Ok(())
-        } else {
-            Err(overgrown())
+        let lagging = gusts.then_some(state.gusts.as_mut_slice());
+        let values = &mut state.values;
+        if !self.series.advance(values, lagging, &drive, step, parts) {
+            return Err(overgrown());
         }
+        flush_subnormals(values);
+        flush_subnormals(&mut state.gusts);
+        Ok(())
     }
 }
 
-/// Whether a step may take so many sub-steps.
-fn check_substeps(count: f64, step: f64) -> Result<()> {
-    if count <= MAX_SUBSTEPS {
-        return Ok(());
-    }
-    Err(Error::input(
+fn too_long(step: f64, parts: f64) -> Error {
+    Error::input(
         "step size",
         format!("a step of at most {MAX_SUBSTEPS} sub-steps"),
-        format!("{step} s, {count:.1e} sub-steps"),
-    ))
+        format!("{step} s, {parts:.1e} sub-steps"),
+    )
 }
 
 fn overgrown() -> Error {

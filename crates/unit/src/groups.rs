@@ -198,9 +198,12 @@ pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
         Role::Filter(_) | Role::FilterRate(_) if matches!(kind, "mode" | "damper") => {
             Some(format!("{kind}.{rest}").into())
         }
-        Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) | Role::Filter(_) => {
-            matches!(kind, "strip" | "node").then_some(rest.into())
-        }
+        Role::Motion(..)
+        | Role::Gust(..)
+        | Role::Force(..)
+        | Role::OfStrip(..)
+        | Role::Strip(..)
+        | Role::Filter(_) => matches!(kind, "strip" | "node").then_some(rest.into()),
         Role::Mode(..)
         | Role::InitialMode(_)
         | Role::ModeParameter(..)

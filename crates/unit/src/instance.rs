@@ -13,6 +13,7 @@ mod bridge_unit;
 mod calculated;
 mod coupled;
 mod coupled_derivatives;
+mod coupled_indices;
 mod coupled_present;
 mod damping;
 mod dependencies;
@@ -21,6 +22,7 @@ mod force_ahead;
 mod force_derivatives;
 mod force_exchange;
 mod force_parts;
+mod force_rows;
 mod force_unit;
 mod integration;
 mod layout;
@@ -28,7 +30,6 @@ mod memory;
 mod resizing;
 mod saving;
 mod section;
-mod section_trust;
 mod section_unit;
 mod sensitivity;
 mod serialized;
@@ -42,7 +43,7 @@ mod values;
 pub use layout::DataType;
 pub use saving::Snapshot;
 
-use super::lifecycle::{Call, Interface, State};
+use super::lifecycle::{Call, Interface, LEGAL_CALLS, State, StateSet};
 use super::refusal::{CallResult, Refusal, RefusalEffect};
 use super::resources::Resources;
 use super::variables::VariableTable;
@@ -67,7 +68,8 @@ pub struct Instance {
     outputs_current: bool,
     /// Cached rates of the states.
     rates: Vec<f64>,
-    notices: Vec<String>,
+    /// Remarks that have come up since they were last asked for.
+    pub(crate) notices: Vec<String>,
     /// The table with its dependencies, once they have been asked for.
     described: Option<VariableTable>,
 }
@@ -122,24 +124,17 @@ impl Instance {
         std::mem::take(&mut self.notices)
     }
 
-    /// Whether there are remarks.
-    pub(crate) fn has_notices(&self) -> bool {
-        !self.notices.is_empty()
-    }
-
     /// Whether `call` is legal now.
     ///
     /// # Errors
     /// A [`Refusal`] naming call and state.
     pub(crate) fn admit(&self, call: Call) -> CallResult<()> {
-        let foreign = call.is_model_exchange() && self.interface != Interface::ModelExchange;
-        if call.legal_in().contains(self.memory.state) && !foreign {
-            Ok(())
-        } else if foreign {
-            Err(not_here(call))
-        } else {
-            Err(not_now(call, self.memory.state))
+        let (_, name, legal) = LEGAL_CALLS[call as usize];
+        let legal = legal[self.interface as usize];
+        if legal.contains(self.memory.state) {
+            return Ok(());
         }
+        Err(not_legal(name, legal, self.memory.state))
     }
 
     /// Takes note that a call was refused: an error ends the run.
@@ -190,10 +185,9 @@ impl Instance {
     pub fn exit_initialization(&mut self) -> CallResult<()> {
         self.unit.prepared(&self.resources, &mut self.memory)?;
         // whatever is read between steps is read without a further look
-        if !self.memory.system.all().iter().all(|x| x.is_finite()) {
-            return Err(sensitivity::overgrown());
-        }
-        self.watch();
+        sensitivity::check_finite(&self.memory.system.all())?;
+        self.unit
+            .watch(&self.resources, &self.memory, &mut self.notices);
         self.memory.state = match self.interface {
             Interface::CoSimulation => State::StepComplete,
             Interface::ModelExchange => State::EventMode,
@@ -211,27 +205,18 @@ impl Instance {
         let fresh = self.fresh.clone();
         self.replace_memory(fresh);
     }
+}
 
-    fn watch(&mut self) {
-        self.unit
-            .watch(&self.resources, &self.memory, &mut self.notices);
+#[cold]
+fn not_legal(call: &str, legal: StateSet, state: State) -> Refusal {
+    if legal == StateSet::NONE {
+        return Refusal::call(format!(
+            "{call} belongs to model exchange, and this instance was made for co-simulation"
+        ));
     }
-}
-
-#[cold]
-fn not_here(call: Call) -> Refusal {
-    Refusal::call(format!(
-        "{} belongs to model exchange, and this instance was made for co-simulation",
-        call.name()
-    ))
-}
-
-#[cold]
-fn not_now(call: Call, state: State) -> Refusal {
     Refusal::error(format!(
-        "{} is not legal in the state `{}`, only {}",
-        call.name(),
+        "{call} is not legal in the state `{}`, only {}",
         state.name(),
-        call.legal_in().names()
+        legal.names()
     ))
 }

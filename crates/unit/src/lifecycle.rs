@@ -155,19 +155,23 @@ impl StateSet {
     }
 }
 
-/// Declares the calls and, in the same order, their names without the prefix of the standard's version and where each is legal.
+/// Declares the calls and, in the same order, their names without the prefix of the standard's version and where each is legal;
+/// those of model exchange alone last.
 macro_rules! calls {
-    ($($name:ident: $legal:expr;)*) => {
+    (both: { $($name:ident: $legal:expr;)* } model_exchange: { $($integrated:ident: $there:expr;)* }) => {
         /// What an importer may ask of an instance.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(missing_docs)] // the names are those of the standard
         pub enum Call {
-            $($name,)*
+            $($name,)* $($integrated,)*
         }
 
-        /// Every [`Call`] with its name and where it is legal.
-        pub(crate) const LEGAL_CALLS: [(Call, &str, StateSet); [$(Call::$name),*].len()] =
-            [$((Call::$name, stringify!($name), $legal),)*];
+        /// Every [`Call`] with its name and where it is legal, by [`Interface`].
+        pub(crate) const LEGAL_CALLS: [(Call, &str, [StateSet; 2]);
+            [$(Call::$name,)* $(Call::$integrated),*].len()] = [
+            $((Call::$name, stringify!($name), [$legal, $legal]),)*
+            $((Call::$integrated, stringify!($integrated), [StateSet::NONE, $there]),)*
+        ];
     };
 }
 
@@ -183,74 +187,49 @@ const INTEGRATED: StateSet = StateSet::INTEGRATING
 
 // cancelling a step is missing: no step is ever left pending
 calls! {
-    SetDebugLogging: StateSet::ANY;
-    FreeInstance: StateSet::ANY;
-    SetupExperiment: StateSet::new(&[State::Instantiated]);
-    EnterInitializationMode: StateSet::new(&[State::Instantiated]);
-    ExitInitializationMode: StateSet::new(&[State::Initialization]);
-    Terminate: STEPPING.and(State::EventMode).and(State::ContinuousTimeMode);
-    Reset: StateSet::ANY;
-    GetReal: StateSet::ANY;
-    GetInteger: StateSet::ANY;
-    GetBoolean: StateSet::ANY;
-    GetString: StateSet::ANY;
-    SetReal: SETTING;
-    SetInteger: SETTING;
-    SetBoolean: SETTING;
-    SetString: SETTING;
-    GetFMUstate: StateSet::ANY;
-    SetFMUstate: StateSet::ANY;
-    FreeFMUstate: StateSet::ANY;
-    SerializedFMUstateSize: StateSet::ANY;
-    SerializeFMUstate: StateSet::ANY;
-    DeSerializeFMUstate: StateSet::ANY;
-    GetDirectionalDerivative: StateSet::INITIALIZED;
-    SetRealInputDerivatives: StateSet::new(&[State::Instantiated, State::Initialization, State::StepComplete]);
-    GetRealOutputDerivatives: STATUS.and(State::Error);
-    DoStep: StateSet::new(&[State::StepComplete]);
-    EnterEventMode: StateSet::new(&[State::ContinuousTimeMode]);
-    NewDiscreteStates: StateSet::new(&[State::EventMode]);
-    EnterContinuousTimeMode: StateSet::new(&[State::EventMode]);
-    CompletedIntegratorStep: StateSet::new(&[State::ContinuousTimeMode]);
-    SetTime: StateSet::INTEGRATING;
-    SetContinuousStates: StateSet::new(&[State::ContinuousTimeMode]);
-    GetDerivatives: INTEGRATED;
-    GetEventIndicators: INTEGRATED;
-    GetContinuousStates: INTEGRATED;
-    GetNominalsOfContinuousStates: INTEGRATED.and(State::Instantiated);
-    GetStatus: STATUS;
-    GetRealStatus: STATUS;
-    GetIntegerStatus: STATUS;
-    GetBooleanStatus: STATUS;
-    GetStringStatus: STATUS;
-}
-
-impl Call {
-    /// Name without the prefix of the standard's version.
-    pub const fn name(self) -> &'static str {
-        LEGAL_CALLS[self as usize].1
+    both: {
+        SetDebugLogging: StateSet::ANY;
+        FreeInstance: StateSet::ANY;
+        SetupExperiment: StateSet::new(&[State::Instantiated]);
+        EnterInitializationMode: StateSet::new(&[State::Instantiated]);
+        ExitInitializationMode: StateSet::new(&[State::Initialization]);
+        Terminate: STEPPING.and(State::EventMode).and(State::ContinuousTimeMode);
+        Reset: StateSet::ANY;
+        GetReal: StateSet::ANY;
+        GetInteger: StateSet::ANY;
+        GetBoolean: StateSet::ANY;
+        GetString: StateSet::ANY;
+        SetReal: SETTING;
+        SetInteger: SETTING;
+        SetBoolean: SETTING;
+        SetString: SETTING;
+        GetFMUstate: StateSet::ANY;
+        SetFMUstate: StateSet::ANY;
+        FreeFMUstate: StateSet::ANY;
+        SerializedFMUstateSize: StateSet::ANY;
+        SerializeFMUstate: StateSet::ANY;
+        DeSerializeFMUstate: StateSet::ANY;
+        GetDirectionalDerivative: StateSet::INITIALIZED;
+        SetRealInputDerivatives: StateSet::new(&[State::Instantiated, State::Initialization, State::StepComplete]);
+        GetRealOutputDerivatives: STATUS.and(State::Error);
+        DoStep: StateSet::new(&[State::StepComplete]);
+        GetStatus: STATUS;
+        GetRealStatus: STATUS;
+        GetIntegerStatus: STATUS;
+        GetBooleanStatus: STATUS;
+        GetStringStatus: STATUS;
     }
-
-    /// States in which the call is legal.
-    pub(crate) const fn legal_in(self) -> StateSet {
-        LEGAL_CALLS[self as usize].2
-    }
-
-    /// Whether it belongs to model exchange alone.
-    pub(crate) const fn is_model_exchange(self) -> bool {
-        matches!(
-            self,
-            Self::EnterEventMode
-                | Self::NewDiscreteStates
-                | Self::EnterContinuousTimeMode
-                | Self::CompletedIntegratorStep
-                | Self::SetTime
-                | Self::SetContinuousStates
-                | Self::GetDerivatives
-                | Self::GetEventIndicators
-                | Self::GetContinuousStates
-                | Self::GetNominalsOfContinuousStates
-        )
+    model_exchange: {
+        EnterEventMode: StateSet::new(&[State::ContinuousTimeMode]);
+        NewDiscreteStates: StateSet::new(&[State::EventMode]);
+        EnterContinuousTimeMode: StateSet::new(&[State::EventMode]);
+        CompletedIntegratorStep: StateSet::new(&[State::ContinuousTimeMode]);
+        SetTime: StateSet::INTEGRATING;
+        SetContinuousStates: StateSet::new(&[State::ContinuousTimeMode]);
+        GetDerivatives: INTEGRATED;
+        GetEventIndicators: INTEGRATED;
+        GetContinuousStates: INTEGRATED;
+        GetNominalsOfContinuousStates: INTEGRATED.and(State::Instantiated);
     }
 }
 
@@ -295,7 +274,7 @@ mod tests {
         }
         assert_eq!(State::from_code(3), None);
         assert_eq!(
-            Call::DoStep.legal_in().names(),
+            LEGAL_CALLS[Call::DoStep as usize].2[0].names(),
             "in: step complete".to_owned()
         );
     }

@@ -138,16 +138,25 @@ impl Resources {
         let files: Vec<&[u8]> = files.chain(of_options.into_iter().flatten()).collect();
         let guid = identity::guid(&table, &files);
         Ok(Self {
-            model,
             force,
-            exported_force: None,
             gusts,
+            ..Self::of_section(model, table, guid)
+        })
+    }
+
+    /// Of a coupled section without gusts.
+    fn of_section(model: TrainedModel, table: VariableTable, guid: Uuid) -> Self {
+        Self {
+            model,
+            force: None,
+            exported_force: None,
+            gusts: None,
             bridge: None,
             exported: None,
             turbulence: None,
             table,
             guid,
-        })
+        }
     }
 
     /// The trained model, and those of further strips.
@@ -185,15 +194,10 @@ impl Resources {
         force.validate()?;
         let table = VariableTable::new(&self.model, Some(&force), self.gusts.as_ref(), None)?;
         Ok(Self {
-            model: self.model.clone(),
             exported_force: (force != *exported).then(|| exported.clone()),
             force: Some(force),
             gusts: self.gusts.clone(),
-            bridge: None,
-            exported: None,
-            turbulence: None,
-            table,
-            guid: self.guid,
+            ..Self::of_section(self.model.clone(), table, self.guid)
         })
     }
 
@@ -215,15 +219,10 @@ impl Resources {
         let files: Vec<&[u8]> = [bytes, bridge].into_iter().chain(turbulence).collect();
         let guid = identity::guid(&table, &files);
         Ok(Self {
-            model,
-            force: None,
-            exported_force: None,
-            gusts: None,
             bridge: Some(options),
             exported: Some(exported),
             turbulence: field,
-            table,
-            guid,
+            ..Self::of_section(model, table, guid)
         })
     }
 }

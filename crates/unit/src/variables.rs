@@ -42,7 +42,6 @@ use crate::error::{Error, Result};
 use crate::response::Stepper;
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
-use variable::find;
 
 /// The variables of an exported section; see the module.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,10 +81,19 @@ impl VariableTable {
         Self::checked(bridge::variables(model, options, stepper, turbulence)?)
     }
 
-    /// The same table of a section or bridge with one more number, for units that run in this process.
+    /// The same table with one more number, of forces alone one for each strip; for units that run in this process.
     #[must_use]
     pub fn with_number(mut self, number: &'static ComputedNumber) -> Self {
-        self.variables.push(number.variable());
+        let strips = self.variables.iter().filter_map(|v| match v.role {
+            Role::Strip(s, StripParameter::Width) => Some((s, v.name.strip_suffix("width")?)),
+            _ => None,
+        });
+        let mut rows: Vec<Variable> = strips.map(|(s, of)| number.of_strip(s, of)).collect();
+        if rows.is_empty() {
+            rows.push(number.variable());
+        }
+        self.variables.extend(rows);
+        fill_computed_dependencies(&mut self.variables);
         self
     }
 
@@ -106,7 +114,7 @@ impl VariableTable {
 
     /// Index of the variable with this role.
     pub fn find(&self, role: Role) -> Option<usize> {
-        find(&self.variables, role)
+        self.variables.iter().position(|v| v.role == role)
     }
 
     /// Index of the variable with this name.

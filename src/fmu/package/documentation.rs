@@ -116,7 +116,9 @@ struct Row {
 /// Of several strips those of these alone: all strips of a model have the same variables.
 fn groups(variables: &[Variable], strips: &[usize]) -> Vec<Group> {
     let is_shown = |v: &Variable| match v.role {
-        Role::Motion(s, ..) | Role::Force(s, ..) | Role::Strip(s, _) => strips.contains(&s),
+        Role::Motion(s, ..) | Role::Force(s, ..) | Role::OfStrip(s, _) | Role::Strip(s, _) => {
+            strips.contains(&s)
+        }
         _ => true,
     };
     let group = |title, note, belongs: &dyn Fn(&Variable) -> bool| Group {

@@ -103,7 +103,7 @@ mod tests {
         let section = CoupledSection::with_model(&structure, &plate).unwrap();
         let [a0, a1, a2] = section.state_matrix_by_wind().unwrap();
         for wind in [0.0, 3.0, 45.0] {
-            let expected = section.continuous_at(wind).unwrap().a;
+            let expected = section.equation_at(wind).unwrap().a;
             let found = &a0 + &a1 * wind + &a2 * (wind * wind);
             assert!((found - &expected).amax() <= 1e-15 * expected.amax());
         }

@@ -121,10 +121,10 @@ pub fn divergence_by_eigenvalues(
 /// A number with the sign of the product of all eigenvalues (less one for the sampled system); zero at divergence.
 fn singularity(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
     let matrix = match section.at(speed_m_s)? {
-        CoupledSystem::Continuous(s) => s.a,
-        CoupledSystem::Sampled(s) => {
-            let n = s.a.nrows();
-            s.a - DMatrix::identity(n, n)
+        CoupledSystem::Continuous(a) => a,
+        CoupledSystem::Sampled { a, .. } => {
+            let n = a.nrows();
+            a - DMatrix::identity(n, n)
         }
     };
     Ok(balance(&matrix).determinant())

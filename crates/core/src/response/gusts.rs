@@ -5,7 +5,7 @@
 
 use super::linked::Sparse;
 use super::packed::largest_of;
-use super::values::{GustCourse, Inputs, SectionState, stated};
+use super::values::{Inputs, SectionState, stated};
 use crate::aerodynamics::{GustForce, LAGS, RationalAdmittance};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -47,7 +47,7 @@ struct LagSeries {
 /// A part of a step, over which one series reaches.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeriesPart {
-    /// Time since the start of the step, s.
+    /// Time since that of the inputs, s.
     pub start: f64,
     /// How long it is, s.
     pub tau: f64,
@@ -137,7 +137,7 @@ impl Gusts {
     /// # Errors
     /// As [`CoupledSection::at`].
     pub(super) fn system(&self, section: &CoupledSection, wind_m_s: f64) -> Result<StateEquation> {
-        let alone = section.continuous_at(wind_m_s)?;
+        let alone = section.equation_at(wind_m_s)?;
         let (states, n) = alone.b.shape();
         let (all, lags) = (states + self.states(), self.states());
         let mut a = DMatrix::zeros(all, all);
@@ -197,7 +197,7 @@ impl Gusts {
         &mut self,
         k: usize,
         part: SeriesPart,
-        course: GustCourse<'_>,
+        inputs: &Inputs,
         sum: &mut [f64],
     ) -> &[f64] {
         let SeriesPart { wind, change, .. } = part;
@@ -205,8 +205,8 @@ impl Gusts {
         if k <= 2 {
             s.gusts.clear();
             s.gusts.extend((0..self.channels).map(|j| match k {
-                0 => course.at(j, part.start),
-                1 => part.tau * stated(course.rate, j),
+                0 => stated(&inputs.gust_m_s, j) + part.start * stated(&inputs.gust_rate_m_s2, j),
+                1 => part.tau * stated(&inputs.gust_rate_m_s2, j),
                 _ => 0.0,
             }));
             s.largest = s.largest.max(largest_of(&s.gusts));

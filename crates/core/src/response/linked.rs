@@ -78,12 +78,9 @@ impl Linked {
         let rest = matrix.nrows() - full;
         if matrix.nrows() > FEW_ROWS {
             let linked = Sparse::new(&matrix.rows(full, rest).into_owned());
-            Self::Many(
-                Packed::from_matrix(&matrix.rows(0, full).into_owned()),
-                linked,
-            )
+            Self::Many(Packed::new(&matrix.rows(0, full).into_owned()), linked)
         } else {
-            Self::Few(Packed::from_matrix(matrix))
+            Self::Few(Packed::new(matrix))
         }
     }
 

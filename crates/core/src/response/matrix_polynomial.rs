@@ -32,7 +32,7 @@ pub(super) struct MatrixPolynomial {
 impl MatrixPolynomial {
     /// `Σ Wₖ xᵏ`, all of one shape.
     pub(super) fn new(powers: &[DMatrix<f64>]) -> Self {
-        let powers: Vec<_> = powers.iter().map(Packed::from_matrix).collect();
+        let powers: Vec<_> = powers.iter().map(Packed::new).collect();
         Self {
             now: powers[0].clone(),
             powers,

@@ -26,12 +26,12 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    pub(super) fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub(super) fn new(matrix: &DMatrix<f64>) -> Self {
+        let (rows, columns) = matrix.shape();
+        let entries = matrix.as_slice();
         let group = |group: usize, j: usize| -> [f64; LANES] {
-            std::array::from_fn(|lane| {
-                let i = group * LANES + lane;
-                if i < rows { entry(i, j) } else { 0.0 }
-            })
+            let rest = &entries[j * rows + group * LANES..(j + 1) * rows];
+            std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0))
         };
         let groups = rows.div_ceil(LANES);
         let first_of_rest = groups - groups % GROUPS;
@@ -48,11 +48,6 @@ impl Packed {
             blocks,
             rest: rest.map(|(g, j)| group(g, j)).collect(),
         }
-    }
-
-    /// A whole matrix.
-    pub(super) fn from_matrix(m: &DMatrix<f64>) -> Self {
-        Self::new(m.nrows(), m.ncols(), |i, j| m[(i, j)])
     }
 
     /// Becomes `Σ Wₖ xᵏ`, all of one shape.

@@ -34,7 +34,7 @@ impl Stepper {
         derivative: &mut [f64],
     ) -> Result<()> {
         let n = self.section.structure().dofs.len();
-        inputs.check(n)?;
+        inputs.check(n, 0.0)?;
         let wind = inputs.wind_speed_m_s.max(0.0);
         let (values, lagging) = derivative.split_at_mut(state.values.len());
         self.lag_rates_per_wind(state, inputs, lagging);
@@ -68,7 +68,7 @@ impl Stepper {
     /// Force of the gusts per unit length and 1 m/s of wind.
     pub fn gusts_per_wind(&self, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
         let mut force = vec![0.0; self.section.structure().dofs.len()];
-        if let Some(gusts) = self.series.gusts() {
+        if let Some(gusts) = &self.series.gusts {
             gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, &mut force);
         }
         force
@@ -76,7 +76,7 @@ impl Stepper {
 
     /// Rates of the lagging gusts per 1 m/s of wind.
     pub fn lag_rates_per_wind(&self, state: &SectionState, inputs: &Inputs, rates: &mut [f64]) {
-        if let Some(gusts) = self.series.gusts() {
+        if let Some(gusts) = &self.series.gusts {
             gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts, rates);
         }
     }
@@ -93,7 +93,7 @@ impl Stepper {
         outputs: &mut Outputs,
     ) -> Result<()> {
         let n = self.section.structure().dofs.len();
-        inputs.check(n)?;
+        inputs.check(n, 0.0)?;
         outputs.displacement.clear();
         outputs.displacement.extend_from_slice(&state.values[..n]);
         outputs.rate.clear();
@@ -104,7 +104,7 @@ impl Stepper {
         self.operand[..state.values.len()].copy_from_slice(&state.values);
         let external = &mut self.operand[state.values.len()..][..n];
         external.copy_from_slice(&inputs.force);
-        if let Some(gusts) = self.series.gusts() {
+        if let Some(gusts) = &self.series.gusts {
             let by_gusts = &mut self.both[..n];
             gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, by_gusts);
             for (w, gust) in external.iter_mut().zip(by_gusts) {
@@ -123,15 +123,10 @@ impl Stepper {
         Ok(())
     }
 
-    /// `[q̈, F]` after a step with so many columns that may be taken again, as long as nobody has touched inputs and state: see
-    /// [`RepeatableStep`](super::RepeatableStep).
+    /// `[q̈, F]` after a step that could be [repeated](Self::repeat); `None` after any other.
     #[inline(always)]
-    pub fn repeat_outputs(
-        &mut self,
-        state: &SectionState,
-        inputs: &Inputs,
-        columns: usize,
-    ) -> &[f64] {
+    pub fn repeat_outputs(&mut self, state: &SectionState, inputs: &Inputs) -> Option<&[f64]> {
+        let columns = self.repeatable?.columns;
         let most = state.values.len() + inputs.force.len();
         let operand = if columns == state.values.len() {
             &state.values
@@ -144,7 +139,7 @@ impl Stepper {
             operand,
             &mut self.both,
         );
-        &self.both
+        Some(&self.both)
     }
 }
 

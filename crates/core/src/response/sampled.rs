@@ -2,13 +2,15 @@
 //! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
 use super::matrix_polynomial::{MatrixPolynomial, terms_of_exponential};
-use super::packed::{apply, flush_subnormals};
+use super::packed::{Packed, apply, flush_subnormals};
 use super::sampling::{Sampling, wind_after};
-use super::series::{Drive, Moving};
+use super::series::Drive;
 use super::step_cache::{active_columns, load};
 use super::values::{Inputs, SectionState};
-use super::{PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, check_substeps, overgrown};
+use super::{MAX_SUBSTEPS, PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, overgrown, too_long};
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
+use crate::state_space::{StateEquation, step_matrix};
 use nalgebra::DMatrix;
 
 /// A sample closer to the end of the step than this part of `Δs` is taken: the phase is known to rounding only.
@@ -51,7 +53,10 @@ impl Stepper {
         let known = next.last_wind_m_s == Some(inputs.wind_speed_m_s);
         let stays = inputs.wind_speed_rate_m_s2 == 0.0 && (known || samples > PARTS_OF_A_MATRIX);
         let of_sample = if stays { SAMPLE_BY_MATRIX } else { 1.0 };
-        check_substeps(of_sample * samples + parts, step)?;
+        let cost = of_sample * samples + parts;
+        if cost.is_nan() || cost > MAX_SUBSTEPS {
+            return Err(too_long(step, cost));
+        }
         next.last_wind_m_s = Some(inputs.wind_speed_m_s);
         let (mut time, mut remaining) = (0.0, step);
         while remaining > 0.0 {
@@ -97,7 +102,10 @@ impl Stepper {
         let (states, n) = (state.values.len(), inputs.force.len());
         let sampling = self.sampling.as_mut().ok_or_else(not_sampled)?;
         let (section, wind) = (&self.section, inputs.wind_speed_m_s);
-        let step = self.cache.samples(section, sampling, wind, samples)?;
+        let [between, count] = samples;
+        let step = self.samples.get([wind, between, count], || {
+            matrix_of_samples(section, sampling, wind, samples)
+        })?;
         load(&mut self.operand, &state.values, inputs);
         let force = self.operand[states..].iter_mut().take(n);
         for (w, rate) in force.zip(&inputs.force_rate) {
@@ -161,7 +169,8 @@ impl Stepper {
             wind,
             wind_rate: inputs.wind_speed_rate_m_s2,
             force: [&force[0], &force[1], &force[2]],
-            gust: inputs.gusts_from(time),
+            inputs,
+            after: time,
         };
         let gusts = self.gusts_act(state, inputs);
         let fastest = drive.wind.max(wind_after(inputs, time + piece));
@@ -175,7 +184,9 @@ impl Stepper {
             operand[2 * n..3 * n].copy_from_slice(&drive.force[0][..n]);
             operand[3 * n..].copy_from_slice(&drive.force[1][..n]);
             let step = if long {
-                self.cache.structure(&self.section, piece)?
+                let StateEquation { a, b } = self.section.structure_alone();
+                self.steps
+                    .get([0.0, piece], || step_matrix(&a, &b, piece))?
             } else {
                 let alone = || MatrixPolynomial::exponential(&self.section.structure_alone());
                 let steps = self.structure.get_or_insert_with(alone);
@@ -184,15 +195,45 @@ impl Stepper {
             apply(step, operand, motion);
             return Ok(());
         }
-        let moving = Moving {
-            values: motion,
-            gusts: gusts.then_some(&mut state.gusts),
-        };
-        if !self.series.advance(moving, &drive, piece, parts) {
+        let lagging = gusts.then_some(state.gusts.as_mut_slice());
+        if !self.series.advance(motion, lagging, &drive, piece, parts) {
             return Err(overgrown());
         }
         Ok(())
     }
+}
+
+/// So many samples of a sampled model in a steady wind, from one on: what unit numbers of `[z, w, ẇ]` become.
+fn matrix_of_samples(
+    section: &CoupledSection,
+    sampling: &mut Sampling,
+    wind: f64,
+    [step, count]: [f64; 2],
+) -> Result<DMatrix<f64>> {
+    let alone = section.structure_alone();
+    let structure = Packed::new(&step_matrix(&alone.a, &alone.b, step)?);
+    let (states, n) = (section.states(), alone.b.ncols());
+    let mut matrix = DMatrix::zeros(states, states + 2 * n);
+    for (j, mut column) in matrix.column_iter_mut().enumerate() {
+        let mut z = vec![0.0; states + 2 * n];
+        z[j] = 1.0;
+        let mut external = z.split_off(states);
+        for _ in 0..count as usize {
+            let mut operand = [&z[..2 * n], &external].concat();
+            let forces = operand[2 * n..3 * n].iter_mut();
+            for (w, held) in forces.zip(sampling.force(&z, wind)) {
+                *w += held;
+            }
+            apply(&structure, &operand, &mut z[..2 * n]);
+            sampling.sample(&mut z);
+            let (w, rates) = external.split_at_mut(n);
+            w.iter_mut()
+                .zip(rates)
+                .for_each(|(w, rate)| *w += *rate * step);
+        }
+        column.copy_from_slice(&z);
+    }
+    Ok(matrix)
 }
 
 fn not_sampled() -> Error {

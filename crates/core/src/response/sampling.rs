@@ -5,6 +5,7 @@ use super::values::Inputs;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::section::Dof;
+use nalgebra::DMatrix;
 
 /// Degrees of freedom of a sampled model at most: heave, sway, rotation.
 const MAX_DOFS: usize = Dof::THREE.len();
@@ -34,14 +35,14 @@ impl Sampling {
         Some(Self {
             dofs: n,
             way_m: d.delta_s * s.width_m,
-            force: Packed::from_matrix(&section.force_of_filters(&d.c, 1.0)),
-            next: Packed::new(filters, filters + n, |l, j| {
+            force: Packed::new(&section.force_of_filters(&d.c, 1.0)),
+            next: Packed::new(&DMatrix::from_fn(filters, filters + n, |l, j| {
                 if j < filters {
                     d.a[(l, j)]
                 } else {
                     d.b[(l, j - filters)] * s.dofs[j - filters].motion_scale(s.width_m)
                 }
-            }),
+            })),
             operand: vec![0.0; filters + n],
         })
     }

@@ -19,7 +19,7 @@ use super::gusts::{Gusts, SeriesPart};
 use super::lanes::{FourLanes, OnLanes, on_lanes};
 use super::linked::Linked;
 use super::packed::{Packed, largest_of};
-use super::values::GustCourse;
+use super::values::Inputs;
 use crate::aeroelastic::CoupledSection;
 use matrices::matrices;
 use nalgebra::DMatrix;
@@ -40,15 +40,10 @@ pub(super) struct Drive<'a> {
     pub wind_rate: f64,
     /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
     pub force: [&'a [f64]; 3],
-    /// Gusts.
-    pub gust: GustCourse<'a>,
-}
-
-/// What moves in a step: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through the admittance. No gusts
-/// where none act.
-pub(super) struct Moving<'a> {
-    pub values: &'a mut [f64],
-    pub gusts: Option<&'a mut [f64]>,
+    /// Where the gusts stand.
+    pub inputs: &'a Inputs,
+    /// Time of the start after that of `inputs`, s.
+    pub after: f64,
 }
 
 /// Largest row sums of the scaled system, by the power of the wind speed that they go with.
@@ -66,7 +61,7 @@ struct Norms {
 /// motion scale, rates by a frequency as well.
 #[derive(Debug, Clone)]
 pub(super) struct PowerSeries {
-    dofs: usize,
+    pub dofs: usize,
     /// Factor from a displacement to its scaled value.
     scale: Vec<f64>,
     /// Unit of the rates, rad/s.
@@ -78,7 +73,8 @@ pub(super) struct PowerSeries {
     /// `M⁻¹`, scaled.
     force: Packed,
     norms: Norms,
-    gusts: Option<Gusts>,
+    /// Those of the section.
+    pub gusts: Option<Gusts>,
     work: Work,
 }
 
@@ -125,16 +121,16 @@ impl PowerSeries {
             filters: row_sum(&aerodynamic, n..n + filters),
             lags: gusts.as_ref().map_or(0.0, Gusts::fastest),
         };
-        let force = Packed::new(n, n, |i, j| {
+        let force = DMatrix::from_fn(n, n, |i, j| {
             section.inverse_mass()[(i, j)] * scale[i] / rate
         });
         Self {
             dofs: n,
             scale,
             rate,
-            structure: Packed::from_matrix(&structure),
+            structure: Packed::new(&structure),
             aerodynamic: Linked::new(&aerodynamic, n),
-            force,
+            force: Packed::new(&force),
             norms,
             gusts,
             work: Work {
@@ -149,11 +145,6 @@ impl PowerSeries {
                 none: vec![0.0; n],
             },
         }
-    }
-
-    /// The gusts of the section.
-    pub(super) fn gusts(&self) -> Option<&Gusts> {
-        self.gusts.as_ref()
     }
 
     /// Norm of a step in winds up to `wind`.
@@ -174,15 +165,16 @@ impl PowerSeries {
         if parts > 1.0 { parts.ceil() } else { 1.0 }
     }
 
-    /// Advances what moves by a step of so many parts. Says whether the result is finite; the values are changed only then.
+    /// Advances what moves by a step of so many parts: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through
+    /// the admittance, none where none act. Says whether the result is finite; the values are changed only then.
     pub(super) fn advance(
         &mut self,
-        moving: Moving<'_>,
+        values: &mut [f64],
+        gusts: Option<&mut [f64]>,
         drive: &Drive<'_>,
         step: f64,
         parts: f64,
     ) -> bool {
-        let Moving { values, gusts } = moving;
         let (n, rate) = (self.dofs, self.rate);
         for i in 0..n {
             self.work.sum[i] = values[n + i] * (self.scale[i] / rate);
@@ -228,7 +220,7 @@ impl PowerSeries {
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
         let part = SeriesPart {
-            start,
+            start: drive.after + start,
             tau,
             wind,
             change,
@@ -241,7 +233,11 @@ impl PowerSeries {
             Some(gusts) => gusts.begin(&work.gusts),
             None => work.by_gusts.fill(0.0),
         }
-        let mut largest = work.begin();
+        // the sum so far is the first term, with none before it
+        work.term.copy_from_slice(&work.sum);
+        work.structure[0].fill(0.0);
+        work.aerodynamic[..2].iter_mut().for_each(|g| g.fill(0.0));
+        let mut largest = largest_of(&work.term);
         let [mut s, mut s_before] = work.structure.each_mut().map(Vec::as_mut_slice);
         let [mut g, mut g_before, mut g_first] = work.aerodynamic.each_mut().map(Vec::as_mut_slice);
         let mut last = [0.0; 3];
@@ -254,17 +250,14 @@ impl PowerSeries {
             self.aerodynamic.set(simd, &work.term[n..], g);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
-                let force = gusts.next(k, part, drive.gust, &mut work.gusts);
+                let force = gusts.next(k, part, drive.inputs, &mut work.gusts);
                 self.force.set(simd, force, &mut work.by_gusts);
                 pushed = tau * largest_of(&work.by_gusts);
             }
             let push = [work.push.get(k).unwrap_or(&work.none), &work.by_gusts].map(Vec::as_slice);
-            let made_from = MadeFrom {
-                push,
-                structure: [s, s_before],
-                aerodynamic: [g, g_before, g_first],
-            };
-            made_from.next_term(&mut work.term, part, self.rate, k);
+            let (structure, aerodynamic) = ([&*s, s_before], [&*g, g_before, g_first]);
+            let scale = [self.rate, tau / (k + 1) as f64];
+            next_term(&mut work.term, push, structure, aerodynamic, part, scale);
             for (sum, term) in work.sum.iter_mut().zip(&work.term) {
                 *sum += term;
             }
@@ -313,48 +306,34 @@ impl OnLanes for SeriesTerms<'_, '_> {
     }
 }
 
-impl Work {
-    /// Makes the sum so far the first term, with none before it; gives its largest entry.
-    fn begin(&mut self) -> f64 {
-        self.term.copy_from_slice(&self.sum);
-        self.structure[0].fill(0.0);
-        self.aerodynamic[..2].iter_mut().for_each(|g| g.fill(0.0));
-        largest_of(&self.term)
+/// Replaces a term by the next one. What that is made from, of this term and those before: accelerations by external forces and by
+/// gusts, `[A₀[q̇, q]; d]`, `[f; g]`; `rates` are the unit of the rates and `τ/(k + 1)`.
+#[inline(always)]
+fn next_term(
+    term: &mut [f64],
+    [push, by_gusts]: [&[f64]; 2],
+    structure: [&[f64]; 2],
+    aerodynamic: [&[f64]; 3],
+    part: SeriesPart,
+    [rate, factor]: [f64; 2],
+) {
+    let SeriesPart { wind, change, .. } = part;
+    let n = push.len();
+    let [(s, d), (_, d_before)] = structure.map(|s| s.split_at(n));
+    let [(f, g), (f_before, g_before), (f_first, _)] = aerodynamic.map(|g| g.split_at(n));
+    let (velocity, behind) = term.split_at_mut(n);
+    let (displacement, filters) = behind.split_at_mut(n);
+    for i in 0..n {
+        let mut sum = s[i] + (push[i] + by_gusts[i]) + wind * (d[i] + wind * f[i]);
+        if change != 0.0 {
+            sum += change * (d_before[i] + 2.0 * wind * f_before[i] + change * f_first[i]);
+        }
+        displacement[i] = factor * rate * velocity[i];
+        velocity[i] = factor * sum;
     }
-}
-
-/// What the next term is made from, of this term and those before.
-struct MadeFrom<'a> {
-    /// Accelerations by external forces and by gusts.
-    push: [&'a [f64]; 2],
-    structure: [&'a [f64]; 2],
-    aerodynamic: [&'a [f64]; 3],
-}
-
-impl MadeFrom<'_> {
-    /// Replaces the term by the next one.
-    #[inline(always)]
-    fn next_term(self, term: &mut [f64], part: SeriesPart, rate: f64, k: usize) {
-        let SeriesPart { wind, change, .. } = part;
-        let factor = part.tau / (k + 1) as f64;
-        let [push, by_gusts] = self.push;
-        let n = push.len();
-        let [(s, d), (_, d_before)] = self.structure.map(|s| s.split_at(n));
-        let [(f, g), (f_before, g_before), (f_first, _)] = self.aerodynamic.map(|g| g.split_at(n));
-        let (velocity, behind) = term.split_at_mut(n);
-        let (displacement, filters) = behind.split_at_mut(n);
-        for i in 0..n {
-            let mut sum = s[i] + (push[i] + by_gusts[i]) + wind * (d[i] + wind * f[i]);
-            if change != 0.0 {
-                sum += change * (d_before[i] + 2.0 * wind * f_before[i] + change * f_first[i]);
-            }
-            displacement[i] = factor * rate * velocity[i];
-            velocity[i] = factor * sum;
-        }
-        let (now, before) = (factor * wind, factor * change);
-        for ((x, g), g_before) in filters.iter_mut().zip(g).zip(g_before) {
-            *x = now * g + before * g_before;
-        }
+    let (now, before) = (factor * wind, factor * change);
+    for ((x, g), g_before) in filters.iter_mut().zip(g).zip(g_before) {
+        *x = now * g + before * g_before;
     }
 }
 

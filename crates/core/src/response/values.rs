@@ -15,21 +15,6 @@ pub fn wind_at_rest(speed_m_s: f64, before_m_s: f64) -> f64 {
     }
 }
 
-/// Gusts over a piece of time, in each channel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct GustCourse<'a> {
-    pub gust: &'a [f64],
-    pub rate: &'a [f64],
-    /// Time of the piece after that of `gust`, s.
-    pub after: f64,
-}
-
-impl GustCourse<'_> {
-    pub(super) fn at(&self, channel: usize, time: f64) -> f64 {
-        stated(self.gust, channel) + (self.after + time) * stated(self.rate, channel)
-    }
-}
-
 /// Gust of a channel.
 pub(super) fn stated(gusts: &[f64], channel: usize) -> f64 {
     gusts.get(channel).copied().unwrap_or(0.0)
@@ -56,13 +41,8 @@ pub struct Inputs {
 impl SectionState {
     /// Becomes equal to `other`; takes no memory where there is room.
     pub fn set_to(&mut self, other: &Self) {
-        for (to, from) in [
-            (&mut self.values, &other.values),
-            (&mut self.gusts, &other.gusts),
-        ] {
-            to.clear();
-            to.extend_from_slice(from);
-        }
+        self.values.clone_from(&other.values);
+        self.gusts.clone_from(&other.gusts);
         (self.phase, self.last_wind_m_s) = (other.phase, other.last_wind_m_s);
     }
 
@@ -114,28 +94,16 @@ impl Inputs {
     pub fn set_to(&mut self, other: &Self) {
         self.wind_speed_m_s = other.wind_speed_m_s;
         self.wind_speed_rate_m_s2 = other.wind_speed_rate_m_s2;
-        for (to, from) in [
-            (&mut self.force, &other.force),
-            (&mut self.force_rate, &other.force_rate),
-            (&mut self.gust_m_s, &other.gust_m_s),
-            (&mut self.gust_rate_m_s2, &other.gust_rate_m_s2),
-        ] {
-            to.clear();
-            to.extend_from_slice(from);
-        }
+        self.force.clone_from(&other.force);
+        self.force_rate.clone_from(&other.force_rate);
+        self.gust_m_s.clone_from(&other.gust_m_s);
+        self.gust_rate_m_s2.clone_from(&other.gust_rate_m_s2);
     }
 
-    /// Gusts from `after` seconds behind the start of the step on.
-    pub(super) fn gusts_from(&self, after: f64) -> GustCourse<'_> {
-        GustCourse {
-            gust: &self.gust_m_s,
-            rate: &self.gust_rate_m_s2,
-            after,
-        }
-    }
-
-    pub(super) fn check(&self, dofs: usize) -> Result<()> {
-        non_negative("wind speed", wind_at_rest(self.wind_speed_m_s, 0.0))?;
+    /// Whether they can be those of a step of so many seconds, or, of none, of an instant.
+    pub(super) fn check(&self, dofs: usize, step_s: f64) -> Result<()> {
+        let wind = self.wind_speed_m_s;
+        non_negative("wind speed", wind_at_rest(wind, 0.0))?;
         let finite = |values: &[f64]| values.len() == dofs && values.iter().all(|x| x.is_finite());
         let gusts = self.gust_m_s.iter().chain(&self.gust_rate_m_s2);
         let steady = gusts.chain([&self.wind_speed_rate_m_s2]);
@@ -143,7 +111,8 @@ impl Inputs {
             && finite(&self.force_rate)
             && steady.into_iter().all(|x| x.is_finite())
         {
-            Ok(())
+            let end = wind_at_rest(wind + self.wind_speed_rate_m_s2 * step_s, wind);
+            non_negative("wind speed at the end of the step", end).map(drop)
         } else {
             Err(Error::input(
                 "inputs",

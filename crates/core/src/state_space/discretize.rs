@@ -41,12 +41,12 @@ pub(super) fn matrix_exponential(m: &DMatrix<f64>) -> Result<DMatrix<f64>> {
     ))
 }
 
-/// Step matrices of `ẋ = A x + B u` for the step `h`, from the exponential of
+/// `[Φ, Γ₀, Γ₁]` of [`StepMatrices`] side by side, n×(n + 2m), for `ẋ = A x + B u` and the step `h`, from the exponential of
 /// `[[A, B, 0], [0, 0, I], [0, 0, 0]] h` (Van Loan 1978), so that a singular `A` is no special case.
 ///
 /// # Errors
 /// [`Error::Numerical`] when an entry or the step is not finite.
-pub fn c2d(a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) -> Result<StepMatrices> {
+pub fn step_matrix(a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) -> Result<DMatrix<f64>> {
     let (n, m) = b.shape();
     // the input block is integrated in units of h, so that e^M holds numbers of one size
     let mut augmented = DMatrix::zeros(n + 2 * m, n + 2 * m);
@@ -55,11 +55,23 @@ pub fn c2d(a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) -> Result<StepMatrices> {
     augmented
         .view_mut((n, n + m), (m, m))
         .copy_from(&DMatrix::identity(m, m));
-    let e = matrix_exponential(&augmented)?;
+    let mut step = matrix_exponential(&augmented)?.rows(0, n).into_owned();
+    let mut gamma_1 = step.columns_mut(n + m, m);
+    gamma_1 *= h;
+    Ok(step)
+}
+
+/// The parts of [`step_matrix`].
+///
+/// # Errors
+/// As there.
+pub fn c2d(a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) -> Result<StepMatrices> {
+    let (n, m) = b.shape();
+    let step = step_matrix(a, b, h)?;
     Ok(StepMatrices {
-        phi: e.view((0, 0), (n, n)).into_owned(),
-        gamma_0: e.view((0, n), (n, m)).into_owned(),
-        gamma_1: e.view((0, n + m), (n, m)).into_owned() * h,
+        phi: step.columns(0, n).into_owned(),
+        gamma_0: step.columns(n, m).into_owned(),
+        gamma_1: step.columns(n + m, m).into_owned(),
     })
 }
 

@@ -316,7 +316,7 @@ fn bilinear(
 fn rate_change(system: &CoupledSystem, mu: Complex<f64>, change: Complex<f64>) -> Complex<f64> {
     match system {
         CoupledSystem::Continuous(_) => change,
-        CoupledSystem::Sampled(s) => change / (mu * s.time.step),
+        CoupledSystem::Sampled { step_s, .. } => change / (mu * *step_s),
     }
 }
 

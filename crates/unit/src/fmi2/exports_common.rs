@@ -38,7 +38,6 @@ pub unsafe extern "C" fn fmi2Instantiate(
     _visible: fmi2Boolean,
     loggingOn: fmi2Boolean,
 ) -> fmi2Component {
-    behave_as_a_guest();
     // SAFETY: NULL or valid by the contract of the interface; everything needed later is copied
     let (functions, name, guid, location) = unsafe {
         (
@@ -49,26 +48,37 @@ pub unsafe extern "C" fn fmi2Instantiate(
         )
     };
     let logger = functions.and_then(|f| Logger::new(f, name.unwrap_or_default(), loggingOn != 0));
-    let Some(logger) = logger else {
-        return std::ptr::null_mut(); // without a logger there is no one to tell
-    };
-    let refuse = |why: &str| {
-        let message = format!("fmi2Instantiate: {why}");
-        logger.log(fmi2Status::fmi2Error, Category::Error, &message);
-        std::ptr::null_mut()
-    };
-    match shielded(|| instantiate(name, fmuType, guid, location)) {
-        Ok(Ok(instance)) => {
-            logger.log(
-                fmi2Status::fmi2OK,
-                Category::Events,
-                "fmi2Instantiate: instantiated",
-            );
-            Box::into_raw(Box::new(Component::new(instance, logger))).cast()
-        }
-        Ok(Err(refusal)) => refuse(&refusal.message),
-        Err(panic) => refuse(&format!("internal error ({})", panic_text(&*panic))),
+    let make = || instantiate(name, fmuType, guid, location);
+    let component = made("Instantiate", logger, make);
+    if let Some(component) = &component {
+        let message = "fmi2Instantiate: instantiated";
+        let status = fmi2Status::fmi2OK;
+        component.logger.log(status, Category::Events, message);
     }
+    handle(component)
+}
+
+/// A component around what `instantiate` makes; none, with a logged reason, where it makes nothing.
+pub(crate) fn made(
+    function: &str,
+    logger: Option<Logger>,
+    instantiate: impl FnOnce() -> CallResult<Instance>,
+) -> Option<Box<Component>> {
+    behave_as_a_guest();
+    let logger = logger?; // without one there is no one to tell
+    let why = match shielded(instantiate) {
+        Ok(Ok(instance)) => return Some(Box::new(Component::new(instance, logger))),
+        Ok(Err(refusal)) => refusal.message,
+        Err(panic) => format!("internal error ({})", panic_text(&*panic)),
+    };
+    let message = format!("{}{function}: {why}", logger.prefix());
+    logger.log(fmi2Status::fmi2Error, Category::Error, &message);
+    None
+}
+
+/// What the importer holds of a component.
+pub(crate) fn handle(component: Option<Box<Component>>) -> fmi2Component {
+    component.map_or(std::ptr::null_mut(), |c| Box::into_raw(c).cast())
 }
 
 pub(crate) fn instantiate(
@@ -175,7 +185,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
         Ok(())
     };
     // SAFETY: by the contract of the interface
-    unsafe { guarded(c, Call::SetDebugLogging, body) }
+    unsafe { guarded(c, Call::SetDebugLogging, "SetDebugLogging", body) }
 }
 
 exported! {

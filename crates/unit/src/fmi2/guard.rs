@@ -4,8 +4,6 @@
 //! on. Pointers of the importer are turned into references here and nowhere else.
 
 use super::logger::{Category, Logger, c_text};
-#[cfg(test)]
-use super::tests::silence;
 use super::types::{fmi2Component, fmi2Status};
 use crate::groups::Groups;
 use crate::instance::Instance;
@@ -101,41 +99,18 @@ pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> &str {
         .unwrap_or("without a message")
 }
 
-/// A call, and the function of the interface that makes it, as messages name it.
-pub(crate) struct NamedCall<'a> {
-    call: Call,
-    function: &'a str,
-}
-
-impl From<Call> for NamedCall<'_> {
-    #[inline]
-    fn from(call: Call) -> Self {
-        let function = call.name();
-        Self { call, function }
-    }
-}
-
-impl Call {
-    /// The call as a function of another name makes it.
-    #[inline]
-    pub(crate) fn by(self, function: &str) -> NamedCall<'_> {
-        let call = self;
-        NamedCall { call, function }
-    }
-}
-
-/// Carries out `body` on the instance behind `handle`, if `call` is legal there. A function whose name in the interface
-/// is another than that of the call gives both.
+/// Carries out `body` on the instance behind `handle`, if `call` is legal there; `function` is what messages name, without the
+/// prefix of the standard's version.
 ///
 /// # Safety
 /// `handle` is NULL or was returned by `fmi2Instantiate`, has not been freed, and is not in use by another thread.
 #[inline]
-pub(crate) unsafe fn guarded<'a>(
+pub(crate) unsafe fn guarded(
     handle: fmi2Component,
-    call: impl Into<NamedCall<'a>>,
+    call: Call,
+    function: &str,
     body: impl FnOnce(&mut Component) -> CallResult<()>,
 ) -> fmi2Status {
-    let NamedCall { call, function } = call.into();
     // SAFETY: by the contract of this function
     let Some(component) = (unsafe { handle.cast::<Component>().as_mut() }) else {
         return fmi2Status::fmi2Error;
@@ -149,7 +124,7 @@ pub(crate) unsafe fn guarded<'a>(
     });
     match outcome {
         Ok(Ok(())) => {
-            if component.instance.has_notices() {
+            if !component.instance.notices.is_empty() {
                 component.report_notices();
             }
             fmi2Status::fmi2OK
@@ -169,7 +144,9 @@ macro_rules! exported {
             $(, $argument: $type)*
         ) -> $crate::fmi2::types::fmi2Status {
             // SAFETY: handles, pointers and arrays are valid by the contract of the interface
-            unsafe { $crate::fmi2::guard::guarded(c, $call, $body) }
+            unsafe {
+                $crate::fmi2::guard::guarded(c, $call, &stringify!($name)["fmi2".len()..], $body)
+            }
         }
     )*};
 }
@@ -201,36 +178,21 @@ pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &st
     fmi2Status::fmi2Error
 }
 
-/// Silence about panics inside [`shielded`]. An FMU has the panics of its library to itself, and needs no bookkeeping.
-#[cfg(not(test))]
-mod silence {
-    pub(super) fn install() {
-        std::panic::set_hook(Box::new(|_| ()));
-    }
-
-    pub(super) fn enter() -> bool {
-        false
-    }
-
-    pub(super) fn leave(_: bool) {}
-}
-
-/// The process is an importer's. Panics inside [`shielded`] are silent: they are reported through its logger, and collecting a backtrace
-/// would cost tens of megabytes. The hook owns nothing and no thread is started, so that nothing is left when the library is unloaded.
+/// The process is an importer's. Panics inside [`shielded`] are silent, but for tests, which share their process with what panics on its own
+/// account: they are reported through its logger, and collecting a backtrace would cost tens of megabytes. The hook owns nothing and no thread is started, so that nothing is left when the library is unloaded.
 pub(crate) fn behave_as_a_guest() {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(|| {
-        silence::install();
+        if cfg!(not(test)) {
+            std::panic::set_hook(Box::new(|_| ()));
+        }
         aerodeck_core::threads::stay_on_the_callers();
     });
 }
 
 /// Runs `body`; a panic in it is returned, not passed on.
 pub(crate) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
-    let outer = silence::enter();
-    let outcome = catch_unwind(AssertUnwindSafe(body));
-    silence::leave(outer);
-    outcome
+    catch_unwind(AssertUnwindSafe(body))
 }
 
 /// An array of the importer; no elements may come with NULL.
@@ -268,23 +230,18 @@ pub(crate) unsafe fn array_mut<'a, T>(
 }
 
 fn check_array<T>(pointer: *const T, count: usize, name: &str) -> CallResult<()> {
-    if pointer.is_null() {
-        return Err(no_array(count, name));
-    }
-    if count > isize::MAX as usize / size_of::<T>().max(1) {
-        return Err(array_too_long(count, name));
+    if pointer.is_null() || count > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(no_array(pointer.is_null(), count, name));
     }
     Ok(())
 }
 
 #[cold]
-fn no_array(count: usize, name: &str) -> Refusal {
-    Refusal::error(format!("{name}: expected {count} elements, found NULL"))
-}
-
-#[cold]
-fn array_too_long(count: usize, name: &str) -> Refusal {
-    Refusal::error(format!("{name}: {count} elements do not fit into memory"))
+fn no_array(is_null: bool, count: usize, name: &str) -> Refusal {
+    Refusal::error(match is_null {
+        true => format!("{name}: expected {count} elements, found NULL"),
+        false => format!("{name}: {count} elements do not fit into memory"),
+    })
 }
 
 /// One variable of the importer to be written.

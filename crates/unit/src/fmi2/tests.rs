@@ -10,7 +10,6 @@ mod offsets;
 mod overflow;
 mod refusals;
 mod run;
-pub(super) mod silence;
 mod state;
 mod structure_outside;
 mod torture;

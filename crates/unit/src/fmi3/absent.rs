@@ -8,13 +8,13 @@ use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 const NO_CLOCKS: &str = "there are no clocks";
 
 macro_rules! absent {
-    ($($name:ident, $short:literal, $why:expr, ($($argument:ident: $type:ty),*);)*) => {$(
+    ($($name:ident, $why:expr, ($($argument:ident: $type:ty),*);)*) => {$(
         /// Not offered.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(c: fmi2Component $(, $argument: $type)*) -> fmi2Status {
             $(let _ = $argument;)*
             // SAFETY: by the contract of the interface
-            unsafe { not_offered(c, $short, $why) }
+            unsafe { not_offered(c, &stringify!($name)["fmi3".len()..], $why) }
         }
     )*};
 }
@@ -22,22 +22,22 @@ macro_rules! absent {
 type References = *const fmi2ValueReference;
 
 absent! {
-    fmi3EnterStepMode, "EnterStepMode", "co-simulation has no event mode here", ();
-    fmi3EvaluateDiscreteStates, "EvaluateDiscreteStates", "there are no discrete states", ();
-    fmi3ActivateModelPartition, "ActivateModelPartition", "scheduled execution is not offered",
+    fmi3EnterStepMode, "co-simulation has no event mode here", ();
+    fmi3EvaluateDiscreteStates, "there are no discrete states", ();
+    fmi3ActivateModelPartition, "scheduled execution is not offered",
         (clock: fmi2ValueReference, time: f64);
-    fmi3GetIntervalDecimal, "GetIntervalDecimal", NO_CLOCKS,
+    fmi3GetIntervalDecimal, NO_CLOCKS,
         (vr: References, nvr: usize, intervals: *mut f64, qualifiers: *mut i32);
-    fmi3GetIntervalFraction, "GetIntervalFraction", NO_CLOCKS,
+    fmi3GetIntervalFraction, NO_CLOCKS,
         (vr: References, nvr: usize, counters: *mut u64, resolutions: *mut u64, qualifiers: *mut i32);
-    fmi3GetShiftDecimal, "GetShiftDecimal", NO_CLOCKS, (vr: References, nvr: usize, shifts: *mut f64);
-    fmi3GetShiftFraction, "GetShiftFraction", NO_CLOCKS,
+    fmi3GetShiftDecimal, NO_CLOCKS, (vr: References, nvr: usize, shifts: *mut f64);
+    fmi3GetShiftFraction, NO_CLOCKS,
         (vr: References, nvr: usize, counters: *mut u64, resolutions: *mut u64);
-    fmi3SetIntervalDecimal, "SetIntervalDecimal", NO_CLOCKS, (vr: References, nvr: usize, intervals: *const f64);
-    fmi3SetIntervalFraction, "SetIntervalFraction", NO_CLOCKS,
+    fmi3SetIntervalDecimal, NO_CLOCKS, (vr: References, nvr: usize, intervals: *const f64);
+    fmi3SetIntervalFraction, NO_CLOCKS,
         (vr: References, nvr: usize, counters: *const u64, resolutions: *const u64);
-    fmi3SetShiftDecimal, "SetShiftDecimal", NO_CLOCKS, (vr: References, nvr: usize, shifts: *const f64);
-    fmi3SetShiftFraction, "SetShiftFraction", NO_CLOCKS,
+    fmi3SetShiftDecimal, NO_CLOCKS, (vr: References, nvr: usize, shifts: *const f64);
+    fmi3SetShiftFraction, NO_CLOCKS,
         (vr: References, nvr: usize, counters: *const u64, resolutions: *const u64);
 }
 

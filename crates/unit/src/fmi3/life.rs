@@ -3,17 +3,16 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::Fmi3Boolean;
-use crate::fmi2::guard::{
-    Component, array, behave_as_a_guest, exported, guarded, panic_text, shielded,
-};
+use crate::fmi2::guard::{Component, array, exported, guarded};
 use crate::fmi2::logger::{Category, Logger, PlainLogger};
 use crate::fmi2::types::{
     fmi2CoSimulation, fmi2Component, fmi2ModelExchange, fmi2Status, fmi2String, fmi2Type,
     fmi2ValueReference,
 };
-use crate::fmi2::{check_name, fmi2FreeInstance, fmi2Reset, identified, instantiate, text};
+use crate::fmi2::{
+    check_name, fmi2FreeInstance, fmi2Reset, handle, identified, instantiate, made, text,
+};
 use crate::groups::Groups;
-use crate::instance::Instance;
 use crate::lifecycle::Call;
 use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
@@ -28,41 +27,25 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 
 /// # Safety
 /// Texts are NULL or end with a zero byte.
-unsafe fn made(
+unsafe fn made_of_texts(
     function: &str,
     kind: fmi2Type,
-    [name, token, path]: [fmi2String; 3],
+    texts: [fmi2String; 3],
     logger: Option<Logger>,
 ) -> fmi2Component {
-    let Some(logger) = logger else {
-        return std::ptr::null_mut(); // without a logger there is no one to tell
-    };
     // SAFETY: by the contract of this function; everything needed later is copied
-    let (name, token, path) = unsafe { (text(name), text(token), text(path)) };
-    component(function, logger, || instantiate(name, kind, token, path))
+    let [name, token, path] = texts.map(|pointer| unsafe { text(pointer) });
+    in_groups(made(function, logger, || {
+        instantiate(name, kind, token, path)
+    }))
 }
 
-/// A component around what `instantiate` makes; NULL with a logged reason where it makes nothing.
-fn component(
-    function: &str,
-    logger: Logger,
-    instantiate: impl FnOnce() -> CallResult<Instance>,
-) -> fmi2Component {
-    behave_as_a_guest();
-    let refuse = |why: &str| {
-        let message = format!("fmi3{function}: {why}");
-        logger.log(fmi2Status::fmi2Error, Category::Error, &message);
-        std::ptr::null_mut()
-    };
-    match shielded(instantiate) {
-        Ok(Ok(instance)) => {
-            let mut component = Component::new(instance, logger);
-            component.groups = Groups::new(component.instance.table());
-            Box::into_raw(Box::new(component)).cast()
-        }
-        Ok(Err(refusal)) => refuse(&refusal.message),
-        Err(panic) => refuse(&format!("internal error ({})", panic_text(&*panic))),
+/// What the importer holds of a component whose variables it knows by their groups.
+fn in_groups(mut component: Option<Box<Component>>) -> fmi2Component {
+    if let Some(component) = &mut component {
+        component.groups = Groups::new(component.instance.table());
     }
+    handle(component)
 }
 
 /// An instance for co-simulation of files that the importer reads itself, as [`fmi3InstantiateCoSimulation`] makes one of a folder. The
@@ -76,11 +59,11 @@ pub fn instantiate_from_files(
     read: &dyn Fn(&Path) -> crate::error::Result<Option<Vec<u8>>>,
 ) -> fmi2Component {
     let logger = Logger::plain(log, environment, logging_on);
-    component("InstantiateCoSimulation", logger, || {
+    in_groups(made("InstantiateCoSimulation", Some(logger), || {
         check_name(Some(name))?;
         let resources = Resources::from_files(Path::new("resources"), read)?;
         identified(resources, fmi2CoSimulation, token)
-    })
+    }))
 }
 
 /// How many values some variables have, elements of arrays counted; as many as references where one of them is unknown.
@@ -122,7 +105,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     let logger = logMessage.map(|log| Logger::plain(log, instanceEnvironment, loggingOn != 0));
     let texts = [instanceName, instantiationToken, resourcePath];
     // SAFETY: by the contract of the interface
-    unsafe { made("InstantiateCoSimulation", fmi2CoSimulation, texts, logger) }
+    unsafe { made_of_texts("InstantiateCoSimulation", fmi2CoSimulation, texts, logger) }
 }
 
 /// Makes an instance that the importer integrates; NULL with a logged reason when anything is wrong.
@@ -139,7 +122,7 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     let logger = logMessage.map(|log| Logger::plain(log, instanceEnvironment, loggingOn != 0));
     let texts = [instanceName, instantiationToken, resourcePath];
     // SAFETY: by the contract of the interface
-    unsafe { made("InstantiateModelExchange", fmi2ModelExchange, texts, logger) }
+    unsafe { made_of_texts("InstantiateModelExchange", fmi2ModelExchange, texts, logger) }
 }
 
 /// Not offered.
@@ -205,7 +188,7 @@ as_in_fmi2! {
 pub unsafe extern "C" fn fmi3Reset(c: fmi2Component) -> fmi2Status {
     // SAFETY: by the contract of the interface
     unsafe {
-        let as_exported = guarded(c, Call::Reset, |component| {
+        let as_exported = guarded(c, Call::Reset, "Reset", |component| {
             component.configuration = None;
             if component.instance.is_resized() {
                 component.replace(component.instance.resized(None)?);

@@ -18,7 +18,7 @@ exported! {
         discreteStatesNeedUpdate: *mut bool, terminateSimulation: *mut bool,
         nominalsOfContinuousStatesChanged: *mut bool, valuesOfContinuousStatesChanged: *mut bool,
         nextEventTimeDefined: *mut bool, nextEventTime: *mut f64
-    ) Call::NewDiscreteStates.by("UpdateDiscreteStates") => |_| {
+    ) Call::NewDiscreteStates => |_| {
         for flag in [
             discreteStatesNeedUpdate,
             terminateSimulation,
@@ -44,7 +44,7 @@ exported! {
     fmi3CompletedIntegratorStep(
         _noSetFMUStatePriorToCurrentPoint: Fmi3Boolean, enterEventMode: *mut bool,
         terminateSimulation: *mut bool
-    ) Call::CompletedIntegratorStep.by("CompletedIntegratorStep") => |component| {
+    ) Call::CompletedIntegratorStep => |component| {
         *target(enterEventMode.cast::<u8>(), "enterEventMode")? = 0;
         *target(terminateSimulation.cast::<u8>(), "terminateSimulation")? = 0;
         component.instance.step_taken()
@@ -80,14 +80,14 @@ exported! {
     /// Number of event indicators: none.
     fmi3GetNumberOfEventIndicators(
         nEventIndicators: *mut usize
-    ) Call::GetNominalsOfContinuousStates.by("GetNumberOfEventIndicators") => |_| {
+    ) Call::GetNominalsOfContinuousStates => |_| {
         *target(nEventIndicators, "nEventIndicators")? = 0;
         Ok(())
     };
     /// Number of continuous states.
     fmi3GetNumberOfContinuousStates(
         nContinuousStates: *mut usize
-    ) Call::GetNominalsOfContinuousStates.by("GetNumberOfContinuousStates") => |component| {
+    ) Call::GetNominalsOfContinuousStates => |component| {
         *target(nContinuousStates, "nContinuousStates")? = component.instance.state_count();
         Ok(())
     };

@@ -50,7 +50,7 @@ exported! {
     fmi3GetAdjointDerivative(
         unknowns: *const fmi2ValueReference, nUnknowns: usize, knowns: *const fmi2ValueReference,
         nKnowns: usize, seed: *const f64, nSeed: usize, sensitivity: *mut f64, nSensitivity: usize
-    ) Call::GetDirectionalDerivative.by("GetAdjointDerivative") => |component| {
+    ) Call::GetDirectionalDerivative => |component| {
         let unknowns = indices(component, unknowns, nUnknowns, "unknowns")?;
         let knowns = indices(component, knowns, nKnowns, "knowns")?;
         check_count("seed", unknowns.len(), nSeed)?;

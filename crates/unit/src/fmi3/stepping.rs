@@ -36,7 +36,7 @@ exported! {
     /// Reads first rates of outputs.
     fmi3GetOutputDerivatives(
         vr: *const fmi2ValueReference, nvr: usize, orders: *const i32, values: *mut f64, nValues: usize
-    ) Call::GetRealOutputDerivatives.by("GetOutputDerivatives") => |component| {
+    ) Call::GetRealOutputDerivatives => |component| {
         let references = array(vr, nvr, "valueReferences")?;
         let orders = array(orders, nvr, "orders")?;
         let of_each = of_elements(component, references, orders)?;
@@ -71,7 +71,6 @@ pub unsafe fn set_input_derivatives(
     orders: &[i32],
     values: &[f64],
 ) -> fmi2Status {
-    let call = Call::SetRealInputDerivatives.by("SetInputDerivatives");
     let body = |component: &mut Component| {
         let indices = component.groups.indices(references)?;
         check_count("values", indices.len(), values.len())?;
@@ -81,5 +80,12 @@ pub unsafe fn set_input_derivatives(
             .set_input_rates(&indices, &orders, values)
     };
     // SAFETY: by the contract of this function
-    unsafe { guarded(c, call, body) }
+    unsafe {
+        guarded(
+            c,
+            Call::SetRealInputDerivatives,
+            "SetInputDerivatives",
+            body,
+        )
+    }
 }

@@ -27,7 +27,7 @@ fn fmi3_kind(kind: DependencyKind) -> i32 {
 
 exported! {
     /// Begins the choice of the number of strips.
-    fmi3EnterConfigurationMode() Call::SetupExperiment.by("EnterConfigurationMode") => |c| {
+    fmi3EnterConfigurationMode() Call::SetupExperiment => |c| {
         let Some(strips) = c.groups.strips() else {
             return Err(Refusal::call("there are no structural parameters"));
         };
@@ -36,7 +36,7 @@ exported! {
     };
     /// Ends it: the unit has as many strips from now on, each of those beyond the exported ones like the last of these. What has been set
     /// before stays where there still is such a variable.
-    fmi3ExitConfigurationMode() Call::SetupExperiment.by("ExitConfigurationMode") => |c| {
+    fmi3ExitConfigurationMode() Call::SetupExperiment => |c| {
         let Some(strips) = c.configuration.take() else {
             return Err(Refusal::call("the configuration mode was not entered"));
         };
@@ -64,7 +64,7 @@ exported! {
     /// Reads the number of strips.
     fmi3GetUInt64(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut u64, nValues: usize
-    ) Call::GetInteger.by("GetUInt64") => |c| {
+    ) Call::GetInteger => |c| {
         let present = check_strips(c, array(vr, nvr, "valueReferences")?)?;
         super::life::check_count("values", nvr, nValues)?;
         let strips = c.configuration.unwrap_or(present) as u64;
@@ -74,7 +74,7 @@ exported! {
     /// Sets the number of strips, in the configuration mode.
     fmi3SetUInt64(
         vr: *const fmi2ValueReference, nvr: usize, values: *const u64, nValues: usize
-    ) Call::SetInteger.by("SetUInt64") => |c| {
+    ) Call::SetInteger => |c| {
         check_strips(c, array(vr, nvr, "valueReferences")?)?;
         super::life::check_count("values", nvr, nValues)?;
         for value in array(values, nValues, "values")? {
@@ -133,7 +133,7 @@ exported! {
     /// How many there are, of all its numbers.
     fmi3GetNumberOfVariableDependencies(
         vr: fmi2ValueReference, nDependencies: *mut usize
-    ) Call::SetDebugLogging.by("GetNumberOfVariableDependencies") => |c| {
+    ) Call::SetDebugLogging => |c| {
         *target(nDependencies, "nDependencies")? = dependencies(c, vr)?.len();
         Ok(())
     };
@@ -142,7 +142,7 @@ exported! {
         dependent: fmi2ValueReference, elementIndicesOfDependent: *mut usize,
         independents: *mut fmi2ValueReference, elementIndicesOfIndependents: *mut usize,
         dependencyKinds: *mut i32, nDependencies: usize
-    ) Call::SetDebugLogging.by("GetVariableDependencies") => |c| {
+    ) Call::SetDebugLogging => |c| {
         let all = dependencies(c, dependent)?;
         super::life::check_count("nDependencies", all.len(), nDependencies)?;
         let n = nDependencies;

@@ -13,7 +13,7 @@ exported! {
     /// Reads real variables, and the time.
     fmi3GetFloat64(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut f64, nValues: usize
-    ) Call::GetReal.by("GetFloat64") => |component| {
+    ) Call::GetReal => |component| {
         let references = array(vr, nvr, "valueReferences")?;
         let values = array_mut(values, nValues, "values")?;
         let time = component.groups.time();
@@ -46,7 +46,7 @@ exported! {
     /// Sets real variables: all of them or, when one is refused, none.
     fmi3SetFloat64(
         vr: *const fmi2ValueReference, nvr: usize, values: *const f64, nValues: usize
-    ) Call::SetReal.by("SetFloat64") => |component| {
+    ) Call::SetReal => |component| {
         let references = array(vr, nvr, "valueReferences")?;
         let values = array(values, nValues, "values")?;
         let indices = component.groups.indices(references)?;
@@ -56,7 +56,7 @@ exported! {
     /// Reads integer variables.
     fmi3GetInt32(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut i32, nValues: usize
-    ) Call::GetInteger.by("GetInt32") => |component| {
+    ) Call::GetInteger => |component| {
         let indices = indices(component, vr, nvr, "valueReferences")?;
         check_count("values", indices.len(), nValues)?;
         for (index, value) in indices.iter().zip(array_mut(values, nValues, "values")?) {
@@ -67,7 +67,7 @@ exported! {
     /// Reads truth variables.
     fmi3GetBoolean(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut bool, nValues: usize
-    ) Call::GetBoolean.by("GetBoolean") => |component| {
+    ) Call::GetBoolean => |component| {
         let indices = indices(component, vr, nvr, "valueReferences")?;
         check_count("values", indices.len(), nValues)?;
         // what the importer has there need not be a truth value yet
@@ -80,7 +80,7 @@ exported! {
     /// Reads texts; they live as long as the instance.
     fmi3GetString(
         vr: *const fmi2ValueReference, nvr: usize, values: *mut fmi2String, nValues: usize
-    ) Call::GetString.by("GetString") => |component| {
+    ) Call::GetString => |component| {
         let mut found = Vec::new();
         for reference in array(vr, nvr, "valueReferences")? {
             if let Some(names) = component.groups.names_at(*reference) {
@@ -99,37 +99,37 @@ exported! {
     /// There are none to set.
     fmi3SetInt32(
         vr: *const fmi2ValueReference, nvr: usize, _values: *const i32, _nValues: usize
-    ) Call::SetInteger.by("SetInt32") => |component| {
+    ) Call::SetInteger => |component| {
         let indices = indices(component, vr, nvr, "valueReferences")?;
         component.instance.refuse_to_set(&indices, DataType::Integer)
     };
     /// There are none to set.
     fmi3SetBoolean(
         vr: *const fmi2ValueReference, nvr: usize, _values: *const bool, _nValues: usize
-    ) Call::SetBoolean.by("SetBoolean") => |component| {
+    ) Call::SetBoolean => |component| {
         let indices = indices(component, vr, nvr, "valueReferences")?;
         component.instance.refuse_to_set(&indices, DataType::Boolean)
     };
     /// There are none to set.
     fmi3SetString(
         vr: *const fmi2ValueReference, nvr: usize, _values: *const fmi2String, _nValues: usize
-    ) Call::SetString.by("SetString") => |component| {
+    ) Call::SetString => |component| {
         let indices = indices(component, vr, nvr, "valueReferences")?;
         component.instance.refuse_to_set(&indices, DataType::String)
     };
     /// There are no binary variables.
     fmi3GetBinary(
         _vr: *const fmi2ValueReference, nvr: usize, _sizes: *mut usize, _values: *mut *const u8, _nValues: usize
-    ) Call::GetInteger.by("GetBinary") => |_| none_of_type(nvr);
+    ) Call::GetInteger => |_| none_of_type(nvr);
     /// There are no binary variables.
     fmi3SetBinary(
         _vr: *const fmi2ValueReference, nvr: usize, _sizes: *const usize, _values: *const *const u8, _nValues: usize
-    ) Call::SetInteger.by("SetBinary") => |_| none_of_type(nvr);
+    ) Call::SetInteger => |_| none_of_type(nvr);
     /// There are no clocks.
-    fmi3GetClock(_vr: *const fmi2ValueReference, nvr: usize, _values: *mut bool) Call::GetInteger.by("GetClock") =>
+    fmi3GetClock(_vr: *const fmi2ValueReference, nvr: usize, _values: *mut bool) Call::GetInteger =>
         |_| none_of_type(nvr);
     /// There are no clocks.
-    fmi3SetClock(_vr: *const fmi2ValueReference, nvr: usize, _values: *const bool) Call::SetInteger.by("SetClock") =>
+    fmi3SetClock(_vr: *const fmi2ValueReference, nvr: usize, _values: *const bool) Call::SetInteger =>
         |_| none_of_type(nvr);
 }
 
@@ -145,26 +145,26 @@ fn none_of_type(references: usize) -> CallResult<()> {
 
 /// Functions for types of which there are no variables.
 macro_rules! none_of_type {
-    ($($get:ident, $set:ident, $short_get:literal, $short_set:literal, $type:ty;)*) => {
+    ($($get:ident, $set:ident, $type:ty;)*) => {
         exported! {$(
             /// There are no variables of this type.
             $get(
                 _vr: *const fmi2ValueReference, nvr: usize, _values: *mut $type, _nValues: usize
-            ) Call::GetInteger.by($short_get) => |_| none_of_type(nvr);
+            ) Call::GetInteger => |_| none_of_type(nvr);
             /// There are no variables of this type.
             $set(
                 _vr: *const fmi2ValueReference, nvr: usize, _values: *const $type, _nValues: usize
-            ) Call::SetInteger.by($short_set) => |_| none_of_type(nvr);
+            ) Call::SetInteger => |_| none_of_type(nvr);
         )*}
     };
 }
 
 none_of_type! {
-    fmi3GetFloat32, fmi3SetFloat32, "GetFloat32", "SetFloat32", f32;
-    fmi3GetInt8, fmi3SetInt8, "GetInt8", "SetInt8", i8;
-    fmi3GetUInt8, fmi3SetUInt8, "GetUInt8", "SetUInt8", u8;
-    fmi3GetInt16, fmi3SetInt16, "GetInt16", "SetInt16", i16;
-    fmi3GetUInt16, fmi3SetUInt16, "GetUInt16", "SetUInt16", u16;
-    fmi3GetUInt32, fmi3SetUInt32, "GetUInt32", "SetUInt32", u32;
-    fmi3GetInt64, fmi3SetInt64, "GetInt64", "SetInt64", i64;
+    fmi3GetFloat32, fmi3SetFloat32, f32;
+    fmi3GetInt8, fmi3SetInt8, i8;
+    fmi3GetUInt8, fmi3SetUInt8, u8;
+    fmi3GetInt16, fmi3SetInt16, i16;
+    fmi3GetUInt16, fmi3SetUInt16, u16;
+    fmi3GetUInt32, fmi3SetUInt32, u32;
+    fmi3GetInt64, fmi3SetInt64, i64;
 }

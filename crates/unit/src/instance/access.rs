@@ -2,7 +2,7 @@
 
 use super::Instance;
 use super::layout::{Access, DataType};
-use crate::lifecycle::{State, StateSet};
+use crate::lifecycle::StateSet;
 use crate::refusal::{CallResult, Refusal};
 use crate::variables::{Causality, Variability, Variable, VariableTable};
 
@@ -19,24 +19,40 @@ impl Instance {
     /// Access to a variable that may be read now.
     pub(super) fn readable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (index, access) = self.typed(reference, wanted)?;
-        self.check_state(index, "read", access.gettable)?;
-        Ok((index, access))
+        match access.gettable.contains(self.memory.state) {
+            true => Ok((index, access)),
+            false => Err(self.not_in_state(index, "read", access.gettable)),
+        }
     }
 
     /// Access to a variable that may be set now.
     pub(super) fn writable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (index, access) = self.typed(reference, wanted)?;
-        self.check_state(index, "set", access.settable)?;
-        Ok((index, access))
+        match access.settable.contains(self.memory.state) {
+            true => Ok((index, access)),
+            false => Err(self.not_in_state(index, "set", access.settable)),
+        }
     }
 
-    fn check_state(&self, index: usize, verb: &str, allowed: StateSet) -> CallResult<()> {
-        let state = self.memory.state;
-        if allowed.contains(state) {
-            return Ok(());
-        }
-        let variable = &self.table().variables()[index];
-        Err(not_in_state(variable, verb, allowed, state))
+    #[cold]
+    fn not_in_state(&self, index: usize, verb: &str, allowed: StateSet) -> Refusal {
+        let v = &self.table().variables()[index];
+        let what = match v.causality {
+            Causality::Input => "an input",
+            Causality::Output => "an output",
+            Causality::Parameter => "a parameter",
+            Causality::CalculatedParameter => "a calculated parameter",
+            Causality::Local if v.variability == Variability::Constant => "a constant",
+            Causality::Local => "a state or its rate",
+            Causality::Independent => "the time",
+        };
+        Refusal::error(format!(
+            "`{}` ({what}, {:?}) cannot be {verb} in the state `{}`, only {}",
+            v.name,
+            v.variability,
+            self.memory.state.name(),
+            allowed.names()
+        ))
     }
 
     /// Whether `value` may be stored at `index`: finite, and within the limits of the variable.
@@ -45,12 +61,6 @@ impl Instance {
             return Ok(());
         }
         Err(wrong_value(&self.table().variables()[index], value))
-    }
-
-    /// Whether `value` may stand at `index` in a state read from a file.
-    pub(super) fn check_stored(&self, index: usize, value: f64) -> CallResult<()> {
-        self.check_value(index, self.layout.access[index], value)
-            .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
     }
 }
 
@@ -67,26 +77,6 @@ fn wrong_reference(index: usize, wanted: DataType, table: &VariableTable) -> Ref
             table.variables().len() - 1
         ),
     })
-}
-
-#[cold]
-fn not_in_state(v: &Variable, verb: &str, allowed: StateSet, state: State) -> Refusal {
-    let what = match v.causality {
-        Causality::Input => "an input",
-        Causality::Output => "an output",
-        Causality::Parameter => "a parameter",
-        Causality::CalculatedParameter => "a calculated parameter",
-        Causality::Local if v.variability == Variability::Constant => "a constant",
-        Causality::Local => "a state or its rate",
-        Causality::Independent => "the time",
-    };
-    Refusal::error(format!(
-        "`{}` ({what}, {:?}) cannot be {verb} in the state `{}`, only {}",
-        v.name,
-        v.variability,
-        state.name(),
-        allowed.names()
-    ))
 }
 
 #[cold]

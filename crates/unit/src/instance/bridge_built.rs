@@ -1,5 +1,6 @@
 //! What follows from the parameters of an exported bridge: its coupled modes, and what gusts do to them.
 
+use super::coupled::Built;
 use super::damping::PresentDamping;
 use crate::bridge::{Bridge, GustChannels};
 use crate::bridge_gusts::GustRecord;
@@ -14,24 +15,24 @@ const MAX_PIECES: f64 = 1e4;
 /// Part of a step that is not worth a piece of its own.
 const LAST_PIECE: f64 = 1e-9;
 
-/// A bridge with the parameters of its FMU: its stepper, the search for its onset and its present modes.
+/// A bridge with the parameters of its FMU.
 #[derive(Debug)]
-pub(super) struct Built {
+pub(super) struct TunedBridge {
     pub bridge: Bridge,
-    pub stepper: Stepper,
     /// Displacements of the mass-normalised modes: vertical, lateral, rotation of each named node.
     pub shapes: DMatrix<f64>,
     /// Strokes of the dampers by unit coordinates.
     pub strokes: DMatrix<f64>,
     gusts: Option<GustChannels>,
     turbulence: Option<GustRecord>,
-    pub damping: PresentDamping,
     /// State before the step at hand, and inputs within it.
     before: SectionState,
     now: Inputs,
 }
 
-impl Built {
+pub(super) type BuiltBridge = Built<TunedBridge>;
+
+impl BuiltBridge {
     /// The bridge of an export with the parameters in `values`.
     pub(super) fn new(resources: &Resources, values: &[f64]) -> Result<Self> {
         let options = resources.bridge.as_ref();
@@ -53,16 +54,19 @@ impl Built {
             (Some(field), Some(gusts)) => Some(field.channels(&bridge, gusts)?),
             _ => None,
         };
-        Ok(Self {
+        let own = TunedBridge {
             strokes: bridge.strokes(),
             shapes: bridge.shapes_at(&options.named),
             bridge,
-            stepper,
             gusts,
             turbulence,
-            damping: PresentDamping::default(),
             before: SectionState::default(),
             now: Inputs::steady(0.0, 0),
+        };
+        Ok(Self {
+            stepper,
+            damping: PresentDamping::default(),
+            own,
         })
     }
 
@@ -75,7 +79,9 @@ impl Built {
     pub(super) fn least_damped(&self) -> Option<NearbyOnset> {
         self.damping.least()
     }
+}
 
+impl TunedBridge {
     /// Loads gusts of the strips and their rates.
     pub(super) fn set_gusts(
         &self,
@@ -107,14 +113,13 @@ impl Built {
     /// state is as it was.
     pub(super) fn advance(
         &mut self,
+        stepper: &mut Stepper,
         state: &mut SectionState,
         inputs: &Inputs,
-        time: f64,
-        step: f64,
-        factor: f64,
+        [time, step, factor]: [f64; 3],
     ) -> Result<()> {
-        let Some(record) = self.turbulence.as_ref().filter(|_| factor != 0.0) else {
-            return self.stepper.advance(state, inputs, step);
+        let Some(record) = &self.turbulence else {
+            return stepper.advance(state, inputs, step);
         };
         let pieces = record.pieces(step);
         if pieces.is_nan() || pieces > MAX_PIECES {
@@ -136,7 +141,7 @@ impl Built {
             run_on(now, done);
             let (gust, rate) = (&mut now.gust_m_s, &mut now.gust_rate_m_s2);
             record.add(time + done, factor, gust, rate);
-            if let Err(why) = self.stepper.advance(state, now, piece) {
+            if let Err(why) = stepper.advance(state, now, piece) {
                 state.set_to(&self.before);
                 return Err(why);
             }

@@ -4,7 +4,7 @@
 //! where all eigenvalues say the same: nothing grows just below it nor at close speeds down to the last at which no mode has lost much of
 //! the damping that it had below the onset of the search. Everything else is searched for.
 
-use super::bridge_built::Built;
+use super::bridge_built::BuiltBridge;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -39,19 +39,14 @@ pub(super) struct SearchedOnset {
 
 impl SearchedOnset {
     /// That of a search; `None` where there is more to say of it than a speed.
-    pub(super) fn from_onset(built: &Built, onset: &Onset) -> Option<Self> {
-        let plain = onset.warnings.is_empty() && onset.spurious_speeds_m_s.is_empty();
-        let at = &onset.at;
-        let section = built.stepper.section();
-        let start = OnsetStart::at(at.speed_m_s, at.frequency_hz, section).ok();
-        start
-            .filter(|_| plain)
-            .and_then(|start| Self::from(built, &start).ok())
+    pub(super) fn from_onset(built: &BuiltBridge, onset: &Onset) -> Option<Self> {
+        let start = OnsetStart::from_onset(onset, built.stepper.section())?;
+        Self::from(built, &start).ok()
     }
 
     /// That which came with the archive, for the bridge as it was exported.
-    pub(super) fn from(built: &Built, start: &OnsetStart) -> Result<Self> {
-        let bridge = &built.bridge;
+    pub(super) fn from(built: &BuiltBridge, start: &OnsetStart) -> Result<Self> {
+        let bridge = &built.own.bridge;
         let (speed, hertz) = (start.speed_m_s, start.frequency_hz);
         let k = ReducedFrequency::from_hertz(hertz, bridge.width_m(), speed);
         let at = CriticalPoint::new("bridge", OnsetMethod::Eigenvalues, speed, hertz, k);
@@ -63,14 +58,14 @@ impl SearchedOnset {
     }
 
     /// The onset of a bridge up to `limit`, m/s; `None` where it has to be searched for.
-    pub(super) fn followed(&self, built: &mut Built, limit: f64) -> Option<FoundOnset> {
-        let now = parameters(&mut built.bridge);
+    pub(super) fn followed(&self, built: &mut BuiltBridge, limit: f64) -> Option<FoundOnset> {
+        let now = parameters(&mut built.own.bridge);
         let near = |(now, then): (&f64, &f64)| (now - then).abs() <= NEAR * then.abs();
         if now.len() != self.parameters.len() || !now.iter().zip(&self.parameters).all(near) {
             return None;
         }
         let at_once = self.motion.follow(built.stepper.section());
-        let mut next = at_once.or_else(|| self.in_steps(&built.bridge, &now))?;
+        let mut next = at_once.or_else(|| self.in_steps(&built.own.bridge, &now))?;
         if !next.resembles(&self.motion) {
             return None;
         }
@@ -89,7 +84,7 @@ impl SearchedOnset {
     }
 
     /// Whether well below an onset the damping that there was is left.
-    fn is_damped(&self, built: &mut Built, onset_m_s: f64) -> bool {
+    fn is_damped(&self, built: &mut BuiltBridge, onset_m_s: f64) -> bool {
         let mut parts = COMPARED_AT.iter().zip(&self.damping_below);
         parts.all(|(part, before)| {
             let damping = built.damping_at(part * onset_m_s);
@@ -117,7 +112,7 @@ impl SearchedOnset {
 
 /// Whether something grows just below an onset or at the speeds below that; `None` where that is not known, as where all damping dips
 /// between two of them.
-fn grows_below(built: &mut Built, onset_m_s: f64) -> Option<bool> {
+fn grows_below(built: &mut BuiltBridge, onset_m_s: f64) -> Option<bool> {
     let mut seen: Vec<f64> = Vec::with_capacity(LOOKED_AT + 1);
     for i in 0..=LOOKED_AT {
         let part = JUST_BELOW - APART * i as f64;

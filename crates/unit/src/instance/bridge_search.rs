@@ -1,6 +1,6 @@
 //! Onset and divergence of an exported bridge.
 
-use super::bridge_built::Built;
+use super::bridge_built::BuiltBridge;
 use super::bridge_followed::SearchedOnset;
 use super::section::OnsetCard;
 use crate::aerodynamics::Transfer;
@@ -13,7 +13,7 @@ const SPEEDS: usize = 60;
 
 impl OnsetCard {
     /// With the divergence of a bridge and nothing else.
-    fn with_divergence(built: &Built, limit: f64) -> Self {
+    fn with_divergence(built: &BuiltBridge, limit: f64) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_of(built) {
             Ok(speed) => card.set_divergence(speed, limit),
@@ -24,14 +24,14 @@ impl OnsetCard {
 
     /// With an onset up to `limit`, m/s, that was followed from one nearby.
     pub(super) fn of_followed(
-        built: &Built,
+        built: &BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
         limit: f64,
         onset: &FoundOnset,
     ) -> Self {
         let mut card = Self::with_divergence(built, limit);
         let (speed, hertz) = (onset.speed_m_s, onset.frequency_hz);
-        let k = ReducedFrequency::from_hertz(hertz, built.bridge.width_m(), speed);
+        let k = ReducedFrequency::from_hertz(hertz, built.own.bridge.width_m(), speed);
         let inside = tested.is_some_and(|range| range.contains(k));
         card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
         card.numbers.stable_below = true;
@@ -41,7 +41,7 @@ impl OnsetCard {
     /// Searches a bridge up to `limit`, m/s, as [`OnsetCard::search`] a section. The tested range is that of the girder at the
     /// frequency of flutter. Beside it the onset from which others may be followed.
     pub(super) fn of_bridge(
-        built: &Built,
+        built: &BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
         limit: f64,
     ) -> (Self, Option<SearchedOnset>) {
@@ -69,8 +69,8 @@ impl OnsetCard {
     }
 }
 
-fn divergence_of(built: &Built) -> Result<Option<f64>> {
+fn divergence_of(built: &BuiltBridge) -> Result<Option<f64>> {
     let still = ReducedFrequency::from_full_width(0.0);
-    let forces = built.bridge.forces().transfer(still)?;
+    let forces = built.own.bridge.forces().transfer(still)?;
     divergence_speed(built.stepper.section().structure(), &forces)
 }

@@ -3,24 +3,22 @@
 //! The stepper is that of the section: one exact matrix at constant wind, the Taylor series where the wind changes or gusts
 //! blow.
 
-use super::bridge_built::Built;
+use super::bridge_built::{BuiltBridge, TunedBridge};
 use super::bridge_followed::SearchedOnset;
-use super::coupled::{Coupled, CoupledKind};
-use super::damping::PresentDamping;
+use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
 use super::section::OnsetCard;
 use super::sensitivity::SectionValues;
-use super::trust::beyond_linear;
 use super::unit::Prepared;
 use crate::bridge::motion_index;
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::onset_start::OnsetStart;
 use crate::resources::Resources;
-use crate::response::{Outputs, SectionState, Stepper};
+use crate::response::{Outputs, SectionState};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::variables::{LINEAR_ROTATION_RAD, ModeOutput, Response, Role};
+use crate::variables::{ModeOutput, Response, Role};
 use nalgebra::DMatrix;
 
 /// A bridge in its modes: its variables, and what has been said of the parameters as they are.
@@ -35,7 +33,6 @@ pub(super) struct ModalBridge {
     start: Option<OnsetStart>,
     /// From which the onset of other parameters is followed.
     searched: Option<SearchedOnset>,
-    warned: bool,
 }
 
 pub(super) type BridgeUnit = Coupled<ModalBridge>;
@@ -61,7 +58,6 @@ impl BridgeUnit {
             // without a start the first onset is searched for
             start: options.onset,
             searched: None,
-            warned: false,
         };
         Self::new(own, resources)
     }
@@ -85,7 +81,7 @@ impl BridgeUnit {
             if force == 0.0 && rate == 0.0 {
                 continue;
             }
-            for (m, phi) in self.built.shapes.row(row).iter().enumerate() {
+            for (m, phi) in self.built.own.shapes.row(row).iter().enumerate() {
                 self.inputs.force[m] += phi * force;
                 self.inputs.force_rate[m] += phi * rate;
             }
@@ -93,12 +89,9 @@ impl BridgeUnit {
         let gusts = self.indices.gusts().iter();
         let gusts = gusts.map(|index| memory.values[*index]);
         let gust_rates = rates[self.indices.first_gust..].iter().copied();
-        self.built.set_gusts(&mut self.inputs, gusts, gust_rates);
-    }
-
-    fn turbulence_factor(&self, memory: &Memory) -> f64 {
-        let index = self.indices.turbulence_factor;
-        index.map_or(0.0, |index| memory.values[index])
+        self.built
+            .own
+            .set_gusts(&mut self.inputs, gusts, gust_rates);
     }
 
     /// What a role stands for in the motion of the mass-normalised modes.
@@ -110,7 +103,7 @@ impl BridgeUnit {
             }
             Role::Damper(d, response) => {
                 let list = modal.lists()[response as usize];
-                product(&self.built.strokes, d, list)
+                product(&self.built.own.strokes, d, list)
             }
             Role::Mode(m, ModeOutput::Coordinate) => modal.displacement[m] / self.own.roots[m],
             Role::Mode(m, ModeOutput::Rate) => modal.rate[m] / self.own.roots[m],
@@ -121,13 +114,13 @@ impl BridgeUnit {
 
     /// Displacement in a row of the shapes by mass-normalised coordinates.
     pub(super) fn at_row(&self, row: usize, modes: &[f64]) -> f64 {
-        product(&self.built.shapes, row, modes)
+        product(&self.built.own.shapes, row, modes)
     }
 
     /// The row of the shapes that is the greatest rotation of a named node.
     fn most_turned(&self, modes: &[f64]) -> usize {
         let (mut most, mut greatest) = (2, 0.0);
-        for row in (2..self.built.shapes.nrows()).step_by(3) {
+        for row in (2..self.built.own.shapes.nrows()).step_by(3) {
             let turned = self.at_row(row, modes).abs();
             if turned > greatest {
                 (most, greatest) = (row, turned);
@@ -148,42 +141,33 @@ fn product(matrix: &DMatrix<f64>, row: usize, numbers: &[f64]) -> f64 {
 }
 
 impl CoupledKind for ModalBridge {
-    type Built = Built;
+    type Own = TunedBridge;
 
-    fn build(&self, resources: &Resources, values: &[f64]) -> Result<Built> {
-        Built::new(resources, values)
-    }
-
-    fn stepper(built: &Built) -> &Stepper {
-        &built.stepper
-    }
-
-    fn parts(built: &mut Built) -> (&mut Stepper, &mut PresentDamping) {
-        (&mut built.stepper, &mut built.damping)
+    fn build(&self, resources: &Resources, values: &[f64]) -> Result<BuiltBridge> {
+        BuiltBridge::new(resources, values)
     }
 
     fn replaces(unit: &mut BridgeUnit) {
         unit.take_start();
     }
 
-    fn forget_warnings(&mut self) {
-        self.warned = false;
-    }
-
     fn load_inputs(unit: &mut BridgeUnit, memory: &Memory) {
+        unit.inputs_stay = false;
         unit.load_without_turbulence(memory);
-        let factor = unit.turbulence_factor(memory);
-        let built = &unit.built;
-        built.add_turbulence(&mut unit.inputs, memory.time, factor);
+        if let Some(index) = unit.indices.turbulence_factor {
+            let (factor, own) = (memory.values[index], &unit.built.own);
+            own.add_turbulence(&mut unit.inputs, memory.time, factor);
+        }
     }
 
     fn motion_at_release(unit: &BridgeUnit, values: &[f64]) -> [Vec<f64>; 2] {
         let initial = unit.indices.initial.iter().zip(&unit.own.roots);
         let modes: Vec<f64> = initial.map(|(index, root)| values[*index] * root).collect();
         // masses of dampers go with the girder
-        let masses = unit.built.bridge.dampers.masses.iter().enumerate();
-        let dampers = masses
-            .map(|(d, damper)| -product(&unit.built.strokes, d, &modes) * damper.mass_kg.sqrt());
+        let masses = unit.built.own.bridge.dampers.masses.iter().enumerate();
+        let dampers = masses.map(|(d, damper)| {
+            -product(&unit.built.own.strokes, d, &modes) * damper.mass_kg.sqrt()
+        });
         let all: Vec<f64> = modes.iter().copied().chain(dampers).collect();
         let still = vec![0.0; all.len()];
         [all, still]
@@ -229,7 +213,7 @@ impl CoupledKind for ModalBridge {
         unit.calculate(resources, memory, notices);
         let onset = unit.calculated.onset();
         let wind = unit.indices.wind_speed(memory);
-        let (hertz, width) = (onset.frequency_hz.value, unit.built.bridge.width_m());
+        let (hertz, width) = (onset.frequency_hz.value, unit.built.own.bridge.width_m());
         let k = ReducedFrequency::from_hertz(hertz, width, wind);
         onset.found && wind > 0.0 && unit.own.tested.is_some_and(|r| r.contains(k))
     }
@@ -254,22 +238,16 @@ impl CoupledKind for ModalBridge {
         }
     }
 
-    fn watch(unit: &mut BridgeUnit, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        if unit.own.warned {
-            return;
-        }
-        let rotation = Self::rotation(unit, memory);
-        if rotation.abs() > LINEAR_ROTATION_RAD {
-            unit.own.warned = true;
-            notices.push(beyond_linear(rotation));
-        }
-    }
-
-    fn advance(unit: &mut BridgeUnit, memory: &mut Memory, step: f64) -> Result<()> {
+    fn advance_in_turbulence(
+        unit: &mut BridgeUnit,
+        memory: &mut Memory,
+        step: f64,
+        factor: f64,
+    ) -> Result<()> {
         unit.load_without_turbulence(memory);
-        let factor = unit.turbulence_factor(memory);
-        let (time, system) = (memory.time, &mut memory.system);
-        unit.built.advance(system, &unit.inputs, time, step, factor)
+        let Built { stepper, own, .. } = &mut unit.built;
+        let times = [memory.time, step, factor];
+        own.advance(stepper, &mut memory.system, &unit.inputs, times)
     }
 
     fn write_outputs(unit: &BridgeUnit, memory: &mut Memory) {

@@ -1,11 +1,13 @@
 //! What a section and a bridge share: a structure coupled with its self-excited forces.
 
 use super::calculated::CalculatedNumbers;
+use super::coupled_indices::CoupledIndices;
 use super::damping::PresentDamping;
-use super::layout::{Source, index_of};
+use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{SectionValues, check_finite, finite};
+use super::sensitivity::{SectionValues, check_finite};
+use super::trust::beyond_linear;
 use super::unit::{Differentiable, Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -14,75 +16,8 @@ use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
-use crate::variables::{Causality, Response, Role, Variable, VariableTable};
+use crate::variables::{LINEAR_ROTATION_RAD, Response, Role};
 use std::fmt::Debug;
-
-/// Indices in the table.
-#[derive(Debug)]
-pub(super) struct CoupledIndices {
-    /// Wind speed, then forces, then gusts: the inputs.
-    pub inputs: Vec<usize>,
-    /// Where the gusts begin among them.
-    pub first_gust: usize,
-    /// Displacements at release, then rates where they can be set.
-    pub initial: Vec<usize>,
-    /// Upper end of the search for the onset.
-    pub limit: usize,
-    /// Factor on the turbulence of the archive.
-    pub turbulence_factor: Option<usize>,
-    /// Entry of the state that a variable is; by index.
-    pub state_entry: Vec<Option<usize>>,
-}
-
-impl CoupledIndices {
-    /// Those of a section or bridge, whose inputs stand first in the table, in this order.
-    pub(super) fn new(table: &VariableTable) -> Result<Self> {
-        let all = |wanted: &dyn Fn(&Variable) -> bool| -> Vec<usize> {
-            let variables = table.variables().iter().enumerate();
-            let wanted = variables.filter(|(_, v)| wanted(v));
-            wanted.map(|(index, _)| index).collect()
-        };
-        let inputs = all(&|v| v.causality == Causality::Input);
-        let gusts = all(&|v| matches!(v.role, Role::Gust(..))).len();
-        let displacements =
-            |v: &Variable| matches!(v.role, Role::InitialDisplacement(_) | Role::InitialMode(_));
-        let mut initial = all(&displacements);
-        initial.extend(all(&|v| matches!(v.role, Role::InitialRate(_))));
-        // the state begins with all displacements, then all rates; on a bridge every entry is numbered
-        let dofs = table.dofs();
-        let of = |dof: Dof| dofs.iter().position(|d| *d == dof);
-        let entries = table.variables().iter().map(|v| match v.role {
-            Role::Filter(i) => Some(2 * dofs.len() + i),
-            Role::Response(Response::Displacement, dof) => of(dof),
-            Role::Response(Response::Rate, dof) => of(dof).map(|i| dofs.len() + i),
-            _ => None,
-        });
-        Ok(Self {
-            first_gust: inputs.len() - gusts,
-            inputs,
-            initial,
-            limit: index_of(table, Role::OnsetSearchLimit)?,
-            turbulence_factor: table.find(Role::TurbulenceFactor),
-            state_entry: entries.collect(),
-        })
-    }
-
-    pub(super) fn wind_speed(&self, memory: &Memory) -> f64 {
-        memory.values[self.inputs[0]]
-    }
-
-    pub(super) fn limit(&self, memory: &Memory) -> f64 {
-        memory.values[self.limit]
-    }
-
-    pub(super) fn forces(&self) -> &[usize] {
-        &self.inputs[1..self.first_gust]
-    }
-
-    pub(super) fn gusts(&self) -> &[usize] {
-        &self.inputs[self.first_gust..]
-    }
-}
 
 /// Gusts have blown as they do now until the release: `gusts` for every group of lags.
 fn blow_until_release(state: &mut SectionState, gusts: &[f64]) {
@@ -92,20 +27,25 @@ fn blow_until_release(state: &mut SectionState, gusts: &[f64]) {
     }
 }
 
+/// What follows from the parameters.
+#[derive(Debug)]
+pub(super) struct Built<B> {
+    pub stepper: Stepper,
+    pub damping: PresentDamping,
+    /// What a section or a bridge has beside.
+    pub own: B,
+}
+
 /// What a section and a bridge do each in their own way.
 pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
-    /// What follows from the parameters.
-    type Built: Debug + Send;
+    /// What it has in [`Built`].
+    type Own: Debug + Send;
 
-    /// The same for the parameters in `values`.
+    /// What follows from the parameters in `values`.
     ///
     /// # Errors
     /// When they give nothing that can be simulated.
-    fn build(&self, resources: &Resources, values: &[f64]) -> Result<Self::Built>;
-
-    fn stepper(built: &Self::Built) -> &Stepper;
-
-    fn parts(built: &mut Self::Built) -> (&mut Stepper, &mut PresentDamping);
+    fn build(&self, resources: &Resources, values: &[f64]) -> Result<Built<Self::Own>>;
 
     /// The parameters have changed, and what was built is replaced.
     fn replaces(_unit: &mut Coupled<Self>) {}
@@ -113,19 +53,11 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Parameters or the limit of the search have changed.
     fn parameters_changed(&mut self) {}
 
-    /// Inputs, or what is made of them, may have changed.
-    fn inputs_changed(&mut self) {}
-
     /// Nothing has been said yet.
-    fn forget_warnings(&mut self);
+    fn forget_warnings(&mut self) {}
 
-    /// Loads the inputs of a memory.
+    /// Loads the inputs of a memory, not necessarily that of the unit.
     fn load_inputs(unit: &mut Coupled<Self>, memory: &Memory);
-
-    /// The same of the memory of the unit, which may know them.
-    fn load_own_inputs(unit: &mut Coupled<Self>, memory: &Memory) {
-        Self::load_inputs(unit, memory);
-    }
 
     /// Displacements and rates of the coordinates at release with the initial values in `values`.
     fn motion_at_release(unit: &Coupled<Self>, values: &[f64]) -> [Vec<f64>; 2];
@@ -160,20 +92,24 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
         Self::searched(unit, resources, memory)
     }
 
-    /// See [`Unit::watch`].
+    /// See [`Unit::watch`]; of the rotation it is said for both.
     fn watch(
+        _unit: &mut Coupled<Self>,
+        _resources: &Resources,
+        _memory: &Memory,
+        _notices: &mut Vec<String>,
+    ) {
+    }
+
+    /// See [`Prepared::advance`], in so many times the turbulence of an archive that has some.
+    fn advance_in_turbulence(
         unit: &mut Coupled<Self>,
-        resources: &Resources,
-        memory: &Memory,
-        notices: &mut Vec<String>,
-    );
-
-    /// See [`Prepared::advance`].
-    fn advance(unit: &mut Coupled<Self>, memory: &mut Memory, step: f64) -> Result<()>;
-
-    /// See [`Unit::repeat`].
-    fn repeat(_unit: &mut Coupled<Self>, _memory: &mut Memory, _step: f64) -> Option<bool> {
-        None
+        memory: &mut Memory,
+        step: f64,
+        _factor: f64,
+    ) -> Result<()> {
+        let stepper = &mut unit.built.stepper;
+        stepper.advance(&mut memory.system, &unit.inputs, step)
     }
 
     /// See [`Unit::repeat_outputs`].
@@ -191,13 +127,17 @@ pub(super) struct Coupled<S: CoupledKind> {
     pub own: S,
     pub indices: CoupledIndices,
     /// Of the parameters as they are.
-    pub built: S::Built,
+    pub built: Built<S::Own>,
     /// Whether they have changed since.
     stale: bool,
     /// While initialising: the state has to be made anew from the values at release.
     release_pending: bool,
+    /// Whether it has been said since the initialisation that the rotation is beyond linear theory.
+    rotation_left: bool,
     pub calculated: CalculatedNumbers,
     pub inputs: Inputs,
+    /// Whether they are those of the memory, until one is set.
+    pub inputs_stay: bool,
     pub outputs: Outputs,
 }
 
@@ -209,53 +149,47 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     fn at_rest(&self) -> SectionState {
         SectionState {
             values: vec![0.0; self.section().states()],
-            gusts: vec![0.0; S::stepper(&self.built).gust_states()],
+            gusts: vec![0.0; self.built.stepper.gust_states()],
             ..SectionState::default()
         }
     }
 
-    fn changed(&mut self, source: Source) {
+    fn value_set(
+        &mut self,
+        memory: &mut Memory,
+        index: usize,
+        source: Source,
+        changed: bool,
+    ) -> bool {
         match source {
-            Source::Input => self.own.inputs_changed(),
-            Source::Section => {
-                self.stale = true;
-                self.own.inputs_changed();
-                self.calculated.forget();
-                self.own.parameters_changed();
-                self.release_pending = true;
+            Source::Input => {
+                self.inputs_stay &= !changed;
+                let initializing = memory.state == State::Initialization;
+                self.release_pending |= initializing && self.indices.gusts().contains(&index);
             }
-            Source::Release => self.release_pending = true,
-            Source::Limit => {
+            Source::Section if changed => self.parameters_changed(),
+            Source::Release if changed => self.release_pending = true,
+            Source::Limit if changed => {
                 self.calculated.forget();
                 self.own.parameters_changed();
             }
-            Source::Constant
-            | Source::Response
-            | Source::Calculated
-            | Source::Status
-            | Source::State
-            | Source::Rate => {}
-        }
-    }
-
-    fn input_set(&mut self, memory: &mut Memory, index: usize, _: bool) -> bool {
-        if memory.state == State::Initialization && self.indices.gusts().contains(&index) {
-            self.release_pending = true;
+            _ => {}
         }
         false
     }
 
     fn begin_initialization(&mut self) {
         self.own.forget_warnings();
+        self.rotation_left = false;
         self.release_pending = true;
     }
 
     fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
-        self.own.inputs_changed();
+        self.inputs_stay = false;
     }
 
     fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool) {
-        self.own.inputs_changed();
+        self.inputs_stay = false;
         let same_system = same(Source::Section);
         self.stale |= !same_system;
         let same = same_system && same(Source::Limit);
@@ -288,10 +222,18 @@ impl<S: CoupledKind> Unit for Coupled<S> {
 
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
         S::watch(self, resources, memory, notices);
+        let rotation = S::rotation(self, memory);
+        if rotation.abs() > LINEAR_ROTATION_RAD && !self.rotation_left {
+            self.rotation_left = true;
+            notices.push(beyond_linear(rotation));
+        }
     }
 
+    #[inline]
     fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        S::repeat(self, memory, step)
+        let (stepper, system) = (&mut self.built.stepper, &mut memory.system);
+        let taken = self.inputs_stay && stepper.repeat(system, &self.inputs, step);
+        taken.then(|| !self.rotation_left && S::rotation(self, memory).abs() > LINEAR_ROTATION_RAD)
     }
 
     fn repeat_outputs(&mut self, memory: &mut Memory) -> bool {
@@ -305,22 +247,30 @@ impl<S: CoupledKind> Unit for Coupled<S> {
 
 impl<S: CoupledKind> Prepared for Coupled<S> {
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
-        S::advance(self, memory, step)?;
+        self.load_inputs_once(memory);
+        let factor = self.indices.turbulence_factor;
+        match factor.map_or(0.0, |index| memory.values[index]) {
+            0.0 => {
+                let stepper = &mut self.built.stepper;
+                stepper.advance(&mut memory.system, &self.inputs, step)?;
+            }
+            factor => S::advance_in_turbulence(self, memory, step, factor)?,
+        }
         Ok(false)
     }
 
     fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
         S::load_inputs(self, memory);
-        let (stepper, _) = S::parts(&mut self.built);
+        let stepper = &mut self.built.stepper;
         stepper.write_derivative(&memory.system, &self.inputs, rates)?;
-        finite(rates)
+        check_finite(&*rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
-        S::load_own_inputs(self, memory);
-        let (stepper, _) = S::parts(&mut self.built);
+        self.load_inputs_once(memory);
+        let stepper = &mut self.built.stepper;
         stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
-        check_finite(&self.outputs)?;
+        check_finite(self.outputs.lists().into_iter().flatten())?;
         S::write_outputs(self, memory);
         Ok(())
     }
@@ -338,32 +288,51 @@ impl<S: CoupledKind> Coupled<S> {
     pub(super) fn new(own: S, resources: &Resources) -> Result<Self> {
         let table = &resources.table;
         let built = own.build(resources, &starts(table))?;
-        let coordinates = S::stepper(&built).section().structure().dofs.len();
+        let coordinates = built.stepper.section().structure().dofs.len();
         Ok(Self {
             own,
             indices: CoupledIndices::new(table)?,
             built,
             stale: false,
             release_pending: true,
+            rotation_left: false,
             calculated: CalculatedNumbers::new(table),
             inputs: Inputs::steady(0.0, coordinates),
+            inputs_stay: false,
             outputs: Outputs::default(),
         })
     }
 
-    /// What steps it, and the inputs that are loaded.
-    pub(super) fn parts(&mut self) -> (&mut Stepper, &mut Inputs) {
-        (S::parts(&mut self.built).0, &mut self.inputs)
+    /// Parameters have changed: all that follows from them.
+    pub(super) fn parameters_changed(&mut self) {
+        self.stale = true;
+        self.inputs_stay = false;
+        self.calculated.forget();
+        self.own.parameters_changed();
+        self.release_pending = true;
+    }
+
+    /// Loads the inputs of the memory of the unit where they may be others; with a rate and in turbulence a step carries them on.
+    fn load_inputs_once(&mut self, memory: &Memory) {
+        if self.inputs_stay {
+            return;
+        }
+        S::load_inputs(self, memory);
+        self.built.stepper.forget_step();
+        let turbulence = self.indices.turbulence_factor;
+        let moves = memory.input_rates.iter().any(|rate| *rate != 0.0)
+            || turbulence.is_some_and(|index| memory.values[index] != 0.0);
+        self.inputs_stay = !moves;
     }
 
     pub(super) fn section(&self) -> &CoupledSection {
-        S::stepper(&self.built).section()
+        self.built.stepper.section()
     }
 
     /// State at release with the initial values in `values` and the gusts that are loaded.
     pub(super) fn release(&self, values: &[f64]) -> Result<SectionState> {
         let [displacement, rate] = S::motion_at_release(self, values);
-        let mut state = S::stepper(&self.built).released(&displacement, &rate)?;
+        let mut state = self.built.stepper.released(&displacement, &rate)?;
         blow_until_release(&mut state, &self.inputs.gust_m_s);
         Ok(state)
     }
@@ -384,7 +353,6 @@ impl<S: CoupledKind> Coupled<S> {
 
     /// All that there is in a state, with the inputs that are loaded.
     pub(super) fn instant(&mut self, state: &SectionState) -> Result<SectionValues> {
-        let (stepper, inputs) = self.parts();
-        SectionValues::new(stepper, state, inputs)
+        SectionValues::new(&mut self.built.stepper, state, &self.inputs)
     }
 }

@@ -24,7 +24,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         notices: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
         S::load_inputs(self, memory);
-        let (stepper, inputs) = self.parts();
+        let (stepper, inputs) = (&mut self.built.stepper, &mut self.inputs);
         let velocity = stepper.state_derivative(&memory.system, inputs)?;
         let velocity = memory.system.with_all(&velocity);
         let by_wind = SectionValues::by_speed(stepper, &memory.system, inputs);
@@ -34,7 +34,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         let mut rates = SectionValues::default();
         stepper.outputs(&velocity, inputs, &mut rates.outputs)?;
         add(&mut rates.outputs, &by_wind.outputs, wind_rate);
-        check_finite(&rates.outputs)?;
+        check_finite(rates.outputs.lists().into_iter().flatten())?;
         let by = PresentSlopes {
             wind: wind_rate,
             outputs: Some(&rates.outputs),
@@ -67,8 +67,8 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
             (Source::Limit, _) => None,
             (_, Role::WindSpeed) => {
                 S::load_inputs(self, memory);
-                let (stepper, inputs) = self.parts();
-                Some(SectionValues::by_speed(stepper, &memory.system, inputs))
+                let (stepper, state) = (&self.built.stepper, &memory.system);
+                Some(SectionValues::by_speed(stepper, state, &self.inputs))
             }
             _ => Some(by_unit(self, memory, known)?),
         };

@@ -1,6 +1,6 @@
 //! Numbers of the present moment of a section or bridge.
 
-use super::coupled::{Coupled, CoupledKind};
+use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
@@ -52,7 +52,7 @@ impl<S: CoupledKind> Coupled<S> {
                     self.calculate(resources, memory, notices);
                     present.onset = self.calculated.onset();
                 }
-                Known::Wind => {}
+                Known::Wind | Known::Length => {}
                 Known::Damping => present.damping_ratio = self.damping(wind, notices).into(),
                 Known::TestedWind => {
                     present.wind_is_tested = S::wind_is_tested(self, resources, memory, notices);
@@ -72,7 +72,9 @@ impl<S: CoupledKind> Coupled<S> {
 
     /// Smallest damping ratio; 0, with the reason, where it is not known.
     fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
-        let (stepper, damping) = S::parts(&mut self.built);
+        let Built {
+            stepper, damping, ..
+        } = &mut self.built;
         damping.at(stepper, wind).unwrap_or_else(|why| {
             notices.push(format!("damping_now is not known: {why}"));
             0.0
@@ -105,7 +107,7 @@ impl<S: CoupledKind> Coupled<S> {
                 Known::Motion(response, dof) => {
                     present.motion_mut(*response, *dof).slope = slope(*response, *dof);
                 }
-                Known::Onset | Known::Wind | Known::Damping | Known::TestedWind => {}
+                _ => {}
             }
         }
         present.onset.follow_limit(by.limit);

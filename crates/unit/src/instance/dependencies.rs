@@ -106,7 +106,7 @@ fn add_loading<S: CoupledKind>(pattern: &mut Pattern<S>, index: usize, sources: 
     let mut one = pattern.calm.clone();
     one.values[index] = 1.0;
     S::load_inputs(&mut pattern.unit, &one);
-    let (_, loaded) = pattern.unit.parts();
+    let loaded = &pattern.unit.inputs;
     let loaded = loaded.force.iter().chain(&loaded.gust_m_s);
     let columns = sources[pattern.forces..].iter_mut().zip(loaded);
     for (list, _) in columns.filter(|(_, number)| **number != 0.0) {

@@ -8,7 +8,8 @@ use crate::error::Result;
 use crate::lifecycle::State;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
-use crate::variables::Role;
+use crate::section::Dof;
+use crate::variables::{ForceOutput, Role};
 
 /// Relative step of the differences with respect to wind and parameters.
 const RELATIVE_STEP: f64 = 1e-5;
@@ -22,7 +23,7 @@ impl Differentiable for ForceUnit {
         _: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
         self.ahead(memory, self.renewed(memory))?;
-        let rate = |role: &Role| self.entry(memory, &self.work.forces, *role).rate;
+        let rate = |role: &Role| self.rate(memory, *role);
         Ok(outputs.iter().map(rate).collect())
     }
 
@@ -33,6 +34,34 @@ impl Differentiable for ForceUnit {
         known: usize,
         unknowns: &[Role],
         _: &mut Vec<String>,
+    ) -> CallResult<Vec<f64>> {
+        let mut found = self.base_derivatives(resources, memory, known, unknowns)?;
+        let role = resources.table.variables()[known].role;
+        for (found, unknown) in found.iter_mut().zip(unknowns) {
+            let Role::OfStrip(s, number) = *unknown else {
+                continue;
+            };
+            let forces = Dof::THREE.map(|dof| Role::Force(s, ForceOutput::PerLength, dof));
+            let slopes = self.base_derivatives(resources, memory, known, &forces)?;
+            self.present(memory, self.renewed(memory))?;
+            let slope = |of: Role| match forces.iter().position(|force| *force == of) {
+                Some(force) => slopes[force],
+                None => f64::from(u8::from(of == role)),
+            };
+            *found = number.evaluate(&self.read(memory, s, number, &slope)).slope;
+        }
+        Ok(found)
+    }
+}
+
+impl ForceUnit {
+    /// Derivatives of forces, states and their rates.
+    fn base_derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        known: usize,
+        unknowns: &[Role],
     ) -> CallResult<Vec<f64>> {
         let role = resources.table.variables()[known].role;
         let (index, state) = (self.input_at[known], self.entry_of(role));
@@ -59,9 +88,7 @@ impl Differentiable for ForceUnit {
             Ok(self.unknowns(&mut other.clone(), renewed, unknowns)?)
         })
     }
-}
 
-impl ForceUnit {
     /// The unknowns for a memory.
     fn unknowns(
         &mut self,

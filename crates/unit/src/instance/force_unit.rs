@@ -15,8 +15,8 @@ use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
 use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow, wind_at_rest};
 use crate::variables::{
-    ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
-    strip_states,
+    ComputedNumber, ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState,
+    VariableTable, strip_states,
 };
 
 /// How a number of the motion has been set since the last step.
@@ -36,8 +36,10 @@ pub(super) struct ForceUnit {
     pub input_at: Vec<usize>,
     /// Force and total force, in the order of the motion.
     outputs: Vec<[usize; 2]>,
+    /// Further outputs: index, strip, and how it follows.
+    rows: Vec<(usize, usize, &'static ComputedNumber)>,
     /// Width, length, wind factor of each strip.
-    strips: Vec<[usize; 3]>,
+    pub strips: Vec<[usize; 3]>,
     /// The gusts of each strip, where the unit takes some.
     pub gusts: Vec<[usize; 2]>,
     density: usize,
@@ -90,7 +92,7 @@ impl ForceUnit {
         let coordinate = |s: usize, dof| coordinate(&parts, s, dof);
         let mut inputs = vec![index_of(table, Role::WindSpeed)?; 1 + 3 * coordinates];
         let (mut outputs, mut strips) = (vec![[0; 2]; coordinates], vec![[0; 3]; count]);
-        let mut gusts = vec![[0; 2]; count];
+        let (mut gusts, mut rows) = (vec![[0; 2]; count], Vec::new());
         // in one pass: there may be ten thousand strips
         for (index, variable) in table.variables().iter().enumerate() {
             match variable.role {
@@ -98,6 +100,7 @@ impl ForceUnit {
                     inputs[1 + 3 * coordinate(s, dof) + response as usize] = index;
                 }
                 Role::Force(s, kind, dof) => outputs[coordinate(s, dof)][kind as usize] = index,
+                Role::OfStrip(s, number) => rows.push((index, s, number)),
                 Role::Strip(s, which) => strips[s][which as usize] = index,
                 Role::Gust(s, which) => gusts[s][which as usize] = index,
                 _ => {}
@@ -119,6 +122,7 @@ impl ForceUnit {
             parts,
             inputs,
             outputs,
+            rows,
             strips,
             density: index_of(table, Role::Section(SectionParameter::AirDensity))?,
             prediction: index_of(table, Role::Prediction)?,
@@ -228,10 +232,6 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn changed(&mut self, _: Source) {
-        self.steady_flow_pending = true;
-    }
-
     fn begin_initialization(&mut self) {
         (self.warned, self.warned_of_mass) = (false, false);
         self.steady_flow_pending = true;
@@ -263,7 +263,8 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, index: usize, changed: bool) -> bool {
+    fn value_set(&mut self, memory: &mut Memory, index: usize, _: Source, changed: bool) -> bool {
+        self.steady_flow_pending |= changed;
         let input = self.input_at[index];
         if input > 0 && self.integrated {
             self.note_motion(memory, input, changed);
@@ -395,6 +396,10 @@ impl ForceUnit {
                     memory.values[*total] = force.force * length;
                 }
             }
+        }
+        for (index, s, number) in &self.rows {
+            let present = self.read(memory, *s, number, &|_| 0.0);
+            memory.values[*index] = number.evaluate(&present).value;
         }
     }
 }

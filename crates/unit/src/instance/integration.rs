@@ -112,9 +112,10 @@ impl Instance {
     /// # Errors
     /// A step that the inputs do not allow.
     pub(crate) fn step_taken(&mut self) -> CallResult<()> {
-        self.watch();
-        let (table, notices) = (&self.resources.table, &mut self.notices);
-        self.unit.step_taken(table, &self.memory, notices)
+        let (resources, notices) = (&self.resources, &mut self.notices);
+        self.unit.watch(resources, &self.memory, notices);
+        self.unit
+            .step_taken(&resources.table, &self.memory, notices)
     }
 
     /// Rate of the state to which the variable at `index` belongs.

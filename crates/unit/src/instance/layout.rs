@@ -2,8 +2,7 @@
 
 use super::memory::Memory;
 use crate::error::{Error, Result};
-use crate::lifecycle::{State, StateSet, gettable_in, settable_in};
-use crate::response::wind_at_rest;
+use crate::lifecycle::{StateSet, gettable_in, settable_in};
 use crate::variables::{Causality, Role, StartValue, Variable, VariableTable};
 
 /// Type of a variable.
@@ -67,6 +66,7 @@ impl Source {
             Role::Constant => Self::Constant,
             Role::Response(..)
             | Role::Force(..)
+            | Role::OfStrip(..)
             | Role::NodeMotion(..)
             | Role::Mode(..)
             | Role::Damper(..) => Self::Response,
@@ -156,7 +156,7 @@ impl FastRead {
 pub(super) struct VariableLayout {
     pub access: Vec<Access>,
     fast_reads: Vec<FastRead>,
-    wind_speed: usize,
+    pub wind_speed: usize,
     /// Rates of the continuous states, in their order.
     pub state_rates: Vec<usize>,
     /// Entries of the system's state that the continuous states are, in the same order.
@@ -225,24 +225,5 @@ impl VariableLayout {
             ReadableWhen::Never => false,
         };
         stored.then(|| memory.values[index])
-    }
-
-    /// Whether a variable may be set in a state.
-    pub(super) fn is_settable(&self, index: usize, state: State) -> bool {
-        self.access[index].settable.contains(state)
-    }
-
-    /// Origin of the value at `index`.
-    pub(super) fn source(&self, index: usize) -> Source {
-        self.access[index].source
-    }
-
-    /// `value` as it is stored at `index`: a wind that rounding has taken below zero is at rest.
-    pub(super) fn clamp_to_calm(&self, index: usize, value: f64) -> f64 {
-        if index == self.wind_speed {
-            wind_at_rest(value, 0.0)
-        } else {
-            value
-        }
     }
 }

@@ -19,9 +19,11 @@ impl Instance {
         for index in 0..resized.table().variables().len() {
             let name = resized.table().variables()[index].name.as_str();
             if let Some(value) = old.get(name)
-                && resized.layout.is_settable(index, State::Instantiated)
+                && resized.layout.access[index]
+                    .settable
+                    .contains(State::Instantiated)
             {
-                resized.store(index, *value);
+                resized.memory.values[index] = *value;
             }
         }
         Ok(resized)

@@ -68,7 +68,8 @@ impl Instance {
     pub(super) fn replace_memory(&mut self, mut memory: Memory) {
         let (layout, old) = (&self.layout, &self.memory);
         let same = |source: Source| {
-            let indices = (0..old.values.len()).filter(|index| layout.source(*index) == source);
+            let indices =
+                (0..old.values.len()).filter(|index| layout.access[*index].source == source);
             let bits = |values: &[f64], index: usize| values[index].to_bits();
             indices
                 .into_iter()
@@ -107,10 +108,13 @@ impl Instance {
         let mut memory = serialized::read(bytes, &guid, &self.fresh)
             .map_err(|e| Refusal::call(e.to_string()))?;
         for (index, value) in memory.values.iter_mut().enumerate() {
-            if self.layout.source(index) == Source::Constant {
+            let access = self.layout.access[index];
+            if access.source == Source::Constant {
                 *value = self.fresh.values[index];
             }
-            self.check_stored(index, *value)?;
+            let within_limits = self.check_value(index, access, *value);
+            within_limits
+                .map_err(|why| Refusal::call(format!("serialised state: {}", why.message)))?;
         }
         Ok(Snapshot { guid, memory })
     }

@@ -1,13 +1,13 @@
 //! The section that the current parameters describe, and what follows from it alone: onset and divergence.
 
-use crate::aerodynamics::{Realization, Transfer};
+use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
     at_samples, divergence_speed, find_onset, stands_at_samples, unwanted_growth,
 };
-use crate::section::{Dof, SectionModel, Structure};
+use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
@@ -16,7 +16,11 @@ use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
 ///
 /// A support whose three numbers are the start values stays as the model states it, so that an unchanged section is
 /// the model's own to the last bit even where that states a stiffness.
-fn section_model(model: &TrainedModel, table: &VariableTable, values: &[f64]) -> SectionModel {
+pub(super) fn section_model(
+    model: &TrainedModel,
+    table: &VariableTable,
+    values: &[f64],
+) -> SectionModel {
     let mut section = model.section.clone();
     let value = |p: SectionParameter| {
         let start = p.value_in(&model.section);
@@ -69,60 +73,42 @@ fn set_support(section: &mut SectionModel, dof: Dof, [inertia, frequency, dampin
     }
 }
 
-/// The coupled section of the parameters in `values`.
-pub(super) fn coupled_section(
-    model: &TrainedModel,
-    table: &VariableTable,
-    aerodynamics: &Realization,
-    values: &[f64],
-) -> Result<CoupledSection> {
-    let structure = section_model(model, table, values).structure()?;
-    CoupledSection::new(structure, aerodynamics.clone())
-}
-
-/// The onset up to `limit` m/s where it is plain: inside the tested range, with nothing that grows below it. A sweep
-/// sees every crossing in some ten microseconds; whatever else it sees is for the search of all eigenvalues to judge.
+/// The onset of `section`, coupled, up to `limit` m/s where it is plain: inside the tested range, with nothing that grows below it. A
+/// sweep sees every crossing in some ten microseconds; whatever else it sees is for the search of all eigenvalues to judge.
 pub(super) fn plain_onset(
     model: &TrainedModel,
-    table: &VariableTable,
-    aerodynamics: &Realization,
-    values: &[f64],
+    section: &SectionModel,
+    coupled: &CoupledSection,
     limit: f64,
 ) -> Option<SweptOnset> {
-    let (structure, onset) = plain_without_samples(model, table, values, limit)?;
+    let onset = plain_without_samples(model, section, coupled, limit)?;
     if !matches!(model.model, Model::DiscreteLaguerre(_)) {
         return Some(onset);
     }
-    let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
-    let onset = at_samples(&sampled, onset).ok()??;
+    let onset = at_samples(coupled, onset).ok()??;
     (onset.speed_m_s <= limit).then_some(onset)
 }
 
 /// A speed up to which nothing grows because the onset there is plain, and stands where the force is sampled.
 pub(super) fn plainly_stable_to(
     model: &TrainedModel,
-    table: &VariableTable,
-    aerodynamics: &Realization,
-    values: &[f64],
+    section: &SectionModel,
+    coupled: &CoupledSection,
     limit: f64,
 ) -> Option<f64> {
-    let (structure, onset) = plain_without_samples(model, table, values, limit)?;
-    if matches!(model.model, Model::DiscreteLaguerre(_)) {
-        let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
-        if !stands_at_samples(&sampled, onset).ok()? {
-            return None;
-        }
-    }
-    Some(onset.speed_m_s)
+    let onset = plain_without_samples(model, section, coupled, limit)?;
+    let stands = !matches!(model.model, Model::DiscreteLaguerre(_))
+        || stands_at_samples(coupled, onset).ok()?;
+    stands.then_some(onset.speed_m_s)
 }
 
-/// The structure, and its plain onset under forces that are not sampled.
+/// The plain onset under forces that are not sampled.
 fn plain_without_samples(
     model: &TrainedModel,
-    table: &VariableTable,
-    values: &[f64],
+    section: &SectionModel,
+    coupled: &CoupledSection,
     limit: f64,
-) -> Option<(Structure, SweptOnset)> {
+) -> Option<SweptOnset> {
     let tested = Some(model.tested_range);
     let forces = match &model.model {
         Model::Laguerre(m) => LinearForces::of_laguerre(m, tested),
@@ -130,11 +116,9 @@ fn plain_without_samples(
         Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), tested),
         Model::DiscreteLaguerre(m) => LinearForces::of_discrete_laguerre(m, tested),
     };
-    let section = section_model(model, table, values);
-    let structure = section.structure().ok()?;
-    let sweep = OnsetSweep::new(forces, &structure, limit).ok()?;
-    match sweep.onset(&section, sweep.forces().coefficients()) {
-        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => Some((structure, o)),
+    let sweep = OnsetSweep::new(forces, coupled.structure(), limit).ok()?;
+    match sweep.onset(section, sweep.forces().coefficients()) {
+        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => Some(o),
         _ => None,
     }
 }

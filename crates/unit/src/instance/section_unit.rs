@@ -1,19 +1,19 @@
 //! The coupled section: a structure in self-excited wind forces. Onset and divergence are searched for when first asked
 //! for after a change of parameters.
 
-use super::coupled::{Coupled, CoupledKind};
+use super::coupled::{Built, Coupled, CoupledKind};
 use super::damping::PresentDamping;
 use super::layout::index_of;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::sensitivity::SectionValues;
-use super::trust::tested_winds;
 use crate::aerodynamics::{Realizable, Realization};
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::resources::Resources;
-use crate::response::{Outputs, RepeatableStep, SectionState, Stepper};
-use crate::section::Dof;
+use crate::response::{Outputs, SectionState, Stepper};
+use crate::section::{Dof, SectionModel};
 use crate::variables::{Response, Role, VariableTable};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
@@ -22,17 +22,6 @@ const GROWTH_SEARCHES: usize = 32;
 
 /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
 type ResponseIndices = Vec<[usize; 4]>;
-
-/// Whether the loaded inputs are those of the memory, and whether a step can be repeated with them.
-#[derive(Debug, Clone, Copy)]
-enum LoadedInputs {
-    /// Those of the memory may be others.
-    Stale,
-    /// They are those of the memory.
-    Current,
-    /// And a step has been taken with them that may be taken again.
-    Repeatable(RepeatableStep),
-}
 
 /// A suspended section: its forces, and what has been looked for and said with the parameters as they are.
 #[derive(Debug)]
@@ -44,20 +33,9 @@ pub(super) struct SuspendedSection {
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
     /// Whether the wind was in the tested range after the last step.
-    pub wind_was_tested: bool,
-    /// What has been said since the initialisation: a gust may cross a limit at every step.
-    pub wind_left: bool,
-    pub rotation_left: bool,
-    loaded: LoadedInputs,
-}
-
-/// What follows from the parameters of a section.
-#[derive(Debug)]
-pub(super) struct BuiltSection {
-    stepper: Stepper,
-    damping: PresentDamping,
-    /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
-    pub tested_winds: Option<[f64; 2]>,
+    wind_was_tested: bool,
+    /// Whether it has been said since the initialisation that it no longer is: a gust may cross a limit at every step.
+    wind_left: bool,
 }
 
 pub(super) type SectionUnit = Coupled<SuspendedSection>;
@@ -76,8 +54,6 @@ impl SectionUnit {
             growth_searches_left: GROWTH_SEARCHES,
             wind_was_tested: false,
             wind_left: false,
-            rotation_left: false,
-            loaded: LoadedInputs::Stale,
         };
         let mut unit = Self::new(own, resources)?;
         let gusts = unit.indices.gusts().len();
@@ -86,16 +62,38 @@ impl SectionUnit {
         Ok(unit)
     }
 
+    #[inline]
+    fn in_tested_winds(&self, memory: &Memory) -> bool {
+        let wind = self.indices.wind_speed(memory);
+        self.built
+            .own
+            .is_some_and(|[low, high]| (low..=high).contains(&wind))
+    }
+
+    /// Says, once, when the wind leaves the tested range.
+    #[cold]
+    fn watch_wind(&mut self, memory: &Memory, notices: &mut Vec<String>) {
+        let inside = self.in_tested_winds(memory);
+        let leaves = self.own.wind_was_tested && !inside && !self.own.wind_left;
+        if let Some([low, high]) = self.built.own.filter(|_| leaves) {
+            self.own.wind_left = true;
+            let wind = self.indices.wind_speed(memory);
+            notices.push(format!(
+                "wind_speed = {wind} m/s leaves the speeds at which this section was tested, {low:.3} to {high:.3} m/s \
+                 at its frequencies in still air: the forces are extrapolated"
+            ));
+        }
+        self.own.wind_was_tested = inside;
+    }
+
     /// Growth below the onset for the parameters in `values`.
     fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
-        let Resources { model, table, .. } = resources;
-        let limit = values[self.indices.limit];
-        let section = section::coupled_section(model, table, &self.own.aerodynamics, values)?;
-        let forces = &self.own.aerodynamics;
-        if let Some(speed) = section::plainly_stable_to(model, table, forces, values, limit) {
-            return Ok(UnwantedGrowth::none_up_to(speed));
+        let (model, limit) = (&resources.model, values[self.indices.limit]);
+        let (section, coupled) = self.own.coupled(resources, values)?;
+        match section::plainly_stable_to(model, &section, &coupled, limit) {
+            Some(speed) => Ok(UnwantedGrowth::none_up_to(speed)),
+            None => section::growth_of(model, &coupled, limit),
         }
-        section::growth_of(model, &section, limit)
     }
 
     #[cold]
@@ -119,70 +117,56 @@ impl SectionUnit {
     }
 }
 
-impl CoupledKind for SuspendedSection {
-    type Built = BuiltSection;
+impl SuspendedSection {
+    /// The section of the parameters in `values`, by itself and coupled with its forces.
+    fn coupled(
+        &self,
+        resources: &Resources,
+        values: &[f64],
+    ) -> Result<(SectionModel, CoupledSection)> {
+        let section = section::section_model(&resources.model, &resources.table, values);
+        let coupled = CoupledSection::new(section.structure()?, self.aerodynamics.clone())?;
+        Ok((section, coupled))
+    }
+}
 
-    fn build(&self, resources: &Resources, values: &[f64]) -> Result<BuiltSection> {
-        let Resources {
-            model,
-            table,
-            gusts,
-            ..
-        } = resources;
-        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        let stepper = Stepper::in_gusts(section, gusts.as_ref());
-        Ok(BuiltSection {
-            tested_winds: tested_winds(&stepper, resources),
+impl CoupledKind for SuspendedSection {
+    /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
+    type Own = Option<[f64; 2]>;
+
+    fn build(&self, resources: &Resources, values: &[f64]) -> Result<Built<Self::Own>> {
+        let (_, coupled) = self.coupled(resources, values)?;
+        let stepper = Stepper::in_gusts(coupled, resources.gusts.as_ref());
+        Ok(Built {
+            own: tested_winds(&stepper, resources),
             stepper,
             damping: PresentDamping::default(),
         })
-    }
-
-    fn stepper(built: &BuiltSection) -> &Stepper {
-        &built.stepper
-    }
-
-    fn parts(built: &mut BuiltSection) -> (&mut Stepper, &mut PresentDamping) {
-        (&mut built.stepper, &mut built.damping)
     }
 
     fn parameters_changed(&mut self) {
         self.growth_known = false;
     }
 
-    fn inputs_changed(&mut self) {
-        self.loaded = LoadedInputs::Stale;
-    }
-
     fn forget_warnings(&mut self) {
         (self.wind_was_tested, self.wind_left) = (false, false);
-        self.rotation_left = false;
     }
 
     fn load_inputs(unit: &mut SectionUnit, memory: &Memory) {
-        unit.own.loaded = LoadedInputs::Stale;
-        let (inputs, rates) = (&mut unit.inputs, &memory.input_rates);
-        inputs.wind_speed_m_s = unit.indices.wind_speed(memory);
-        inputs.wind_speed_rate_m_s2 = rates[0];
-        for (i, index) in unit.indices.forces().iter().enumerate() {
-            inputs.force[i] = memory.values[*index];
-            inputs.force_rate[i] = rates[i + 1];
-        }
-        let of_gusts = &rates[unit.indices.first_gust..];
-        for (i, index) in unit.indices.gusts().iter().enumerate() {
-            inputs.gust_m_s[i] = memory.values[*index];
-            inputs.gust_rate_m_s2[i] = of_gusts[i];
-        }
-    }
-
-    /// They are loaded once until one is set.
-    fn load_own_inputs(unit: &mut SectionUnit, memory: &Memory) {
-        if matches!(unit.own.loaded, LoadedInputs::Stale) {
-            Self::load_inputs(unit, memory);
-            // with a rate, a step carries them on
-            if memory.input_rates.iter().all(|rate| *rate == 0.0) {
-                unit.own.loaded = LoadedInputs::Current;
+        unit.inputs_stay = false;
+        let (inputs, indices) = (&mut unit.inputs, &unit.indices);
+        let mut each = indices.inputs.iter().zip(&memory.input_rates);
+        let mut load = |value: &mut f64, rate: &mut f64| {
+            if let Some((index, given)) = each.next() {
+                (*value, *rate) = (memory.values[*index], *given);
             }
+        };
+        load(&mut inputs.wind_speed_m_s, &mut inputs.wind_speed_rate_m_s2);
+        for (force, rate) in inputs.force.iter_mut().zip(&mut inputs.force_rate) {
+            load(force, rate);
+        }
+        for (gust, rate) in inputs.gust_m_s.iter_mut().zip(&mut inputs.gust_rate_m_s2) {
+            load(gust, rate);
         }
     }
 
@@ -222,13 +206,11 @@ impl CoupledKind for SuspendedSection {
     }
 
     fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
-        let Resources { model, table, .. } = resources;
-        let (values, forces) = (&memory.values, &unit.own.aerodynamics);
-        let limit = unit.indices.limit(memory);
-        match section::coupled_section(model, table, forces, values) {
-            Ok(section) => {
-                let plain = section::plain_onset(model, table, forces, values, limit);
-                OnsetCard::search(model, &section, limit, plain)
+        let (model, limit) = (&resources.model, unit.indices.limit(memory));
+        match unit.own.coupled(resources, &memory.values) {
+            Ok((section, coupled)) => {
+                let plain = section::plain_onset(model, &section, &coupled, limit);
+                OnsetCard::search(model, &coupled, limit, plain)
             }
             Err(why) => OnsetCard::unknown(&why),
         }
@@ -241,45 +223,24 @@ impl CoupledKind for SuspendedSection {
         memory: &Memory,
         notices: &mut Vec<String>,
     ) {
-        if unit.trust_changes(memory) {
-            unit.watch_trust(memory, notices);
+        if unit.in_tested_winds(memory) != unit.own.wind_was_tested {
+            unit.watch_wind(memory, notices);
         }
         if !unit.own.growth_known && unit.own.growth_searches_left > 0 {
             unit.watch_growth(resources, memory, notices);
         }
     }
 
-    fn advance(unit: &mut SectionUnit, memory: &mut Memory, step: f64) -> Result<()> {
-        Self::load_own_inputs(unit, memory);
-        let (stepper, inputs) = (&mut unit.built.stepper, &unit.inputs);
-        stepper.advance(&mut memory.system, inputs, step)?;
-        if !matches!(unit.own.loaded, LoadedInputs::Stale) {
-            let repeatable = stepper.repeatable(&memory.system, inputs, step);
-            unit.own.loaded = repeatable.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
-        }
-        Ok(())
-    }
-
-    #[inline]
-    fn repeat(unit: &mut SectionUnit, memory: &mut Memory, step: f64) -> Option<bool> {
-        let LoadedInputs::Repeatable(last) = &unit.own.loaded else {
-            return None;
-        };
-        let (stepper, system) = (&mut unit.built.stepper, &mut memory.system);
-        let taken = last.step_s == step && stepper.repeat(system, &unit.inputs, last.columns);
-        taken.then(|| unit.rotation_news(memory))
-    }
-
     #[inline]
     fn repeat_outputs(unit: &mut SectionUnit, memory: &mut Memory) -> bool {
-        let LoadedInputs::Repeatable(last) = &unit.own.loaded else {
+        let stepper = &mut unit.built.stepper;
+        let found = match unit.inputs_stay {
+            true => stepper.repeat_outputs(&memory.system, &unit.inputs),
+            false => None,
+        };
+        let Some(found) = found.filter(|all| all.iter().all(|x| x.is_finite())) else {
             return false;
         };
-        let stepper = &mut unit.built.stepper;
-        let found = stepper.repeat_outputs(&memory.system, &unit.inputs, last.columns);
-        if !found.iter().all(|x| x.is_finite()) {
-            return false;
-        }
         let (accelerations, forces) = found.split_at(unit.own.responses.len());
         write(&unit.own.responses, accelerations, forces, memory);
         true
@@ -298,6 +259,19 @@ impl CoupledKind for SuspendedSection {
             memory,
         );
     }
+}
+
+/// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where there
+/// are none.
+fn tested_winds(stepper: &Stepper, resources: &Resources) -> Option<[f64; 2]> {
+    let s = stepper.section().structure();
+    let (slowest, fastest) = s
+        .still_air_rad_s()
+        .fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+    let range = resources.model.tested_range;
+    let low = fastest * s.width_m / range.max.full_width();
+    let high = slowest * s.width_m / range.min.full_width();
+    (low <= high).then_some([low, high])
 }
 
 fn response_indices(table: &VariableTable) -> Result<ResponseIndices> {

@@ -194,23 +194,15 @@ pub(super) fn central_difference(
     Ok(below.iter().zip(&above).map(difference).collect())
 }
 
-/// Refuses outputs that no number holds any more.
-pub(super) fn check_finite(outputs: &Outputs) -> CallResult<()> {
-    if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
-        return Ok(());
+/// Refuses outputs, states and rates that no number holds any more.
+pub(super) fn check_finite<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> CallResult<()> {
+    match numbers.into_iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(overgrown()),
     }
-    Err(overgrown())
-}
-
-/// The same for rates of states.
-pub(super) fn finite(rates: &[f64]) -> CallResult<()> {
-    if rates.iter().all(|x| x.is_finite()) {
-        return Ok(());
-    }
-    Err(overgrown())
 }
 
 #[cold]
-pub(super) fn overgrown() -> Refusal {
+fn overgrown() -> Refusal {
     Refusal::discard("outputs: the motion has overflowed")
 }

@@ -19,14 +19,17 @@ impl Instance {
     /// with everything as it was, when the step cannot be computed.
     #[inline]
     pub fn do_step(&mut self, point: f64, step: f64) -> CallResult<()> {
-        // most steps need no more
-        if self.is_plainly_here(point, step)
+        // most steps need no more, nor a closer look at a step that is positive and finite
+        let stop = self.memory.experiment.and_then(|e| e.stop);
+        if (point - self.memory.time).abs() <= CLOCK_TOLERANCE_OF_STEP * step
+            && stop.is_none_or(|stop| point + step <= stop)
             && let Some(news) = self.unit.repeat(&mut self.memory, step)
         {
             self.outputs_current = false;
             self.memory.time = point + step;
             if news {
-                self.watch();
+                self.unit
+                    .watch(&self.resources, &self.memory, &mut self.notices);
             }
             return Ok(());
         }
@@ -42,22 +45,16 @@ impl Instance {
             .map_err(Refusal::from)
             .and_then(|unit| unit.advance(resources, memory, step));
         self.outputs_current = advanced.map_err(|refusal| {
-            self.memory.state = State::StepFailed;
+            memory.state = State::StepFailed;
             Refusal::discard(refusal.message)
         })?;
         // after the step: one that is refused is refused at once
-        self.watch();
-        self.run_inputs_on(step);
+        self.unit.watch(resources, memory, &mut self.notices);
+        if memory.input_rates.iter().any(|rate| *rate != 0.0) {
+            self.run_inputs_on(step);
+        }
         self.memory.time = point + step;
         Ok(())
-    }
-
-    /// Whether the check of a step that is positive and finite need look no closer.
-    #[inline]
-    fn is_plainly_here(&self, point: f64, step: f64) -> bool {
-        let stop = self.memory.experiment.and_then(|e| e.stop);
-        (point - self.memory.time).abs() <= CLOCK_TOLERANCE_OF_STEP * step
-            && stop.is_none_or(|stop| point + step <= stop)
     }
 
     fn check_step(&self, point: f64, step: f64) -> CallResult<()> {
@@ -82,9 +79,6 @@ impl Instance {
     }
 
     fn run_inputs_on(&mut self, step: f64) {
-        if self.memory.input_rates.iter().all(|rate| *rate == 0.0) {
-            return;
-        }
         let values = &mut self.memory.values;
         let inputs = self.unit.inputs();
         let before = values[inputs[0]];

@@ -19,13 +19,15 @@ pub(super) trait Unit: Debug + Send {
     /// The state of a new instance.
     fn at_rest(&self) -> SectionState;
 
-    /// A stored value of this kind has changed.
-    fn changed(&mut self, source: Source);
-
-    /// An input has been set, whether it changed or not; returns whether outputs change with it.
-    fn input_set(&mut self, _memory: &mut Memory, _index: usize, _changed: bool) -> bool {
-        false
-    }
+    /// The stored value at `index`, of this kind, has been set, whether it changed or not; returns whether outputs change all the
+    /// same where it has not.
+    fn value_set(
+        &mut self,
+        memory: &mut Memory,
+        index: usize,
+        source: Source,
+        changed: bool,
+    ) -> bool;
 
     /// The importer will integrate it.
     fn will_be_integrated(&mut self) {}

@@ -4,9 +4,10 @@ use super::Instance;
 use super::layout::{DataType, Source};
 use super::memory::Memory;
 use super::section::OnsetCard;
-use super::sensitivity::overgrown;
+use super::sensitivity::check_finite;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
+use crate::response::wind_at_rest;
 use crate::variables::Role;
 
 impl Instance {
@@ -121,15 +122,23 @@ impl Instance {
     /// An error for a reference that is none, of another type or not settable now, and for a value that is not finite;
     /// a discard for a value outside the limits of its variable.
     pub fn set_reals(&mut self, references: &[u32], values: &[f64]) -> CallResult<()> {
+        let wind_speed = self.layout.wind_speed;
+        // a wind that rounding has taken below zero is at rest
+        let stored = |index, value| match index == wind_speed {
+            true => wind_at_rest(value, 0.0),
+            false => value,
+        };
         for (reference, value) in references.iter().zip(values) {
             let (index, access) = self.writable(*reference, DataType::Real)?;
-            self.check_value(index, access, self.layout.clamp_to_calm(index, *value))?;
+            self.check_value(index, access, stored(index, *value))?;
         }
         for (reference, value) in references.iter().zip(values) {
             let index = *reference as usize;
-            let changed = self.store(index, self.layout.clamp_to_calm(index, *value));
-            let input = self.layout.source(index) == Source::Input;
-            if input && self.unit.input_set(&mut self.memory, index, changed) {
+            let value = stored(index, *value);
+            let before = std::mem::replace(&mut self.memory.values[index], value);
+            let changed = before.to_bits() != value.to_bits();
+            let (source, memory) = (self.layout.access[index].source, &mut self.memory);
+            if self.unit.value_set(memory, index, source, changed) || changed {
                 self.outputs_current = false;
             }
         }
@@ -145,17 +154,6 @@ impl Instance {
             self.writable(*reference, of_type)?;
         }
         Ok(())
-    }
-
-    /// Returns whether the value has changed.
-    pub(super) fn store(&mut self, index: usize, value: f64) -> bool {
-        if self.memory.values[index].to_bits() == value.to_bits() {
-            return false;
-        }
-        self.memory.values[index] = value;
-        self.outputs_current = false;
-        self.unit.changed(self.layout.source(index));
-        true
     }
 
     /// Sets first rates of inputs, per second: all of them or none.
@@ -199,11 +197,7 @@ impl Instance {
 /// A number of the state, which may have overflowed at the release or in the hands of an importer that integrates.
 fn state_number(memory: &Memory, entry: usize) -> CallResult<f64> {
     let number = memory.system.number(entry);
-    if number.is_finite() {
-        Ok(number)
-    } else {
-        Err(overgrown())
-    }
+    check_finite(&[number]).map(|()| number)
 }
 
 /// Rates are known to the first order.

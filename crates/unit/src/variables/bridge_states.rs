@@ -11,66 +11,36 @@ use std::f64::consts::TAU;
 /// States at most: what depends on what is listed for each, which of more is megabytes of text.
 const MOST: usize = 800;
 
-/// Adds the states and their rates to the table of a bridge.
+/// Adds the states and their rates to the table of a bridge: coordinates, rates and accelerations of the modes, then filters and
+/// lagging gusts, each with its rate.
 pub(super) fn add(table: &mut Vec<Variable>, options: &BridgeOptions, stepper: &Stepper) {
-    let states = States {
-        first: table.len(),
-        modes: options.coordinates(),
-        filters: stepper.section().aerodynamics().states(),
-        lags: stepper.gust_states(),
-    };
-    if states.count() > MOST {
+    let (first, modes) = (table.len(), options.coordinates());
+    let lags = 2 * modes + stepper.section().aerodynamics().states();
+    let count = lags + stepper.gust_states();
+    if count > MOST {
         return;
     }
-    table.extend(states.variables(options));
-    for entry in 0..states.count() {
-        table[states.rate(entry)].derivative_of = Some(states.state(entry));
+    for order in 0..3 {
+        table.extend((0..modes).map(|m| normalised(options, m, order)));
     }
-}
-
-/// Where the states stand in the table: coordinates, rates and accelerations of the modes, then filters and lagging gusts, each with
-/// its rate.
-struct States {
-    first: usize,
-    modes: usize,
-    filters: usize,
-    lags: usize,
-}
-
-impl States {
-    fn count(&self) -> usize {
-        2 * self.modes + self.filters + self.lags
-    }
-
-    /// Index of an entry of the state of what is simulated.
-    fn state(&self, entry: usize) -> usize {
-        match entry.checked_sub(2 * self.modes) {
-            Some(behind) => self.first + 3 * self.modes + 2 * behind,
-            None => self.first + entry,
-        }
-    }
-
-    /// Index of its rate; that of a coordinate is a state itself.
-    fn rate(&self, entry: usize) -> usize {
-        match entry.checked_sub(2 * self.modes) {
-            Some(_) => self.state(entry) + 1,
-            None => self.first + self.modes + entry,
-        }
-    }
-
-    fn variables(&self, options: &BridgeOptions) -> Vec<Variable> {
-        let orders = (0..3).flat_map(|order| (0..self.modes).map(move |m| (m, order)));
-        let modes = orders.map(|(m, order)| normalised(options, m, order));
-        let behind = 2 * self.modes;
-        let filters =
-            (0..self.filters).flat_map(|i| filter(behind + i, &format!("filter[{}]", i + 1)));
-        let lags = (0..self.lags).flat_map(|i| {
-            gust_filter(
-                behind + self.filters + i,
-                &format!("gust_filter[{}]", i + 1),
-            )
+    for i in 2 * modes..count {
+        table.extend(match i.checked_sub(lags) {
+            None => filter(i, &format!("filter[{}]", i + 1 - 2 * modes)),
+            Some(lag) => gust_filter(i, &format!("gust_filter[{}]", lag + 1)),
         });
-        modes.chain(filters).chain(lags).collect()
+    }
+    let mut states = vec![0; count];
+    for (index, variable) in table.iter_mut().enumerate().skip(first) {
+        variable.derivative_of = match variable.role {
+            Role::Filter(i) => {
+                states[i] = index;
+                // the rate of a coordinate is a state itself
+                let of_coordinate = i.checked_sub(modes).filter(|m| *m < modes);
+                of_coordinate.map(|m| states[m])
+            }
+            Role::FilterRate(i) => Some(states[i]),
+            _ => None,
+        };
     }
 }
 

@@ -20,8 +20,11 @@ pub enum Known {
     TestedWind,
     /// Rotation of the deck.
     Rotation,
-    /// A motion, or a rate of it, or its force per length; of a bridge that of the named node that is turned most, without forces.
+    /// A motion, or a rate of it, or its force per length; of a bridge that of the named node that is turned most, without forces; of a
+    /// strip of forces alone what is set, and the force that is put out.
     Motion(Response, Dof),
+    /// Length of a strip of forces alone, of which there are neither onset nor damping nor tests.
+    Length,
 }
 
 /// Flutter onset and divergence for the parameters as they are. A speed up to which none was found is the limit of the search; one
@@ -75,6 +78,8 @@ pub struct Present {
     pub wind_is_tested: bool,
     /// Greatest rotation of the deck, rad.
     pub rotation_rad: Dual,
+    /// Length of the strip, m.
+    pub length_m: Dual,
     pub(crate) motion: [[Dual; 3]; 4],
 }
 

@@ -5,7 +5,8 @@ use super::computed::Formula::{Flag, Real};
 use super::computed::{ComputedNumber, Known};
 use super::real::{CALCULATED, DISCRETE, OUTPUT, SPEED, real};
 use super::{
-    Causality, Dependency, Formula, Response, Role, SectionParameter, StartValue, Variable,
+    Causality, Dependency, ForceOutput, Formula, Response, Role, SectionParameter, StartValue,
+    StripParameter, Variable,
 };
 use crate::section::Dof;
 use crate::si;
@@ -121,7 +122,19 @@ pub(super) const OF_THE_PRESENT: &[ComputedNumber] = &[
     .of_quantity("Velocity", SPEED),
 ];
 
+/// Outputs of each strip of forces alone beside its forces.
+pub(super) const OF_A_STRIP: &[ComputedNumber] = &[];
+
 impl ComputedNumber {
+    /// Its variable of a strip whose variables have names that begin so, without what it depends on.
+    pub(super) fn of_strip(&'static self, s: usize, names: &str) -> Variable {
+        Variable {
+            name: format!("{names}{}", self.name),
+            role: Role::OfStrip(s, self),
+            ..self.variable()
+        }
+    }
+
     /// Its variable, without what it depends on.
     pub(super) fn variable(&'static self) -> Variable {
         let kind = match (self.causality, self.is_flag()) {
@@ -144,12 +157,14 @@ impl ComputedNumber {
     }
 }
 
-/// Enters what the computed numbers of a section or bridge depend on, once that of the motion is known.
+/// Enters what the computed numbers depend on, once that of motion and forces is known.
 pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
     let of_bridge = table.iter().any(|v| matches!(v.role, Role::InitialMode(_)));
     for at in 0..table.len() {
-        let Role::Computed(number) = table[at].role else {
-            continue;
+        let (number, strip) = match table[at].role {
+            Role::Computed(number) => (number, None),
+            Role::OfStrip(s, number) => (number, Some(s)),
+            _ => continue,
         };
         let mut on = [BTreeSet::new(), BTreeSet::new()];
         let [direct, initial] = &mut on;
@@ -157,7 +172,7 @@ pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
             if number
                 .reads
                 .iter()
-                .any(|known| follows(*known, variable.role, of_bridge))
+                .any(|known| follows(*known, variable.role, of_bridge, strip))
             {
                 initial.insert(index);
                 if variable.causality == Causality::Input {
@@ -167,6 +182,9 @@ pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
             let motion = match variable.role {
                 Role::Response(response, dof) | Role::NodeMotion(_, response, dof) => {
                     Some([Known::Motion(response, dof), turns(response, dof)])
+                }
+                Role::Force(s, ForceOutput::PerLength, dof) if strip == Some(s) => {
+                    Some([Known::Motion(Response::SelfExcitedForce, dof); 2])
                 }
                 _ => None,
             };
@@ -188,8 +206,9 @@ fn turns(response: Response, dof: Dof) -> Known {
     }
 }
 
-/// Whether what a row reads follows a parameter or the wind. The forces of a bridge are tested at the frequency of its onset.
-fn follows(known: Known, on: Role, of_bridge: bool) -> bool {
+/// Whether what a row reads, of a strip or of the whole, follows a parameter or an input by itself. The forces of a bridge are tested at
+/// the frequency of its onset.
+fn follows(known: Known, on: Role, of_bridge: bool, strip: Option<usize>) -> bool {
     let (wind, limit) = (on == Role::WindSpeed, on == Role::OnsetSearchLimit);
     let parameter = on.is_tuned() || matches!(on, Role::Section(_));
     match known {
@@ -201,7 +220,13 @@ fn follows(known: Known, on: Role, of_bridge: bool) -> bool {
             use SectionParameter::{Frequency, Width};
             wind || matches!(on, Role::Section(Width | Frequency(_)))
         }
-        // as those that are put out
-        Known::Rotation | Known::Motion(..) => false,
+        Known::Length => matches!(on, Role::Strip(s, StripParameter::Length) if strip == Some(s)),
+        // others as those that are put out
+        Known::Rotation | Known::Motion(..) => match on {
+            Role::Motion(s, response, dof) if strip == Some(s) => {
+                known == Known::Motion(response, dof) || known == turns(response, dof)
+            }
+            _ => false,
+        },
     }
 }

@@ -1,5 +1,6 @@
 //! The variables of a unit of forces, in the order of the table.
 
+use super::computed_rows::{OF_A_STRIP, fill_computed_dependencies};
 use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
 use super::section::{air_density, capitalized, filter, gust_filter, gust_inputs, wind_speed};
@@ -32,7 +33,11 @@ pub(super) fn variables(
                 .flat_map(|_| gust_inputs(s, |of| name(options, s, of))),
         );
     }
-    table.extend(each().flat_map(|(model, s)| forces(model, s, options)));
+    for (model, s) in each() {
+        table.extend(forces(model, s, options));
+        let names = name(options, s, "");
+        table.extend(OF_A_STRIP.iter().map(|row| row.of_strip(s, &names)));
+    }
     table.push(air_density().start(model.section.air_density_kg_m3));
     for s in 0..options.strips.len() {
         table.extend(strip(s, options));
@@ -47,6 +52,7 @@ pub(super) fn variables(
         add_states(&mut table, options, &states);
     }
     fill_dependencies(&mut table, options.strips.len(), &states);
+    fill_computed_dependencies(&mut table);
     Ok(table)
 }
 

@@ -7,7 +7,6 @@ use super::real::{
     FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale, nominal,
     real,
 };
-use super::variable::find;
 use super::{ComputedNumber, GustDirection, Initial, Response, Role, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
@@ -56,7 +55,7 @@ pub(super) fn variables(
         table.extend((0..filters).flat_map(|i| filter(i, &format!("filter[{}]", i + 1))));
         let lag = |i| gust_filter(filters + i, &format!("gust_filter[{}]", i + 1));
         table.extend((0..lags).flat_map(lag));
-        name_rates(&mut table, &dofs);
+        name_rates(&mut table);
     }
     Ok(table)
 }
@@ -130,28 +129,13 @@ fn inner_state(i: usize, name: &str, text: &str) -> [Variable; 2] {
     ]
 }
 
-/// Enters which variable is the rate of which state.
-fn name_rates(table: &mut [Variable], dofs: &[Dof]) {
-    let of_motion = dofs.iter().flat_map(|&dof| {
-        [
-            Response::Displacement,
-            Response::Rate,
-            Response::Acceleration,
-        ]
-        .map(|r| Role::Response(r, dof))
-    });
-    let motion: Vec<Role> = of_motion.collect();
-    let filters = table.iter().filter_map(|v| match v.role {
-        Role::Filter(i) => Some([Role::Filter(i), Role::FilterRate(i)]),
-        _ => None,
-    });
-    let filters: Vec<_> = filters.collect();
-    let triples = motion.chunks_exact(3);
-    let pairs = triples.flat_map(|m| [[m[0], m[1]], [m[1], m[2]]]);
-    for [state, rate] in pairs.chain(filters) {
-        let index = find(table, state);
-        if let Some(rate) = find(table, rate) {
-            table[rate].derivative_of = index;
+/// Enters which variable is the rate of which state: that before it.
+fn name_rates(table: &mut [Variable]) {
+    for (before, variable) in table[1..].iter_mut().enumerate() {
+        if let Role::Response(Response::Rate | Response::Acceleration, _) | Role::FilterRate(_) =
+            variable.role
+        {
+            variable.derivative_of = Some(before);
         }
     }
 }

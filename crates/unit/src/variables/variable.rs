@@ -66,6 +66,8 @@ pub enum Role {
     Force(usize, ForceOutput, Dof),
     /// A property of a strip.
     Strip(usize, StripParameter),
+    /// Computed from wind, motion and forces of a strip.
+    OfStrip(usize, &'static ComputedNumber),
     /// How far ahead of the motion the force is put out, in communication steps.
     Prediction,
     /// Which derivatives of the motion the importer sets.
@@ -242,9 +244,4 @@ impl Variable {
             Role::Response(Response::Displacement | Response::Rate, _) | Role::Filter(_)
         )
     }
-}
-
-/// Index of the variable with this role.
-pub(super) fn find(variables: &[Variable], role: Role) -> Option<usize> {
-    variables.iter().position(|v| v.role == role)
 }

@@ -20,7 +20,7 @@ fn products_of_every_shape_have_the_bits_of_their_rows_whatever_the_vectors() {
         let w = DMatrix::from_fn(rows, columns, |i, j| {
             (3.7 * i as f64 + 1.3 * j as f64).sin()
         });
-        let packed = Packed::from_matrix(&w);
+        let packed = Packed::new(&w);
         let v: Vec<f64> = (0..columns).map(|j| (0.7 * j as f64).cos()).collect();
         for v in [&v[..], &v[..columns / 2]] {
             let expected: Vec<_> = (0..rows).map(|i| row(&w, i, v)).collect();
@@ -40,7 +40,7 @@ fn products_of_every_shape_have_the_bits_of_their_rows_whatever_the_vectors() {
 fn what_has_died_out_is_zero_and_what_has_outgrown_numbers_is_said_in_every_row() {
     for rows in 1..28 {
         for spoilt in 0..rows {
-            let unit = Packed::new(rows, rows, |i, j| f64::from(u8::from(i == j)));
+            let unit = Packed::new(&DMatrix::identity(rows, rows));
             let (mut v, mut y) = (vec![1e-260; rows], vec![9.0; rows]);
             assert!(advanced(&unit, &v, &mut y));
             assert_eq!(y, vec![0.0; rows]);

@@ -2,7 +2,7 @@
 
 use super::super::guard::guarded;
 use super::*;
-use crate::lifecycle::{Call, Interface, LEGAL_CALLS, State};
+use crate::lifecycle::{Call, Interface, LEGAL_CALLS, State, StateSet};
 use fmi2Status::{fmi2Discard, fmi2Error};
 
 /// Calls `fmi2Instantiate` and gives back what it logged.
@@ -268,8 +268,9 @@ fn the_table_of_legal_calls_is_kept() {
         for state in states.filter(|s| s.interface().is_none_or(|of| of == interface)) {
             for (call, name, legal) in LEGAL_CALLS {
                 let unit = in_state_of(interface, state);
-                let status = unsafe { guarded(unit.handle, call, |_| Ok(())) };
-                let foreign = call.is_model_exchange() && interface == Interface::CoSimulation;
+                let status = unsafe { guarded(unit.handle, call, name, |_| Ok(())) };
+                let legal = legal[interface as usize];
+                let foreign = legal == StateSet::NONE;
                 let function = format!("fmi2{name}");
                 if foreign {
                     unit.refused(status, fmi2Error, &[&function, "belongs to model exchange"]);
@@ -381,7 +382,11 @@ fn functions_that_are_not_offered_leave_the_run_alone() {
 #[test]
 fn a_panic_poisons_its_instance_only() {
     let (sick, well) = (Unit::started("rational"), Unit::started("rational"));
-    let status = unsafe { guarded(sick.handle, Call::GetReal, |_| panic!("100 % #r1# broken")) };
+    let status = unsafe {
+        guarded(sick.handle, Call::GetReal, "GetReal", |_| {
+            panic!("100 % #r1# broken")
+        })
+    };
     sick.refused(
         status,
         fmi2Error,

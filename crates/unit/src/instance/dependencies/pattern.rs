@@ -55,10 +55,10 @@ impl<S: CoupledKind> Pattern<S> {
             (Role::DamperParameter(_), Some("Frequency" | "DampingRatio")) => 0.0,
             _ => 1.0,
         });
-        unit.changed(Source::Section);
+        unit.parameters_changed();
         unit.prepared(resources, &mut calm)?;
         S::load_inputs(&mut unit, &calm);
-        let (_, inputs) = unit.parts();
+        let inputs = &unit.inputs;
         let forces = calm.system.all().len();
         let gusts = forces + inputs.force.len();
         let air = gusts + inputs.gust_m_s.len();
@@ -134,7 +134,7 @@ fn response<S: CoupledKind>(
         on.values[*index] = if is_air { value } else { 0.0 };
     }
     S::load_inputs(unit, &on);
-    let (stepper, inputs) = unit.parts();
+    let (stepper, inputs) = (&unit.built.stepper, &mut unit.inputs);
     inputs.wind_speed_m_s = wind;
     if is_air {
         let state = rest.system.with_all(&uneven(forces).collect::<Vec<_>>());

@@ -9,7 +9,7 @@ use crate::lifecycle::{State, gettable_in, settable_in};
 fn parameters(instance: &Instance, state: State) -> Vec<(u32, f64)> {
     let all = instance.table().variables().iter().enumerate();
     let free = all.filter(|(index, v)| {
-        let source = instance.layout.source(*index);
+        let source = instance.layout.access[*index].source;
         matches!(source, Source::Section | Source::Release | Source::Limit)
             && instance.layout.access[*index].data_type == DataType::Real
             && settable_in(v.causality, v.variability).contains(state)

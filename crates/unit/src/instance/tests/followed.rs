@@ -2,7 +2,7 @@
 
 use super::{Kind, index, resources, start};
 use crate::instance::Instance;
-use crate::instance::bridge_built::Built;
+use crate::instance::bridge_built::BuiltBridge;
 use crate::instance::bridge_followed::SearchedOnset;
 use crate::instance::memory::starts;
 use crate::instance::section::OnsetCard;
@@ -11,15 +11,15 @@ use crate::resources::Resources;
 
 const LIMIT: f64 = 100.0;
 
-fn built(resources: &Resources, changed: &[(&str, f64)]) -> Built {
+fn built(resources: &Resources, changed: &[(&str, f64)]) -> BuiltBridge {
     let mut values = starts(&resources.table);
     for (name, value) in changed {
         values[resources.table.find_name(name).unwrap()] = *value;
     }
-    Built::new(resources, &values).unwrap()
+    BuiltBridge::new(resources, &values).unwrap()
 }
 
-fn searched(built: &Built) -> (OnsetCard, SearchedOnset) {
+fn searched(built: &BuiltBridge) -> (OnsetCard, SearchedOnset) {
     let (card, searched) = OnsetCard::of_bridge(built, None, LIMIT);
     (card, searched.unwrap())
 }
