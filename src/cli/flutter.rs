@@ -35,7 +35,7 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let mut failed = Vec::new();
-    let models = stages::read_models(&study, &directory, &mut failed)?;
+    let models = stages::read_models(&study, &deck, &directory, &mut failed)?;
     let known = stages::read_uncertainties(&models, &directory)?;
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;

@@ -1,6 +1,6 @@
 //! What is known of the section of a study, as evidence for its verdict.
 
-use super::intervals::interval_of;
+use super::intervals::{interval_of, moved_onset_beside, uncertainty_beside};
 use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
@@ -17,6 +17,7 @@ use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
     MeanRotation, Reach,
 };
+use std::path::Path;
 
 /// Stages that draw and write, without which the answer is the same.
 const DRAWING: [&str; 2] = ["figure", "curves"];
@@ -85,24 +86,24 @@ pub(crate) fn section_evidence(
     evidence
 }
 
-/// What a saved model answers for its own section by itself: the onset with its interval, divergence, growth, and what is odd about
-/// the section; `moved` is what constraints of its fit did to the onset. The table it was fitted to is not known any more.
+/// What the model of a file answers for a section by itself, with what training left beside the file: the onset with its interval,
+/// divergence, growth, and what is odd about the section. The table it was fitted to is not known any more.
 ///
 /// # Errors
-/// [`Error::Input`] for a section that is wrong.
-pub(crate) fn model_evidence(
+/// [`Error::Input`] for a section that is wrong, and for files beside that of the model that are.
+pub(crate) fn saved_evidence(
+    file: &Path,
     model: &TrainedModel,
     section: &SectionModel,
     search: &OnsetSearch,
-    known: &KnownUncertainty,
-    moved: Option<MovedOnset>,
 ) -> Result<Evidence> {
+    let known = uncertainty_beside(file, model)?;
     let structure = section.structure()?;
     let coupled = CoupledSection::with_model(&structure, &model.model)?;
     let tested = model.tested_range;
     let mut found = find_onset(&model.name, &coupled, search, Some(tested))?;
     if let FlutterSearch::Onset(onset) = &mut found {
-        onset.interval = interval_of(&structure, model, known, onset);
+        onset.interval = interval_of(&structure, model, &known, onset);
         let warnings = known.iter().filter_map(|k| k.warning());
         onset.warnings.extend(warnings);
     }
@@ -110,8 +111,8 @@ pub(crate) fn model_evidence(
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;
     Ok(Evidence {
-        constraints: moved,
-        test_speeds: one_test_speed(known),
+        constraints: moved_onset_beside(file, model)?,
+        test_speeds: one_test_speed(&known),
         implausible: of_section(section),
         ..Evidence::of_section(
             &forces(&model.name, ""),

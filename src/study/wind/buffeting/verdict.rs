@@ -5,7 +5,7 @@ use super::{Setting, WindStudy};
 use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::flutter::{OnsetSearch, pk_onset, quasi_steady_onset};
-use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
+use crate::study::saved_evidence;
 use crate::verdict::{Evidence, ForceBasis, Verdict};
 
 impl WindStudy {
@@ -39,9 +39,7 @@ impl Setting<'_> {
         let (study, structure) = (self.study, &self.structure);
         if let Some(model) = study.trained_model()? {
             let file = study.directory.join(&study.aerodynamics);
-            let known = uncertainty_beside(&file, &model)?;
-            let moved = moved_onset_beside(&file, &model)?;
-            return model_evidence(&model, &study.section()?, search, &known, moved);
+            return saved_evidence(&file, &model, &study.section()?, search);
         }
         let name = study.aerodynamics.as_str();
         let found = pk_onset(name, structure, fixed, search, self.tested)?;
