@@ -3,14 +3,15 @@
 use super::intervals::{interval_of, moved_onset_beside, uncertainty_beside};
 use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
 use crate::aerodynamics::Transfer;
+use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, StableRange, find_onset,
-    judged_speeds, table_tested_from,
+    FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, QuasiSteadyOnset,
+    StableRange, find_onset, judged_speeds, table_tested_from,
 };
 use crate::plausibility::of_section;
-use crate::section::SectionModel;
+use crate::section::{SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
@@ -75,13 +76,20 @@ pub(crate) fn section_evidence(
             assumed: d.assumed.clone(),
         })
         .collect();
-    let angle_deg = deck.table().and_then(|t| t.header.angle_deg);
-    if let Err(e) = add_coefficients(study, results, angle_deg, &mut evidence) {
-        evidence.failures.push(Failure {
-            stage: "quasi-steady theory".to_owned(),
-            reason: e.to_string(),
-            bears_on_answer: true,
+    if let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) {
+        let angle_deg = deck.table().and_then(|t| t.header.angle_deg);
+        let added = study.section.structure().and_then(|structure| {
+            let theory = block.theory(&study.directory, &structure.dofs)?;
+            add_coefficients(
+                &mut evidence,
+                &block.source,
+                &structure,
+                &theory,
+                found,
+                angle_deg,
+            )
         });
+        evidence.failures.extend(added.err().map(of_theory));
     }
     evidence
 }
@@ -201,17 +209,25 @@ fn one_test_speed(known: &KnownUncertainty) -> Option<usize> {
     (known.onset.is_some() && known.speeds.each.is_empty()).then_some(1)
 }
 
+/// Quasi-steady theory beside the derivatives that failed.
+pub(super) fn of_theory(error: Error) -> Failure {
+    Failure {
+        stage: "quasi-steady theory".to_owned(),
+        reason: error.to_string(),
+        bears_on_answer: true,
+    }
+}
+
 /// What static coefficients say beside the derivatives: galloping, divergence about the equilibrium, mean rotation.
-fn add_coefficients(
-    study: &Study,
-    results: &FlutterStudy,
-    tested_deg: Option<f64>,
+pub(super) fn add_coefficients(
     evidence: &mut Evidence,
+    source: &str,
+    structure: &Structure,
+    theory: &QuasiSteady,
+    found: &QuasiSteadyOnset,
+    tested_deg: Option<f64>,
 ) -> Result<()> {
-    let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) else {
-        return Ok(());
-    };
-    let forces = format!("static coefficients ({})", block.source);
+    let forces = format!("static coefficients ({source})");
     let gallops = found.mode.as_ref().is_some_and(|m| {
         matches!(
             m.kind,
@@ -249,9 +265,7 @@ fn add_coefficients(
         .and_then(|r| r.search.critical_speed_m_s());
     // without an onset the speed that is required is the one that counts
     if let Some(speed) = critical.or(evidence.required.map(|r| r.speed_m_s)) {
-        let structure = study.section.structure()?;
-        let theory = block.theory(&study.directory, &study.section.dofs())?;
-        let path = static_equilibria(&structure, &theory, &[speed])?;
+        let path = static_equilibria(structure, theory, &[speed])?;
         evidence.mean_rotation = path.points.first().map(|p| MeanRotation {
             speed_m_s: speed,
             at_onset_deg: p.rotation_rad.to_degrees(),

@@ -5,7 +5,7 @@ use super::{Setting, WindStudy};
 use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::flutter::{OnsetSearch, pk_onset, quasi_steady_onset};
-use crate::study::saved_evidence;
+use crate::study::evidence::{add_coefficients, of_theory, saved_evidence};
 use crate::verdict::{Evidence, ForceBasis, Verdict};
 
 impl WindStudy {
@@ -25,11 +25,29 @@ impl WindStudy {
             }
             (None, None) => Evidence::default(),
         };
-        Ok(Verdict::judge(&Evidence {
+        let mut evidence = Evidence {
             required: self.speeds.required(),
             implausible: [self.findings(), setting.findings.clone()].concat(),
             ..evidence
-        }))
+        };
+        if let (Some(block), Some(theory), true) =
+            (&self.coefficients, &setting.theory, setting.fixed.is_some())
+        {
+            let structure = &setting.structure;
+            let found = quasi_steady_onset("static coefficients", structure, theory, &search);
+            let added = found.and_then(|found| {
+                add_coefficients(
+                    &mut evidence,
+                    &block.source,
+                    structure,
+                    theory,
+                    &found,
+                    setting.angle_deg,
+                )
+            });
+            evidence.failures.extend(added.err().map(of_theory));
+        }
+        Ok(Verdict::judge(&evidence))
     }
 }
 
