@@ -92,7 +92,9 @@ fn verdict(
     let own = OwnModel {
         model: place.map(|i| &models[i]),
         uncertainty: place.and_then(|i| known.get(i)),
-        moved: place.map_or(Ok(None), |i| saved_moved_onset(&models[i], folder))?,
+        moved: place.map_or(Ok(None), |i| {
+            saved_moved_onset(&models[i], folder, &study.section, &study.speeds().search())
+        })?,
     };
     let failed = [failed, &results.failed].concat();
     Ok(Verdict::judge(&section_evidence(

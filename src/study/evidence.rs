@@ -1,6 +1,6 @@
 //! What is known of the section of a study, as evidence for its verdict.
 
-use super::intervals::{interval_of, moved_onset_beside, uncertainty_beside};
+use super::intervals::{interval_of, saved_moved_onset, uncertainty_beside};
 use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::QuasiSteady;
@@ -119,7 +119,12 @@ pub(crate) fn saved_evidence(
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;
     Ok(Evidence {
-        constraints: moved_onset_beside(file, model)?,
+        constraints: saved_moved_onset(
+            model,
+            file.parent().unwrap_or(Path::new("")),
+            section,
+            search,
+        )?,
         test_speeds: one_test_speed(&known),
         implausible: of_section(section),
         ..Evidence::of_section(
