@@ -22,12 +22,12 @@ mod wind;
 pub use deck::{Deck, RecordSet};
 pub use defaults::demo_study_text;
 pub(crate) use defaults::{new_study_text, thesis_study_text};
-pub(crate) use evidence::{OwnModel, model_evidence, section_evidence};
+pub(crate) use evidence::{OwnModel, saved_evidence, section_evidence};
 pub use failures::StageFailure;
 pub(crate) use failures::{attempt, is_of_a_file};
 pub(crate) use intervals::{
-    FITS, KnownUncertainty, UNCERTAINTY, interval_of, moved_onset_beside, saved_moved_onset,
-    saved_uncertainty, state_intervals, state_route_intervals, uncertainty_beside,
+    FITS, KnownUncertainty, UNCERTAINTY, interval_of, saved_moved_onset, saved_uncertainty,
+    state_intervals, state_route_intervals, uncertainty_beside,
 };
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let mut failed = Vec::new();
-    let models = stages::read_models(&study, &directory, &mut failed)?;
+    let models = stages::read_models(&study, &deck, &directory, &mut failed)?;
     let known = stages::read_uncertainties(&models, &directory)?;
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
@@ -92,7 +92,9 @@ fn verdict(
     let own = OwnModel {
         model: place.map(|i| &models[i]),
         uncertainty: place.and_then(|i| known.get(i)),
-        moved: place.map_or(Ok(None), |i| saved_moved_onset(&models[i], folder))?,
+        moved: place.map_or(Ok(None), |i| {
+            saved_moved_onset(&models[i], folder, &study.section, &study.speeds().search())
+        })?,
     };
     let failed = [failed, &results.failed].concat();
     Ok(Verdict::judge(&section_evidence(

@@ -7,8 +7,12 @@ use super::progress::Progress;
 use super::{figures, stages};
 use crate::error::{Result, counted};
 use crate::files::text::read_text;
+use crate::flutter::OnsetSearch;
 use crate::report::onset_distribution_figure;
+use crate::study::saved_evidence;
+use crate::trained_model::TrainedModel;
 use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
+use crate::verdict::{Evidence, RequiredSpeed, Verdict};
 use std::path::{Path, PathBuf};
 
 /// Distribution of the flutter onset when section and forces are random, and its probability below a design speed
@@ -52,12 +56,37 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         })?;
     }
     out.write_json("monte_carlo.json", "monte-carlo-results", &result)?;
-    out.answer(text(&result), serde_json::json!({ "result": result }))
+    let verdict = verdict(&plan, &model)?;
+    let refused = verdict.iter().filter(|v| v.refuses());
+    let of_model = refused.map(|v| format!("warning: of the model itself: {}", v.explanation));
+    let parts = [
+        onsets(&result),
+        design(&result),
+        of_model.collect(),
+        warnings(&result),
+        failures(&result),
+    ];
+    let text = parts.concat().iter().map(|l| format!("{l}\n")).collect();
+    out.answer(
+        text,
+        serde_json::json!({ "result": result, "verdict": verdict }),
+    )
 }
 
-fn text(r: &MonteCarloResult) -> String {
-    let parts = [onsets(r), design(r), warnings(r), failures(r)];
-    parts.concat().iter().map(|l| format!("{l}\n")).collect()
+/// What the model itself, of which the samples are made, can say of the design speed.
+fn verdict(plan: &MonteCarloPlan, model: &TrainedModel) -> Result<Option<Verdict>> {
+    let file = plan.directory.join(&plan.model);
+    let judge = |speed_m_s: f64| {
+        let search = OnsetSearch {
+            speed_max_m_s: speed_m_s.max(model.experiment.onset_search_limit_m_s),
+            ..OnsetSearch::default()
+        };
+        Ok(Verdict::judge(&Evidence {
+            required: Some(RequiredSpeed { speed_m_s }),
+            ..saved_evidence(&file, model, &model.section, &search)?
+        }))
+    };
+    plan.design_speed_m_s.map(judge).transpose()
 }
 
 /// How many samples have an onset, where it lies, and how it scatters.
@@ -81,7 +110,11 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
     }
     let speed = |v: Option<f64>| match v {
         Some(v) => format!("{v:.3} m/s"),
-        None => format!("above {:.3} m/s", r.speed_max_m_s),
+        // samples that tests judge no further may flutter from there on
+        None => format!(
+            "above {:.3} m/s",
+            r.judged_up_to_m_s.unwrap_or(r.speed_max_m_s)
+        ),
     };
     let or_below = if r.nominal_or_below {
         "at or below "
@@ -99,7 +132,7 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
         format!(
             "          {:>6} % of all sections flutter at or below {}",
             100.0 * q.probability,
-            speed(q.speed_m_s)
+            speed(q.speed_m_s).replace("above", "a speed above")
         )
     }));
     lines

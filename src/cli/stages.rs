@@ -4,7 +4,7 @@ use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::text::file_name;
 use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -135,17 +135,28 @@ fn check_groups(
     }
 }
 
-/// Reads the models that `train` wrote; one that is not there is noted in `failed`.
+/// Reads the models that `train` wrote; one that is not there, or is of another deck, is noted in `failed`.
 pub(crate) fn read_models(
     study: &Study,
+    deck: &Deck,
     directory: &Path,
     failed: &mut Vec<StageFailure>,
 ) -> Result<Vec<TrainedModel>> {
+    let own = deck.description();
+    let of_deck = |model: TrainedModel| {
+        let source = &model.provenance.source;
+        let expected = format_args!("{own}, the deck of the study (run `aerodeck train` again)");
+        ensure(*source == own, "provenance.source", expected, source).map(|()| model)
+    };
     let mut models = Vec::new();
     let mut first_error = None;
     for block in &study.models {
         let file = format!("{}.json", block.slug());
-        match read_model(&directory.join(MODELS).join(file)) {
+        let path = directory.join(MODELS).join(file);
+        match read_model(&path)
+            .and_then(of_deck)
+            .map_err(|e| e.in_file(&path))
+        {
             Ok(model) => models.push(model),
             Err(e) => {
                 failed.push(StageFailure::new(format!("reading {}", block.name), &e));

@@ -25,7 +25,7 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let records = if study.deck.records.is_empty() {
-        RecordSet::in_folder(&study, &directory.join(stages::RECORDS))?
+        RecordSet::in_folder(&study, &deck, &directory.join(stages::RECORDS))?
     } else {
         RecordSet::measured(&study)?
     };

@@ -8,7 +8,7 @@ use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
 };
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
     ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
 };
@@ -305,8 +305,8 @@ impl RecordSet {
         Self::new(records.into_iter().map(|r| Box::new(r) as _).collect())
     }
 
-    /// All records of a folder, as `tunnel` writes them; none when no model of the study needs any.
-    pub(crate) fn in_folder(study: &Study, folder: &Path) -> Result<Self> {
+    /// All records of a folder, as `tunnel` writes them of the deck; none when no model of the study needs any.
+    pub(crate) fn in_folder(study: &Study, deck: &Deck, folder: &Path) -> Result<Self> {
         let needed = study.models.iter().any(|m| m.table.is_none());
         let mut paths = Vec::new();
         if folder.is_dir() {
@@ -327,7 +327,18 @@ impl RecordSet {
             .in_file(folder));
         }
         paths.sort();
-        Self::open(paths)
+        let found = Self::open(paths.clone())?;
+        let own = deck.table_name().unwrap_or(FLAT_PLATE);
+        for (record, path) in found.records.iter().zip(&paths) {
+            let header = record.header();
+            let is_own =
+                header.name.starts_with(own) || !header.source.starts_with("virtual tunnel");
+            let expected = format_args!(
+                "a record of {own} (run `aerodeck tunnel` again, into an empty folder)"
+            );
+            ensure(is_own, "name", expected, &header.name).map_err(|e| e.in_file(path))?;
+        }
+        Ok(found)
     }
 
     /// No records at all: enough for models that are fitted to tables.

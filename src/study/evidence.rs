@@ -1,22 +1,24 @@
 //! What is known of the section of a study, as evidence for its verdict.
 
-use super::intervals::interval_of;
+use super::intervals::{interval_of, saved_moved_onset, uncertainty_beside};
 use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
 use crate::aerodynamics::Transfer;
+use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, StableRange, find_onset,
-    judged_speeds, table_tested_from,
+    FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, QuasiSteadyOnset,
+    StableRange, find_onset, judged_speeds, table_tested_from,
 };
 use crate::plausibility::of_section;
-use crate::section::SectionModel;
+use crate::section::{SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
     MeanRotation, Reach,
 };
+use std::path::Path;
 
 /// Stages that draw and write, without which the answer is the same.
 const DRAWING: [&str; 2] = ["figure", "curves"];
@@ -74,35 +76,42 @@ pub(crate) fn section_evidence(
             assumed: d.assumed.clone(),
         })
         .collect();
-    let angle_deg = deck.table().and_then(|t| t.header.angle_deg);
-    if let Err(e) = add_coefficients(study, results, angle_deg, &mut evidence) {
-        evidence.failures.push(Failure {
-            stage: "quasi-steady theory".to_owned(),
-            reason: e.to_string(),
-            bears_on_answer: true,
+    if let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) {
+        let angle_deg = deck.table().and_then(|t| t.header.angle_deg);
+        let added = study.section.structure().and_then(|structure| {
+            let theory = block.theory(&study.directory, &structure.dofs)?;
+            add_coefficients(
+                &mut evidence,
+                &block.source,
+                &structure,
+                &theory,
+                found,
+                angle_deg,
+            )
         });
+        evidence.failures.extend(added.err().map(of_theory));
     }
     evidence
 }
 
-/// What a saved model answers for its own section by itself: the onset with its interval, divergence, growth, and what is odd about
-/// the section; `moved` is what constraints of its fit did to the onset. The table it was fitted to is not known any more.
+/// What the model of a file answers for a section by itself, with what training left beside the file: the onset with its interval,
+/// divergence, growth, and what is odd about the section. The table it was fitted to is not known any more.
 ///
 /// # Errors
-/// [`Error::Input`] for a section that is wrong.
-pub(crate) fn model_evidence(
+/// [`Error::Input`] for a section that is wrong, and for files beside that of the model that are.
+pub(crate) fn saved_evidence(
+    file: &Path,
     model: &TrainedModel,
     section: &SectionModel,
     search: &OnsetSearch,
-    known: &KnownUncertainty,
-    moved: Option<MovedOnset>,
 ) -> Result<Evidence> {
+    let known = uncertainty_beside(file, model)?;
     let structure = section.structure()?;
     let coupled = CoupledSection::with_model(&structure, &model.model)?;
     let tested = model.tested_range;
     let mut found = find_onset(&model.name, &coupled, search, Some(tested))?;
     if let FlutterSearch::Onset(onset) = &mut found {
-        onset.interval = interval_of(&structure, model, known, onset);
+        onset.interval = interval_of(&structure, model, &known, onset);
         let warnings = known.iter().filter_map(|k| k.warning());
         onset.warnings.extend(warnings);
     }
@@ -110,8 +119,13 @@ pub(crate) fn model_evidence(
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;
     Ok(Evidence {
-        constraints: moved,
-        test_speeds: one_test_speed(known),
+        constraints: saved_moved_onset(
+            model,
+            file.parent().unwrap_or(Path::new("")),
+            section,
+            search,
+        )?,
+        test_speeds: one_test_speed(&known),
         implausible: of_section(section),
         ..Evidence::of_section(
             &forces(&model.name, ""),
@@ -200,17 +214,25 @@ fn one_test_speed(known: &KnownUncertainty) -> Option<usize> {
     (known.onset.is_some() && known.speeds.each.is_empty()).then_some(1)
 }
 
+/// Quasi-steady theory beside the derivatives that failed.
+pub(super) fn of_theory(error: Error) -> Failure {
+    Failure {
+        stage: "quasi-steady theory".to_owned(),
+        reason: error.to_string(),
+        bears_on_answer: true,
+    }
+}
+
 /// What static coefficients say beside the derivatives: galloping, divergence about the equilibrium, mean rotation.
-fn add_coefficients(
-    study: &Study,
-    results: &FlutterStudy,
-    tested_deg: Option<f64>,
+pub(super) fn add_coefficients(
     evidence: &mut Evidence,
+    source: &str,
+    structure: &Structure,
+    theory: &QuasiSteady,
+    found: &QuasiSteadyOnset,
+    tested_deg: Option<f64>,
 ) -> Result<()> {
-    let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) else {
-        return Ok(());
-    };
-    let forces = format!("static coefficients ({})", block.source);
+    let forces = format!("static coefficients ({source})");
     let gallops = found.mode.as_ref().is_some_and(|m| {
         matches!(
             m.kind,
@@ -248,9 +270,7 @@ fn add_coefficients(
         .and_then(|r| r.search.critical_speed_m_s());
     // without an onset the speed that is required is the one that counts
     if let Some(speed) = critical.or(evidence.required.map(|r| r.speed_m_s)) {
-        let structure = study.section.structure()?;
-        let theory = block.theory(&study.directory, &study.section.dofs())?;
-        let path = static_equilibria(&structure, &theory, &[speed])?;
+        let path = static_equilibria(structure, theory, &[speed])?;
         evidence.mean_rotation = path.points.first().map(|p| MeanRotation {
             speed_m_s: speed,
             at_onset_deg: p.rotation_rad.to_degrees(),

@@ -1,12 +1,15 @@
 //! Intervals of the onsets of a study.
 
 use super::{FlutterStudy, RouteTable, Study, slug};
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetMethod};
+use crate::flutter::{
+    FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetMethod, OnsetSearch, find_onset,
+};
 use crate::identification::FitReport;
 use crate::json;
-use crate::section::Structure;
-use crate::trained_model::TrainedModel;
+use crate::section::{SectionModel, Structure};
+use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::ModelUncertainty;
 use std::path::Path;
 
@@ -30,27 +33,38 @@ pub(crate) fn saved_uncertainty(model: &TrainedModel, folder: &Path) -> Result<K
     Ok(Ok(Box::new(known)))
 }
 
-/// What constraints of the fit did to the onset, as training left it in a folder of results; `None` where it left nothing.
-pub(crate) fn saved_moved_onset(model: &TrainedModel, folder: &Path) -> Result<Option<MovedOnset>> {
-    let path = folder
-        .join(FITS)
-        .join(format!("{}.json", slug(&model.name)));
-    if !path.exists() {
+/// What constraints of the fit of the model in a folder of results, or beside that folder, do to the onset of a section: as training
+/// left it, or for another section by the model of the data alone; `None` where training left nothing.
+pub(crate) fn saved_moved_onset(
+    model: &TrainedModel,
+    folder: &Path,
+    section: &SectionModel,
+    search: &OnsetSearch,
+) -> Result<Option<MovedOnset>> {
+    let name = Path::new(FITS).join(format!("{}.json", slug(&model.name)));
+    let beside = [folder.join(&name), folder.join("..").join(&name)];
+    let Some(path) = beside.iter().find(|path| path.exists()) else {
         return Ok(None);
-    }
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+    };
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
     let report: FitReport = json::read("fit", &text)
-        .map_err(|e| Error::json("the account of a fit", &e).in_file(&path))?;
-    Ok(report.constraints.and_then(|held| held.onset))
-}
-
-/// The same for the file of a model: beside it, or beside the folder it is in.
-pub(crate) fn moved_onset_beside(file: &Path, model: &TrainedModel) -> Result<Option<MovedOnset>> {
-    let folder = file.parent().unwrap_or(Path::new(""));
-    match saved_moved_onset(model, folder)? {
-        None => saved_moved_onset(model, &folder.join("..")),
-        known => Ok(known),
-    }
+        .map_err(|e| Error::json("the account of a fit", &e).in_file(path))?;
+    let Some(held) = report.constraints else {
+        return Ok(None);
+    };
+    let Some(alone) = held.unconstrained.filter(|_| *section != model.section) else {
+        return Ok(held.onset);
+    };
+    let structure = section.structure()?;
+    let onset = |forces: &Model| {
+        let coupled = CoupledSection::with_model(&structure, forces).ok()?;
+        let found = find_onset(&model.name, &coupled, search, Some(model.tested_range)).ok()?;
+        found.onset().map(|o| o.at.speed_m_s)
+    };
+    Ok(Some(MovedOnset {
+        without_m_s: onset(&alone),
+        with_m_s: onset(&model.model),
+    }))
 }
 
 /// The uncertainty for the file of a model: beside it, or beside the folder it is in.

@@ -170,6 +170,8 @@ fn with_forms(
             known.with_forms(forms, &structure, &search)
         }
         Ok(None) => Ok(known),
+        // as of fewer tests than coefficients, of which the scatter shows nothing
+        Err(error @ Error::Numerical(_)) => Err(error),
         Err(error) => {
             report.notes.push(format!(
                 "what the form of the model leaves open is not in its interval: {error}"

@@ -198,9 +198,22 @@ fn tests_that_end_before_the_required_speed_cannot_judge_it() {
         .filter(|d| d["severity"] == "severe")
         .map(|d| d["kind"].as_str().unwrap())
         .collect();
-    assert_eq!(kinds, ["outside_tested_range", "not_judged_above"]);
+    let expected = [
+        "outside_tested_range",
+        "not_judged_above",
+        "not_judged_below",
+    ];
+    assert_eq!(kinds, expected);
     let page = fs::read_to_string(at.join("r/report.html")).unwrap();
     assert!(page.contains("card open") && page.contains("Severe doubt."));
+    // a distribution about that model says so
+    let plan = "schema = 1\nmodel = \"r/model.json\"\nsamples = 50\ndesign_speed_m_s = 25.0\n[[parameter]]\nname = \"air_density_kg_m3\"\n\
+                distribution = { kind = \"normal\", coefficient_of_variation = 0.01 }\n";
+    fs::write(at.join("scatter.toml"), plan).unwrap();
+    let said = flowing(&succeeds(at, &["monte-carlo", "scatter.toml"]));
+    let words =
+        "warning: of the model itself: Cannot be judged: The onset lies outside the tested range";
+    assert!(said.contains(words), "{said}");
 }
 
 #[test]

@@ -195,6 +195,42 @@ fn galloping_of_a_bridge_is_looked_at_beside_derivatives() {
     assert_eq!((code, state(&verdict)), (Some(0), "met"));
 }
 
+/// The same of a section in turbulence: it was met at 30 m/s beside derivatives, while `study` saw it gallop at 1 m/s.
+#[test]
+fn galloping_of_a_section_is_looked_at_beside_derivatives() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let box_girder = include_str!("../../data/coefficients/synthetic_box_girder.csv");
+    let down = box_girder.lines().map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let lift = cells.get(2).and_then(|c| c.parse::<f64>().ok());
+        lift.map_or(line.to_owned(), |lift| {
+            format!("{},{},{},{}", cells[0], cells[1], -lift, cells[3])
+        })
+    });
+    fs::write(at.join("down.csv"), down.collect::<Vec<_>>().join("\n")).unwrap();
+    succeeds(at, &["new", "--wind"]);
+    let text = fs::read_to_string(at.join("wind.toml")).unwrap();
+    let text = text
+        .replace("\"quasi-steady\"\n", "\"LN21-5200\"\n")
+        .replace("\nlateral", "\n# lateral");
+    let text = text.replace("[speeds]", "[speeds]\nrequired_speed_m_s = 30.0");
+    fs::write(at.join("wind.toml"), &text).unwrap();
+    let buffeting = ["buffeting", "wind.toml", "--no-figures"];
+    let (code, said, error) = aerodeck(at, &buffeting);
+    assert!(
+        code == 0 && said.contains("✓ MET, required 30 m/s"),
+        "{said}{error}"
+    );
+    let text = text.replace("\"synthetic box girder\"", "\"down.csv\"");
+    fs::write(at.join("wind.toml"), text).unwrap();
+    let (code, said, error) = aerodeck(at, &buffeting);
+    assert!(
+        code == 3 && said.contains("✗ NOT MET, required 30 m/s: galloping at 1.00 m/s"),
+        "{said}{error}"
+    );
+}
+
 fn state(verdict: &Value) -> &str {
     verdict["outcome"]["state"].as_str().unwrap()
 }

@@ -138,6 +138,39 @@ fn one_test_speed_of_a_bridge_is_said() {
     );
 }
 
+/// One frequency determines no model: an interval of no width about an onset was taken for a known one.
+#[test]
+fn tests_of_one_frequency_have_no_interval() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    succeeds(at, &["derivatives", "convert", "LN21-5200", "whole.csv"]);
+    let whole = fs::read_to_string(at.join("whole.csv")).unwrap();
+    let kept =
+        |line: &&str| line.starts_with('#') || line.contains("point") || line.contains(",5,");
+    let one: Vec<&str> = whole.lines().filter(kept).collect();
+    fs::write(at.join("one.csv"), one.join("\n").replace(",5,", ",1,")).unwrap();
+    let run = [
+        "study",
+        "s.toml",
+        "--no-figures",
+        "--set",
+        "deck.source=\"one.csv\"",
+        "--set",
+        "flutter.required_speed_m_s=5.0",
+    ];
+    let (code, said, _) = aerodeck(at, &run);
+    let said = flowing(&said);
+    assert!(
+        code == 3 && said.contains("? CANNOT BE JUDGED, required 5 m/s"),
+        "{said}"
+    );
+    assert!(
+        said.contains("No interval of the onset: no form can be fitted"),
+        "{said}"
+    );
+}
+
 /// The model of one deck beside the table of another: two answers, and neither is relied on.
 #[test]
 fn a_model_and_a_table_that_contradict_each_other_cannot_be_judged() {
@@ -164,6 +197,21 @@ fn a_model_and_a_table_that_contradict_each_other_cannot_be_judged() {
     );
     assert_eq!((code, &said["severity"]), (3, &"severe".into()));
     assert_eq!(other["outcome"]["state"], "cannot_be_judged");
+    // a study whose deck was changed takes neither the models nor the records of the deck before
+    let study = fs::read_to_string(at.join("s.toml")).unwrap();
+    let other = study.replace("source = \"LN21-5200\"", "source = \"LN21-6100\"");
+    fs::write(at.join("s.toml"), other).unwrap();
+    let (code, _, error) = aerodeck(at, &["flutter", "s.toml"]);
+    assert!(
+        code == 2 && error.contains("the deck of the study (run `aerodeck train` again)"),
+        "{error}"
+    );
+    succeeds(at, &["tunnel", "s.toml"]);
+    let (code, _, error) = aerodeck(at, &["train", "s.toml"]);
+    assert!(
+        code == 2 && error.contains("expected a record of LN21-6100"),
+        "{error}"
+    );
 }
 
 /// Constraints on the fits of sections move the onset of a bridge as that of a section.

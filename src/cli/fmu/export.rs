@@ -15,7 +15,7 @@ use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, FmiVersion, Label, Overwrite, Runtime, growth_of, write_fmu};
 use crate::fmu::variables::Listing;
-use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
+use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -205,13 +205,11 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let (default_name, evidence) = match args.kind {
         ExportKind::Section => {
-            let known = uncertainty_beside(&args.model, &model)?;
-            let moved = moved_onset_beside(&args.model, &model)?;
             let search = OnsetSearch {
                 speed_max_m_s: model.experiment.onset_search_limit_m_s,
                 ..OnsetSearch::default()
             };
-            let evidence = model_evidence(&model, &model.section, &search, &known, moved)?;
+            let evidence = saved_evidence(&args.model, &model, &model.section, &search)?;
             (stages::FMU_FILE, Some(evidence))
         }
         ExportKind::Force | ExportKind::Structure => ("deck_force.fmu", None),

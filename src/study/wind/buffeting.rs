@@ -89,6 +89,8 @@ struct Setting<'a> {
     /// The model fitted to a table, which alone can be stepped, and how.
     fitted: Option<(Box<dyn Transfer>, String)>,
     tested: Option<ReducedFrequencyRange>,
+    /// Mean angle of the tests of a table that states it, deg.
+    angle_deg: Option<f64>,
     /// What is odd about a table.
     findings: Vec<Finding>,
 }
@@ -177,6 +179,7 @@ impl<'a> Setting<'a> {
             fixed: None,
             fitted: None,
             tested: None,
+            angle_deg: None,
             findings: Vec::new(),
         };
         setting.take(study.aerodynamics.as_str())?;
@@ -218,6 +221,7 @@ impl<'a> Setting<'a> {
             convention: study.convention,
         };
         let table = words.read("convention")?;
+        self.angle_deg = table.header.angle_deg;
         self.findings = of_table(&table, &study.convention.or_usual());
         let dofs = &self.structure.dofs;
         let by = study.interpolation;

@@ -118,7 +118,9 @@ impl Weighed<'_> {
             tested_from_k: tested.min.full_width(),
             tested_to_k: tested.max.full_width(),
         };
-        let severity = self.unless_cleared();
+        // in slower wind a motion above the tests is faster still: not one test is of it at any speed up to the onset
+        let never = k > tested.max || !self.clears(self.critical.judged_to_m_s);
+        let severity = Severity::severe_if(never);
         let text = format!(
             "The onset lies outside the tested range, at K {:.3} (tests: {}): {} extrapolated",
             k.full_width(),

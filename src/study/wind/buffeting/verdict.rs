@@ -5,7 +5,7 @@ use super::{Setting, WindStudy};
 use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::flutter::{OnsetSearch, pk_onset, quasi_steady_onset};
-use crate::study::{model_evidence, moved_onset_beside, uncertainty_beside};
+use crate::study::evidence::{add_coefficients, of_theory, saved_evidence};
 use crate::verdict::{Evidence, ForceBasis, Verdict};
 
 impl WindStudy {
@@ -25,11 +25,29 @@ impl WindStudy {
             }
             (None, None) => Evidence::default(),
         };
-        Ok(Verdict::judge(&Evidence {
+        let mut evidence = Evidence {
             required: self.speeds.required(),
             implausible: [self.findings(), setting.findings.clone()].concat(),
             ..evidence
-        }))
+        };
+        if let (Some(block), Some(theory), true) =
+            (&self.coefficients, &setting.theory, setting.fixed.is_some())
+        {
+            let structure = &setting.structure;
+            let found = quasi_steady_onset("static coefficients", structure, theory, &search);
+            let added = found.and_then(|found| {
+                add_coefficients(
+                    &mut evidence,
+                    &block.source,
+                    structure,
+                    theory,
+                    &found,
+                    setting.angle_deg,
+                )
+            });
+            evidence.failures.extend(added.err().map(of_theory));
+        }
+        Ok(Verdict::judge(&evidence))
     }
 }
 
@@ -39,9 +57,7 @@ impl Setting<'_> {
         let (study, structure) = (self.study, &self.structure);
         if let Some(model) = study.trained_model()? {
             let file = study.directory.join(&study.aerodynamics);
-            let known = uncertainty_beside(&file, &model)?;
-            let moved = moved_onset_beside(&file, &model)?;
-            return model_evidence(&model, &study.section()?, search, &known, moved);
+            return saved_evidence(&file, &model, &study.section()?, search);
         }
         let name = study.aerodynamics.as_str();
         let found = pk_onset(name, structure, fixed, search, self.tested)?;

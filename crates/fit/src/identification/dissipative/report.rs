@@ -86,7 +86,7 @@ pub struct ConstraintReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub onset: Option<MovedOnset>,
     /// The model that the data alone would give.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unconstrained: Option<Box<Model>>,
 }
 
