@@ -147,7 +147,7 @@ fn a_known_bias_leaves_no_bare_interval() {
     let at = found.onset().unwrap();
     let known =
         ModelUncertainty::new(estimate, &structure, Some(at), search, report.tested_range).unwrap();
-    let interval = known.interval(&model, &structure, &at).unwrap();
+    let interval = known.interval(&model, &structure, at).unwrap();
     let OnsetInterval::None { reason } = interval else {
         panic!("{interval:?}");
     };
