@@ -178,8 +178,9 @@ pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &st
     fmi2Status::fmi2Error
 }
 
-/// The process is an importer's. Panics inside [`shielded`] are silent, but for tests, which share their process with what panics on its own
-/// account: they are reported through its logger, and collecting a backtrace would cost tens of megabytes. The hook owns nothing and no thread is started, so that nothing is left when the library is unloaded.
+/// The process is an importer's. Panics inside [`shielded`] are silent: they are reported through its logger, and collecting a backtrace
+/// would cost tens of megabytes. (Tests share their process with what panics on its own account.) The hook owns nothing and no thread is
+/// started, so that nothing is left when the library is unloaded.
 pub(crate) fn behave_as_a_guest() {
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(|| {
