@@ -9,7 +9,7 @@ use aerodeck::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
-    FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset, pk_onset,
+    FlutterSearch, MovedOnset, OnsetInterval, OnsetSearch, determinant_onset, find_onset, pk_onset,
 };
 use aerodeck::plausibility::{Finding, of_section};
 use aerodeck::section::SectionModel;
@@ -54,6 +54,7 @@ pub fn flutter(
         required_speed_m_s,
         ..FlutterBlock::default()
     };
+    block.validate("flutter").map_err(raised)?;
     let search = block.range(section).search();
     let structure = section.structure().map_err(raised)?;
     let against = |mut evidence: Evidence, of_data: &[Finding]| {
@@ -119,10 +120,21 @@ fn model_evidence(
     let coupled = CoupledSection::with_model(&structure, &model.model).map_err(raised)?;
     let at_rest = ReducedFrequency::from_full_width(0.0);
     let at_rest = model.model.transfer(at_rest).map_err(raised)?;
+    let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
+    let with_m_s = speed(&found);
     let mut evidence =
         Evidence::of_section("the model", &coupled, &at_rest, model.tested, search, found);
     let report = model.report.as_ref();
-    evidence.constraints = report.and_then(|r| r.constraints.as_ref()?.onset);
+    evidence.constraints = report.and_then(|report| {
+        // what the data alone give of this section
+        let alone = report.constraints.as_ref()?.unconstrained.as_ref()?;
+        let alone = CoupledSection::with_model(&structure, alone.as_ref()).ok()?;
+        let without = find_onset(&model.name, &alone, search, Some(model.tested)).ok()?;
+        Some(MovedOnset {
+            without_m_s: speed(&without),
+            with_m_s,
+        })
+    });
     Ok(evidence)
 }
 

@@ -202,6 +202,12 @@ def test_errors_say_file_place_expected_and_found(tmp_path, table, section, mode
         assert " line " not in str(caught.value) and "column" not in str(caught.value)
 
 
+def test_a_required_speed_that_is_none_is_refused(section, model):
+    for speed in (float("nan"), 0.0, -1.0):
+        with pytest.raises(aerodeck.InputError, match="required_speed_m_s: expected a positive number"):
+            aerodeck.flutter(section, model, required_speed_m_s=speed)
+
+
 def test_the_verdict_is_that_of_the_library(section, model, table):
     def judged(required_speed_m_s):
         onset = aerodeck.flutter(section, model, required_speed_m_s=required_speed_m_s)

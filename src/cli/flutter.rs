@@ -93,7 +93,12 @@ fn verdict(
         model: place.map(|i| &models[i]),
         uncertainty: place.and_then(|i| known.get(i)),
         moved: place.map_or(Ok(None), |i| {
-            saved_moved_onset(&models[i], folder, &study.section, &study.speeds().search())
+            saved_moved_onset(
+                &models[i],
+                &[folder.to_owned()],
+                &study.section,
+                &study.speeds().search(),
+            )
         })?,
     };
     let failed = [failed, &results.failed].concat();

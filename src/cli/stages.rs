@@ -103,9 +103,11 @@ pub(crate) fn train(
         let json = result.model.to_json()?;
         out.write(Path::new(MODELS).join(&file), &json)?;
         out.write_json(Path::new(FITS).join(&file), "fit", &result.report)?;
-        if let Ok(uncertainty) = &result.uncertainty {
-            let file = format!("{}.{UNCERTAINTY}", block.slug());
-            out.write(Path::new(FITS).join(file), uncertainty.to_json()?)?;
+        let file = Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug()));
+        match &result.uncertainty {
+            Ok(uncertainty) => out.write(file, uncertainty.to_json()?)?,
+            // that of an earlier fit is not that of this one
+            Err(_) => drop(std::fs::remove_file(out.target(file))),
         }
         if block.name == study.exported()?.name {
             out.write(MODEL_FILE, json)?;

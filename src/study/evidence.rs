@@ -105,6 +105,8 @@ pub(crate) fn saved_evidence(
     section: &SectionModel,
     search: &OnsetSearch,
 ) -> Result<Evidence> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let folders = [folder.to_owned(), folder.join("..")];
     let known = uncertainty_beside(file, model)?;
     let structure = section.structure()?;
     let coupled = CoupledSection::with_model(&structure, &model.model)?;
@@ -119,12 +121,7 @@ pub(crate) fn saved_evidence(
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;
     Ok(Evidence {
-        constraints: saved_moved_onset(
-            model,
-            file.parent().unwrap_or(Path::new("")),
-            section,
-            search,
-        )?,
+        constraints: saved_moved_onset(model, &folders, section, search)?,
         test_speeds: one_test_speed(&known),
         implausible: of_section(section),
         ..Evidence::of_section(

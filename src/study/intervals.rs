@@ -11,7 +11,7 @@ use crate::json;
 use crate::section::{SectionModel, Structure};
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::ModelUncertainty;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Uncertainty of one model, or why it is not known.
 pub(crate) type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
@@ -33,17 +33,17 @@ pub(crate) fn saved_uncertainty(model: &TrainedModel, folder: &Path) -> Result<K
     Ok(Ok(Box::new(known)))
 }
 
-/// What constraints of the fit of the model in a folder of results, or beside that folder, do to the onset of a section: as training
+/// What constraints of the fit of the model, in the first of the folders of results that has it, do to the onset of a section: as training
 /// left it, or for another section by the model of the data alone; `None` where training left nothing.
 pub(crate) fn saved_moved_onset(
     model: &TrainedModel,
-    folder: &Path,
+    folders: &[PathBuf],
     section: &SectionModel,
     search: &OnsetSearch,
 ) -> Result<Option<MovedOnset>> {
     let name = Path::new(FITS).join(format!("{}.json", slug(&model.name)));
-    let beside = [folder.join(&name), folder.join("..").join(&name)];
-    let Some(path) = beside.iter().find(|path| path.exists()) else {
+    let mut paths = folders.iter().map(|folder| folder.join(&name));
+    let Some(path) = &paths.find(|path| path.exists()) else {
         return Ok(None);
     };
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;

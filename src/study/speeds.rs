@@ -90,7 +90,10 @@ impl FlutterBlock {
     }
 
     /// Checks what is stated; `place` is the table it stands in.
-    pub(super) fn validate(&self, place: &str) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is none.
+    pub fn validate(&self, place: &str) -> Result<()> {
         for (key, speed) in [
             ("speed_max_m_s", self.speed_max_m_s),
             ("speed_min_m_s", self.speed_min_m_s),

@@ -37,6 +37,12 @@ pub enum Below {
 
 impl Outcome {
     pub(super) fn judge(required: RequiredSpeed, critical: &Critical, doubts: &[Doubt]) -> Self {
+        if !(required.speed_m_s > 0.0 && required.speed_m_s.is_finite()) {
+            return Self::CannotBeJudged {
+                missing: vec![format!("{} m/s is no wind speed", required.speed_m_s)],
+                settled_by: vec!["a positive required speed".to_owned()],
+            };
+        }
         let found = || critical.all();
         let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
         let undetermined = doubts.iter().any(open);

@@ -130,6 +130,15 @@ fn an_onset_with_its_interval_above_is_met() {
     );
 }
 
+/// "MET, required NaN m/s".
+#[test]
+fn what_is_no_wind_speed_is_never_met() {
+    for required_m_s in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let evidence = scanned(required_m_s, vec![found("the model", 36.9, 0.3)]);
+        assert_eq!(words(&evidence), "CANNOT BE JUDGED", "{required_m_s}");
+    }
+}
+
 #[test]
 fn which_number_lies_below_is_said() {
     let verdict = Verdict::judge(&scanned(36.7, vec![found("the model", 36.9, 0.3)]));
