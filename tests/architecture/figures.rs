@@ -112,9 +112,9 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 86_366),
-        ("code lines of the core", core, 17_884),
-        ("types", found.type_count(), 1_095),
+        ("code lines", found.line_count(), 86_172),
+        ("code lines of the core", core, 17_638),
+        ("types", found.type_count(), 1_084),
         ("names of several types", found.names_used_twice(), 0),
         (
             "functions with a tuple parameter",
