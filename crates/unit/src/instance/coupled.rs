@@ -260,7 +260,7 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
     }
 
     fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
-        S::load_inputs(self, memory);
+        self.load_inputs_once(memory);
         let stepper = &mut self.built.stepper;
         stepper.write_derivative(&memory.system, &self.inputs, rates)?;
         check_finite(&*rates)
