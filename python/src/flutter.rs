@@ -120,21 +120,15 @@ fn model_evidence(
     let coupled = CoupledSection::with_model(&structure, &model.model).map_err(raised)?;
     let at_rest = ReducedFrequency::from_full_width(0.0);
     let at_rest = model.model.transfer(at_rest).map_err(raised)?;
-    let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
-    let with_m_s = speed(&found);
+    let report = model.report.as_ref();
+    let alone = report.and_then(|r| r.constraints.as_ref()?.unconstrained.as_deref());
+    let moved = alone.map(|alone| {
+        let alone = CoupledSection::with_model(&structure, alone).ok();
+        MovedOnset::new(alone.as_ref(), &found, search, model.tested)
+    });
     let mut evidence =
         Evidence::of_section("the model", &coupled, &at_rest, model.tested, search, found);
-    let report = model.report.as_ref();
-    evidence.constraints = report.and_then(|report| {
-        // what the data alone give of this section
-        let alone = report.constraints.as_ref()?.unconstrained.as_ref()?;
-        let alone = CoupledSection::with_model(&structure, alone.as_ref()).ok()?;
-        let without = find_onset(&model.name, &alone, search, Some(model.tested)).ok()?;
-        Some(MovedOnset {
-            without_m_s: speed(&without),
-            with_m_s,
-        })
-    });
+    evidence.constraints = moved;
     Ok(evidence)
 }
 

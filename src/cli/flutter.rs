@@ -6,6 +6,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::{headline, result_files, routes, stages, text};
 use crate::error::Result;
+use crate::flutter::OnsetMethod;
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, OwnModel, RouteTable, StageFailure, Study, attempt,
     route_table, saved_moved_onset, section_evidence, state_route_intervals,
@@ -89,17 +90,16 @@ fn verdict(
 ) -> Result<Verdict> {
     let name = &study.exported()?.name;
     let place = models.iter().position(|m| m.name == *name);
+    let own = place.map(|i| &models[i]);
+    let with = own.and_then(|m| results.search_of(&m.name, OnsetMethod::Eigenvalues));
+    let moved = own.zip(with).map_or(Ok(None), |(model, with)| {
+        let (section, search) = (&study.section, study.speeds().search());
+        saved_moved_onset(model, &[folder.to_owned()], section, &search, &with)
+    })?;
     let own = OwnModel {
-        model: place.map(|i| &models[i]),
+        model: own,
         uncertainty: place.and_then(|i| known.get(i)),
-        moved: place.map_or(Ok(None), |i| {
-            saved_moved_onset(
-                &models[i],
-                &[folder.to_owned()],
-                &study.section,
-                &study.speeds().search(),
-            )
-        })?,
+        moved,
     };
     let failed = [failed, &results.failed].concat();
     Ok(Verdict::judge(&section_evidence(

@@ -117,11 +117,12 @@ pub(crate) fn saved_evidence(
         let warnings = known.iter().filter_map(|k| k.warning());
         onset.warnings.extend(warnings);
     }
+    let constraints = saved_moved_onset(model, &folders, section, search, &found)?;
     let at_rest = model
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;
     Ok(Evidence {
-        constraints: saved_moved_onset(model, &folders, section, search)?,
+        constraints,
         test_speeds: one_test_speed(&known),
         implausible: of_section(section),
         ..Evidence::of_section(
@@ -279,7 +280,7 @@ pub(super) fn add_coefficients(
 
 impl FlutterStudy {
     /// The answer of one search.
-    fn search_of(&self, model: &str, method: OnsetMethod) -> Option<FlutterSearch> {
+    pub(crate) fn search_of(&self, model: &str, method: OnsetMethod) -> Option<FlutterSearch> {
         let onsets = self.onsets.iter().chain(&self.undetermined);
         let onset = onsets
             .filter(|o| o.at.model == model && o.at.method == method)

@@ -3,13 +3,11 @@
 use super::{FlutterStudy, RouteTable, Study, slug};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{
-    FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetMethod, OnsetSearch, find_onset,
-};
+use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetMethod, OnsetSearch};
 use crate::identification::FitReport;
 use crate::json;
 use crate::section::{SectionModel, Structure};
-use crate::trained_model::{Model, TrainedModel};
+use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
 use std::path::{Path, PathBuf};
 
@@ -33,13 +31,14 @@ pub(crate) fn saved_uncertainty(model: &TrainedModel, folder: &Path) -> Result<K
     Ok(Ok(Box::new(known)))
 }
 
-/// What constraints of the fit of the model, in the first of the folders of results that has it, do to the onset of a section: as training
-/// left it, or for another section by the model of the data alone; `None` where training left nothing.
+/// What constraints of the fit of the model, in the first of the folders of results that has it, do to the onset of a section, which is `with`: as
+/// training left it, or for another section by the model of the data alone; `None` where training left nothing.
 pub(crate) fn saved_moved_onset(
     model: &TrainedModel,
     folders: &[PathBuf],
     section: &SectionModel,
     search: &OnsetSearch,
+    with: &FlutterSearch,
 ) -> Result<Option<MovedOnset>> {
     let name = Path::new(FITS).join(format!("{}.json", slug(&model.name)));
     let mut paths = folders.iter().map(|folder| folder.join(&name));
@@ -55,16 +54,9 @@ pub(crate) fn saved_moved_onset(
     let Some(alone) = held.unconstrained.filter(|_| *section != model.section) else {
         return Ok(held.onset);
     };
-    let structure = section.structure()?;
-    let onset = |forces: &Model| {
-        let coupled = CoupledSection::with_model(&structure, forces).ok()?;
-        let found = find_onset(&model.name, &coupled, search, Some(model.tested_range)).ok()?;
-        found.onset().map(|o| o.at.speed_m_s)
-    };
-    Ok(Some(MovedOnset {
-        without_m_s: onset(&alone),
-        with_m_s: onset(&model.model),
-    }))
+    let alone = CoupledSection::with_model(&section.structure()?, &*alone).ok();
+    let moved = MovedOnset::new(alone.as_ref(), with, search, model.tested_range);
+    Ok(Some(moved))
 }
 
 /// The uncertainty for the file of a model: beside it, or beside the folder it is in.

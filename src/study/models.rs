@@ -52,14 +52,11 @@ pub fn train_one(
         })
     });
     if let Some(constraints) = &mut report.constraints {
-        // an account only: a search that fails without constraints is no reason to refuse the model with them
-        let alone = constraints.unconstrained.as_ref();
-        let alone = alone.and_then(|model| onset(model, report.tested_range).ok());
-        let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
-        constraints.onset = Some(MovedOnset {
-            without_m_s: alone.as_ref().and_then(speed),
-            with_m_s: speed(&search),
-        });
+        let structure = study.section.structure()?;
+        let alone = constraints.unconstrained.as_deref();
+        let alone = alone.and_then(|m| CoupledSection::with_model(&structure, m).ok());
+        let (range, tested) = (study.speeds().search(), report.tested_range);
+        constraints.onset = Some(MovedOnset::new(alone.as_ref(), &search, &range, tested));
     }
     let uncertainty = estimate
         .and_then(|estimate| match deck.table_name() {

@@ -220,23 +220,24 @@ impl Stepper {
             return self.advance_sampled(state, inputs, step_s);
         }
         let gusts = self.gusts_act(state, inputs);
-        let fastest = wind + wind_rate.abs() * step_s;
-        let parts = self.series.parts(fastest, step_s, gusts);
         let same_wind = state.last_wind_m_s.is_none_or(|last| last == wind);
-        // where it stays, the wind is worth a matrix, and where a series would need many parts
-        let worth_a_matrix = wind_rate == 0.0
-            && self.next.len() <= STATES_OF_A_MATRIX
-            && match &self.series.gusts {
-                Some(of) if gusts => {
-                    same_wind && parts > 1.0 && parts <= MAX_SUBSTEPS && of.on_section
+        let steady = wind_rate == 0.0 && self.next.len() <= STATES_OF_A_MATRIX;
+        if steady && same_wind && !gusts {
+            self.advance_by_matrix(state, inputs, step_s)?;
+        } else {
+            let fastest = wind + wind_rate.abs() * step_s;
+            let parts = self.series.parts(fastest, step_s, gusts);
+            let in_gusts = gusts && steady && same_wind && parts > 1.0 && parts <= MAX_SUBSTEPS;
+            match &self.series.gusts {
+                Some(of) if in_gusts && of.on_section => {
+                    self.advance_in_gusts(state, inputs, step_s)
                 }
-                _ => same_wind || parts.is_nan() || parts > PARTS_OF_A_MATRIX,
-            };
-        match (worth_a_matrix, gusts) {
-            (true, false) => self.advance_by_matrix(state, inputs, step_s),
-            (true, true) => self.advance_in_gusts(state, inputs, step_s),
-            (false, _) => self.advance_by_series(state, inputs, step_s, parts, gusts),
-        }?;
+                _ if !gusts && steady && (parts.is_nan() || parts > PARTS_OF_A_MATRIX) => {
+                    self.advance_by_matrix(state, inputs, step_s)
+                }
+                _ => self.advance_by_series(state, inputs, step_s, parts, gusts),
+            }?;
+        }
         state.last_wind_m_s = Some(wind);
         Ok(())
     }

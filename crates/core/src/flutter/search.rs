@@ -2,7 +2,7 @@
 
 use super::answer::{Findings, FlutterSearch, choose};
 use super::following::{Follower, OnsetWatch, growing, oscillates};
-use super::judged::{Exit, JudgedSpeeds, damps_fast_motion};
+use super::judged::{Exit, JudgedSpeeds, MovedOnset, damps_fast_motion};
 use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
@@ -127,6 +127,24 @@ pub fn find_onset(
         scan.bound(&mut found, lost, &search.speeds_m_s()?)?;
     }
     Ok(choose(found, tested))
+}
+
+impl MovedOnset {
+    /// Of constraints that left the onset `with`; `alone` is the section in the forces of the data alone, at reduced frequencies
+    /// `tested`. An account only: what cannot be searched has none.
+    pub fn new(
+        alone: Option<&CoupledSection>,
+        with: &FlutterSearch,
+        search: &OnsetSearch,
+        tested: ReducedFrequencyRange,
+    ) -> Self {
+        let without = alone.and_then(|s| find_onset("data alone", s, search, Some(tested)).ok());
+        let speed = |found: &FlutterSearch| found.onset().map(|o| o.at.speed_m_s);
+        Self {
+            without_m_s: without.as_ref().and_then(speed),
+            with_m_s: speed(with),
+        }
+    }
 }
 
 /// The speeds at which every mode of `section` is inside what was tested, as [`find_onset`] judges them, whether anything

@@ -307,7 +307,7 @@ impl OnLanes for SeriesTerms<'_, '_> {
 }
 
 /// Replaces a term by the next one. What that is made from, of this term and those before: accelerations by external forces and by
-/// gusts, `[A₀[q̇, q]; d]`, `[f; g]`; `rates` are the unit of the rates and `τ/(k + 1)`.
+/// gusts, `[A₀[q̇, q]; d]`, `[f; g]`; last the unit of the rates and `τ/(k + 1)`.
 #[inline(always)]
 fn next_term(
     term: &mut [f64],

@@ -1,4 +1,4 @@
-//! Rows of forces alone: numbers of a strip that follow from wind, motion and forces.
+//! Outputs of forces alone: the forces of each strip, and rows of numbers that follow from wind, motion and forces.
 
 use super::force_parts::{StripsUnderModel, coordinate};
 use super::force_unit::ForceUnit;
@@ -9,6 +9,27 @@ use crate::variables::{
 };
 
 impl ForceUnit {
+    /// Writes the outputs of all strips.
+    pub(super) fn put_out(&self, memory: &mut Memory) {
+        for part in &self.parts {
+            let n = part.forces.dofs().len();
+            let own = part.coordinates.clone();
+            let indices = self.outputs[own.clone()].chunks(n);
+            let found = indices.zip(self.work.forces[own].chunks(n));
+            for (strip, (indices, found)) in self.strips[part.strips.clone()].iter().zip(found) {
+                let length = memory.values[strip[1]];
+                for ([per_length, total], force) in indices.iter().zip(found) {
+                    memory.values[*per_length] = force.force;
+                    memory.values[*total] = force.force * length;
+                }
+            }
+        }
+        for (index, s, number) in &self.rows {
+            let present = self.read(memory, *s, number, &|_| 0.0);
+            memory.values[*index] = number.evaluate(&present).value;
+        }
+    }
+
     /// What a row reads of strip `s`, with the forces that were found last; `slope` is that of an input, a length or a force.
     pub(super) fn read(
         &self,

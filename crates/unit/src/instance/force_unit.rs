@@ -35,9 +35,9 @@ pub(super) struct ForceUnit {
     /// Index of the motion among the inputs, by index in the table; zero for what is none.
     pub input_at: Vec<usize>,
     /// Force and total force, in the order of the motion.
-    outputs: Vec<[usize; 2]>,
+    pub outputs: Vec<[usize; 2]>,
     /// Further outputs: index, strip, and how it follows.
-    rows: Vec<(usize, usize, &'static ComputedNumber)>,
+    pub rows: Vec<(usize, usize, &'static ComputedNumber)>,
     /// Width, length, wind factor of each strip.
     pub strips: Vec<[usize; 3]>,
     /// The gusts of each strip, where the unit takes some.
@@ -381,25 +381,5 @@ impl ForceUnit {
         let found = find(self, &mut work);
         self.work = work;
         found
-    }
-
-    fn put_out(&self, memory: &mut Memory) {
-        for part in &self.parts {
-            let n = part.forces.dofs().len();
-            let own = part.coordinates.clone();
-            let indices = self.outputs[own.clone()].chunks(n);
-            let found = indices.zip(self.work.forces[own].chunks(n));
-            for (strip, (indices, found)) in self.strips[part.strips.clone()].iter().zip(found) {
-                let length = memory.values[strip[1]];
-                for ([per_length, total], force) in indices.iter().zip(found) {
-                    memory.values[*per_length] = force.force;
-                    memory.values[*total] = force.force * length;
-                }
-            }
-        }
-        for (index, s, number) in &self.rows {
-            let present = self.read(memory, *s, number, &|_| 0.0);
-            memory.values[*index] = number.evaluate(&present).value;
-        }
     }
 }
