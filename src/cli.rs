@@ -39,6 +39,7 @@ mod study;
 mod study_run;
 mod summary;
 mod text;
+mod text_table;
 mod thesis;
 mod thesis_page;
 mod train;
@@ -138,17 +139,14 @@ enum Command {
     Coverage(coverage::CoverageArgs),
     #[command(subcommand)]
     Compare(compare::Compare),
-    Completions(Shells),
-}
-
-/// Print the completions of a shell
-///
-/// Example: aerodeck completions bash > ~/.local/share/bash-completion/completions/aerodeck
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-struct Shells {
-    /// The shell.
-    shell: Shell,
+    /// Print the completions of a shell
+    ///
+    /// Example: aerodeck completions bash > ~/.local/share/bash-completion/completions/aerodeck
+    #[command(verbatim_doc_comment)]
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
 }
 
 /// Every command with what it does, the options of all and the exit codes, in Markdown: `docs/commands.md`.
@@ -320,7 +318,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
         Command::Compare(command) => compare::run(command, progress),
-        Command::Completions(args) => completions(args.shell),
+        Command::Completions { shell } => completions(*shell),
     }
 }
 

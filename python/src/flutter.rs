@@ -57,17 +57,15 @@ pub fn flutter(
     block.validate("flutter").map_err(raised)?;
     let search = block.range(section).search();
     let structure = section.structure().map_err(raised)?;
-    let against = |mut evidence: Evidence, of_data: &[Finding]| {
-        evidence.required = required_speed_m_s.map(|speed_m_s| RequiredSpeed { speed_m_s });
-        evidence.implausible = [&of_section(section)[..], of_data].concat();
-        Verdict::judge(&evidence)
-    };
     if let Ok(model) = model.cast::<Model>() {
-        let method = method.unwrap_or("eigenvalues");
-        let model = model.get();
-        let found = py.detach(|| of_model(section, model, &search, method))?;
-        let evidence = py.detach(|| model_evidence(section, model, &search, found.clone()))?;
-        return Onset::new(&found, method, &against(evidence, &model.findings));
+        let (method, model) = (method.unwrap_or("eigenvalues"), model.get());
+        let judged = || {
+            let found = of_model(section, model, &search, method)?;
+            let verdict = verdict(section, model, &search, found.clone(), required_speed_m_s)?;
+            PyResult::Ok((found, verdict))
+        };
+        let (found, verdict) = py.detach(judged)?;
+        return Onset::new(&found, method, &verdict);
     }
     let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
@@ -106,7 +104,44 @@ pub fn flutter(
     let (found, evidence) = found?;
     let of_deck = model.cast::<Derivatives>().ok();
     let of_deck = of_deck.map_or(&[][..], |table| &table.get().1);
-    Onset::new(&found, method, &against(evidence, of_deck))
+    let verdict = against(evidence, required_speed_m_s, section, of_deck);
+    Onset::new(&found, method, &verdict)
+}
+
+/// The verdict on a section of which this is known.
+fn against(
+    mut evidence: Evidence,
+    required_speed_m_s: Option<f64>,
+    section: &SectionModel,
+    of_data: &[Finding],
+) -> Verdict {
+    evidence.required = required_speed_m_s.map(|speed_m_s| RequiredSpeed { speed_m_s });
+    evidence.implausible = [&of_section(section)[..], of_data].concat();
+    Verdict::judge(&evidence)
+}
+
+/// What a trained model, of which this was found, says of a section and the speed that is required of it.
+fn verdict(
+    section: &SectionModel,
+    model: &Model,
+    search: &OnsetSearch,
+    found: FlutterSearch,
+    required_speed_m_s: Option<f64>,
+) -> PyResult<Verdict> {
+    let evidence = model_evidence(section, model, search, found)?;
+    let findings = &model.findings;
+    Ok(against(evidence, required_speed_m_s, section, findings))
+}
+
+/// What a trained model says of a section and a speed, which the search reaches.
+pub fn verdict_at(section: &SectionModel, model: &Model, speed_m_s: f64) -> PyResult<Verdict> {
+    let block = FlutterBlock {
+        required_speed_m_s: Some(speed_m_s),
+        ..FlutterBlock::default()
+    };
+    let search = block.range(section).search();
+    let found = of_model(section, model, &search, "eigenvalues")?;
+    verdict(section, model, &search, found, Some(speed_m_s))
 }
 
 /// Evidence for the verdict on a section in the forces of a trained model.

@@ -2,6 +2,7 @@
 
 use crate::convert::{Reduced, from_python, reduced, restored, set_default, shown, to_python};
 use crate::error::raised;
+use crate::flutter::verdict_at;
 use crate::model::Model;
 use crate::section::Section;
 use crate::work::{Work, on_threads};
@@ -80,6 +81,12 @@ impl MonteCarlo {
             .design
             .as_ref()
             .map(|d| (d.probability, d.lower, d.upper))
+    }
+
+    /// What the model itself can say of the design speed, as `verdict` of `monte_carlo.json`; None when no design speed was given.
+    #[getter]
+    fn verdict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.0.verdict)
     }
 
     /// Everything, as `monte_carlo.json` of the command line holds it.
@@ -176,7 +183,21 @@ pub fn monte_carlo(
     let result = work.run(py, || {
         analysis::monte_carlo(&plan, &trained, &|done, total| work.tell(done, total))
     })?;
-    result.map(MonteCarlo).map_err(raised)
+    judged(py, result.map_err(raised)?, section, model)
+}
+
+/// The distribution, with what the model itself can say of the design speed.
+fn judged(
+    py: Python<'_>,
+    mut result: MonteCarloResult,
+    section: &Bound<'_, Section>,
+    model: &Bound<'_, Model>,
+) -> PyResult<MonteCarlo> {
+    let (section, model) = (&section.get().0, model.get());
+    let speed = result.design.as_ref().map(|d| d.speed_m_s);
+    let judge = |speed| py.detach(|| verdict_at(section, model, speed));
+    result.verdict = speed.map(judge).transpose()?;
+    Ok(MonteCarlo(result))
 }
 
 /// The plan of these distributions, with the keywords of `monte_carlo`.
@@ -228,6 +249,7 @@ pub fn _monte_carlo_part(
 /// The distribution of which these are all parts, in their order.
 #[pyfunction]
 pub fn _monte_carlo_of(
+    py: Python<'_>,
     section: &Bound<'_, Section>,
     model: &Bound<'_, Model>,
     parameters: &Bound<'_, PyDict>,
@@ -239,5 +261,5 @@ pub fn _monte_carlo_of(
     let parts = parts.iter().map(|part| restored(part));
     let parts = parts.collect::<PyResult<Vec<Tally>>>()?;
     let result = analysis::summarise(&plan, &trained, parts);
-    result.map(MonteCarlo).map_err(raised)
+    judged(py, result.map_err(raised)?, section, model)
 }

@@ -124,6 +124,9 @@ def test_monte_carlo_is_seeded_and_the_design_speed_counts(section, model):
     assert low < probability < high
     edges, counts = a.histogram
     assert len(edges) == len(counts) + 1 and counts.sum() == 2000
+    # what the model itself says of that speed, as `flutter` does
+    assert a.verdict == aerodeck.flutter(section, model, required_speed_m_s=36).verdict == a.to_dict()["verdict"]
+    assert aerodeck.monte_carlo(section, model, scatter, samples=10).verdict is None
 
 
 def test_records_from_arrays_are_those_of_the_tunnel(table, section):

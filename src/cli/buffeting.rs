@@ -3,6 +3,7 @@
 use super::answer::Answer;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::text_table::TextTable;
 use super::wind::WindArgs;
 use super::{buffeting_page, figures, headline};
 use crate::error::{Error, Result, counted};
@@ -75,6 +76,8 @@ pub(super) fn of_study(
     });
     let rms: Vec<String> = rms.collect();
     let line = format!("RMS at {} m/s: {}", last.speed_m_s, rms.join(", "));
+    let line = std::iter::once(line).chain(results.without_response());
+    let line = line.collect::<Vec<_>>().join("; ");
     write(&study.name, OF_STUDY, &results, out)?;
     Ok(line)
 }
@@ -97,38 +100,28 @@ fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -
 }
 
 fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
-    let mut text = format!(
-        "{}\nself-excited forces: {}\n\n{:>8}",
-        study.name, results.aerodynamics, "V m/s"
-    );
-    for dof in &results.dofs {
-        let _ = write!(
-            text,
-            "{:>15}",
-            format!("RMS {} {}", dof.symbol(), dof.shown_in().1)
-        );
-    }
-    for dof in &results.dofs {
-        let _ = write!(text, "{:>12}", format!("ν {} Hz", dof.symbol()));
-    }
-    text.push('\n');
+    let dofs = &results.dofs;
+    let rms = dofs
+        .iter()
+        .map(|d| format!("RMS {} {}", d.symbol(), d.shown_in().1));
+    let crossing = dofs.iter().map(|d| format!("ν {} Hz", d.symbol()));
+    let table = TextTable::default().figures(["V m/s"]);
+    let mut table = table.figures(rms.chain(crossing));
     for response in results.shown() {
-        let _ = write!(text, "{:>8.2}", response.speed_m_s);
-        for (dof, rms) in results.dofs.iter().zip(&response.rms) {
-            let _ = write!(text, "{:>15.5}", dof.shown_in().0 * rms);
-        }
-        for frequency in &response.crossing_frequency_hz {
-            let _ = write!(text, "{frequency:>12.4}");
-        }
-        text.push('\n');
+        let rms = dofs.iter().zip(&response.rms);
+        let rms = rms.map(|(dof, rms)| format!("{:.5}", dof.shown_in().0 * rms));
+        let crossing = response.crossing_frequency_hz.iter();
+        let speed = std::iter::once(format!("{:.2}", response.speed_m_s));
+        table.row(speed.chain(rms).chain(crossing.map(|f| format!("{f:.4}"))));
     }
-    for group in results.left_out.chunk_by(|a, b| a.reason == b.reason) {
-        let speeds: Vec<String> = group
-            .iter()
-            .map(|s| format!("{:.2}", s.speed_m_s))
-            .collect();
-        let reason = group.first().map_or("", |s| s.reason.as_str());
-        let _ = writeln!(text, "at {} m/s: {reason}", speeds.join(", "));
+    let mut text = format!(
+        "{}\nself-excited forces: {}\n\n{}",
+        study.name,
+        results.aerodynamics,
+        table.text()
+    );
+    for line in results.without_response() {
+        let _ = writeln!(text, "{line}");
     }
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));

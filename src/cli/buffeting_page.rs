@@ -45,11 +45,13 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
     }
     let table = PageSection {
         title: "Response to turbulence".to_owned(),
-        text: vec![format!(
+        text: std::iter::once(format!(
             "RMS about the mean, in the frequency domain; self-excited forces: {}. Mean: by the static coefficients, where some are \
              stated. g: expected peak factor in {DURATION_S} s. The last column is the RMS of the acceleration, per s².",
             results.aerodynamics
-        )],
+        ))
+        .chain(results.without_response().into_iter().map(|line| format!("No response {line}.")))
+        .collect(),
         header: vec![
             "V m/s",
             "motion",
@@ -65,7 +67,14 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
     Ok(SectionsPage {
         title: name.to_owned(),
         subtitle: "Response of a section to turbulence".to_owned(),
-        answer: format!("Response at {} wind speeds", results.responses.len()),
+        answer: match results.left_out.len() {
+            0 => format!("Response at {} wind speeds", results.responses.len()),
+            none => format!(
+                "Response at {} of {} wind speeds",
+                results.responses.len(),
+                results.responses.len() + none
+            ),
+        },
         of: ReportBlock::default().dated(Some(&today()?)),
         key: key.to_owned(),
         sections: vec![table],

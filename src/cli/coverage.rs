@@ -3,6 +3,7 @@
 use super::answer::Answer;
 use super::common::spelt;
 use super::progress::Progress;
+use super::text_table::TextTable;
 use crate::error::Result;
 use crate::uncertainty::{
     CoveragePlan, CoverageReport, FamilyPlan, FamilyReport, RangeCount, Truth, coverage,
@@ -97,9 +98,8 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
 
 /// The family by where tests lie.
 fn family(report: &FamilyReport) -> String {
-    let mut text = format!(
-        "{:<26} {:>5} {:>6} {:>14} {:>10} {:>7} {:>11} {:>6} {:>6} {:>8} {:>6}\n",
-        "tests",
+    let table = TextTable::default().words(["tests"]);
+    let mut table = table.figures([
         "decks",
         "onsets",
         "held",
@@ -109,41 +109,33 @@ fn family(report: &FamilyReport) -> String {
         "unsafe",
         "met",
         "half",
-        "error"
-    );
+        "error",
+    ]);
     for r in &report.ranges {
-        text.push_str(&family_row(r));
+        table.row(family_row(r));
     }
-    text.push_str(
-        "\nheld: stated 95 % intervals that hold the truth; false none: \"no flutter\" above the true onset; unsafe: intervals \
+    table.text()
+        + ("\nheld: stated 95 % intervals that hold the truth; false none: \"no flutter\" above the true onset; unsafe: intervals \
          above it; met: required speeds above it that are called met; half: median half width of the intervals; error: of the \
-         stated onsets over their standard errors (root mean square), one where those are right\n",
-    );
-    text
+         stated onsets over their standard errors (root mean square), one where those are right\n")
 }
 
-fn family_row(r: &RangeCount) -> String {
-    let half = r
-        .median_half_width_percent
-        .map_or_else(|| "–".to_owned(), |h| format!("{h:.1} %"));
-    let error = r
-        .error_over_standard_error
-        .map_or_else(|| "–".to_owned(), |e| format!("{e:.2}"));
-    format!(
-        "{:<26} {:>5} {:>6} {:>5} ({:5.1} %) {:>10} {:>7} {:>11} {:>6} {:>6} {:>8} {:>6}\n",
-        r.range.title(),
-        r.decks,
-        r.held.of,
-        r.held.inside,
-        r.held.percent,
-        r.no_flutter,
-        r.refused,
-        r.false_no_flutter,
-        r.unsafe_side,
-        r.met_against_truth,
-        half,
-        error
-    )
+fn family_row(r: &RangeCount) -> [String; 11] {
+    let half = r.median_half_width_percent;
+    let error = r.error_over_standard_error;
+    [
+        r.range.title().to_owned(),
+        r.decks.to_string(),
+        r.held.of.to_string(),
+        format!("{} ({:5.1} %)", r.held.inside, r.held.percent),
+        r.no_flutter.to_string(),
+        r.refused.to_string(),
+        r.false_no_flutter.to_string(),
+        r.unsafe_side.to_string(),
+        r.met_against_truth.to_string(),
+        half.map_or("–".to_owned(), |h| format!("{h:.1} %")),
+        error.map_or("–".to_owned(), |e| format!("{e:.2}")),
+    ]
 }
 
 fn text(r: &CoverageReport) -> String {

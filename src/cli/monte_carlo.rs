@@ -48,7 +48,9 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         stage.at(done as u64, total as u64);
     });
     drop(stage);
-    let result = result.map_err(|e| MonteCarloPlan::locate(&plan_text, e).in_file(&args.plan))?;
+    let mut result =
+        result.map_err(|e| MonteCarloPlan::locate(&plan_text, e).in_file(&args.plan))?;
+    result.verdict = verdict(&plan, &model)?;
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.plan)))?;
     if result.onsets > 1 {
         figures::write("monte_carlo", &mut out, || {
@@ -56,8 +58,7 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         })?;
     }
     out.write_json("monte_carlo.json", "monte-carlo-results", &result)?;
-    let verdict = verdict(&plan, &model)?;
-    let refused = verdict.iter().filter(|v| v.refuses());
+    let refused = result.verdict.iter().filter(|v| v.refuses());
     let of_model = refused.map(|v| format!("warning: of the model itself: {}", v.explanation));
     let parts = [
         onsets(&result),
@@ -67,10 +68,9 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         failures(&result),
     ];
     let text = parts.concat().iter().map(|l| format!("{l}\n")).collect();
-    out.answer(
-        text,
-        serde_json::json!({ "result": result, "verdict": verdict }),
-    )
+    let verdict = &result.verdict;
+    let value = serde_json::json!({ "result": result, "verdict": verdict });
+    out.answer(text, value)
 }
 
 /// What the model itself, of which the samples are made, can say of the design speed.

@@ -29,6 +29,7 @@ pub(crate) struct OutputDir {
     files: Vec<PathBuf>,
     kept: Vec<PathBuf>,
     replaced: Vec<PathBuf>,
+    outdated: Vec<PathBuf>,
     _lock: FolderLock,
 }
 
@@ -72,6 +73,7 @@ impl OutputDir {
             files: Vec::new(),
             kept: Vec::new(),
             replaced: Vec::new(),
+            outdated: Vec::new(),
             _lock: lock,
         })
     }
@@ -146,6 +148,11 @@ impl OutputDir {
         let _ = fs::remove_file(self.staged(name));
     }
 
+    /// A file that an earlier run may have left there, of which this one has none: it goes when the others come.
+    pub(crate) fn outdated(&mut self, name: impl AsRef<Path>) {
+        self.outdated.push(name.as_ref().to_path_buf());
+    }
+
     /// Leaves a file that users edit as it is when it differs from the staged `name`, unless `force`; says whether it
     /// was left.
     pub(crate) fn keep_edited(&mut self, name: impl AsRef<Path>, force: bool) -> Result<bool> {
@@ -204,6 +211,10 @@ impl OutputDir {
             if target.is_file() {
                 fs::remove_file(&target).map_err(|e| Error::io(&target, e))?;
             }
+        }
+        for name in self.outdated.iter().filter(|name| !names.contains(name)) {
+            // mostly it is not there
+            let _ = fs::remove_file(self.target(name));
         }
         let mut written = Vec::with_capacity(names.len());
         for (name, replaced) in names.iter().zip(existed) {
@@ -341,6 +352,24 @@ mod tests {
         assert_eq!(read("model.json"), "new");
         assert_eq!(read("records/a.csv"), "a");
         assert_eq!(fs::read_dir(at).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_an_earlier_run_left_goes_when_this_one_has_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        for name in ["old.fmu", "both.json"] {
+            fs::write(at.join(name), "old").unwrap();
+        }
+        let mut out = OutputDir::new(at).unwrap();
+        for name in ["old.fmu", "both.json", "never.svg"] {
+            out.outdated(name);
+        }
+        out.write("both.json", "new").unwrap();
+        assert!(at.join("old.fmu").exists(), "until the others come");
+        out.commit().unwrap();
+        assert!(!at.join("old.fmu").exists());
+        assert_eq!(fs::read_to_string(at.join("both.json")).unwrap(), "new");
     }
 
     #[test]

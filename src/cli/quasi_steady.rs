@@ -4,6 +4,7 @@ use super::answer::Answer;
 use super::common::motion_columns;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::text_table::TextTable;
 use super::wind::WindArgs;
 use super::{figures, headline, text};
 use crate::aerodynamics::GustSeries;
@@ -108,23 +109,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
             .collect();
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
-    let _ = write!(text, "\nStatic equilibrium\n{:>8}", "V m/s");
-    for dof in &results.dofs {
-        let name = format!("{} {}", dof.symbol(), dof.shown_in().1);
-        let _ = write!(text, "{name:>12}");
-    }
-    let _ = writeln!(text, "{:>16}", "stiffness left");
-    let points = &results.equilibria.points;
-    for point in points
-        .iter()
-        .step_by(points.len().div_ceil(TABLE_LINES).max(1))
-    {
-        let _ = write!(text, "{:>8.2}", point.speed_m_s);
-        for (dof, value) in results.dofs.iter().zip(&point.displacement) {
-            let _ = write!(text, "{:>12.5}", dof.shown_in().0 * value);
-        }
-        let _ = writeln!(text, "{:>14.1} %", 100.0 * point.stiffness_left);
-    }
+    let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
     if let Some(end) = &results.equilibria.end {
         let _ = writeln!(text, "{}", end.explain());
     }
@@ -146,6 +131,28 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
         }
     }
     text
+}
+
+/// A line per wind speed, as many as a terminal shows.
+fn equilibria(results: &QuasiSteadyStudy) -> String {
+    let dofs = &results.dofs;
+    let motions = dofs
+        .iter()
+        .map(|d| format!("{} {}", d.symbol(), d.shown_in().1));
+    let table = TextTable::default().figures(["V m/s"]).figures(motions);
+    let mut table = table.figures(["stiffness left"]);
+    let points = &results.equilibria.points;
+    let shown = points
+        .iter()
+        .step_by(points.len().div_ceil(TABLE_LINES).max(1));
+    for point in shown {
+        let motion = dofs.iter().zip(&point.displacement);
+        let motion = motion.map(|(dof, value)| format!("{:.5}", dof.shown_in().0 * value));
+        let left = format!("{:.1} %", 100.0 * point.stiffness_left);
+        let speed = std::iter::once(format!("{:.2}", point.speed_m_s));
+        table.row(speed.chain(motion).chain([left]));
+    }
+    table.text()
 }
 
 fn run_in_words(run: &SimulatedMotion) -> String {

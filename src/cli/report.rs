@@ -24,7 +24,7 @@ use crate::report::{PageFigure, PageFit, StudyPage, sections_of, study_page, sum
 use crate::study::Study;
 use curves::curves_of;
 use folder::{PagePlace, REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
-use parts::{card, first_derivatives, known, of_svg, round, row};
+use parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
 
@@ -138,6 +138,10 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         |o: &&Onset| o.at.model == summary.model && o.at.method == OnsetMethod::Eigenvalues;
     let own = summary.onsets.iter().find(is_own);
     let all = summary.onsets.iter().chain(&summary.undetermined);
+    let unstable = summary.unstable.iter();
+    let unstable = unstable.map(|s| sentence_row(&s.at.model, s.at.method.name(), s.explain()));
+    let stable = summary.stable.iter();
+    let stable = stable.map(|s| sentence_row(&s.model, s.method.name(), s.explain()));
     StudyPage {
         title: summary.study.clone(),
         subtitle: "Flutter of a bridge deck section",
@@ -148,11 +152,12 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         verdict: verdict.into(),
         card: own.map_or(vec![], card),
         whose: format!(
-            "The answer is that of the model “{}”, which the FMU holds; the other models and routes stand below for comparison.",
-            summary.model
+            "The answer is that of the model “{}”{}; the other models and routes stand below for comparison.",
+            summary.model,
+            summary.has_fmu().map_or("", |_| ", which the FMU holds")
         ),
         asked: asked(summary, study),
-        onsets: all.map(row).collect(),
+        onsets: all.map(row).chain(unstable).chain(stable).collect(),
         comparisons: summary.comparisons.clone(),
         fits: summary.fits.iter().map(fit).collect(),
         command: format!("aerodeck study {} --out results", summary.study_file),

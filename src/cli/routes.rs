@@ -1,38 +1,27 @@
 //! The table of all routes and the onset cards, in words.
 
 use super::text::interval;
+use super::text_table::TextTable;
 use crate::flutter::{FlutterSearch, ModeBranch, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
 /// The table, the handbook lines, the cards and what was left out.
 pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
-    let mut text = format!(
-        "{:<26} {:<14} {:>8} {:>7} {:>7} {:>6} {:>8} {:>7} {:>9} {:<9} {:>8}  {}\n",
-        "Force model",
-        "route",
-        "V_F m/s",
-        "f Hz",
-        "V/(fB)",
-        "V/(ωB)",
-        "|y|/B|θ|",
-        "phase °",
-        "dζ/dV s/m",
-        "mode",
-        "V_D m/s",
-        "kind; in tested range"
-    );
+    let columns = TextTable::default().words(["Force model", "route"]);
+    let columns = columns.figures(["V_F m/s", "f Hz", "V/(fB)", "V/(ωB)"]);
+    let columns = columns.figures(["|y|/B|θ|", "phase °", "dζ/dV s/m"]);
+    let columns = columns.words(["mode"]).figures(["V_D m/s"]);
+    let mut columns = columns.words(["kind; in tested range"]);
     for route in &table.routes {
-        text.push_str(&row(route));
+        add(&mut columns, route);
     }
     for failed in &table.failed {
         let method = failed.method.map_or("", |m| m.name());
-        let _ = writeln!(
-            text,
-            "{:<26} {method:<14} no answer: {}",
-            failed.model, failed.reason
-        );
+        let head = [failed.model.clone(), method.to_owned()];
+        columns.sentence(head, &format!("no answer: {}", failed.reason));
     }
+    let mut text = columns.text();
     if let Some(lines) = &table.sanity {
         text.push_str(&sanity(lines));
     }
@@ -46,32 +35,35 @@ pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
     text
 }
 
-fn row(route: &Route) -> String {
+/// A row of the table.
+fn add(table: &mut TextTable, route: &Route) {
     let divergence = route
         .divergence_m_s
         .map_or("none".to_owned(), |v| format!("{v:.3}"));
-    let (name, method) = (&route.model, route.method.name());
+    let name = [route.model.clone(), route.method.name().to_owned()];
+    let mut without =
+        |answer: &str| table.sentence(name.clone(), &format!("{answer}; divergence {divergence}"));
     match &route.search {
-        FlutterSearch::Onset(o) if o.headline_m_s().is_err() => format!(
-            "{name:<26} {method:<14} {}; divergence {divergence}\n",
-            o.headline_m_s().err().unwrap_or_default()
-        ),
-        FlutterSearch::Onset(o) => format!(
-            "{name:<26} {method:<14} {:>8.3} {:>7.4} {:>7.3} {:>6.3} {:>8.4} {:>7.1} {:>9.5} {:<9} {divergence:>8}  {}; {}\n",
-            o.at.speed_m_s,
-            o.at.frequency_hz,
-            o.at.reduced_velocity.v_star(),
-            o.at.reduced_frequency.v_hat(),
-            o.mode_ratio,
-            o.phase_deg,
-            o.damping_slope_s_m.unwrap_or(f64::NAN),
-            o.branch,
-            kind(route),
-            tested(o, route),
-        ),
+        FlutterSearch::Onset(o) => match o.headline_m_s() {
+            Err(reason) => without(reason),
+            Ok(_) => table.row(
+                name.into_iter().chain([
+                    format!("{:.3}", o.at.speed_m_s),
+                    format!("{:.4}", o.at.frequency_hz),
+                    format!("{:.3}", o.at.reduced_velocity.v_star()),
+                    format!("{:.3}", o.at.reduced_frequency.v_hat()),
+                    format!("{:.4}", o.mode_ratio),
+                    format!("{:.1}", o.phase_deg),
+                    o.damping_slope_s_m
+                        .map_or("unknown".to_owned(), |s| format!("{s:.5}")),
+                    o.branch.to_string(),
+                    divergence,
+                    format!("{}; {}", kind(route), tested(o, route)),
+                ]),
+            ),
+        },
         FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => {
-            let answer = route.search.explain();
-            format!("{name:<26} {method:<14} {answer}; divergence {divergence}\n")
+            without(&route.search.explain());
         }
     }
 }

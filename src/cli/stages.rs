@@ -18,7 +18,8 @@ use crate::study::{
 };
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
-use crate::wind_tunnel::Record;
+use crate::wind_tunnel::{Record, RecordFile, RecordSource};
+use std::ffi::OsString;
 use std::path::Path;
 
 /// Folder of the records in the output directory.
@@ -43,6 +44,9 @@ pub(crate) fn tunnel(
 ) -> Result<Vec<Record>> {
     let stage = progress.stage("virtual wind tunnel");
     let records = deck.virtual_records(study)?;
+    for name in virtual_records(&out.target(RECORDS)) {
+        out.outdated(Path::new(RECORDS).join(name));
+    }
     let name = |r: &Record| Path::new(RECORDS).join(format!("{}.csv", file_name(&r.header.name)));
     out.write_records(records.iter().map(|r| (name(r), r)))?;
     // the header of a record names it; a line alone is the whole notice
@@ -52,6 +56,17 @@ pub(crate) fn tunnel(
     }
     drop(stage);
     Ok(records)
+}
+
+/// Names of the records in a folder that the virtual tunnel made.
+fn virtual_records(folder: &Path) -> Vec<OsString> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let of_tunnel = |path: &Path| {
+        let record = RecordFile::open(path).ok();
+        record.is_some_and(|r| r.header().source.starts_with("virtual tunnel"))
+    };
+    let made = entries.filter(|e| of_tunnel(&e.path()));
+    made.map(|e| e.file_name()).collect()
 }
 
 /// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.
@@ -69,6 +84,14 @@ pub(crate) fn train(
     let none = RecordSet::none();
     let mut first_error = None;
     for block in &study.models {
+        // what an earlier run left of a model is not of this one
+        for name in [MODELS, FITS].map(Path::new) {
+            out.outdated(name.join(format!("{}.json", block.slug())));
+        }
+        out.outdated(Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug())));
+        if block.name == study.exported()?.name {
+            out.outdated(MODEL_FILE);
+        }
         check_groups(study, block, deck, records)?;
         if records.is_none() && block.table.is_none() {
             let reason = "it needs records, which could not be made";
@@ -104,10 +127,8 @@ pub(crate) fn train(
         out.write(Path::new(MODELS).join(&file), &json)?;
         out.write_json(Path::new(FITS).join(&file), "fit", &result.report)?;
         let file = Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug()));
-        match &result.uncertainty {
-            Ok(uncertainty) => out.write(file, uncertainty.to_json()?)?,
-            // that of an earlier fit is not that of this one
-            Err(_) => drop(std::fs::remove_file(out.target(file))),
+        if let Ok(uncertainty) = &result.uncertainty {
+            out.write(file, uncertainty.to_json()?)?;
         }
         if block.name == study.exported()?.name {
             out.write(MODEL_FILE, json)?;

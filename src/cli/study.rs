@@ -152,6 +152,7 @@ impl StudyStages<'_> {
         verdict: &Verdict,
         growing: GrowthPolicy,
     ) -> Result<Option<PathBuf>> {
+        self.out.outdated(stages::FMU_FILE);
         let Some(own) = own else {
             let reason = format!("{} was not trained", self.study.exported()?.name);
             self.failed.push(StageFailure::new("export", reason));
@@ -235,6 +236,9 @@ impl StudyStages<'_> {
         results: &FlutterStudy,
         records: Option<&RecordSet>,
     ) -> Result<()> {
+        for stem in [measured_forces::FORCES, result_files::RESPONSE] {
+            self.out.outdated(format!("{stem}.svg"));
+        }
         let Some(own) = own.filter(|_| figures::wanted()) else {
             return Ok(());
         };

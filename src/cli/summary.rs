@@ -1,5 +1,6 @@
 //! `summary.json` of a study.
 
+use super::stages::FMU_FILE;
 use crate::flutter::{Onset, UnstableStart};
 use crate::identification::FitReport;
 use crate::plausibility::Finding;
@@ -64,6 +65,14 @@ pub(crate) struct Summary {
     pub failed: Vec<StageFailure>,
     /// Files written.
     pub files: Vec<PathBuf>,
+}
+
+impl Summary {
+    /// The FMU among the files; none where its export failed.
+    pub(super) fn has_fmu(&self) -> Option<&PathBuf> {
+        let files = self.files.iter();
+        files.into_iter().find(|f| f.ends_with(FMU_FILE))
+    }
 }
 
 /// A fit in short.

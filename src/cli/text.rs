@@ -3,7 +3,7 @@
 use super::headline;
 use super::output::{Written, list};
 use super::summary::Summary;
-use super::wrapping::beside;
+use super::text_table::TextTable;
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnstableStart, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
@@ -34,18 +34,15 @@ pub(crate) fn chain(
         text.push_str(&rest);
     } else {
         let kind = summary.fits.iter().find(|f| f.model == summary.model);
-        let kind = kind.map_or("", |f| &f.report.method);
+        let kind = kind.map_or(String::new(), |f| format!(" ({})", f.report.method));
         let _ = writeln!(
             text,
-            "Model     {} ({kind}), held by the FMU\n",
-            summary.model
+            "Model     {}{kind}{}\n",
+            summary.model,
+            summary.has_fmu().map_or("", |_| ", held by the FMU")
         );
-        text.push_str(&table(
-            &summary.onsets,
-            &[],
-            &summary.unstable,
-            &summary.stable,
-        ));
+        let found = &summary.onsets;
+        text.push_str(&table(found, &[], &summary.unstable, &summary.stable));
         for o in &summary.undetermined {
             let (model, method) = (&o.at.model, o.at.method.name());
             let _ = writeln!(text, "{model}, {method}: not determined by these data");
@@ -249,17 +246,14 @@ fn table(
     unstable: &[UnstableStart],
     stable: &[OnsetSummary],
 ) -> String {
-    let mut text = format!(
-        "{:<18} {:<13} {:>8} {:>15} {:>7} {:>6}  {}\n",
-        "Flutter onset", "method", "V m/s", "95 % interval", "f Hz", "V*", "tested"
-    );
+    let mut table = of_onsets(&["Flutter onset", "method"]);
+    let name = |model: &str, method: OnsetMethod| [model.to_owned(), method.name().to_owned()];
     for o in onsets {
-        let (model, method) = (&o.at.model, o.at.method.name());
-        let _ = writeln!(text, "{model:<18} {method:<13} {}", figures(o));
+        let name = name(&o.at.model, o.at.method);
+        table.row(name.into_iter().chain(figures(o)));
     }
     let mut without = |model: &str, method: OnsetMethod, why: &str| {
-        let head = format!("{model:<18} {:<13}", method.name());
-        text.push_str(&beside(&head, why));
+        table.sentence(name(model, method), why);
     };
     for o in undetermined {
         let reason = o.headline_m_s().err().unwrap_or_default();
@@ -271,23 +265,30 @@ fn table(
     for s in stable {
         without(&s.model, s.method, &s.explain());
     }
-    text
+    table.text()
 }
 
-/// The numbers of an onset, in the columns of the table.
-pub(super) fn figures(o: &Onset) -> String {
-    format!(
-        "{:>8.3} {:>15} {:>7.4} {:>6.2}  {}",
-        o.at.speed_m_s,
+/// A table of onsets: what says whose they are, then their [`figures`].
+pub(super) fn of_onsets(whose: &[&str]) -> TextTable {
+    let table = TextTable::default().words(whose.iter().copied());
+    let table = table.figures(["V m/s", "95 % interval", "f Hz", "V*"]);
+    table.words(["tested"])
+}
+
+/// The cells of an onset in its columns.
+pub(super) fn figures(o: &Onset) -> [String; 5] {
+    let tested = match o.in_tested_range {
+        Some(true) => "yes",
+        Some(false) => "NO",
+        None => "exact",
+    };
+    [
+        format!("{:.3}", o.at.speed_m_s),
         interval(&o.interval).replace(" – ", "–"),
-        o.at.frequency_hz,
-        o.at.reduced_velocity.v_star(),
-        match o.in_tested_range {
-            Some(true) => "yes",
-            Some(false) => "NO",
-            None => "exact",
-        }
-    )
+        format!("{:.4}", o.at.frequency_hz),
+        format!("{:.2}", o.at.reduced_velocity.v_star()),
+        tested.to_owned(),
+    ]
 }
 
 /// What the interval is made of, or why there is no 95 % interval, or none at all.

@@ -21,6 +21,8 @@ use std::path::{Path, PathBuf};
 
 /// Name of the exact flat plate as a source.
 const FLAT_PLATE: &str = "flat plate";
+/// Widths of records that differ by no more, relatively, are one.
+const SAME_WIDTH: f64 = 1e-6;
 /// Width of the section model of a plate that is itself too wide for a tunnel, m.
 const PLATE_MODEL_WIDTH_M: f64 = 0.5;
 
@@ -286,6 +288,12 @@ fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
         .collect()
 }
 
+/// Whether two files hold the same; not where one cannot be read.
+fn same_bytes(a: &Path, b: &Path) -> bool {
+    let read = |path: &Path| std::fs::read(path).ok();
+    read(a).is_some_and(|bytes| Some(bytes) == read(b))
+}
+
 /// Records, in groups of one mean speed.
 pub struct RecordSet {
     records: Vec<Box<dyn RecordSource>>,
@@ -297,7 +305,18 @@ impl RecordSet {
     /// The records that the study states.
     pub(crate) fn measured(study: &Study) -> Result<Self> {
         let paths = study.deck.records.iter().map(|p| study.directory.join(p));
-        Self::open(paths.collect())
+        let paths: Vec<PathBuf> = paths.collect();
+        let all = Self::open(paths.clone())?;
+        for (i, record) in all.records.iter().enumerate() {
+            let same = (0..i).find(|j| all.records[*j].header() == record.header());
+            let Some(first) = same.filter(|j| same_bytes(&paths[*j], &paths[i])) else {
+                continue;
+            };
+            let expected = "each record once: what stands twice looks better known than it is";
+            let found = format!("the same as in {}", paths[first].display());
+            return Err(Error::input("", expected, found).in_file(&paths[i]));
+        }
+        Ok(all)
     }
 
     /// Records in memory.
@@ -351,7 +370,16 @@ impl RecordSet {
 
     fn open(paths: Vec<PathBuf>) -> Result<Self> {
         let open = |path| Ok(Box::new(KeptRecord::new(RecordFile::open(path)?)) as _);
-        paths.iter().map(open).collect::<Result<_>>().map(Self::new)
+        let records: Vec<Box<dyn RecordSource>> = paths.iter().map(open).collect::<Result<_>>()?;
+        let width_m = records.first().map_or(0.0, |r| r.header().width_m);
+        for (record, path) in records.iter().zip(&paths) {
+            let found = record.header().width_m;
+            let same = (found / width_m - 1.0).abs() <= SAME_WIDTH;
+            let expected = format_args!("{width_m} m, as in {}", paths[0].display());
+            ensure(same, "width_m", expected, format_args!("{found} m"))
+                .map_err(|e| e.in_file(path))?;
+        }
+        Ok(Self::new(records))
     }
 
     fn new(records: Vec<Box<dyn RecordSource>>) -> Self {

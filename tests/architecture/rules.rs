@@ -95,6 +95,8 @@ pub const ARROWS: &[Row] = &[
             "identification+",
             "wind_tunnel+",
             "trained_model",
+            // beside a probability, what the model can say of that speed
+            "verdict::Verdict",
         ],
     ),
     row(

@@ -36,3 +36,62 @@ fn files_say_what_they_are() {
     });
     assert_eq!(simulated[0], simulated[1]);
 }
+
+/// A record counts once, and is of the section of the others.
+#[test]
+fn records_that_stand_twice_or_are_of_another_width_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--deck", "flat plate"]);
+    succeeds(at, &["tunnel", "study.toml", "--out", "r"]);
+    let of_tunnel = fs::read_dir(at.join("r/records")).unwrap();
+    let mut paths: Vec<_> = of_tunnel.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "csv"));
+    paths.sort();
+    fs::copy(&paths[0], at.join("copy.csv")).unwrap();
+    let first = fs::read_to_string(&paths[0]).unwrap();
+    let line = first.lines().find(|l| l.starts_with("# width_m:")).unwrap();
+    fs::write(at.join("wide.csv"), first.replace(line, "# width_m: 0.7")).unwrap();
+    let study = fs::read_to_string(at.join("study.toml")).unwrap();
+    for (other, fragments) in [
+        (
+            "copy.csv",
+            ["copy.csv: expected each record once", "the same as in"],
+        ),
+        ("wide.csv", ["wide.csv: width_m: expected", "found 0.7 m"]),
+    ] {
+        let files = [
+            paths[0].to_str().unwrap(),
+            paths[1].to_str().unwrap(),
+            other,
+        ];
+        let key = format!("[deck]\nrecords = {files:?}\n");
+        fs::write(at.join("own.toml"), study.replacen("[deck]\n", &key, 1)).unwrap();
+        refused(at, &["study", "own.toml", "--out", "own"], &fragments);
+    }
+}
+
+/// Records that the virtual tunnel made of an earlier table are not those of the next; what a laboratory put there stays.
+#[test]
+fn records_of_an_earlier_table_go() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--deck", "LN21-5200"]);
+    succeeds(at, &["tunnel", "study.toml"]);
+    let names = || {
+        let all = fs::read_dir(at.join("records")).unwrap();
+        let mut names: Vec<_> = all.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = names();
+    let own = fs::read_to_string(at.join("records").join(&before[1])).unwrap();
+    let own = own.replacen("# source: virtual tunnel", "# source: laboratory", 1);
+    fs::write(at.join("records/own.csv"), own).unwrap();
+    let other = ["tunnel", "study.toml", "--set", "deck.source=\"LN21-5500\""];
+    succeeds(at, &other);
+    let after = names();
+    let of_deck = |name: &std::ffi::OsString| name.to_str().unwrap().starts_with("LN21-5200");
+    assert!(after.contains(&"own.csv".into()), "{after:?}");
+    assert!(!after.iter().any(of_deck) && after.len() > 4, "{after:?}");
+}

@@ -98,6 +98,9 @@ fn spurious_onsets_are_named_and_not_taken() {
     let (code, text, _) = aerodeck(at, &["study", "study.toml", "--verbose"]);
     assert_eq!(code, 1, "{text}");
     assert!(text.contains("--allow-unstable"), "{text}");
+    let page = fs::read_to_string(at.join("report.html")).unwrap();
+    assert!(!at.join("deck_section.fmu").exists());
+    assert!(!page.contains("which the FMU holds") && !text.contains("held by the FMU"));
     let summary: Value =
         serde_json::from_str(&fs::read_to_string(at.join("summary.json")).unwrap()).unwrap();
     let laguerre = onset_of(&summary, "Laguerre", "eigenvalues");

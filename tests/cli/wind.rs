@@ -358,6 +358,8 @@ fn buffeting_answers_stable_speeds_and_names_the_others() {
         named.contains(&110.0) && named.iter().all(|speed| *speed > 76.68),
         "{text}"
     );
+    let page = fs::read_to_string(folder.path().join("buffeting.html")).unwrap();
+    assert!(page.contains("No response at ") && page.contains(" 110.00"));
     assert!(text.contains("time domain at 20 m/s"), "{text}");
     assert!(!text.contains("time domain at 110 m/s"), "{text}");
 }

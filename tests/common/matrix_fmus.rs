@@ -85,7 +85,7 @@ fn cell(
 }
 
 /// Lift and moment of a thin plate in gusts through Liepmann's function; drag of a coefficient of one.
-fn plate_gusts(model: &TrainedModel) -> GustForce {
+pub fn plate_gusts(model: &TrainedModel) -> GustForce {
     let tau = std::f64::consts::TAU;
     let [lift, drag, moment] = [[0.0, tau], [2.0, 0.0], [0.0, 0.25 * tau]];
     let dofs = model.section.dofs();

@@ -1,8 +1,11 @@
 //! The page of the manual that lists every variable is made from the tables of variables.
 
-use crate::bridges::{TWO, langenuen};
+use crate::bridges::{TWO, langenuen_text, read};
+use crate::dampers::BLOCKS;
+use crate::matrix_fmus::plate_gusts;
 use crate::three_dof;
 use aerodeck::fmu::force_options::ForceOptions;
+use aerodeck::fmu::onset_bounds::OnsetBounds;
 use aerodeck::fmu::resources::Resources;
 use aerodeck::fmu::variables::{Variable, VariableTable};
 use aerodeck::identification::Form;
@@ -51,29 +54,38 @@ fn table(title: &str, note: &str, variables: &[Variable]) -> String {
 }
 
 fn tables() -> String {
-    let model = three_dof::trained(Form::default(), 1.4);
-    let section = VariableTable::new(&model, None, None, None).unwrap();
+    let mut model = three_dof::trained(Form::default(), 1.4);
+    let gusts = plate_gusts(&model);
+    let bounds = OnsetBounds {
+        low_m_s: 30.0,
+        high_m_s: 40.0,
+    };
+    model.section.axis_offset_m = Some(0.01);
+    model.section.mass_offset_m = Some(0.01);
+    let section = VariableTable::new(&model, None, Some(&gusts), Some(bounds)).unwrap();
     let mut options = ForceOptions::single(model.section.width_m);
     options.named_strips = true;
-    let force = VariableTable::new(&model, Some(&options), None, None).unwrap();
-    let study = langenuen("LN21-5200", TWO);
+    let force = VariableTable::new(&model, Some(&options), Some(&gusts), None).unwrap();
+    let text = langenuen_text("LN21-5200", TWO, "modified_akima");
+    let study = read(&(text + BLOCKS));
     let export = study.export(&BridgeExportOptions::default()).unwrap();
     let (model, bridge) = (export.model.to_json(), export.bridge.to_json());
     let bridge = Resources::of_bridge(model.unwrap().as_bytes(), bridge.unwrap().as_bytes(), None);
     [
         table(
             "A coupled section",
-            "Of three degrees of freedom and a continuous model; one of two has nothing of the sway.",
+            "Of three degrees of freedom and a continuous model; one of two has nothing of the sway. Gusts are there with `--gusts`, ends of the \
+             interval where it is known, offsets where the section states some.",
             section.variables(),
         ),
         table(
             "Forces alone",
-            "Of strips that have names; a single strip may go without (`heave`).",
+            "Of strips that have names; a single strip may go without (`heave`), and at the nodes of a bridge it is `node[…]`. Gusts are there with `--gusts`.",
             force.variables(),
         ),
         table(
             "A whole bridge",
-            "The suspension bridge of the demo, with its nodes named by their numbers.",
+            "The suspension bridge of the demo with dampers, its nodes named by their numbers.",
             bridge.unwrap().table.variables(),
         ),
     ]

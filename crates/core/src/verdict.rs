@@ -16,6 +16,7 @@
 //! ```
 
 mod below;
+mod contradiction;
 mod critical;
 mod doubt;
 mod doubts;

@@ -4,6 +4,7 @@
 
 use aerodeck_core::{
     aerodynamics, aeroelastic, error, flutter, json, section, state_space, trained_model, units,
+    verdict,
 };
 use aerodeck_lab::{files, signal, wind_tunnel};
 use error::Error;

@@ -2,7 +2,7 @@
 
 use super::findings::FmuFindings;
 use super::reading_fmi3::NUMERIC;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::Path;
@@ -251,12 +251,38 @@ pub(super) fn check_symbols(path: &Path, is_fmi3: bool, place: &str, findings: &
 }
 
 fn open(path: &Path) -> Result<Library> {
+    refuse_cut(path)?;
     // SAFETY: initialisers of the library run; that is what loading an FMU means, and its user asked for it
     unsafe { Library::new(path) }.map_err(|e| {
-        Error::input(
-            "binary",
-            "a shared library that loads on this machine",
-            e.to_string(),
-        )
+        // what the loader said stands behind its error
+        let why = std::error::Error::source(&e).map_or(e.to_string(), ToString::to_string);
+        Error::input("binary", "a shared library that loads on this machine", why)
     })
+}
+
+/// Refuses an ELF library of 64 bits that ends before its segments do: a loader would end the process with a bus error.
+fn refuse_cut(path: &Path) -> Result<()> {
+    const LOADED: u64 = 1;
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+    let number = |at: u64, size: usize| {
+        let at = usize::try_from(at).ok()?;
+        let digits = bytes.get(at..at.checked_add(size)?)?.iter().rev();
+        Some(digits.fold(0_u64, |sum, byte| sum << 8 | u64::from(*byte)))
+    };
+    // 64 bits, lowest byte first
+    if !bytes.starts_with(b"\x7fELF\x02\x01") {
+        return Ok(());
+    }
+    let end_of = |header: u64| match number(header, 4)? {
+        LOADED => number(header + 8, 8)?.checked_add(number(header + 32, 8)?),
+        _ => Some(0),
+    };
+    let ends = || {
+        let (first, size, count) = (number(32, 8)?, number(54, 2)?, number(56, 2)?);
+        let mut ends = (0..count).map(|i| end_of(first.checked_add(i * size)?));
+        ends.try_fold(0, |last, end| Some(last.max(end?)))
+    };
+    let whole = ends().is_some_and(|end| end <= bytes.len() as u64);
+    let found = format_args!("{} bytes, too few for its segments", bytes.len());
+    ensure(whole, "binary", "a whole shared library", found)
 }

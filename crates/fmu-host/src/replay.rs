@@ -7,7 +7,7 @@ use super::Fmu;
 use super::description::{Value, VariableType};
 use super::simulation::{Times, ValueTable, run, start};
 use super::slave::{Slave, find};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Result, ensure};
 use crate::xml::Element;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -133,12 +133,25 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
     };
     let stimuli = read("Stimuli")?.map(|of| table(&of)).transpose()?;
     let values = match read("Parameters")? {
-        Some(of) => parameters(&element(&of.path, &of.name)?),
+        Some(of) => parameters(&element(&of.path, &of.name)?).map_err(|e| e.in_file(&of.name))?,
         None => Vec::new(),
     };
     let times = times(fmu, experiment)?;
+    // before a run of as many steps as may be
+    let rows = times.steps() + 1;
+    ensure(
+        expected.names.len() > 1 && expected.rows.len() == rows,
+        "<References>",
+        format_args!("outputs beside the time, in {rows} rows"),
+        format_args!(
+            "{} outputs, {} rows",
+            expected.names.len() - 1,
+            expected.rows.len()
+        ),
+    )
+    .map_err(|e| e.in_file(file))?;
     let found = in_new_instance(fmu, &times, values, stimuli.as_ref(), &expected)?;
-    let mut compared = compared(&expected, &found)?;
+    let mut compared = compared(&expected, &found).map_err(|e| e.in_file(file))?;
     compared.file = file.to_owned();
     compared.name = experiment.attribute("name").unwrap_or_default().to_owned();
     Ok(compared)
@@ -161,19 +174,26 @@ fn times(fmu: &Fmu, experiment: &Element) -> Result<Times> {
     )
 }
 
-/// The real parameters of an SSV file.
-fn parameters(root: &Element) -> Vec<(String, Value)> {
+/// The real parameters of an SSV file, which holds no others.
+fn parameters(root: &Element) -> Result<Vec<(String, Value)>> {
     let mut found = Vec::new();
     let local = |e: &Element, name: &str| e.name.rsplit(':').next() == Some(name);
     let list = root.children.iter().filter(|e| local(e, "Parameters"));
     for parameter in list.flat_map(|list| &list.children) {
         let value = parameter.children.iter().find(|e| local(e, "Real"));
         let number = value.and_then(|e| e.attribute("value")?.trim().parse().ok());
-        if let (Some(name), Some(number)) = (parameter.attribute("name"), number) {
-            found.push((name.to_owned(), Value::Real(number)));
-        }
+        let (Some(name), Some(number)) = (parameter.attribute("name"), number) else {
+            let name = parameter.attribute("name").unwrap_or_default();
+            let place = format!("line {}, parameter `{name}`", parameter.line);
+            return Err(Error::input(
+                place,
+                "a name, and a `Real` with its `value`",
+                "none",
+            ));
+        };
+        found.push((name.to_owned(), Value::Real(number)));
     }
-    found
+    Ok(found)
 }
 
 /// A CSV of numbers: names in quotes or without, the time first.
@@ -263,9 +283,10 @@ fn in_new_instance(
 
 /// The largest difference of all values.
 fn compared(expected: &ValueTable, found: &ValueTable) -> Result<ReplayedRun> {
-    if expected.rows.len() != found.rows.len() {
-        let rows = |t: &ValueTable| format!("{} rows of outputs", t.rows.len());
-        return Err(Error::input("reference run", rows(found), rows(expected)));
+    for (said, is) in expected.rows.iter().zip(&found.rows) {
+        let same = (said[0] - is[0]).abs() <= SAME * is[0].abs().max(1.0);
+        let at = format_args!("outputs at {} s", is[0]);
+        ensure(same, "reference run", at, format_args!("at {} s", said[0]))?;
     }
     let mut worst = ReplayedRun {
         file: String::new(),

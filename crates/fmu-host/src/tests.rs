@@ -120,6 +120,30 @@ fn a_binary_that_is_none_is_a_finding() {
     assert_eq!(report.count(FmuSeverity::Note), 2);
 }
 
+/// The loader of the system would end this process with a bus error.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_library_that_is_cut_short_is_refused() {
+    let own = std::env::current_exe().unwrap();
+    let bytes = std::fs::read(own).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cut.so");
+    for (part, said) in [
+        (bytes.len() / 2, "too few for its segments"),
+        (40, "too few"),
+    ] {
+        std::fs::write(&file, &bytes[..part]).unwrap();
+        let refused = crate::library::Binary::load(&file, false).err();
+        let refused = refused.unwrap().to_string();
+        assert!(refused.contains(said), "{refused}");
+    }
+    // what the loader itself says is passed on
+    std::fs::write(&file, b"no library").unwrap();
+    let refused = crate::library::Binary::load(&file, false).err();
+    let refused = refused.unwrap().to_string();
+    assert!(refused.contains("cut.so"), "{refused}");
+}
+
 #[test]
 fn descriptions_in_latin_1_are_read() {
     let text = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>".to_owned()

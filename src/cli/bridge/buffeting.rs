@@ -3,6 +3,7 @@
 use super::super::answer::Answer;
 use super::super::headline;
 use super::super::progress::Progress;
+use super::super::text_table::TextTable;
 use super::args::BridgeArgs;
 use super::files::BUFFETING_PAGE;
 use super::{buffeting_page, page};
@@ -132,64 +133,62 @@ fn by_file(
     let found = study
         .buffeting_by(block, speed, &read_field(path)?)
         .map_err(|e| e.in_file(path))?;
-    let mut text = format!(
-        "{} at {} m/s in the turbulence of {}\n{:<8} {:<14} {:>12} {:>8}\n",
-        study.file.name,
-        speed,
-        path.display(),
-        "node",
-        "motion",
-        "RMS",
-        "peak f."
-    );
-    text += &rows(&found.nodes, |n, i| {
+    let of_nodes = rows(&["RMS", "peak f."], &found.nodes, |n, i| {
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
-        format!("{rms:>12.5e} {peak:>8.3}")
+        vec![format!("{rms:.5e}"), format!("{peak:.3}")]
     });
+    let text = format!(
+        "{} at {speed} m/s in the turbulence of {}\n{of_nodes}",
+        study.file.name,
+        path.display()
+    );
     judged(study, &text, &found, |text, json| Answer::new(text, &json))
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
 
-/// A line for each motion of each node, with what `of` says of them.
-fn rows(nodes: &[String], of: impl Fn(usize, usize) -> String) -> String {
-    let mut text = String::new();
+/// A line for each motion of each node, with the figures that `of` has of them.
+fn rows(heads: &[&str], nodes: &[String], of: impl Fn(usize, usize) -> Vec<String>) -> String {
+    let table = TextTable::default().words(["node", "motion"]);
+    let mut table = table.figures(heads.iter().copied());
     for (n, name) in nodes.iter().enumerate() {
         for (i, motion) in MOTIONS.into_iter().enumerate() {
-            let _ = writeln!(text, "{name:<8} {motion:<14} {}", of(n, i));
+            let name = [name.clone(), motion.to_owned()];
+            table.row(name.into_iter().chain(of(n, i)));
         }
     }
-    text
+    table.text()
 }
 
 fn table(results: &BridgeBuffeting) -> String {
-    let header = format!(
-        "{:<8} {:<14} {:>12} {:>11} {:>8} {:>12} {:>11} {:>8} {:>12}\n",
-        "node",
-        "motion",
+    let heads = [
         "RMS, freq.",
         "crossing Hz",
         "expected",
         "RMS, time",
         "std. error",
         "peak f.",
-        "accel., /s²"
-    );
+        "accel., /s²",
+    ];
     let frequency = &results.frequency;
-    header
-        + &rows(&results.nodes, |n, i| {
-            let (rms, hertz) = (frequency.rms[n][i], frequency.crossing_frequency_hz[n][i]);
-            let expected = results.expected_peak_factor[n][i];
-            let time = match &results.time {
-                Some(time) => format!(
-                    "{:>12.5e} {:>11.2e} {:>8.3}",
-                    time.rms[n][i], time.standard_error[n][i], time.peak_factor[n][i]
-                ),
-                None => format!("{:>12} {:>11} {:>8}", "-", "-", "-"),
-            };
-            let acceleration = results.envelope.acceleration_rms[frequency.nodes[n]][i];
-            format!("{rms:>12.5e} {hertz:>11.4} {expected:>8.3} {time} {acceleration:>12.4e}")
-        })
+    rows(&heads, &results.nodes, |n, i| {
+        let time = results.time.as_ref().map(|time| {
+            [
+                format!("{:.5e}", time.rms[n][i]),
+                format!("{:.2e}", time.standard_error[n][i]),
+                format!("{:.3}", time.peak_factor[n][i]),
+            ]
+        });
+        let mut cells = vec![
+            format!("{:.5e}", frequency.rms[n][i]),
+            format!("{:.4}", frequency.crossing_frequency_hz[n][i]),
+            format!("{:.3}", results.expected_peak_factor[n][i]),
+        ];
+        cells.extend(time.unwrap_or(["–"; 3].map(str::to_owned)));
+        let acceleration = results.envelope.acceleration_rms[frequency.nodes[n]][i];
+        cells.push(format!("{acceleration:.4e}"));
+        cells
+    })
 }
 
 /// Which forces each domain takes, and how far that of the time domain leaves the answer.

@@ -266,19 +266,9 @@ fn motion_csv(motion: &BridgeMotion) -> String {
                     node,along_m,vertical_re,vertical_im,lateral_re,lateral_im,rotation_re,rotation_im\n"
         .to_owned();
     for n in &motion.nodes {
-        let [y, x, t] = n.motion;
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{}",
-            csv_cell(&n.node),
-            n.along_m,
-            y[0],
-            y[1],
-            x[0],
-            x[1],
-            t[0],
-            t[1]
-        );
+        let parts = n.motion.as_flattened().iter().map(f64::to_string);
+        let parts = parts.collect::<Vec<_>>().join(",");
+        let _ = writeln!(text, "{},{},{parts}", csv_cell(&n.node), n.along_m);
     }
     text
 }

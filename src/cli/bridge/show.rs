@@ -3,6 +3,7 @@
 use super::super::answer::Answer;
 use super::super::figures;
 use super::super::progress::Progress;
+use super::super::text_table::TextTable;
 use super::args::BridgeArgs;
 use crate::error::{Result, counted};
 use crate::report::modes_figure;
@@ -34,27 +35,24 @@ pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> 
     figures::write("modes", &mut out, || modes_figure(bridge, &title))?;
     let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
     let mut text = format!(
-        "{}: {} over {length:.1} m, {}, {} of strips\n\n{:>5} {:>10} {:>14} {:>8}  main motion\n",
+        "{}: {} over {length:.1} m, {}, {} of strips\n\n",
         study.file.name,
         counted(bridge.nodes.len(), "node"),
         counted(bridge.modes.len(), "mode"),
         counted(bridge.groups.len(), "group"),
-        "mode",
-        "f Hz",
-        "mass kg",
-        "ζ %"
     );
+    let table = TextTable::default().figures(["mode", "f Hz", "mass kg", "ζ %"]);
+    let mut table = table.words(["main motion"]);
     for m in &bridge.modes {
-        let motion = Dof::THREE[bridge.main_motion(m)].name();
-        let _ = writeln!(
-            text,
-            "{:>5} {:>10.4} {:>14.6e} {:>8.3}  {motion}",
-            m.number,
-            m.frequency_hz,
-            m.generalised_mass,
-            100.0 * m.damping_ratio
-        );
+        table.row([
+            m.number.to_string(),
+            format!("{:.4}", m.frequency_hz),
+            format!("{:.6e}", m.generalised_mass),
+            format!("{:.3}", 100.0 * m.damping_ratio),
+            Dof::THREE[bridge.main_motion(m)].name().to_owned(),
+        ]);
     }
+    text.push_str(&table.text());
     for d in &bridge.dampers.masses {
         let _ = writeln!(
             text,

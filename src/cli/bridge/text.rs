@@ -2,8 +2,7 @@
 
 use super::files::NAMED_SHARE;
 use crate::cli::headline;
-use crate::cli::text as section_account;
-use crate::cli::wrapping::beside;
+use crate::cli::text::{figures, of_onsets};
 use crate::error::counted;
 use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
@@ -34,20 +33,15 @@ pub(super) fn text(
         counted(nodes, "node"),
         counted(modes, "mode")
     );
-    let _ = writeln!(
-        text,
-        "{:<34} {:>8} {:>15} {:>7} {:>6}  tested",
-        "Flutter onset by", "V m/s", "95 % interval", "f Hz", "V*"
-    );
+    let mut table = of_onsets(&["Flutter onset by"]);
     for answer in &results.answers {
+        let forces = std::iter::once(answer.forces.clone());
         match &answer.search {
-            FlutterSearch::Onset(o) => {
-                let figures = section_account::figures(o);
-                let _ = writeln!(text, "{:<34} {figures}", answer.forces);
-            }
-            other => text.push_str(&beside(&answer.forces, &other.explain())),
+            FlutterSearch::Onset(o) => table.row(forces.chain(figures(o))),
+            other => table.sentence(forces, &other.explain()),
         }
     }
+    text.push_str(&table.text());
     let motion = results.answers.iter().rev().find_map(|a| a.motion.as_ref());
     let modes = motion.map_or(&[][..], |m| &m.modes).iter();
     let named = modes.filter(|m| m.energy_share >= NAMED_IN_SHORT);

@@ -1,6 +1,7 @@
 //! What the comparisons of the thesis share: arguments, tables, figures of metrics, the section of a page.
 
 use crate::cli::progress::Progress;
+use crate::cli::text_table::TextTable;
 use crate::comparison::forces::{
     CompareOptions, ForceMetrics, Score, ScoreSummary, Scoring, Statement,
 };
@@ -131,36 +132,23 @@ pub(super) fn section(
 
 /// Mean of every metric over the frequencies, a line per deck or model, speed, motion and force.
 pub(super) fn metrics_table(summaries: &[ScoreSummary], name: fn(&ScoreSummary) -> &str) -> String {
-    let widest = summaries.iter().map(|s| name(s).chars().count()).max();
-    let width = widest.unwrap_or(0);
-    let mut text = format!(
-        "{:<width$} {:>6}    {:<9} {:<9}",
-        "Means over frequencies",
-        "V m/s",
-        "motion",
-        "force",
-        width = width.max(22)
-    );
-    for metric in ForceMetrics::NAMES {
-        let _ = write!(text, " {metric:>6}");
-    }
-    text.push_str("   lowest M_phi\n");
+    let table = TextTable::default().words(["Means over frequencies"]);
+    let table = table.figures(["V m/s"]).words(["motion", "force"]);
+    let table = table.figures(ForceMetrics::NAMES);
+    let mut table = table.figures(["lowest M_phi"]);
     for s in summaries {
-        let _ = write!(
-            text,
-            "{:<width$} {:>6.2}{:<3} {:<9} {:<9}",
-            name(s),
-            s.case.speed_m_s,
-            if s.case.held_out { " *" } else { "" },
-            s.case.motion.name(),
-            s.case.force.name(),
-            width = width.max(22)
-        );
-        for mean in s.mean {
-            let _ = write!(text, " {mean:>6.3}");
-        }
-        let _ = writeln!(text, "   {:.3}", s.lowest[0]);
+        let held_out = if s.case.held_out { "*" } else { " " };
+        let case = [
+            name(s).to_owned(),
+            format!("{:.2} {held_out}", s.case.speed_m_s),
+            s.case.motion.name().to_owned(),
+            s.case.force.name().to_owned(),
+        ];
+        let mean = s.mean.map(|mean| format!("{mean:.3}"));
+        let lowest = format!("{:.3}", s.lowest[0]);
+        table.row(case.into_iter().chain(mean).chain([lowest]));
     }
+    let mut text = table.text();
     if summaries.iter().any(|s| s.case.held_out) {
         text.push_str("* not used for training\n");
     }

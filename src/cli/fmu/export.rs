@@ -8,7 +8,7 @@ use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
 use crate::cli::text;
 use crate::cli::{headline, stages};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
@@ -167,8 +167,9 @@ impl FmuExportArgs {
         options.prediction_steps = self.prediction.unwrap_or(options.prediction_steps);
         if let Some(count) = self.strips {
             options.named_strips = true;
-            // one more than is allowed says enough
-            options.strips = vec![options.strips[0].clone(); count.min(MAX_STRIPS + 1)];
+            let some = (1..=MAX_STRIPS).contains(&count);
+            ensure(some, "--strips", format_args!("1 to {MAX_STRIPS}"), count)?;
+            options.strips = vec![options.strips[0].clone(); count];
         }
         options.validate()?;
         Ok(Some(options))

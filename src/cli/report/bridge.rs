@@ -2,7 +2,7 @@
 
 use super::curves::curves_of;
 use super::folder::{PagePlace, SUMMARY, digest, parsed};
-use super::parts::{card, first_derivatives, known, of_svg, round, row};
+use super::parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
 use super::variables::variables_of;
 use crate::cli::bridge::files::{
     BRIDGE_FMU, BUFFETING_PAGE, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE,
@@ -36,6 +36,9 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
     let shares = shares.map_or(&[][..], |m| &m.modes);
     // found in the order of the routes, the model last
     let own = facts.onsets.last();
+    let answers = facts.flutter.answers.iter();
+    let without = answers.filter(|a| a.search.onset().is_none());
+    let without = without.map(|a| sentence_row(&a.forces, "", a.search.explain()));
     let mut page = StudyPage {
         title: facts.bridge.clone(),
         subtitle: "Flutter of a whole bridge",
@@ -49,7 +52,7 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
                 are those of the models of the sections, by the eigenvalues of all modes in the wind. The motion is that of the node that turns most."
             .to_owned(),
         asked: asked(&facts, &file),
-        onsets: facts.onsets.iter().map(row).collect(),
+        onsets: facts.onsets.iter().map(row).chain(without).collect(),
         comparisons: facts.comparisons.clone(),
         sections: vec![
             taking_part(shares),

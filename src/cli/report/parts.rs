@@ -84,6 +84,11 @@ pub(super) fn row(onset: &Onset) -> Vec<String> {
     ]
 }
 
+/// A search without an onset as a row of that table, with what it found instead.
+pub(super) fn sentence_row(model: &str, method: &str, answer: String) -> Vec<String> {
+    vec![model.to_owned(), method.to_owned(), answer]
+}
+
 /// Takes the first figure of derivatives, which the summary shows.
 pub(super) fn first_derivatives(figures: &mut Vec<PageFigure>) -> Option<PageFigure> {
     let at = figures

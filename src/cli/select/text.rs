@@ -1,5 +1,6 @@
 //! A selection in words and figures.
 
+use crate::cli::text_table::TextTable;
 use crate::error::Result;
 use crate::report::{Figure, HeatMap, heat_map_figure};
 use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
@@ -16,44 +17,49 @@ pub(crate) fn text(selection: &Selection) -> String {
         selection.filters_max,
         selection.symbol,
     );
-    let _ = writeln!(
-        text,
-        "{:>3} {:>7} {:>9} {:>9} {:>9} {:>9}  verdict",
-        "L", selection.symbol, "residual", "left out", "speed out", "freq. out",
-    );
-    for at in selection.free.iter().flatten() {
-        text.push_str(&line(&selection.cells[*at]));
-    }
+    let free = selection.free.iter().flatten();
+    text.push_str(&table(selection, free.map(|at| &selection.cells[*at])));
     let _ = write!(text, "\nRecommended\n{}\n", selection.reason);
     if let Some(recommended) = &selection.recommended {
-        text.push_str(&line(&selection.cells[recommended.cell]));
+        let cell = &selection.cells[recommended.cell];
+        text.push_str(&table(selection, std::iter::once(cell)));
     }
     text
 }
 
-fn line(cell: &Cell) -> String {
+/// A line per cell; what refuses it stands below its row.
+fn table<'a>(selection: &Selection, cells: impl Iterator<Item = &'a Cell>) -> String {
+    let symbol = selection.symbol.as_str();
+    let errors = ["residual", "left out", "speed out", "freq. out"];
+    let table = TextTable::default().figures(["L", symbol]).figures(errors);
+    let mut table = table.words(["verdict"]);
+    for cell in cells {
+        table.row(row(cell));
+        if !cell.rejected.is_empty() {
+            table.sentence([], &cell.rejected.join("; "));
+        }
+    }
+    table.text()
+}
+
+fn row(cell: &Cell) -> [String; 7] {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     let cv = cell.cross_validation;
     let onset = cell
         .onset_m_s
         .map_or("no onset".to_owned(), |v| format!("onset {v:.3} m/s"));
-    // reasons stand below the row
-    let (verdict, reasons) = match cell.rejected.is_empty() {
-        true => (onset, String::new()),
-        false => (
-            format!("REFUSED ({onset})"),
-            format!("          {}\n", cell.rejected.join("; ")),
-        ),
-    };
-    format!(
-        "{:>3} {:>7.3} {:>9} {:>9} {:>9} {:>9}  {verdict}\n{reasons}",
-        cell.filters,
-        cell.value,
+    [
+        cell.filters.to_string(),
+        format!("{:.3}", cell.value),
         percent(cell.residual),
         percent(cv.map(|v| v.score)),
         percent(cv.and_then(|v| v.across_speeds)),
         percent(cv.and_then(|v| v.across_frequencies)),
-    )
+        match cell.rejected.is_empty() {
+            true => onset,
+            false => format!("REFUSED ({onset})"),
+        },
+    ]
 }
 
 /// Errors and onsets over the grid, and the metrics of the forces.

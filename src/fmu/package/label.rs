@@ -1,6 +1,6 @@
 //! What an archive says of its origin.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use chrono::{DateTime, SecondsFormat, Utc};
 
 /// Names, rights and date in the description of an archive. None of it changes the model or its GUID.
@@ -23,8 +23,10 @@ impl Label {
     /// The same with the present time, or with that which the variable `SOURCE_DATE_EPOCH` states.
     ///
     /// # Errors
-    /// [`Error::Input`] where the variable holds no number of seconds.
+    /// [`Error::Input`] where the variable holds no number of seconds, and for a blank name.
     pub fn dated(self) -> Result<Self> {
+        let blank = self.name.as_deref().is_some_and(|n| n.trim().is_empty());
+        ensure(!blank, "name", "a name of the model", "none")?;
         let stated = std::env::var(EPOCH_VARIABLE).ok();
         let time = stated.map(|text| epoch(&text)).transpose()?;
         let time = time.unwrap_or_else(Utc::now);

@@ -150,11 +150,22 @@ impl SectionForceModels {
         let jones = RationalModel::jones_flat_plate();
         Ok(Self {
             table: Some(Arc::new(FlatPlate::default())),
-            model: Arc::new(jones.clone()),
-            saved: Some(Model::Rational(jones)),
             method: "Jones's rational functions of the flat plate".to_owned(),
             source: "flat plate, Theodorsen's theory".to_owned(),
             licence: "none needed: a formula".to_owned(),
+            ..Self::stated(Arc::new(jones.clone()), jones)
+        })
+    }
+
+    /// A model that is stated and not fitted: nothing was tested.
+    fn stated(model: Arc<dyn Transfer>, saved: RationalModel) -> Self {
+        Self {
+            table: None,
+            model,
+            saved: Some(Model::Rational(saved)),
+            method: String::new(),
+            source: String::new(),
+            licence: String::new(),
             tested: None,
             angle_deg: None,
             rotation_amplitude_deg: None,
@@ -162,7 +173,7 @@ impl SectionForceModels {
             unconstrained: None,
             uncertainty: Ok(None),
             degrees_of_freedom: None,
-        })
+        }
     }
 
     /// Forces of a section of which no more than static coefficients are known.
@@ -180,19 +191,10 @@ impl SectionForceModels {
             lag_terms: Vec::new(),
         };
         Self {
-            table: None,
-            model: Arc::new(theory),
-            saved: Some(Model::Rational(saved)),
             method: "quasi-steady theory".to_owned(),
             source: format!("static coefficients of {}", block.name),
             licence: "that of the bridge file".to_owned(),
-            tested: None,
-            angle_deg: None,
-            rotation_amplitude_deg: None,
-            notes: Vec::new(),
-            unconstrained: None,
-            uncertainty: Ok(None),
-            degrees_of_freedom: None,
+            ..Self::stated(Arc::new(theory), saved)
         }
     }
 

@@ -52,6 +52,18 @@ pub(crate) struct BuffetingStudy {
 }
 
 impl BuffetingStudy {
+    /// The wind speeds at which there is no response, and why.
+    pub(crate) fn without_response(&self) -> Vec<String> {
+        let groups = self.left_out.chunk_by(|a, b| a.reason == b.reason);
+        let lines = groups.map(|group| {
+            let speeds = group.iter().map(|s| format!("{:.2}", s.speed_m_s));
+            let speeds = speeds.collect::<Vec<_>>().join(", ");
+            let reason = group.first().map_or("", |s| s.reason.as_str());
+            format!("at {speeds} m/s: {reason}")
+        });
+        lines.collect()
+    }
+
     /// Responses for a table: at most fifteen, of finer lists of speeds every second, third, …
     pub(crate) fn shown(&self) -> impl Iterator<Item = &BuffetingResponse> {
         let every = self.responses.len().div_ceil(TABLE_LINES).max(1);

@@ -1,12 +1,13 @@
 //! The doubts that evidence leaves, and how much each weighs against what is required.
 
 use super::below::not_judged_below;
+use super::contradiction::{contradiction, of_divergence};
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Evidence, FlutterReading, ForceBasis};
 use super::moved::constraints;
 use super::untested::{left_out, untested};
-use super::words::{found, k_range, speed};
+use super::words::{k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
 
@@ -294,6 +295,10 @@ impl Weighed<'_> {
                 .settled_by(format!("{} confirmed or corrected", finding.place))
         }));
         all.extend(rotation(evidence));
+        all.extend(
+            self.asked_m_s()
+                .and_then(|asked| of_divergence(evidence, asked)),
+        );
         let assumed = evidence.divergence.iter().filter_map(|d| {
             let text = format!("Divergence of {}: {}", d.forces, d.assumed.as_ref()?);
             Some(Doubt::new(
@@ -317,36 +322,6 @@ impl Weighed<'_> {
 
 fn remark(text: &str) -> Doubt {
     Doubt::new(Severity::Minor, DoubtKind::Remark, text)
-}
-
-fn contradiction(first: &FlutterReading, second: &FlutterReading) -> Doubt {
-    let kind = DoubtKind::Contradiction {
-        first: first.forces.clone(),
-        first_m_s: first.best_m_s(),
-        second: second.forces.clone(),
-        second_m_s: second.best_m_s(),
-    };
-    let text = format!(
-        "Contradiction: {} by {}, {} by {}",
-        found(first),
-        first.forces,
-        found(second),
-        second.forces
-    );
-    let mut doubt = Doubt::new(Severity::Severe, kind, text);
-    let at = [first, second].map(|r| {
-        r.search
-            .critical()
-            .map(|at| at.reduced_frequency.full_width())
-    });
-    let ks: Vec<String> = at.iter().flatten().map(|k| format!("{k:.2}")).collect();
-    if !ks.is_empty() {
-        doubt = doubt.settled_by(format!(
-            "tests near K {}, where the two differ",
-            ks.join(" and ")
-        ));
-    }
-    doubt
 }
 
 fn rotation(evidence: &Evidence) -> Option<Doubt> {

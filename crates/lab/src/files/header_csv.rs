@@ -1,6 +1,7 @@
 //! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
 use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
+use crate::files::text::BYTE_ORDER_MARK;
 use std::io::Write;
 
 /// Reader of the table below the header of `text`.
@@ -63,6 +64,10 @@ impl CommentHeader {
 
     /// Takes the next line of the file; `false` when it is no comment, so the header is over.
     pub(crate) fn take(&mut self, line: &str) -> Result<bool> {
+        let line = match self.lines {
+            0 => line.trim_start_matches(BYTE_ORDER_MARK),
+            _ => line,
+        };
         let Some(comment) = line.strip_prefix('#').map(str::trim) else {
             return Ok(false);
         };

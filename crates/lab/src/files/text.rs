@@ -3,12 +3,19 @@
 use crate::error::{Error, Result};
 use std::path::Path;
 
-/// The text of a file.
+/// What some programs write before a text in UTF-8.
+pub(crate) const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// The text of a file, without a byte-order mark.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for bytes that are no UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+    let mut bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+    // the byte-order mark of spreadsheets is no part of the text
+    if bytes.starts_with(BYTE_ORDER_MARK.as_bytes()) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
     String::from_utf8(bytes).map_err(|e| {
         let (at, bytes) = (e.utf8_error().valid_up_to(), e.as_bytes());
         let line = 1 + bytes[..at].iter().filter(|b| **b == b'\n').count();
@@ -71,6 +78,14 @@ mod tests {
         let said = read_text(&path).unwrap_err().to_string();
         let expected = "study.toml: line 2: expected text in UTF-8, found the byte 0xe9 (Latin-1?)";
         assert!(said.ends_with(expected), "{said}");
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_text() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        std::fs::write(&path, "\u{feff}# a: b\n").unwrap();
+        assert_eq!(read_text(&path).unwrap(), "# a: b\n");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::response::{
     ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow,
 };
+use std::ops::Range;
 
 impl ForceUnit {
     /// The motion as it has been set.
@@ -76,7 +77,8 @@ impl ForceUnit {
         &system.values[self.first()..]
     }
 
-    /// Finds the forces of all strips. `renewed` says that there is motion of the present time.
+    /// Finds the forces of all strips. `renewed` says that there is motion of the present time; a strip of which none has been set
+    /// goes on as before.
     pub(super) fn ahead_into(
         &mut self,
         memory: &Memory,
@@ -85,30 +87,57 @@ impl ForceUnit {
     ) -> Result<()> {
         work.flows.clear();
         work.flows.extend(self.flows(&memory.values));
-        let density = self.air_density(&memory.values);
-        let mut system = &memory.system;
-        let mut ahead_s = system.values[0];
-        if renewed {
-            self.motion(memory, &mut work.motion);
-            if let Some(newest) = PrescribedForces::newest_s(self.first_of(system)) {
-                ahead_s = (newest + ahead_s - memory.time).max(0.0);
-            }
-            let given = GivenMotion {
-                time_s: memory.time,
-                wind_speed_m_s: memory.values[self.inputs[0]],
-                motion: &work.motion,
-            };
-            work.renewed.set_to(system);
-            self.take(&mut work.renewed.values, &given, &work.flows)?;
-            self.take_gusts(&mut work.renewed.gusts, system, memory, &work.flows);
-            system = &work.renewed;
+        let system = &memory.system;
+        let ahead_s = system.values[0];
+        if !renewed {
+            return self.forces_of(system, ahead_s, memory, &work.flows, &mut work.forces);
         }
-        work.forces.clear();
-        work.forces
-            .resize(self.coordinates(), ForceAhead::default());
+        self.motion(memory, &mut work.motion);
+        let newest = PrescribedForces::newest_s(self.first_of(system));
+        let left_s = newest.map_or(ahead_s, |t| (t + ahead_s - memory.time).max(0.0));
+        let given = GivenMotion {
+            time_s: memory.time,
+            wind_speed_m_s: memory.values[self.inputs[0]],
+            motion: &work.motion,
+        };
+        work.renewed.set_to(system);
+        self.take(&mut work.renewed.values, &given, &work.flows)?;
+        self.take_gusts(&mut work.renewed.gusts, system, memory, &work.flows);
+        let (flows, forces) = (&work.flows, &mut work.forces);
+        self.forces_of(&work.renewed, left_s, memory, flows, forces)?;
+        let flags = &system.values[1..self.first()];
+        let is_set = |own: &Range<usize>| {
+            let flags = &flags[3 * own.start..3 * own.end];
+            flags.iter().any(|flag| *flag != NOT_SET)
+        };
+        let strips = self.parts_and_strips();
+        let mut as_before: Vec<_> = strips.map(|(part, s)| part.coordinates_of(s)).collect();
+        as_before.retain(|own| newest.is_some() && !is_set(own));
+        if as_before.is_empty() {
+            return Ok(());
+        }
+        self.forces_of(system, ahead_s, memory, flows, &mut work.predicted)?;
+        for own in as_before {
+            forces[own.clone()].copy_from_slice(&work.predicted[own]);
+        }
+        Ok(())
+    }
+
+    /// Finds the forces of all strips, `ahead_s` after the newest motion that a state has taken.
+    fn forces_of(
+        &mut self,
+        system: &SectionState,
+        ahead_s: f64,
+        memory: &Memory,
+        flows: &[StripFlow],
+        forces: &mut Vec<ForceAhead>,
+    ) -> Result<()> {
+        let density = self.air_density(&memory.values);
+        forces.clear();
+        forces.resize(self.coordinates(), ForceAhead::default());
         for part in &mut self.parts {
-            let flows = &work.flows[part.strips.clone()];
-            let found = &mut work.forces[part.coordinates.clone()];
+            let flows = &flows[part.strips.clone()];
+            let found = &mut forces[part.coordinates.clone()];
             let state = &system.values[part.state.clone()];
             part.forces.ahead(state, flows, ahead_s, density, found)?;
         }
@@ -117,13 +146,27 @@ impl ForceUnit {
             let part = StripsUnderModel::new(&self.parts, s);
             if let Some(gusts) = &part.gusts {
                 let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
-                let air = work.flows[s].in_air(wind, density);
+                let air = flows[s].in_air(wind, density);
                 let strip = &system.gusts[part.gusts_of(s)];
-                let forces = &mut work.forces[part.coordinates_of(s)];
+                let forces = &mut forces[part.coordinates_of(s)];
                 gusts.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
             }
         }
-        check_forces(&work.forces)
+        self.check_forces(memory, forces)
+    }
+
+    /// Refuses forces, of a strip per length or in all, that no number holds any more.
+    pub(super) fn check_forces(&self, memory: &Memory, found: &[ForceAhead]) -> Result<()> {
+        let holds = |(part, s): (&StripsUnderModel, usize)| {
+            // of zero length an infinite force is no number, and refused as well
+            let length = memory.values[self.strips[s][1]];
+            let own = found[part.coordinates_of(s)].iter();
+            own.into_iter().all(|f| (f.force * length).is_finite())
+        };
+        match self.parts_and_strips().all(holds) {
+            true => Ok(()),
+            false => Err(Error::Numerical("the forces have overflowed".into())),
+        }
     }
 
     /// The gusts go to the present time, from the state before.
@@ -158,12 +201,4 @@ impl ForceUnit {
         let newest = PrescribedForces::newest_s(state);
         newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))
     }
-}
-
-/// Refuses forces that no number holds any more.
-pub(super) fn check_forces(found: &[ForceAhead]) -> Result<()> {
-    if found.iter().all(|f| f.force.is_finite()) {
-        return Ok(());
-    }
-    Err(Error::Numerical("the forces have overflowed".into()))
 }

@@ -3,7 +3,6 @@
 //! Nothing is predicted and nothing derived from earlier motion, so that the rates of the motion have to be set. A displacement
 //! that moves while its rate has never been set is a motion that was not connected: it ends the run.
 
-use super::force_ahead::check_forces;
 use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET};
 use super::memory::Memory;
@@ -87,7 +86,7 @@ impl ForceUnit {
                 gusts.add_ahead(strip, [0.0; 2], 0.0, air, forces);
             }
         }
-        check_forces(&work.forces)
+        self.check_forces(memory, &work.forces)
     }
 
     /// Writes the rates of filters and lagging gusts, per second, in the order of [`Role::Filter`].
@@ -129,7 +128,7 @@ impl ForceUnit {
     }
 
     /// Every strip with the part to which it belongs.
-    fn parts_and_strips(&self) -> impl Iterator<Item = (&StripsUnderModel, usize)> {
+    pub(super) fn parts_and_strips(&self) -> impl Iterator<Item = (&StripsUnderModel, usize)> {
         let each = self.parts.iter();
         each.flat_map(|part| part.strips.clone().map(move |s| (part, s)))
     }

@@ -69,6 +69,8 @@ pub(super) struct ForceWork {
     pub flows: Vec<StripFlow>,
     /// Forces of all strips in the order of the motion.
     pub forces: Vec<ForceAhead>,
+    /// As they would be without motion of the present.
+    pub predicted: Vec<ForceAhead>,
     /// State of the forces with the motion of the present, and the gusts.
     pub renewed: SectionState,
     /// Gusts of a strip.

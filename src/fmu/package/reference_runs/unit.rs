@@ -263,7 +263,19 @@ impl ReferenceUnit {
         let others =
             self.variables(|v| v.causality == Causality::Input && v.role != Role::WindSpeed);
         let others = others.filter_map(|(place, _)| self.stimulus(place, planned));
-        let others = others.take(if planned.driven { MAX_STIMULI } else { 0 });
+        let mut others: Vec<Stimulus> = match planned.driven {
+            true => others.collect(),
+            false => Vec::new(),
+        };
+        // whole strips: of FMI 3 each is an element of arrays, which are set as a whole
+        let strip_of = |s: &Stimulus| match self.variables[s.place].role {
+            Role::Motion(s, ..) | Role::Gust(s, _) | Role::NodeForce(s, _) => Some(s),
+            _ => None,
+        };
+        if let Some(first_out) = others.get(MAX_STIMULI).map(strip_of) {
+            others.truncate(MAX_STIMULI);
+            others.retain(|s| first_out.is_none() || strip_of(s) != first_out);
+        }
         wind.into_iter().chain(others).collect()
     }
 

@@ -338,3 +338,33 @@ fn an_onset_above_the_tests_meets_nothing() {
     assert_eq!(verdict.outcome.unwrap().words(), "CANNOT BE JUDGED");
     assert!(verdict.doubts[0].text.contains("outside the tested range"));
 }
+
+/// Tests at K 0.42 to 0.97: the model diverged at 9.24 m/s, the table at 61.8, and nothing was said.
+#[test]
+fn divergence_that_another_reading_contradicts_is_a_doubt() {
+    let mut evidence = scanned(40.0, vec![stable("the model", 110.0)]);
+    let table = |speed| DivergenceReading::at("the table", speed);
+    let said = |evidence: &Evidence| {
+        let doubts = Verdict::judge(evidence).doubts;
+        let against = |d: &&Doubt| matches!(d.kind, DoubtKind::Contradiction { .. });
+        doubts.iter().find(against).map(|d| d.text.clone())
+    };
+    evidence.divergence = vec![
+        DivergenceReading::at("the model", Some(9.24)),
+        table(Some(61.8)),
+    ];
+    assert_eq!(
+        said(&evidence).unwrap(),
+        "Contradiction: static divergence at 9.24 m/s by the model, 61.8 m/s by the table"
+    );
+    evidence.divergence[1] = table(None);
+    assert!(said(&evidence).unwrap().ends_with("none by the table"));
+    evidence.divergence[1] = table(Some(11.0));
+    assert_eq!(said(&evidence), None);
+    // not where nobody asks
+    evidence.divergence = vec![
+        DivergenceReading::at("the model", Some(60.0)),
+        table(Some(90.0)),
+    ];
+    assert_eq!(said(&evidence), None);
+}

@@ -4,6 +4,7 @@ use super::plan::MonteCarloPlan;
 use crate::flutter::{SweepOutcome, SweptOnset};
 use crate::signal::mean_and_deviation;
 use crate::uncertainty::statistics::{clopper_pearson, sample_quantile};
+use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -61,6 +62,8 @@ pub struct MonteCarloResult {
     pub histogram: Histogram,
     /// Probability of an onset below the design speed.
     pub design: Option<DesignCheck>,
+    /// What the model itself can say of that speed; of whoever holds it with its fit, and so none as [`summarise`](super::summarise) leaves it.
+    pub verdict: Option<Verdict>,
 }
 
 /// A sample without an answer.
@@ -237,6 +240,7 @@ impl Tally {
                 })
                 .collect(),
             histogram: histogram(&self.onsets),
+            verdict: None,
             design: plan
                 .design_speed_m_s
                 .filter(|_| answered > 0)

@@ -91,7 +91,7 @@ pub fn tally(
 /// What the answers of all samples of a plan amount to, in the order of their numbers.
 ///
 /// # Errors
-/// As [`monte_carlo`]; [`crate::Error::Input`] when they are not as many as the plan has.
+/// As [`monte_carlo`]; [`crate::Error::Input`] when they are not as many as the plan has, and where all of them failed.
 pub fn summarise(
     plan: &MonteCarloPlan,
     model: &TrainedModel,
@@ -107,7 +107,13 @@ pub fn summarise(
         format_args!("answers of {} samples", plan.samples),
         total.len(),
     )?;
-    Ok(total.summarise(plan, limit, &model.name, nominal))
+    let found = total.summarise(plan, limit, &model.name, nominal);
+    // nothing answers for what no sample had an answer for
+    let answered = plan.samples > found.failed;
+    let first = found.failures.first().map_or("", |f| f.reason.as_str());
+    let none = format_args!("none; the first: {first}");
+    ensure(answered, "samples", "some with an answer", none)?;
+    Ok(found)
 }
 
 /// Highest speed searched, m/s, and the model that a plan draws from.

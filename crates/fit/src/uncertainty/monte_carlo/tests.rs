@@ -167,6 +167,22 @@ fn impossible_samples_are_counted_and_named() {
 }
 
 #[test]
+fn samples_that_all_fail_are_no_distribution() {
+    let mut all = plan(
+        "[[parameter]]\nname = \"torsion.frequency_hz\"\n\
+         distribution = { kind = \"normal\", mean = -5.0, standard_deviation = 0.1 }\n",
+    );
+    all.design_speed_m_s = Some(35.0);
+    let said = monte_carlo(&all, &jones(), &|_, _| ()).unwrap_err();
+    let said = said.to_string();
+    assert!(
+        said.contains("expected some with an answer, found none; the first: "),
+        "{said}"
+    );
+    assert!(said.contains("torsion.frequency_hz"), "{said}");
+}
+
+#[test]
 fn wrong_files_are_refused_with_their_line() {
     let parameter = "[[parameter]]\nname = \"width_m\"\ndistribution = { kind = \"uniform\", lower = 1.0, upper = 2.0 }\n";
     for (rest, said) in [

@@ -59,7 +59,9 @@ pub fn deck(name: &str) -> Result<DerivativeTable> {
                 return Error::input("deck", expected, format!("the file `{name}`"));
             }
             let all: Vec<_> = names().collect();
-            let expected = format!("one of the embedded decks {}", all.join(", "));
+            let all = all.join(", ");
+            let expected =
+                format!("one of the embedded decks {all}, or a table (.csv, .xlsx, .ods)");
             Error::input("deck", expected, format!("`{name}`"))
         })?;
     parse_csv(text)

@@ -56,6 +56,7 @@ pub(crate) fn remove_spikes(
 ) -> Result<Cleaned> {
     let count = signals.len();
     let guard = (options.guard_s * signals.sampling_hz).round() as usize;
+    let edge = filter.map_or(0, ButterworthLowPass::padding);
     let mut reasons = vec![None; count];
     for range in clipped {
         mark(&mut reasons, range.start, range.end, guard, "clipped");
@@ -76,7 +77,9 @@ pub(crate) fn remove_spikes(
             }
             for view in &views {
                 for k in outliers(view, part, regressors, options, least) {
-                    if reasons[k].is_none() {
+                    // a filter makes up what was before and after, and bends a motion that begins there
+                    let inside = (edge..count.saturating_sub(edge)).contains(&k);
+                    if inside && reasons[k].is_none() {
                         mark(&mut reasons, k, k + 1, guard, "spike");
                         added = true;
                     }

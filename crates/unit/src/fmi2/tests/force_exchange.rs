@@ -187,6 +187,56 @@ fn strips_are_single_units_side_by_side() {
     }
 }
 
+/// In co-simulation motion that is set for one strip is of that strip alone: the others go on as they were, gusts included.
+#[test]
+fn motion_of_one_strip_is_not_that_of_others() {
+    let three = What {
+        strips: Some(3),
+        gusts: true,
+    };
+    for kind in KINDS {
+        let unit = Unit::instantiate(archive(kind, three));
+        unit.start();
+        let names = ["strip[1].lift", "strip[2].lift", "strip[3].total_moment"];
+        let set = |s: usize, t: f64| {
+            let phase = 9.0 * t + s as f64;
+            unit.set(&format!("strip[{s}].heave"), 0.01 * phase.sin());
+            unit.set(&format!("strip[{s}].rotation"), 0.02 * phase.cos());
+            unit.set(&format!("strip[{s}].gust_w"), 0.3 * phase.sin());
+        };
+        for i in 0..30 {
+            (1..=3).for_each(|s| set(s, 0.01 * f64::from(i)));
+            unit.ok(unit.step(0.01 * f64::from(i), 0.01));
+        }
+        let before = unit.get(names);
+        set(2, 0.3);
+        let after = unit.get(names);
+        assert_eq!([after[0], after[2]], [before[0], before[2]], "{kind}");
+        assert_ne!(after[1], before[1], "{kind}");
+        set(1, 0.3);
+        set(3, 0.3);
+        let all = unit.get(names);
+        assert_eq!(all[1], after[1], "{kind}");
+        assert!(all[0] != after[0] && all[2] != after[2], "{kind}");
+    }
+}
+
+/// No force of a strip, per length or in all, is infinite.
+#[test]
+fn totals_that_overflow_are_refused() {
+    for unit in [
+        Unit::instantiate(archive(KINDS[0], alone())),
+        exchanged(archive(KINDS[0], alone())),
+    ] {
+        unit.set("length", 1e308);
+        unit.start();
+        unit.set("rotation", 1e4);
+        let mut total = [0.0];
+        let refused = unit.try_get(&["total_lift"], &mut total);
+        unit.refused(refused, fmi2Status::fmi2Discard, &["overflowed"]);
+    }
+}
+
 /// In co-simulation the same states can be read; at the start they are those of the settled flow.
 #[test]
 fn the_flow_has_settled_in_both_interfaces() {

@@ -26,6 +26,8 @@ impl DerivativePoint {
 
 /// Test points of one derivative: more than any tunnel measures, few enough for every reader and fit.
 const POINTS_AT_MOST: usize = 10_000;
+/// No derivative is larger, and squares and products of larger ones would leave the numbers of a computer.
+const LARGEST_VALUE: f64 = 1e12;
 
 /// Refuses more test points than a table can have.
 pub fn check_point_count(place: impl Into<Place>, count: usize) -> Result<()> {
@@ -85,9 +87,9 @@ pub fn check_points<P: Into<Place>>(
         let (v_hat, value, speed) = (p.v_hat, p.value, p.mean_speed_m_s.unwrap_or(1.0));
         ensure(positive(v_hat), "", "a positive reduced velocity V̂", v_hat)?;
         ensure(
-            value.is_finite(),
+            value.abs() <= LARGEST_VALUE,
             "",
-            "a finite value of the derivative",
+            format_args!("a value of the derivative, no larger than {LARGEST_VALUE:e}"),
             value,
         )?;
         ensure(
