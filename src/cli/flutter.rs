@@ -59,12 +59,7 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let _ = writeln!(text, "{}", deck.description());
     text.push_str(&text::deck_warnings(&deck));
     text.push('\n');
-    text.push_str(&text::onsets(
-        &results.onsets,
-        &results.undetermined,
-        &results.unstable,
-        &results.stable,
-    ));
+    text.push_str(&text::onsets_of(&results));
     text.push_str(&text::growths(&results.growth));
     text.push_str(&text::divergence(&results.divergence));
     text.push_str(&text::deviations(&results.deviations));

@@ -154,7 +154,7 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         whose: format!(
             "The answer is that of the model “{}”{}; the other models and routes stand below for comparison.",
             summary.model,
-            summary.has_fmu().map_or("", |_| ", which the FMU holds")
+            summary.fmu().map_or("", |_| ", which the FMU holds")
         ),
         asked: asked(summary, study),
         onsets: all.map(row).chain(unstable).chain(stable).collect(),

@@ -69,9 +69,8 @@ pub(crate) struct Summary {
 
 impl Summary {
     /// The FMU among the files; none where its export failed.
-    pub(super) fn has_fmu(&self) -> Option<&PathBuf> {
-        let files = self.files.iter();
-        files.into_iter().find(|f| f.ends_with(FMU_FILE))
+    pub(super) fn fmu(&self) -> Option<&PathBuf> {
+        self.files.iter().find(|f| f.ends_with(FMU_FILE))
     }
 }
 

@@ -8,7 +8,8 @@ use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnstableStart, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
 use crate::study::{
-    Deck, Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, StageFailure, Study,
+    Deck, Deviation, Divergence, FlutterStudy, KnownUncertainty, ModelGrowth, OnsetSummary,
+    StageFailure, Study, TrainedWithReport,
 };
 use std::fmt::Write as _;
 
@@ -39,7 +40,7 @@ pub(crate) fn chain(
             text,
             "Model     {}{kind}{}\n",
             summary.model,
-            summary.has_fmu().map_or("", |_| ", held by the FMU")
+            summary.fmu().map_or("", |_| ", held by the FMU")
         );
         let found = &summary.onsets;
         text.push_str(&table(found, &[], &summary.unstable, &summary.stable));
@@ -107,6 +108,11 @@ fn details(study: &Study, summary: &Summary) -> String {
         let _ = writeln!(text, "{}", stepped.explain());
     }
     text
+}
+
+/// As [`fit`], of a model that was trained just now.
+pub(super) fn fit_of(trained: &TrainedWithReport) -> String {
+    fit(&trained.model.name, &trained.report, &trained.uncertainty)
 }
 
 /// One fit.
@@ -215,6 +221,12 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
         crate::section::Dof::Lateral => "D",
         crate::section::Dof::Torsion => "M",
     }
+}
+
+/// As [`onsets`], of all models of a study.
+pub(super) fn onsets_of(results: &FlutterStudy) -> String {
+    let (found, open) = (&results.onsets, &results.undetermined);
+    onsets(found, open, &results.unstable, &results.stable)
 }
 
 /// The onsets side by side, with what is to be said of each.

@@ -46,19 +46,10 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {
-        text.push_str(&text::fit(
-            &result.model.name,
-            &result.report,
-            &result.uncertainty,
-        ));
+        text.push_str(&text::fit_of(result));
     }
     text.push('\n');
-    text.push_str(&text::onsets(
-        &results.onsets,
-        &results.undetermined,
-        &results.unstable,
-        &results.stable,
-    ));
+    text.push_str(&text::onsets_of(&results));
     text.push_str(&text::deviations(&results.deviations));
     text.push_str(&text::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");

@@ -43,11 +43,7 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&text::deck_warnings(&deck));
     let mut growths = Vec::new();
     for result in &trained {
-        text.push_str(&text::fit(
-            &result.model.name,
-            &result.report,
-            &result.uncertainty,
-        ));
+        text.push_str(&text::fit_of(result));
         let growth = growth_of(&result.model);
         let stage = format!("scan for growth of {}", result.model.name);
         if let Some(growth) = attempt(&mut failed, stage, growth)? {

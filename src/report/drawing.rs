@@ -3,7 +3,7 @@
 use super::figure::Figure;
 use super::font::text_width;
 use super::geometry::Px;
-use super::legend::{Entry, LegendLayout, lay_out};
+use super::legend::{Entry, LegendLayout, lay_out, shortened};
 use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
 use super::scene::Scene;
 use super::style::BLACK;
@@ -16,7 +16,7 @@ const RIGHT: f64 = 16.0;
 
 /// The line above a figure; none for an empty one.
 pub(super) fn titled(title: &str) -> Option<String> {
-    Some(title.to_owned()).filter(|t| !t.is_empty())
+    Some(shortened(title)).filter(|t| !t.is_empty())
 }
 
 /// A whole figure before it is drawn.

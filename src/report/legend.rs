@@ -11,6 +11,20 @@ const ROW: f64 = 18.0;
 const SAMPLE: f64 = 30.0;
 const GAP: f64 = 26.0;
 
+/// Characters of a line of text beyond which a figure would be wider than a page.
+const LONGEST: usize = 110;
+
+/// A line without its middle where it is too long; pages and files have it whole.
+pub(super) fn shortened(text: &str) -> String {
+    let count = text.chars().count();
+    if count <= LONGEST {
+        return text.to_owned();
+    }
+    let first: String = text.chars().take(LONGEST / 2).collect();
+    let last: String = text.chars().skip(count - LONGEST / 2).collect();
+    format!("{} … {}", first.trim_end(), last.trim_start())
+}
+
 /// A sample of ink and what it stands for.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
@@ -21,7 +35,7 @@ pub(super) struct Entry {
 impl Entry {
     pub(super) fn new(label: impl Into<String>, ink: Ink) -> Self {
         Self {
-            label: label.into(),
+            label: shortened(&label.into()),
             ink,
         }
     }
@@ -97,5 +111,22 @@ impl LegendLayout<'_> {
             let baseline = Px::new(SAMPLE + 8.0, 0.36 * f64::from(SIZE));
             scene.text(middle + baseline, &entry.label, SIZE, BLACK);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_line_keeps_both_ends() {
+        let name = "a name ".repeat(40);
+        let title = shortened(&format!("{name}: modes over wind speed"));
+        assert!(title.starts_with("a name a name") && title.ends_with(": modes over wind speed"));
+        assert!(
+            title.chars().count() <= LONGEST + 3 && title.contains(" … "),
+            "{title}"
+        );
+        assert_eq!(shortened("short"), "short");
     }
 }

@@ -173,7 +173,7 @@ fn one_motion_of_a_computation_gives_its_column() {
         for ((_, found), expected) in found.iter().zip(values) {
             // the low-pass at both ends of a series that begins in full motion
             assert!(
-                (found / expected - 1.0).abs() < 6e-3,
+                (found / expected - 1.0).abs() < 4e-3,
                 "{name}: {found} {expected}"
             );
         }
