@@ -3,8 +3,11 @@
 use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::report::folder::digest;
+use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
+use crate::files::derivatives::write_csv;
 use crate::files::text::file_name;
 use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -26,6 +29,8 @@ use std::path::Path;
 pub(crate) const RECORDS: &str = "records";
 /// Folder of the trained models.
 pub(crate) const MODELS: &str = "models";
+/// Beside them, the fingerprint of the table that they were trained on.
+const TABLE: &str = "table.sha1";
 /// The model that goes into the FMU.
 pub(crate) const MODEL_FILE: &str = "model.json";
 /// The FMU.
@@ -136,10 +141,25 @@ pub(crate) fn train(
         trained.push(result);
         drop(stage);
     }
+    let name = Path::new(MODELS).join(TABLE);
+    match fingerprint(deck)? {
+        Some(of_table) => out.write(name, of_table)?,
+        None => out.outdated(name),
+    }
     match first_error {
         Some(error @ Error::Input(_)) if trained.is_empty() => Err(error),
         _ => Ok(trained),
     }
+}
+
+/// What tells the numbers of the deck's table from those of a revised one; none of a deck that is exact.
+fn fingerprint(deck: &Deck) -> Result<Option<String>> {
+    let of_table = |table: &DerivativeTable| {
+        let mut text = Vec::new();
+        let written = write_csv(table, &mut text).map_err(|e| Error::io(TABLE, e));
+        written.map(|()| digest(&text) + "\n")
+    };
+    deck.table().map(of_table).transpose()
 }
 
 /// Refuses speed groups that do not exist before anything is trained: that is a wrong key, no failure of a stage.
@@ -165,6 +185,11 @@ pub(crate) fn read_models(
     directory: &Path,
     failed: &mut Vec<StageFailure>,
 ) -> Result<Vec<TrainedModel>> {
+    let file = directory.join(MODELS).join(TABLE);
+    let trained_on = std::fs::read_to_string(&file).ok();
+    let same = trained_on.is_none() || trained_on == fingerprint(deck)?;
+    let expected = "models of the deck of the study (run `aerodeck train` again)";
+    ensure(same, "", expected, "those of another table").map_err(|e| e.in_file(&file))?;
     let own = deck.description();
     let of_deck = |model: TrainedModel| {
         let source = &model.provenance.source;

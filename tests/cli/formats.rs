@@ -95,3 +95,30 @@ fn records_of_an_earlier_table_go() {
     assert!(after.contains(&"own.csv".into()), "{after:?}");
     assert!(!after.iter().any(of_deck) && after.len() > 4, "{after:?}");
 }
+
+/// Models of a table that was revised since are not those of the study.
+#[test]
+fn models_of_an_earlier_table_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["derivatives", "convert", "LN21-5200", "table.csv"]);
+    succeeds(at, &["new", "--workbook", "table.csv"]);
+    succeeds(at, &["tunnel", "study.toml"]);
+    succeeds(at, &["train", "study.toml"]);
+    succeeds(at, &["flutter", "study.toml"]);
+    let table = fs::read_to_string(at.join("table.csv")).unwrap();
+    let line = table.lines().find(|l| l.starts_with("A2,1,")).unwrap();
+    let (rest, value) = line.rsplit_once(',').unwrap();
+    let other = format!("{rest},{}", 1.1 * value.parse::<f64>().unwrap());
+    fs::write(at.join("table.csv"), table.replace(line, &other)).unwrap();
+    let expected =
+        "table.sha1: expected models of the deck of the study (run `aerodeck train` again)";
+    refused(
+        at,
+        &["flutter", "study.toml"],
+        &[expected, "those of another table"],
+    );
+    succeeds(at, &["tunnel", "study.toml"]);
+    succeeds(at, &["train", "study.toml"]);
+    succeeds(at, &["flutter", "study.toml"]);
+}
