@@ -59,9 +59,7 @@ pub fn deck(name: &str) -> Result<DerivativeTable> {
                 return Error::input("deck", expected, format!("the file `{name}`"));
             }
             let all: Vec<_> = names().collect();
-            let all = all.join(", ");
-            let expected =
-                format!("one of the embedded decks {all}, or a table (.csv, .xlsx, .ods)");
+            let expected = format!("one of the embedded decks {}", all.join(", "));
             Error::input("deck", expected, format!("`{name}`"))
         })?;
     parse_csv(text)
