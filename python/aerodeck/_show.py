@@ -100,6 +100,7 @@ def monte_carlo_html(result):
     if result.probability:
         p, low, high = result.probability
         rows.append(("below the design speed", f"{p:.3e} ({low:.3e} to {high:.3e})"))
+    if result.verdict:
         rows.append(("of the model itself", result.verdict["explanation"]))
     return _table("Distribution of the flutter onset", rows)
 

@@ -106,18 +106,18 @@ impl ForceUnit {
         let (flows, forces) = (&work.flows, &mut work.forces);
         self.forces_of(&work.renewed, left_s, memory, flows, forces)?;
         let flags = &system.values[1..self.first()];
-        let is_set = |own: &Range<usize>| {
+        let goes_on = |own: &Range<usize>| {
             let flags = &flags[3 * own.start..3 * own.end];
-            flags.iter().any(|flag| *flag != NOT_SET)
+            flags.iter().all(|flag| *flag == NOT_SET)
         };
-        let strips = self.parts_and_strips();
-        let mut as_before: Vec<_> = strips.map(|(part, s)| part.coordinates_of(s)).collect();
-        as_before.retain(|own| newest.is_some() && !is_set(own));
-        if as_before.is_empty() {
+        let mut strips = self.parts_and_strips().map(|(p, s)| p.coordinates_of(s));
+        if newest.is_none() || !strips.any(|own| goes_on(&own)) {
             return Ok(());
         }
+        drop(strips);
         self.forces_of(system, ahead_s, memory, flows, &mut work.predicted)?;
-        for own in as_before {
+        let strips = self.parts_and_strips().map(|(p, s)| p.coordinates_of(s));
+        for own in strips.filter(goes_on) {
             forces[own.clone()].copy_from_slice(&work.predicted[own]);
         }
         Ok(())
