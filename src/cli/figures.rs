@@ -31,12 +31,20 @@ pub(super) fn wanted() -> bool {
     WANTED.load(Ordering::Relaxed)
 }
 
+/// What an earlier run left of a figure is not of this one.
+pub(super) fn outdated(stem: &str, out: &mut OutputDir) {
+    for ending in ["svg", "png"] {
+        out.outdated(format!("{stem}.{ending}"));
+    }
+}
+
 /// Draws and writes `stem.svg`, and `stem.png` where images are wanted.
 pub(super) fn write(
     stem: &str,
     out: &mut OutputDir,
     draw: impl FnOnce() -> Result<Figure>,
 ) -> Result<()> {
+    outdated(stem, out);
     if !wanted() {
         return Ok(());
     }

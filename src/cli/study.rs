@@ -237,7 +237,7 @@ impl StudyStages<'_> {
         records: Option<&RecordSet>,
     ) -> Result<()> {
         for stem in [measured_forces::FORCES, result_files::RESPONSE] {
-            self.out.outdated(format!("{stem}.svg"));
+            figures::outdated(stem, &mut self.out);
         }
         let Some(own) = own.filter(|_| figures::wanted()) else {
             return Ok(());
