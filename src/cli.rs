@@ -55,6 +55,7 @@ use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcomm
 use clap_complete::Shell;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Exit code for wrong input, as clap uses it for wrong arguments.
@@ -106,6 +107,12 @@ struct Cli {
     /// What the answer is: the names of the command, as its schema has them.
     #[arg(skip)]
     kind: String,
+    /// The study or the bridge that the command works on.
+    #[arg(skip)]
+    input: Option<PathBuf>,
+    /// What is set in it.
+    #[arg(skip)]
+    set: Vec<String>,
 }
 
 #[derive(Subcommand)]
@@ -210,14 +217,29 @@ impl Cli {
         let matches = command.try_get_matches_from(line)?;
         let mut cli = Self::from_arg_matches(&matches)?;
         cli.kind = kind(&matches);
+        let line = innermost(&matches);
+        let named = |id| line.try_get_one::<PathBuf>(id).ok().flatten();
+        cli.input = named("study").or_else(|| named("bridge")).cloned();
+        let set = line.try_get_many::<String>("set").ok().flatten();
+        cli.set = set.into_iter().flatten().cloned().collect();
         Ok(cli)
     }
 
     fn answer(&self) -> Result<Answer> {
         figures::want(!self.no_figures, self.png)?;
         let progress = progress::Progress::new(!self.quiet && !self.json, self.verbose);
-        run(&self.command, &progress).map(|answer| answer.of_kind(&self.kind))
+        let answer = run(&self.command, &progress).map_err(|e| match &self.input {
+            Some(file) => common::in_input(file, &self.set, e),
+            None => e,
+        })?;
+        Ok(answer.of_kind(&self.kind))
     }
+}
+
+/// The arguments of the command itself.
+fn innermost(line: &ArgMatches) -> &ArgMatches {
+    line.subcommand()
+        .map_or(line, |(_, inner)| innermost(inner))
 }
 
 /// What the command of a line answers.

@@ -3,6 +3,7 @@
 use super::answer::plain;
 use crate::error::{Error, Result};
 use crate::files::text::read_text;
+use crate::files::toml_lines::with_line;
 use crate::plausibility::sentences;
 use crate::section::Dof;
 use crate::study::{Study, study_findings};
@@ -90,7 +91,7 @@ impl StudyArgs {
         let text = with_values(text, &self.set)?;
         let directory = self.study.parent().unwrap_or(Path::new(""));
         let study = Study::from_toml(&text, directory.to_path_buf());
-        let study = study.map_err(|e| e.in_file(&self.study))?;
+        let study = study.map_err(|e| in_input(&self.study, &self.set, e))?;
         warn(&self.study, &sentences(&study_findings(&study)));
         Ok((study, text))
     }
@@ -115,6 +116,35 @@ impl StudyArgs {
     }
 }
 
+/// The error with file and line of what a command works on, where it names none; of a file in which something was set, with what
+/// was set: then no line is where it was.
+pub(crate) fn in_input(file: &Path, set: &[String], error: Error) -> Error {
+    let mut input = match error {
+        Error::Input(input) => input,
+        Error::Several(all) => {
+            let each = all.into_iter().map(|e| in_input(file, set, e));
+            return Error::Several(each.collect());
+        }
+        other => return other,
+    };
+    if input.file.is_some() || input.place.to_string().starts_with("--") {
+        return Error::Input(input);
+    }
+    let mut name = file.as_os_str().to_owned();
+    for one in set {
+        name.push(format!(" --set {one}"));
+    }
+    let unchanged = set.is_empty() && input.place.line.is_none();
+    let error = match unchanged.then(|| read_text(file)) {
+        Some(Ok(text)) => with_line(&text, Error::Input(input)),
+        _ => {
+            input.place.line = input.place.line.filter(|_| set.is_empty());
+            Error::Input(input)
+        }
+    };
+    error.in_file(Path::new(&name))
+}
+
 /// The text with other values, each `key=value` with a value as TOML has it; a bare word counts as text.
 ///
 /// # Errors
@@ -125,8 +155,10 @@ fn with_values(text: String, set: &[String]) -> Result<String> {
     }
     let broken =
         |expected: &str, found: &str| Error::input("--set", expected, format!("`{found}`"));
-    let mut root: toml::Table =
-        toml::from_str(&text).map_err(|e| Error::input("", "a study file", e.to_string()))?;
+    // what is wrong before is said with its line by the reader of the study
+    let Ok(mut root) = toml::from_str::<toml::Table>(&text) else {
+        return Ok(text);
+    };
     for one in set {
         let (key, value) = one
             .split_once('=')

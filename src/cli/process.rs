@@ -7,6 +7,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::result_files::{lines_of, over_v_hat};
 use super::stages::RECORDS;
+use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, Transfer};
@@ -18,6 +19,7 @@ use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
+use crate::plausibility::{Finding, of_table, sentences};
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
     sections_page,
@@ -96,8 +98,9 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     out.write_json("processing.json", "processing", &processed.report)?;
     if let Some(found) = &derivatives {
         write_derivatives(args, &raw, found, &mut out)?;
-        match write_table(&raw, found, &mut out) {
-            Ok(()) => {
+        match write_table(&raw, found, &notes, &mut out) {
+            Ok(odd) => {
+                notes.extend(sentences(&odd));
                 let (base, section) = (base.as_ref(), section.as_ref());
                 let dofs = &found.dofs;
                 let text = processed_study_text(&raw, base, section, TABLE, &names, dofs)?;
@@ -227,16 +230,19 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
     Ok(names)
 }
 
+/// Writes the table, with what a study of it has to know, and says what is odd about it.
 fn write_table(
     raw: &RawCampaign,
     found: &IdentifiedDerivatives,
+    notes: &[String],
     out: &mut OutputDir,
-) -> Result<()> {
+) -> Result<Vec<Finding>> {
     let header = TableHeader {
         source: raw.source.clone(),
         licence: raw.licence.clone(),
         generator: concat!("aerodeck ", env!("CARGO_PKG_VERSION")).to_owned(),
         model_length_m: Some(raw.rig.model_length_m),
+        notes: notes.to_vec(),
         ..TableHeader::default()
     };
     let table = match found.table(&raw.section, header.clone()) {
@@ -256,7 +262,8 @@ fn write_table(
     out.write(
         format!("AerodynamicDerivatives_{}.xlsx", file_name(&raw.section)),
         workbook_bytes(&table)?,
-    )
+    )?;
+    Ok(of_table(&table, &Convention::default()))
 }
 
 /// Measured points of each speed with the lines of the flat plate and of quasi-steady theory.

@@ -17,10 +17,13 @@ use crate::report::{
     equilibrium_figure, time_history_figure, vf_vg_figure,
 };
 use crate::study::{
-    QuasiSteadyStudy, SimulatedMotion, WindStudy, quasi_steady_study, simulated_motion,
+    QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study, simulated_motion,
 };
 use std::fmt::Write as _;
 
+/// Stem of the nonlinear run, and the gusts in it.
+const RUN: &str = "quasi_steady_run";
+const GUSTS: &str = "gusts.csv";
 /// Lines of the table at most.
 const TABLE_LINES: usize = 15;
 
@@ -41,10 +44,16 @@ pub(crate) fn run(args: &QuasiSteadyArgs, progress: &Progress) -> Result<Answer>
     let results = quasi_steady_study(&study)?;
     drop(stage);
     let stage = progress.stage("nonlinear run");
-    let run = simulated_motion(&study)?;
+    let mut failed = Vec::new();
+    // a run that leaves the tested angles takes neither equilibria nor onset with it
+    let run = attempt(&mut failed, "nonlinear run", simulated_motion(&study))?.flatten();
     drop(stage);
     out.write_json("quasi_steady.json", "quasi-steady-results", &results)?;
     draw(&study, &results, &mut out)?;
+    for name in [RUN.to_owned() + ".csv", GUSTS.to_owned()] {
+        out.outdated(name);
+    }
+    figures::outdated(RUN, &mut out);
     if let Some(run) = &run {
         write_run(&study, run, &mut out)?;
     }
@@ -52,8 +61,12 @@ pub(crate) fn run(args: &QuasiSteadyArgs, progress: &Progress) -> Result<Answer>
     if let Some(run) = &run {
         text.push_str(&run_in_words(run));
     }
-    let value = serde_json::json!({ "quasi_steady": results, "simulation": run });
-    Ok(out.answer(text, value)?.with_outcome_of(&results.verdict))
+    text.push_str(&text::failures(&failed));
+    let value = serde_json::json!({ "quasi_steady": results, "simulation": run, "failed": failed });
+    let answer = out.answer(text, value)?;
+    Ok(answer
+        .with_outcome_of(&results.verdict)
+        .passed_if(failed.is_empty()))
 }
 
 fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
@@ -188,15 +201,15 @@ fn run_in_words(run: &SimulatedMotion) -> String {
 }
 
 fn write_run(study: &WindStudy, run: &SimulatedMotion, out: &mut OutputDir) -> Result<()> {
-    out.write("quasi_steady_run.csv", csv(study, run))?;
+    out.write(RUN.to_owned() + ".csv", csv(study, run))?;
     let (u, w) = run.gusts_m_s.iter().copied().unzip();
     let gusts = GustSeries::new(run.step_s, u, w)?;
-    let path = out.stage("gusts.csv")?;
+    let path = out.stage(GUSTS)?;
     let mut file = std::fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
-    let source = format!("the run of quasi_steady_run.csv at {} m/s", run.speed_m_s);
+    let source = format!("the run of {RUN}.csv at {} m/s", run.speed_m_s);
     write_gusts(&study.name, &source, &gusts, &mut file).map_err(|e| Error::io(&path, e))?;
     let title = format!("{} at {} m/s", study.name, run.speed_m_s);
-    figures::write("quasi_steady_run", out, || {
+    figures::write(RUN, out, || {
         time_history_figure(&title, &panels(run), "Time t (s)")
     })
 }

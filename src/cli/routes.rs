@@ -2,7 +2,7 @@
 
 use super::text::interval;
 use super::text_table::TextTable;
-use crate::flutter::{FlutterSearch, ModeBranch, Onset, OnsetInterval, SanityLines};
+use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
@@ -43,6 +43,8 @@ fn add(table: &mut TextTable, route: &Route) {
     let name = [route.model.clone(), route.method.name().to_owned()];
     let mut without =
         |answer: &str| table.sentence(name.clone(), &format!("{answer}; divergence {divergence}"));
+    let of_mode =
+        |o: &Onset, words: fn(&ModeRatio) -> String| o.mode.as_ref().map_or("–".to_owned(), words);
     match &route.search {
         FlutterSearch::Onset(o) => match o.headline_m_s() {
             Err(reason) => without(reason),
@@ -52,8 +54,8 @@ fn add(table: &mut TextTable, route: &Route) {
                     format!("{:.4}", o.at.frequency_hz),
                     format!("{:.3}", o.at.reduced_velocity.v_star()),
                     format!("{:.3}", o.at.reduced_frequency.v_hat()),
-                    format!("{:.4}", o.mode_ratio),
-                    format!("{:.1}", o.phase_deg),
+                    of_mode(o, |m| format!("{:.4}", m.mode_ratio)),
+                    of_mode(o, |m| format!("{:.1}", m.phase_deg)),
                     o.damping_slope_s_m
                         .map_or("unknown".to_owned(), |s| format!("{s:.5}")),
                     o.branch.to_string(),
@@ -170,8 +172,8 @@ fn found(o: &Onset, route: &Route) -> String {
         .map_or("unknown".to_owned(), |s| format!("{s:.5} s/m"));
     let _ = writeln!(
         text,
-        "  mode |y|/(B|θ|) {:.4}, phase of y to θ {:.1}°; damping slope dζ/dV {slope}",
-        o.mode_ratio, o.phase_deg
+        "  mode {}; damping slope dζ/dV {slope}",
+        o.mode_in_words()
     );
     let _ = writeln!(
         text,

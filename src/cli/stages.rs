@@ -15,9 +15,9 @@ use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
 use crate::identification;
 use crate::report::vf_vg_figure;
 use crate::study::{
-    Deck, FITS, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
-    TrainedWithReport, UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty,
-    state_intervals, train_one,
+    Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, Study, TrainedWithReport,
+    UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty, state_intervals,
+    train_one,
 };
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -88,7 +88,7 @@ pub(crate) fn train(
     let mut trained = Vec::with_capacity(study.models.len());
     let none = RecordSet::none();
     let mut first_error = None;
-    for block in &study.models {
+    for (i, block) in study.models.iter().enumerate() {
         // what an earlier run left of a model is not of this one
         for name in [MODELS, FITS].map(Path::new) {
             out.outdated(name.join(format!("{}.json", block.slug())));
@@ -97,7 +97,7 @@ pub(crate) fn train(
         if block.name == study.exported()?.name {
             out.outdated(MODEL_FILE);
         }
-        check_groups(study, block, deck, records)?;
+        check_groups(study, i, deck, records)?;
         if records.is_none() && block.table.is_none() {
             let reason = "it needs records, which could not be made";
             failed.push(StageFailure::new(
@@ -165,17 +165,24 @@ fn fingerprint(deck: &Deck) -> Result<Option<String>> {
 /// Refuses speed groups that do not exist before anything is trained: that is a wrong key, no failure of a stage.
 fn check_groups(
     study: &Study,
-    block: &ModelBlock,
+    model: usize,
     deck: &Deck,
     records: Option<&RecordSet>,
 ) -> Result<()> {
-    let Some(groups) = block.speed_groups.as_deref() else {
-        return Ok(());
+    let block = &study.models[model];
+    let (groups, place) = match block.speed_groups.as_deref() {
+        Some(own) => (Some(own), format!("model[{model}].speed_groups")),
+        None => {
+            let of_deck = study.deck.speed_groups.as_deref();
+            (of_deck, "deck.speed_groups".to_owned())
+        }
     };
-    match records {
-        Some(records) if block.table.is_none() => records.select(Some(groups)).map(drop),
-        _ => deck.samples(study, Some(groups)).map(drop),
-    }
+    let chosen = match records {
+        _ if groups.is_none() => Ok(()),
+        Some(records) if block.table.is_none() => records.select(groups).map(drop),
+        _ => deck.samples(study, groups).map(drop),
+    };
+    chosen.map_err(|e| e.at(place))
 }
 
 /// Reads the models that `train` wrote; one that is not there, or is of another deck, is noted in `failed`.

@@ -8,8 +8,8 @@ use crate::buffeting::{
 };
 use crate::error::{Error, Result};
 use crate::flutter::{
-    Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset, impedance, pk_onset,
-    quasi_pk_mode, sanity_lines,
+    ModeRatio, Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset, impedance,
+    pk_onset, quasi_pk_mode, sanity_lines,
 };
 use crate::section::{Rotation, SectionModel, Translation};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -42,6 +42,11 @@ pub(super) fn table_4_1() -> Result<Vec<f64>> {
     Ok(vec![onset.at.speed_m_s, onset.at.frequency_hz])
 }
 
+fn with_rotation(onset: &Onset) -> Result<ModeRatio> {
+    let none = || Error::Numerical("no rotation at the onset".into());
+    onset.mode.ok_or_else(none)
+}
+
 pub(super) fn iabse_onset() -> Result<Vec<f64>> {
     let section = SectionModel::iabse_1_1a();
     let onset = by_determinant(&section, &WITHOUT_ROTARY, WIDE)?;
@@ -49,12 +54,13 @@ pub(super) fn iabse_onset() -> Result<Vec<f64>> {
     let steady = FlatPlate::default().transfer(ReducedFrequency::from_full_width(0.0))?;
     let divergence = divergence_speed(&section.structure()?, &steady)?
         .ok_or_else(|| Error::Numerical("no divergence".into()))?;
+    let mode = with_rotation(&onset)?;
     Ok(vec![
         onset.at.speed_m_s,
         onset.at.speed_m_s,
         onset.at.frequency_hz,
-        onset.mode_ratio,
-        onset.phase_deg,
+        mode.mode_ratio,
+        mode.phase_deg,
         onset.at.reduced_velocity.v_star(),
         with_rotary.at.speed_m_s,
         with_rotary.at.frequency_hz,
@@ -221,11 +227,12 @@ pub(super) fn jones_onset() -> Result<Vec<f64>> {
     let mut section = SectionModel::iabse_1_1a();
     let onset = by_eigenvalues(&coupled(&section)?, 120.0, None)?;
     let second = by_determinant(&section, &RationalModel::jones_flat_plate(), WIDE)?;
+    let mode = with_rotation(&onset)?;
     let mut figures = vec![
         onset.at.speed_m_s,
         onset.at.frequency_hz,
-        onset.mode_ratio,
-        onset.phase_deg,
+        mode.mode_ratio,
+        mode.phase_deg,
         second.at.speed_m_s,
     ];
     for density in [1.20, 1.25] {

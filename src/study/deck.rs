@@ -1,4 +1,4 @@
-//! The deck of a study: a measured table or the flat plate, and the records made from it or measured.
+//! The deck of a study: a measured table or the flat plate.
 
 mod onset;
 
@@ -8,21 +8,18 @@ use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
 };
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::error::{Error, Result, ensure};
+use crate::error::{Error, Result};
 use crate::files::derivatives::{
     ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
 };
-use crate::identification::{KeptRecord, sample_model};
+use crate::identification::sample_model;
 use crate::plausibility::{Finding, WIDEST_MODEL_M, of_table};
 use crate::section::Dof;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, group_of, near_groups};
-use crate::wind_tunnel::{Record, RecordFile, RecordSource};
-use std::path::{Path, PathBuf};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::wind_tunnel::Record;
 
 /// Name of the exact flat plate as a source.
-const FLAT_PLATE: &str = "flat plate";
-/// Widths of records that differ by no more, relatively, are one.
-const SAME_WIDTH: f64 = 1e-6;
+pub(super) const FLAT_PLATE: &str = "flat plate";
 /// Width of the section model of a plate that is itself too wide for a tunnel, m.
 const PLATE_MODEL_WIDTH_M: f64 = 0.5;
 
@@ -86,7 +83,7 @@ impl Deck {
                 .state_angle("deck.angle_deg", study.deck.angle_deg)?;
             DeckData::Table(table)
         } else {
-            DeckData::Table(embedded::deck(name)?)
+            DeckData::Table(embedded::deck(name).map_err(|e| e.at("deck.source"))?)
         };
         if !is_file && !study.deck.convention.is_empty() {
             return Err(Error::input(
@@ -267,7 +264,7 @@ fn group_index(group: usize) -> Result<usize> {
 }
 
 /// Indices of the chosen groups among `count`.
-fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
+pub(super) fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
     let Some(groups) = groups else {
         return Ok((0..count).collect());
     };
@@ -286,123 +283,4 @@ fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
             }
         })
         .collect()
-}
-
-/// Whether two files hold the same; not where one cannot be read.
-fn same_bytes(a: &Path, b: &Path) -> bool {
-    let read = |path: &Path| std::fs::read(path).ok();
-    read(a).is_some_and(|bytes| Some(bytes) == read(b))
-}
-
-/// Records, in groups of one mean speed.
-pub struct RecordSet {
-    records: Vec<Box<dyn RecordSource>>,
-    /// Mean speeds of the groups, m/s, rising.
-    groups_m_s: Vec<Vec<f64>>,
-}
-
-impl RecordSet {
-    /// The records that the study states.
-    pub(crate) fn measured(study: &Study) -> Result<Self> {
-        let paths = study.deck.records.iter().map(|p| study.directory.join(p));
-        let paths: Vec<PathBuf> = paths.collect();
-        let all = Self::open(paths.clone())?;
-        for (i, record) in all.records.iter().enumerate() {
-            let same = (0..i).find(|j| all.records[*j].header() == record.header());
-            let Some(first) = same.filter(|j| same_bytes(&paths[*j], &paths[i])) else {
-                continue;
-            };
-            let expected = "each record once: what stands twice looks better known than it is";
-            let found = format!("the same as in {}", paths[first].display());
-            return Err(Error::input("", expected, found).in_file(&paths[i]));
-        }
-        Ok(all)
-    }
-
-    /// Records in memory.
-    pub(crate) fn in_memory(records: Vec<Record>) -> Self {
-        Self::new(records.into_iter().map(|r| Box::new(r) as _).collect())
-    }
-
-    /// All records of a folder, as `tunnel` writes them of the deck; none when no model of the study needs any.
-    pub(crate) fn in_folder(study: &Study, deck: &Deck, folder: &Path) -> Result<Self> {
-        let needed = study.models.iter().any(|m| m.table.is_none());
-        let mut paths = Vec::new();
-        if folder.is_dir() {
-            let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
-            for entry in entries {
-                let path = entry.map_err(|e| Error::io(folder, e))?.path();
-                if path.extension().is_some_and(|e| e == "csv") {
-                    paths.push(path);
-                }
-            }
-        }
-        if needed && paths.is_empty() {
-            return Err(Error::input(
-                "",
-                "records (run `aerodeck tunnel` first, or name your own under `deck.records`)",
-                "none",
-            )
-            .in_file(folder));
-        }
-        paths.sort();
-        let found = Self::open(paths.clone())?;
-        let own = deck.table_name().unwrap_or(FLAT_PLATE);
-        for (record, path) in found.records.iter().zip(&paths) {
-            let header = record.header();
-            let is_own =
-                header.name.starts_with(own) || !header.source.starts_with("virtual tunnel");
-            let expected = format_args!(
-                "a record of {own} (run `aerodeck tunnel` again, into an empty folder)"
-            );
-            ensure(is_own, "name", expected, &header.name).map_err(|e| e.in_file(path))?;
-        }
-        Ok(found)
-    }
-
-    /// No records at all: enough for models that are fitted to tables.
-    pub fn none() -> Self {
-        Self {
-            records: Vec::new(),
-            groups_m_s: Vec::new(),
-        }
-    }
-
-    fn open(paths: Vec<PathBuf>) -> Result<Self> {
-        let open = |path| Ok(Box::new(KeptRecord::new(RecordFile::open(path)?)) as _);
-        let records: Vec<Box<dyn RecordSource>> = paths.iter().map(open).collect::<Result<_>>()?;
-        let width_m = records.first().map_or(0.0, |r| r.header().width_m);
-        for (record, path) in records.iter().zip(&paths) {
-            let found = record.header().width_m;
-            let same = (found / width_m - 1.0).abs() <= SAME_WIDTH;
-            let expected = format_args!("{width_m} m, as in {}", paths[0].display());
-            ensure(same, "width_m", expected, format_args!("{found} m"))
-                .map_err(|e| e.in_file(path))?;
-        }
-        Ok(Self::new(records))
-    }
-
-    fn new(records: Vec<Box<dyn RecordSource>>) -> Self {
-        let speeds = records.iter().map(|r| r.header().mean_speed_m_s);
-        let groups_m_s = near_groups(speeds, SAME_SPEED);
-        Self {
-            records,
-            groups_m_s,
-        }
-    }
-
-    /// The records of the chosen groups (from 1; all when `None`).
-    pub(crate) fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
-        let chosen = chosen(groups, self.groups_m_s.len())?;
-        let inside = |record: &&dyn RecordSource| {
-            let speed = record.header().mean_speed_m_s;
-            chosen.contains(&group_of(&self.groups_m_s, speed))
-        };
-        Ok(self
-            .records
-            .iter()
-            .map(AsRef::as_ref)
-            .filter(inside)
-            .collect())
-    }
 }

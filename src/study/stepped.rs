@@ -3,8 +3,8 @@
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
 use crate::flutter::{
-    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, OnsetSearch, StableRange,
-    UnstableStart, judged_speeds,
+    CriticalPoint, FlutterSearch, ModeRatio, Onset, OnsetInterval, OnsetMethod, OnsetSearch,
+    StableRange, UnstableStart, judged_speeds,
 };
 use crate::fmu::importer::{
     Fmu, GrowthOnset as Found, GrowthPoint, SteppedSearch, SteppingSearch, growth_by_stepping,
@@ -244,8 +244,10 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
             found.frequency_hz,
             k,
         ),
-        mode_ratio: found.mode_ratio.unwrap_or(f64::NAN),
-        phase_deg: found.phase_deg,
+        mode: found.mode_ratio.map(|mode_ratio| ModeRatio {
+            mode_ratio,
+            phase_deg: found.phase_deg,
+        }),
         damping_slope_s_m: None,
         branch: "dominant".to_owned(),
         in_tested_range: Some(model.tested_range.contains(k)),

@@ -280,11 +280,17 @@ fn wrong_static_tables_are_refused() {
     // without the rows above 2 degrees a gust soon leaves the table
     let short: Vec<&str> = good.lines().take(18).collect();
     fs::write(&table, short.join("\n")).unwrap();
-    refused(
-        folder.path(),
-        &["quasi-steady", "wind.toml"],
-        &["expected an angle of attack from -16 to 2 deg"],
-    );
+    let (code, said, _) = aerodeck(folder.path(), &["quasi-steady", "wind.toml"]);
+    assert_eq!(code, 1);
+    let said = flowing(&said);
+    for expected in [
+        "FAILED nonlinear run",
+        "an angle of attack from -16 to 2 deg",
+        "wrote ./quasi_steady.json",
+    ] {
+        assert!(said.contains(expected), "{said}");
+    }
+    assert!(!folder.path().join("quasi_steady_run.csv").exists());
 }
 
 /// A trained model of every kind brings its section and is stepped; the forces of gusts are those of the plate, and the part of the

@@ -59,8 +59,9 @@ fn jones_by_eigenvalues_and_by_determinant() {
     let second = jones_onset_by_determinant(&section);
     near(second.at.speed_m_s / onset.at.speed_m_s, 1.0, 1e-10);
     near(second.at.frequency_hz / onset.at.frequency_hz, 1.0, 1e-10);
-    near(second.mode_ratio, onset.mode_ratio, 1e-8);
-    near(second.phase_deg, onset.phase_deg, 1e-6);
+    let [mode, other] = [&onset, &second].map(|o| o.mode.unwrap());
+    near(other.mode_ratio, mode.mode_ratio, 1e-8);
+    near(other.phase_deg, mode.phase_deg, 1e-6);
 }
 
 /// On the section of Table 4.1 the heave mode stops oscillating at 61 m/s: the onset below is found all the same.

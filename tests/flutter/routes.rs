@@ -56,8 +56,8 @@ fn three_routes_on_one_force_model() {
     for o in &onsets {
         near(o.at.speed_m_s, 76.6790, 5e-5);
         near(o.at.frequency_hz, 0.19319, 5e-6);
-        near(o.mode_ratio, 0.65745, 5e-6);
-        near(o.phase_deg, -160.343, 5e-4);
+        near(o.mode.unwrap().mode_ratio, 0.65745, 5e-6);
+        near(o.mode.unwrap().phase_deg, -160.343, 5e-4);
         near(o.at.speed_m_s / onsets[0].at.speed_m_s, 1.0, 1e-10);
         let slope = o.damping_slope_s_m.unwrap() / onsets[0].damping_slope_s_m.unwrap();
         // the slope of the first is a one-sided difference over 1e-5 of the speed

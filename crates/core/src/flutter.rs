@@ -38,7 +38,7 @@ mod unwanted;
 
 pub use answer::{FlutterSearch, UnstableStart};
 pub use bridge_motion::{
-    BridgeMotion, FoundOnset, ModeRatio, ModeShare, NearbyOnset, NodeMotion, motion_at_onset,
+    BridgeMotion, FoundOnset, ModeShare, NearbyOnset, NodeMotion, motion_at_onset,
     static_deflection,
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
@@ -54,7 +54,7 @@ pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
 pub use judged::{JudgedSpeeds, damps_fast_motion};
 pub(crate) use mode_words::the_mode;
 pub use onset::shown_m_s;
-pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
+pub use onset::{BetweenSpeeds, ErrorParts, ModeRatio, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use present_modes::{LeastDamping, smallest_damping};
 pub use quasi_steady::quasi_steady_modes;

@@ -156,18 +156,15 @@ impl BridgeOptions {
             if *index >= self.nodes.len() {
                 let expected = format!("a node below {}", self.nodes.len());
                 return Err(Error::input(
-                    format!("named[{i}]"),
+                    "nodes with outputs",
                     expected,
                     index.to_string(),
                 ));
             }
             names.push(self.node_name(i));
             if names[..i].contains(&names[i]) {
-                return Err(Error::input(
-                    format!("named[{i}]"),
-                    "each node once",
-                    format!("node {}", names[i]),
-                ));
+                let found = format!("node {} twice", names[i]);
+                return Err(Error::input("nodes with outputs", "each once", found));
             }
         }
         if self.initial.len() != self.modes.len() || !self.initial.iter().all(|x| x.is_finite()) {

@@ -10,6 +10,7 @@ use crate::comparison::{
 };
 use crate::error::{Error, Result, positive};
 use crate::files::lab::ChannelSet;
+use crate::wind_tunnel::campaign::{SAME_RATE, sampling_by_time};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -31,7 +32,7 @@ pub(crate) struct CompareSignalsArgs {
     /// Group (HDF5, TDMS) or struct (MATLAB) of the file to read.
     #[arg(long)]
     group: Option<String>,
-    /// Samples per second; by default the rate that the file states.
+    /// Samples per second; by default the rate that the file states or its time column shows.
     #[arg(long)]
     sampling_hz: Option<f64>,
     /// Lowest frequency of wavelets, Hz.
@@ -95,11 +96,7 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
         })
     };
     let (reference, compared) = (channel(&args.reference)?, channel(&args.compared)?);
-    let sampling_hz = args.sampling_hz.or(set.sampling_hz).ok_or_else(|| {
-        let expected = "a file that states it, or --sampling-hz";
-        Error::input("sampling frequency", expected, "neither").in_file(&args.file)
-    })?;
-    let sampling_hz = positive("--sampling-hz", sampling_hz)?;
+    let sampling_hz = sampling(args, &set).map_err(|e| e.in_file(&args.file))?;
     let pair = SignalPair::new(reference, compared, 1.0 / sampling_hz)
         .map_err(|e| e.in_file(&args.file))?;
     let stage = progress.stage("metrics");
@@ -108,6 +105,30 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
     let missing = lines.iter().any(|l| l.problem.is_some());
     let value = serde_json::json!({ "metrics": lines });
     Ok(Answer::new(text(args, &pair, &lines), &value)?.passed_if(!missing))
+}
+
+/// The one sampling frequency that the file states, its time column shows and the arguments say, Hz.
+fn sampling(args: &CompareSignalsArgs, set: &ChannelSet) -> Result<f64> {
+    let by_time = sampling_by_time(set).transpose()?;
+    let asked = args.sampling_hz.map(|hz| positive("--sampling-hz", hz));
+    let known = [
+        (asked.transpose()?, "--sampling-hz"),
+        (set.sampling_hz, "the file"),
+        (by_time, "its time column"),
+    ];
+    let mut known = known.into_iter().filter_map(|(hz, who)| Some((hz?, who)));
+    let Some((hz, who)) = known.next() else {
+        let expected = "a file that states it or has a time column, or --sampling-hz";
+        return Err(Error::input("sampling frequency", expected, "none"));
+    };
+    match known.find(|(other, _)| (other / hz - 1.0).abs() > SAME_RATE) {
+        None => Ok(hz),
+        Some((other, says)) => Err(Error::input(
+            "sampling frequency",
+            format!("the {hz} Hz of {who}"),
+            format!("{other:.4} Hz by {says}"),
+        )),
+    }
 }
 
 fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>> {

@@ -38,12 +38,15 @@ pub(super) fn run(args: &FmuCheckArgs, progress: &Progress) -> Result<Answer> {
 
 fn text(report: &CheckReport) -> String {
     let mut text = format!(
-        "{}\n{} by {}, {} variables, binaries for {}\n",
+        "{}\n{} by {}, {} variables, {}\n",
         report.file,
         report.model_name,
         report.generation_tool,
         report.variables,
-        report.platforms.join(", ")
+        match report.platforms.join(", ") {
+            none if none.is_empty() => "no binaries".to_owned(),
+            platforms => format!("binaries for {platforms}"),
+        }
     );
     let _ = match &report.ran {
         Some(binary) => writeln!(text, "its code was run in this process: {binary}"),

@@ -50,10 +50,9 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
         (
             "motion",
             format!(
-                "{}; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
+                "{}; {}",
                 ModeBranch::in_words(&onset.branch),
-                onset.mode_ratio,
-                onset.phase_deg
+                onset.mode_in_words()
             ),
         ),
         ("tested range", tested(onset.in_tested_range).to_owned()),

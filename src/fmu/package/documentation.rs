@@ -289,13 +289,12 @@ pub(super) fn sentences(verdict: &Verdict, motion: Option<String>) -> Vec<String
 /// The motion at the onset.
 fn motion(onset: &Onset) -> String {
     format!(
-        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°.",
+        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; {}.",
         digits(onset.at.speed_m_s),
         digits(onset.at.frequency_hz),
         digits(onset.at.reduced_velocity.v_star()),
         digits(onset.at.reduced_frequency.full_width()),
-        digits(onset.mode_ratio),
-        digits(onset.phase_deg),
+        onset.mode_in_words(),
     )
 }
 

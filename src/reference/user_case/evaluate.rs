@@ -162,13 +162,14 @@ impl LoadedCase {
             }
             quantity => {
                 let onset = self.onset(figure.route)?;
+                let of_mode = |o: &Onset| o.mode.ok_or_else(|| nothing("rotation at the onset"));
                 match quantity {
                     FigureQuantity::OnsetSpeed => onset.at.speed_m_s,
                     FigureQuantity::OnsetFrequency => onset.at.frequency_hz,
                     FigureQuantity::OnsetReducedVelocity => onset.at.reduced_velocity.v_star(),
                     FigureQuantity::OnsetVHat => onset.at.reduced_frequency.v_hat(),
-                    FigureQuantity::ModeRatio => onset.mode_ratio,
-                    FigureQuantity::Phase => onset.phase_deg,
+                    FigureQuantity::ModeRatio => of_mode(&onset)?.mode_ratio,
+                    FigureQuantity::Phase => of_mode(&onset)?.phase_deg,
                     _ => onset
                         .damping_slope_s_m
                         .ok_or_else(|| nothing("damping slope by this route"))?,

@@ -295,8 +295,7 @@ fn answer(
     let motion = motion.transpose()?;
     if let (FlutterSearch::Onset(onset), Some(motion)) = (&mut search, &motion) {
         // of the node that turns most, as a section there would see it
-        let of_node = motion.mode_ratio(bridge.width_m());
-        (onset.mode_ratio, onset.phase_deg) = (of_node.ratio, of_node.phase_deg);
+        onset.mode = motion.mode_ratio(bridge.width_m());
     }
     Ok(BridgeAnswer {
         forces: name.to_owned(),

@@ -4,6 +4,7 @@ use super::critical_point::CriticalPoint;
 use super::determinant::{impedance, null_vector};
 use super::following::{MIN_ASSURANCE, Mode, assurance};
 use super::modal_characteristic::ModalCharacteristic;
+use super::onset::ModeRatio;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
@@ -53,31 +54,16 @@ pub struct BridgeMotion {
     pub nodes: Vec<NodeMotion>,
 }
 
-/// Heave over rotation of one motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ModeRatio {
-    /// `|y|/(B|θ|)`.
-    pub ratio: f64,
-    /// Phase of `y` to `θ`, degrees.
-    pub phase_deg: f64,
-}
-
 impl BridgeMotion {
     /// Heave over rotation where the girder turns most.
-    pub fn mode_ratio(&self, width_m: f64) -> ModeRatio {
+    pub fn mode_ratio(&self, width_m: f64) -> Option<ModeRatio> {
         let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
         let turning = |n: &&NodeMotion| complex(n.motion[2]).norm();
         let most = self
             .nodes
             .iter()
             .max_by(|a, b| turning(a).total_cmp(&turning(b)));
-        let ratio = most.map_or(Complex::new(f64::NAN, f64::NAN), |n| {
-            complex(n.motion[0]) / (complex(n.motion[2]) * width_m)
-        });
-        ModeRatio {
-            ratio: ratio.norm(),
-            phase_deg: ratio.arg().to_degrees(),
-        }
+        most.and_then(|n| ModeRatio::new(complex(n.motion[0]), complex(n.motion[2]) * width_m))
     }
 }
 

@@ -21,6 +21,8 @@ const GRID: usize = 600;
 const AIR_STEPS: usize = 40;
 /// Growth up to this part of the frequency is rounding.
 const ROUNDING: f64 = 1e-9;
+/// A frequency below this part of the one before it is none.
+const SLOWEST: f64 = 1e-6;
 const MAX_SCHUR_SWEEPS: usize = 600;
 /// Relative step of the differences for the damping slope: truncation 1e-10 against rounding 1e-11.
 const SLOPE_STEP: f64 = 1e-5;
@@ -291,6 +293,11 @@ impl StructureInWind<'_> {
         let k = root(imaginary(before), imaginary(after), |k| Ok(-root_at(k)?.im))?;
         let omega = root_at(k)?.re;
         let s = self.structure;
+        if omega < SLOWEST * before.value.norm() {
+            return Err(Error::Numerical(format!(
+                "determinant: the frequency of {branch} vanishes at K = {k}; forces of a model or table without measure"
+            )));
+        }
         let speed = omega * s.width_m / k;
         let shape = null_vector(s, &impedance(s, self.model, speed, omega)?, omega)?;
         let at = CriticalPoint::of_motion(name, OnsetMethod::Determinant, s, speed, omega);

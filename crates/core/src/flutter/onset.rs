@@ -5,6 +5,7 @@ use crate::section::Structure;
 use crate::units::ReducedFrequencyGap;
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// A flutter onset.
 ///
@@ -29,10 +30,9 @@ pub struct Onset {
     /// Onset speed `V_F` and the frequency there.
     #[serde(flatten)]
     pub at: CriticalPoint,
-    /// `|y|/(B|θ|)`.
-    pub mode_ratio: f64,
-    /// Phase of `y` relative to `θ`, degrees in (−180, 180].
-    pub phase_deg: f64,
+    /// Heave over rotation; `None` without rotation, as of a deck that gallops in heave alone.
+    #[serde(flatten)]
+    pub mode: Option<ModeRatio>,
     /// `dζ/dV` at onset, s/m; `None` where the route does not give it.
     pub damping_slope_s_m: Option<f64>,
     /// Branch that loses its damping.
@@ -48,6 +48,39 @@ pub struct Onset {
     pub warnings: Vec<String>,
     /// How far the data leave the speed open.
     pub interval: OnsetInterval,
+}
+
+/// Heave over rotation of one motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ModeRatio {
+    /// `|y|/(B|θ|)`.
+    pub mode_ratio: f64,
+    /// Phase of `y` relative to `θ`, degrees in (−180, 180].
+    pub phase_deg: f64,
+}
+
+impl ModeRatio {
+    /// That of `y` and `Bθ`, m; none where the one is not finite in parts of the other.
+    pub fn new(y: Complex<f64>, b_theta: Complex<f64>) -> Option<Self> {
+        let ratio = y / b_theta;
+        ratio.norm().is_finite().then(|| Self {
+            mode_ratio: ratio.norm(),
+            phase_deg: ratio.arg().to_degrees(),
+        })
+    }
+}
+
+impl fmt::Display for ModeRatio {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            mode_ratio,
+            phase_deg,
+        } = self;
+        write!(
+            f,
+            "|y|/(B|θ|) {mode_ratio:.4}, phase of y to θ {phase_deg:.1}°"
+        )
+    }
 }
 
 /// Where the variance between mean speeds is from that an interval holds.
@@ -260,6 +293,12 @@ impl Onset {
         format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
     }
 
+    /// Heave over rotation in words.
+    pub fn mode_in_words(&self) -> String {
+        let words = self.mode.map(|mode| mode.to_string());
+        words.unwrap_or_else(|| "no rotation".to_owned())
+    }
+
     /// The onset of a motion of a mode shape; nothing about ranges yet.
     pub(super) fn new(
         at: CriticalPoint,
@@ -267,12 +306,9 @@ impl Onset {
         shape: &DVector<Complex<f64>>,
         branch: String,
     ) -> Self {
-        let y = shape[0] / structure.width_m;
-        let theta = shape[shape.len() - 1];
         Self {
             at,
-            mode_ratio: y.norm() / theta.norm(),
-            phase_deg: (y / theta).arg().to_degrees(),
+            mode: ModeRatio::new(shape[0], shape[shape.len() - 1] * structure.width_m),
             damping_slope_s_m: None,
             branch,
             in_tested_range: None,

@@ -185,7 +185,7 @@ impl Follower for Tracker<'_> {
         onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));
         let s = self.structure();
         let dof = s.dofs[mode.branch];
-        if !s.is_modal() && single_dof(dof, onset.mode_ratio) {
+        if !s.is_modal() && single_dof(dof, onset.mode.map_or(f64::INFINITY, |m| m.mode_ratio)) {
             onset.warnings.push(format!(
                 "the mode is almost purely {}: a one-degree-of-freedom instability",
                 dof.name()

@@ -238,7 +238,10 @@ impl Signature {
     /// What is odd about the numbers.
     fn words(&self) -> String {
         let odd = self.known().filter_map(|(ratio, (d, usual, spread))| {
-            if ratio <= 0.0 {
+            if ratio == 0.0 {
+                return Some(format!("{d}* is zero"));
+            }
+            if ratio < 0.0 {
                 return Some(format!("{d}* has the sign opposite to a flat plate's"));
             }
             let far = (ratio / usual).ln().abs() > 2.0 * spread;

@@ -33,8 +33,7 @@ fn at(speed_m_s: f64, reduced: f64) -> CriticalPoint {
 fn onset(speed_m_s: f64, half_m_s: f64) -> Onset {
     Onset {
         at: at(speed_m_s, 0.5),
-        mode_ratio: 0.1,
-        phase_deg: 0.0,
+        mode: None,
         damping_slope_s_m: None,
         branch: "torsion".to_owned(),
         in_tested_range: Some(true),

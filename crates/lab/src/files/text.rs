@@ -1,6 +1,6 @@
 //! Text files, whose encoding is UTF-8, and texts of users in them and in their names.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use std::path::Path;
 
 /// What some programs write before a text in UTF-8.
@@ -16,12 +16,26 @@ pub fn read_text(path: &Path) -> Result<String> {
     if bytes.starts_with(BYTE_ORDER_MARK.as_bytes()) {
         bytes.drain(..BYTE_ORDER_MARK.len());
     }
+    refuse_utf16(&bytes).map_err(|e| e.in_file(path))?;
     String::from_utf8(bytes).map_err(|e| {
         let (at, bytes) = (e.utf8_error().valid_up_to(), e.as_bytes());
         let line = 1 + bytes[..at].iter().filter(|b| **b == b'\n').count();
         let found = format!("the byte 0x{:02x} (Latin-1?)", bytes[at]);
         Error::input(format!("line {line}"), "text in UTF-8", found).in_file(path)
     })
+}
+
+/// Refuses a text in UTF-16 by the mark before it, as Windows calls "Unicode".
+pub(crate) fn refuse_utf16(bytes: &[u8]) -> Result<()> {
+    let marked = [[0xff, 0xfe], [0xfe, 0xff]]
+        .iter()
+        .any(|m| bytes.starts_with(m));
+    ensure(
+        !marked,
+        "",
+        "text in UTF-8",
+        "text in UTF-16 (\"Unicode\" of Windows)",
+    )
 }
 
 /// First characters of cells that spreadsheets take for formulas.

@@ -65,7 +65,13 @@ const CLIPPED_AT_LEAST: usize = 8;
 /// A digitised channel dwells at a peak; one that is clipped gets there in more than this many of its smallest steps.
 const STEPS_AT_LEAST: f64 = 3.0;
 
-/// First sample and length of every stretch of eight or more equal samples at the highest or lowest value.
+/// Shorter ones are as well where there are many: two equal samples are a wave that is sampled on both sides of its peak, three
+/// are one that is cut.
+const SHORT_AT_LEAST: usize = 3;
+const SHORT_ONES_AT_LEAST: usize = 8;
+
+/// First sample and length of every stretch of eight or more equal samples at the highest or lowest value; of three or more where
+/// there are eight such stretches at that value.
 /// A rest at the end of the range (a motion to one side) is none: the channel must have come there from elsewhere and go back.
 pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
     let (low, high) = extremes(samples.iter().copied());
@@ -74,7 +80,7 @@ pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
         .map(|w| (w[1] - w[0]).abs())
         .filter(|step| *step > 0.0)
         .fold(f64::INFINITY, f64::min);
-    let mut found = Vec::new();
+    let mut found: Vec<(usize, usize)> = Vec::new();
     let mut at = 0;
     while at < samples.len() && low < high {
         let from = at;
@@ -82,9 +88,10 @@ pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
             at += 1;
         }
         let is_extreme = samples[from] == low || samples[from] == high;
-        let is_long = at - from >= CLIPPED_AT_LEAST && from > 0 && at < samples.len();
+        let is_inside = from > 0 && at < samples.len();
         if is_extreme
-            && is_long
+            && is_inside
+            && at - from >= SHORT_AT_LEAST
             && (samples[from] - samples[from - 1]).abs() > STEPS_AT_LEAST * smallest
         {
             found.push((from, at - from));
@@ -92,6 +99,11 @@ pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
         // NaN equals nothing, not even itself
         at = at.max(from + 1);
     }
+    let [lows, highs] = [low, high].map(|x| found.iter().filter(|s| samples[s.0] == x).count());
+    found.retain(|(from, length)| {
+        let alike = if samples[*from] == low { lows } else { highs };
+        *length >= CLIPPED_AT_LEAST || alike >= SHORT_ONES_AT_LEAST
+    });
     found
 }
 
@@ -139,6 +151,22 @@ mod tests {
         let digitised: Vec<f64> = sine.iter().map(|x| (100.0 * x).round() / 100.0).collect();
         assert!(clipped_stretches(&digitised).is_empty());
         assert!(clipped_stretches(&[1.0; 50]).is_empty());
+    }
+
+    /// Twenty samples a period, of which four lie above 80 %; two lie at the peak of the whole wave, one on either side.
+    #[test]
+    fn many_short_stretches_at_one_value_are_clipped() {
+        let wave = |k: i32| (TAU * (f64::from(k) + 0.5) / 20.0).sin();
+        let whole: Vec<f64> = (0..400).map(wave).collect();
+        assert!(clipped_stretches(&whole).is_empty());
+        let clipped: Vec<f64> = whole.iter().map(|x| x.min(0.8)).collect();
+        let found = clipped_stretches(&clipped);
+        assert_eq!(found.len(), 20);
+        assert_eq!(found[0], (3, 4));
+        assert!(
+            clipped_stretches(&clipped[..140]).is_empty(),
+            "seven are chance"
+        );
     }
 
     #[test]

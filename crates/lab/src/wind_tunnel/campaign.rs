@@ -15,10 +15,12 @@ mod recording;
 mod section_forces;
 mod write;
 
+pub use channel_map::sampling_by_time;
 pub use file::Campaign;
 pub use load::CampaignReading;
 pub use load::RecordingSummary;
 pub use load::{LoadedCampaign, read_campaign};
+pub use recording::SAME_RATE;
 pub use write::FileFormat;
 pub use write::write_virtual_campaign;
 

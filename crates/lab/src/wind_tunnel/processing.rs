@@ -81,7 +81,19 @@ pub fn process(
         .par_iter()
         .map(|run| PreparedRun::new(run, &campaign.rig, options))
         .collect();
-    let prepared = all_or_errors(prepared)?;
+    let mut prepared = all_or_errors(prepared)?;
+    let bodies = prepared
+        .iter()
+        .filter_map(|p| Some((&p.run.name[..], p.still_air.clone()?)));
+    let bodies: Vec<_> = bodies.collect();
+    for dof in Dof::THREE {
+        if let Some(warning) = body::compare_runs(dof, &bodies)? {
+            let first = prepared.iter_mut().find(|p| p.dof == dof);
+            first
+                .into_iter()
+                .for_each(|p| p.findings.warnings.push(warning.clone()));
+        }
+    }
     let stated = options.dofs.clone();
     let dofs = stated.unwrap_or_else(|| dofs_of(campaign, &prepared));
     let inertia = prepared.iter().filter_map(|p| p.still_air.clone());

@@ -1,8 +1,9 @@
 //! Forced-vibration records: sampled motion and self-excited force of a section model.
 
-use crate::error::Result;
+use crate::error::{Place, Result, ensure};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 
 /// A stretch of a record with one frequency of motion, from rest to rest: with the ramps at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,26 @@ pub struct RecordHeader {
     pub source: String,
     /// Licence of the data.
     pub licence: String,
+}
+
+/// Widths of records that differ by no more, relatively, are one.
+const SAME_WIDTH: f64 = 1e-6;
+
+impl RecordHeader {
+    /// Refuses another width than `width_m`, m, which stands `where_it_stands`.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) at that place.
+    pub fn check_width(
+        &self,
+        width_m: f64,
+        place: impl Into<Place>,
+        where_it_stands: impl Display,
+    ) -> Result<()> {
+        let same = (self.width_m / width_m - 1.0).abs() <= SAME_WIDTH;
+        let expected = format_args!("{width_m} m, as {where_it_stands}");
+        ensure(same, place, expected, format_args!("{} m", self.width_m))
+    }
 }
 
 /// A run of samples, one slice per channel in the order of [`RecordHeader::dofs`], all of one length.

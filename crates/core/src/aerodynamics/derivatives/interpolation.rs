@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 
 /// Points of different speed groups closer than this in `ln K` count as one test point.
 const NEARLY_EQUAL: f64 = 0.1;
+/// Points of one speed group closer than this in `ln K` are one test point that was measured again.
+const MEASURED_AGAIN: f64 = 0.01;
 
 /// A way to read a table between its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -190,8 +192,8 @@ impl Curve {
     }
 }
 
-/// Runs of sorted points that count as one: equal abscissae, and points of different speed groups that nearly coincide,
-/// between which scatter would make steep slopes. A polygon needs no slopes and keeps every point.
+/// Runs of sorted points that count as one: equal abscissae, points of different speed groups that nearly coincide, and points
+/// that were measured again; between them scatter would make steep slopes. A polygon needs no slopes and keeps every point.
 fn clusters(
     all: &[(f64, f64, f64, usize)],
     interpolation: Interpolation,
@@ -201,9 +203,10 @@ fn clusters(
     let mut start = 0;
     for i in 1..=all.len() {
         let joins = i < all.len() && {
-            let near = (all[i].2 - all[start].2).abs() < NEARLY_EQUAL;
+            let apart = (all[i].2 - all[start].2).abs();
             let other = all[start..i].iter().all(|p| p.3 != all[i].3);
-            all[i].0 == all[start].0 || merges && near && other
+            let near = if other { NEARLY_EQUAL } else { MEASURED_AGAIN };
+            all[i].0 == all[start].0 || merges && apart < near
         };
         if !joins {
             found.push(&all[start..i]);

@@ -111,18 +111,23 @@ impl IdentifiedDerivatives {
         DerivativeTable::new(name, self.width_m, header, self.points())
     }
 
-    /// The points of every derivative that was identified, in the order of a table.
+    /// The points of every derivative that was identified, in the order of a table; the mean of those at equal `V̂`, as of a test
+    /// that was run again at the speed it states.
     pub fn points(&self) -> BTreeMap<Derivative, Vec<DerivativePoint>> {
         let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
-        for e in &self.estimates {
-            points
-                .entry(e.derivative)
-                .or_default()
-                .push(DerivativePoint {
-                    mean_speed_m_s: Some(e.mean_speed_m_s),
-                    v_hat: e.v_hat,
-                    value: e.value,
-                });
+        let alike = |a: &DerivativeEstimate, b: &DerivativeEstimate| {
+            a.derivative == b.derivative
+                && a.v_hat == b.v_hat
+                && a.mean_speed_m_s == b.mean_speed_m_s
+        };
+        for same in self.estimates.chunk_by(alike) {
+            let value = same.iter().map(|e| e.value).sum::<f64>() / same.len() as f64;
+            let of_derivative = points.entry(same[0].derivative).or_default();
+            of_derivative.push(DerivativePoint {
+                mean_speed_m_s: Some(same[0].mean_speed_m_s),
+                v_hat: same[0].v_hat,
+                value,
+            });
         }
         points
     }

@@ -149,12 +149,7 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
         format_args!("{}, as in the first record", Dof::names(&first.dofs)),
         Dof::names(&header.dofs),
     )?;
-    ensure(
-        (header.width_m / first.width_m - 1.0).abs() <= 1e-6,
-        place("width_m"),
-        format_args!("{} m, as in the first record", first.width_m),
-        format_args!("{} m", header.width_m),
-    )
+    header.check_width(first.width_m, place("width_m"), "in the first record")
 }
 
 /// The steady part of one segment; `None` when it has no whole period.

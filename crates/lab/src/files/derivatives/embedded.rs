@@ -59,7 +59,10 @@ pub fn deck(name: &str) -> Result<DerivativeTable> {
                 return Error::input("deck", expected, format!("the file `{name}`"));
             }
             let all: Vec<_> = names().collect();
-            let expected = format!("one of the embedded decks {}", all.join(", "));
+            let expected = format!(
+                "one of the embedded decks {}, or a table (.csv, .xlsx, .xls, .ods)",
+                all.join(", ")
+            );
             Error::input("deck", expected, format!("`{name}`"))
         })?;
     parse_csv(text)
@@ -141,7 +144,7 @@ mod tests {
     fn an_unknown_deck_lists_the_known_ones() {
         assert_eq!(
             deck("LN22").unwrap_err().to_string(),
-            "deck: expected one of the embedded decks LN20-5500, LN21-5200, LN21-5500, LN21-5800, LN21-6100, found `LN22`"
+            "deck: expected one of the embedded decks LN20-5500, LN21-5200, LN21-5500, LN21-5800, LN21-6100, or a table (.csv, .xlsx, .xls, .ods), found `LN22`"
         );
     }
 }

@@ -19,7 +19,7 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::error::{Error, Result, ensure, positive};
 use crate::files::derivatives::csv_header::{TableInConvention, WIDTH_ASSUMED};
-use crate::files::derivatives::xlsx_cells::{CellContent, CheckedWorkbook, Sheet};
+use crate::files::derivatives::xlsx_cells::{CellContent, CheckedWorkbook, Sheet, cell_name};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -270,21 +270,8 @@ fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {
         None => "an empty cell".to_owned(),
         Some(CellContent::Text(text)) => format!("`{text}`"),
     };
-    let letter = column_letters(column as usize);
-    let place = format!("sheet {name}, cell {letter}{}", row + 1);
+    let place = format!("sheet {name}, cell {}", cell_name(row, column));
     Err(Error::input(place, "a number", found))
-}
-
-/// `A` … `Z`, `AA` … for a column counted from 0.
-fn column_letters(mut column: usize) -> String {
-    let mut letters = Vec::new();
-    loop {
-        letters.insert(0, char::from(b'A' + (column % 26) as u8));
-        if column < 26 {
-            return letters.into_iter().collect();
-        }
-        column = column / 26 - 1;
-    }
 }
 
 fn table_from(

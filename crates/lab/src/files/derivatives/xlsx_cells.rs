@@ -79,6 +79,12 @@ impl Sheet {
             DataRef::Int(x) => CellContent::Number(*x as f64),
             DataRef::String(text) => CellContent::Text(text.clone()),
             DataRef::SharedString(text) => CellContent::Text((*text).to_owned()),
+            DataRef::DateTime(_) | DataRef::DateTimeIso(_) | DataRef::DurationIso(_) => {
+                // as of 1.3 that a spreadsheet took for the first of March
+                let expected = "a number or a text";
+                let place = format!("{}, cell {}", place(), cell_name(row, column));
+                return Err(Error::input(place, expected, "a date"));
+            }
             other => CellContent::Text(Data::from(other.clone()).to_string()),
         };
         if matches!(&content, CellContent::Text(text) if text.trim().is_empty()) {
@@ -169,6 +175,18 @@ impl CheckedWorkbook {
     }
 }
 
+/// The cell as spreadsheets name it, `C5`, for row and column counted from 0.
+pub(super) fn cell_name(row: u32, mut column: u32) -> String {
+    let mut letters = Vec::new();
+    loop {
+        letters.insert(0, char::from(b'A' + (column % 26) as u8));
+        if column < 26 {
+            return format!("{}{}", letters.into_iter().collect::<String>(), row + 1);
+        }
+        column = column / 26 - 1;
+    }
+}
+
 /// Rows and columns of a sheet are numbered in 32 bits.
 fn index(i: usize) -> u32 {
     u32::try_from(i).unwrap_or(u32::MAX)
@@ -179,6 +197,9 @@ fn as_reference(value: &Data) -> DataRef<'_> {
         Data::Empty => DataRef::Empty,
         Data::Float(x) => DataRef::Float(*x),
         Data::Int(x) => DataRef::Int(*x),
+        Data::DateTime(date) => DataRef::DateTime(*date),
+        Data::DateTimeIso(date) => DataRef::DateTimeIso(date.clone()),
+        Data::DurationIso(duration) => DataRef::DurationIso(duration.clone()),
         other => DataRef::String(other.to_string()),
     }
 }

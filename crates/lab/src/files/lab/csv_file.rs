@@ -6,6 +6,7 @@
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Place, Result, counted};
+use crate::files::text::refuse_utf16;
 use std::borrow::Cow;
 
 /// A row of a thousand channels has 20 kB.
@@ -26,6 +27,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     if let Some(group) = group {
         return Err(no_group(group, &[]));
     }
+    refuse_utf16(bytes)?;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut set = ChannelSet::default();
     let start = take_comments(bytes, &mut set);

@@ -306,6 +306,16 @@ fn truncated_and_corrupt_files_are_refused() {
     assert!(complaint("a.mat", b"MATLAB", None).contains("found 6 bytes"));
 }
 
+#[test]
+fn utf_16_is_named() {
+    let text: Vec<u8> = "\u{feff}a,b\n1,2\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    let said = csv_file::parse(&text, None).unwrap_err().to_string();
+    assert!(said.contains("found text in UTF-16"), "{said}");
+}
+
 /// A degree sign in Latin-1, which is no UTF-8.
 #[test]
 fn a_header_in_latin_1_keeps_its_degrees() {

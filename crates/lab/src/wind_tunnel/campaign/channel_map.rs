@@ -4,7 +4,7 @@ use super::channel::{CellChannel, ChannelRef};
 use super::quantity::Quantity;
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, ensure};
-use crate::files::lab::Channel;
+use crate::files::lab::{Channel, ChannelSet};
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, Rig};
 use serde::{Deserialize, Serialize};
@@ -193,6 +193,32 @@ pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
             ))
         }
     }
+}
+
+/// The sampling frequency by a column that is called time, Hz; none without one. Without a unit a step of a second or more is one
+/// in milliseconds.
+///
+/// # Errors
+/// [`Error::Input`] with column and sample where it does not rise evenly.
+pub fn sampling_by_time(set: &ChannelSet) -> Option<Result<f64>> {
+    let is_time = |name: &str| {
+        let name = name.trim().to_lowercase();
+        ["t", "zeit"].contains(&name.as_str()) || name.starts_with("time")
+    };
+    let channel = set.channels.iter().find(|c| is_time(&c.name))?;
+    let per_unit = match sampling_of(&format!("`{}`", channel.name), &channel.samples) {
+        Ok(per_unit) => per_unit,
+        Err(error) => return Some(Err(error)),
+    };
+    let seconds = match channel.unit.as_deref() {
+        Some("s") => 1.0,
+        Some("ms") => 1e-3,
+        None if per_unit > 1.0 => 1.0,
+        None => 1e-3,
+        // minutes, dates: not judged
+        Some(_) => return None,
+    };
+    Some(Ok(per_unit / seconds))
 }
 
 /// Length of a channel, for messages about unequal ones.

@@ -264,6 +264,12 @@ impl Campaign {
             if before.any(|r| r.name == run.name) {
                 return Err(second_time(&format!("run[{i}].name"), "run", &run.name));
             }
+            let same = self.runs[..i].iter().find(|r| r.in_wind == run.in_wind);
+            if let Some(other) = same {
+                let found = format!("{}, that of run `{}`", run.in_wind, other.name);
+                let expected = "a recording of its own for every run";
+                return Err(Error::input(format!("run[{i}].in_wind"), expected, found));
+            }
             run.validate(&format!("run[{i}]"), &map, self.air)?;
         }
         Ok(())

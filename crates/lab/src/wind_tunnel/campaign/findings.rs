@@ -2,7 +2,7 @@
 //! what is stated, units that were probably not meant; and where a channel is no number.
 
 use super::file::Campaign;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::plausibility::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond, ratio_hint,
 };
@@ -16,6 +16,8 @@ use std::fmt;
 const OTHER_MOTION_AT_MOST: f64 = 0.05;
 /// Stated and measured mean speed may differ by this part.
 const SPEED_OFF_AT_MOST: f64 = 0.05;
+/// Beyond this part one of them is not the speed of the run: derivatives go with its square.
+const ANOTHER_SPEED: f64 = 0.2;
 
 /// Something that a user should look at.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -132,13 +134,21 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
             ));
         }
     }
-    if !measured.is_empty() && (mean(measured) / run.mean_speed_m_s - 1.0).abs() > SPEED_OFF_AT_MOST
-    {
+    let off = match measured.is_empty() {
+        true => 0.0,
+        false => (run.mean_speed_m_s / mean(measured) - 1.0).abs(),
+    };
+    if off > SPEED_OFF_AT_MOST {
+        let hint = ratio_hint(run.mean_speed_m_s / mean(measured));
+        let (stated, channel) = (run.mean_speed_m_s, mean(measured));
+        ensure(
+            off <= ANOTHER_SPEED,
+            format_args!("run `{}`: mean_speed_m_s", run.name),
+            format_args!("about the {channel:.3} m/s of the channel `wind_speed`"),
+            format_args!("{stated} m/s{hint}"),
+        )?;
         say(format!(
-            "the mean speed is {} m/s, its channel says {:.3} m/s{}",
-            run.mean_speed_m_s,
-            mean(measured),
-            ratio_hint(run.mean_speed_m_s / mean(measured))
+            "the mean speed is {stated} m/s, its channel says {channel:.3} m/s{hint}"
         ));
     }
     if let Some(still) = &run.still_air
@@ -182,18 +192,18 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
 
 fn exchanged(run: &str, recording: &str, stated: &[Dof], found: Dof, ratio: f64) -> Error {
     let stated: Vec<&str> = stated.iter().map(|d| d.name()).collect();
-    let times = if ratio.is_finite() {
-        format!("{ratio:.1} times that, both over the width")
+    let moves = if ratio.is_finite() {
+        format!(
+            "a {} motion of {ratio:.1} times that, both over the width",
+            found.name()
+        )
     } else {
-        "alone".to_owned()
+        format!("a {} motion alone", found.name())
     };
     Error::input(
         format!("run `{run}`, {recording}"),
         format!("{} motion, as `motion` states", stated.join(", ")),
-        format!(
-            "a {} motion of {times}: are the motion channels exchanged, or their units wrong?",
-            found.name()
-        ),
+        format!("{moves}: are the motion channels exchanged, or their units wrong?"),
     )
 }
 

@@ -1,7 +1,7 @@
 //! One recording: channels taken out of a file by the map, in SI units, of one length, all of it numbers.
 
 use super::channel::{CellChannel, ChannelRef};
-use super::channel_map::{ChannelMap, cell_quantity, described, sampling_of};
+use super::channel_map::{ChannelMap, cell_quantity, described, sampling_by_time, sampling_of};
 use super::file::{Campaign, FileRef, RunBlock};
 use super::findings::{RunFinding, channel_findings, first_gap};
 use super::quantity::Quantity;
@@ -11,7 +11,7 @@ use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
 
 /// Two statements of one sampling frequency may differ by this part.
-pub(super) const SAME_RATE: f64 = 1e-3;
+pub const SAME_RATE: f64 = 1e-3;
 
 /// One recording with what was found on the way.
 pub(super) struct LoadedRecording {
@@ -225,7 +225,8 @@ impl ChannelExtraction<'_> {
             (by_time, "the time channel"),
         ];
         // a time that the map leaves out is no statement of its own, but may not contradict
-        let beside = self.unmapped_time().filter(|_| by_time.is_none());
+        let beside = sampling_by_time(self.set).and_then(Result::ok);
+        let beside = beside.filter(|_| by_time.is_none());
         let beside = (beside, "a time column that `channels.time` does not name");
         let mut stated = known.iter().filter_map(|(hz, who)| hz.map(|hz| (hz, *who)));
         let first = stated.next();
@@ -245,26 +246,6 @@ impl ChannelExtraction<'_> {
                 format!("{other:.4} Hz by {says}"),
             )),
         }
-    }
-
-    /// The sampling frequency by a column that is called time and rises evenly, Hz. Without a unit a step of a second or more is
-    /// one in milliseconds.
-    fn unmapped_time(&self) -> Option<f64> {
-        let is_time = |name: &str| {
-            let name = name.trim().to_lowercase();
-            ["t", "zeit"].contains(&name.as_str()) || name.starts_with("time")
-        };
-        let channel = self.set.channels.iter().find(|c| is_time(&c.name))?;
-        let per_unit = sampling_of("", &channel.samples).ok()?;
-        let seconds = match channel.unit.as_deref() {
-            Some("s") => 1.0,
-            Some("ms") => 1e-3,
-            None if per_unit > 1.0 => 1.0,
-            None => 1e-3,
-            // minutes, dates: not judged
-            Some(_) => return None,
-        };
-        Some(per_unit / seconds)
     }
 
     fn air(&self, is_needed: bool) -> Result<[Option<f64>; 3]> {

@@ -248,6 +248,12 @@ fn a_wrong_campaign_file_is_refused_by_line() {
     assert!(complaint(&twice, &a, &b).contains(
         "run[1].name: expected a name of its own for every run, found `one` a second time"
     ));
+    let renamed = twice.replacen("name = \"one\"", "name = \"two\"", 1);
+    let refused = complaint(&renamed, &a, &b);
+    assert!(
+        refused.contains("run[1].in_wind: expected a recording of its own for every run, found a.csv, that of run `two`"),
+        "{refused}"
+    );
     assert!(said("fz = \"none\"", "").contains("channels.cells.near: expected fx, fy, fz, mx, my, mz (`\"none\"` for one not measured), found no `fz`"));
     assert!(
         said("[channels.cells.near]", "[channels.cells.far]")

@@ -138,3 +138,42 @@ pub(super) fn compare(
         found.dof.name()
     )))
 }
+
+/// Compares the inertia of all runs in which `dof` moves, by their names, which is that of one model: a warning with the figures, or
+/// nothing.
+pub(super) fn compare_runs(dof: Dof, runs: &[(&str, StillAirInertia)]) -> Result<Option<String>> {
+    let of_dof = runs
+        .iter()
+        .filter(|(_, found)| found.dof == dof && found.is_certain());
+    let mut of_dof: Vec<_> = of_dof.collect();
+    of_dof.sort_by(|a, b| a.1.inertia.total_cmp(&b.1.inertia));
+    let [(lowest, low), .., (highest, high)] = of_dof[..] else {
+        return Ok(None);
+    };
+    let error = 3.0
+        * high
+            .inertia_standard_error
+            .hypot(low.inertia_standard_error);
+    let apart = high.inertia - low.inertia;
+    if apart <= SAME_BODY * high.inertia + error {
+        return Ok(None);
+    }
+    let unit = if dof == Dof::Torsion { "kg·m²" } else { "kg" };
+    let shown =
+        |s: &StillAirInertia| format!("{:.4} ± {:.4} {unit}", s.inertia, s.inertia_standard_error);
+    let found = format!(
+        "{} in run {highest}, {} in run {lowest}",
+        shown(high),
+        shown(low)
+    );
+    ensure(
+        apart <= ANOTHER_BODY * high.inertia + error,
+        format_args!("runs, still air, {} motion", dof.name()),
+        "the inertia of one model in all of them",
+        format_args!("{found}: a load-cell channel is missing, taken twice, or in another unit"),
+    )?;
+    let name = dof.name();
+    Ok(Some(format!(
+        "still air shows another inertia in {name} motion: {found}"
+    )))
+}

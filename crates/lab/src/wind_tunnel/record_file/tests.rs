@@ -57,8 +57,8 @@ fn write_and_read_give_the_same_bits() {
         all.map(|x| x.to_bits()).collect()
     };
     assert_eq!(bits(&again), bits(&record));
-    // A file of Windows has other line ends.
-    let file = in_file(text.replace('\n', "\r\n").as_bytes());
+    // a file of Windows has other line ends, and a mark at its head
+    let file = in_file(format!("\u{feff}{}", text.replace('\n', "\r\n")).as_bytes());
     assert_eq!(read(file.path()).unwrap(), record);
 }
 

@@ -70,7 +70,7 @@ fn point(v_hat: f64, value: f64, group: usize) -> (DerivativePoint, usize) {
 }
 
 /// Two speeds nearly meet at V̂ 4 with scatter: one point in between, so that no steep slope arises. Two points of one
-/// speed are two points however near they are, and the polygon over V̂ keeps all of them.
+/// speed are two points unless one is the other measured again, and the polygon over V̂ keeps all of them.
 #[test]
 fn points_of_two_speeds_that_nearly_coincide_count_as_one() {
     let of_two = [
@@ -83,6 +83,10 @@ fn points_of_two_speeds_that_nearly_coincide_count_as_one() {
     assert_eq!(merged.x.len(), 3);
     assert!((merged.y[1] - 0.5 * (16.0 / 16.0 + 20.0 / (4.1 * 4.1))).abs() < 1e-14);
     let of_one = of_two.map(|(p, _)| (p, 0));
+    let mut again = of_one;
+    again[2].0.v_hat = 4.001;
+    let merged = Curve::new(Interpolation::ModifiedAkima, Part::Real, &again);
+    assert_eq!(merged.x.len(), 3);
     for (points, interpolation) in [
         (of_one, Interpolation::ModifiedAkima),
         (of_two, Interpolation::LinearVHat),

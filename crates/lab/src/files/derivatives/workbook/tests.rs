@@ -243,9 +243,31 @@ fn files_that_are_no_workbooks_are_refused() {
 }
 
 #[test]
-fn columns_are_lettered_as_in_a_spreadsheet() {
-    let names: Vec<_> = [0, 25, 26, 701, 702].map(column_letters).to_vec();
-    assert_eq!(names, ["A", "Z", "AA", "ZZ", "AAA"]);
+fn cells_are_named_as_in_a_spreadsheet() {
+    let names = [0, 25, 26, 701, 702].map(|column| cell_name(4, column));
+    assert_eq!(names, ["A5", "Z5", "AA5", "ZZ5", "AAA5"]);
+}
+
+/// What 1.3 becomes in a spreadsheet of another country.
+#[test]
+fn a_date_is_no_number() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("dates.xlsx");
+    let mut book = rust_xlsxwriter::Workbook::new();
+    let sheet = book.add_worksheet();
+    sheet.set_name("H1").unwrap();
+    let date = rust_xlsxwriter::ExcelDateTime::from_ymd(2024, 3, 1).unwrap();
+    let format = rust_xlsxwriter::Format::new().set_num_format("yyyy-mm-dd");
+    sheet
+        .write_datetime_with_format(3, 1, &date, &format)
+        .unwrap();
+    book.save(&path).unwrap();
+    let mut book = CheckedWorkbook::open(&path).unwrap();
+    let refused = book.sheet("H1").unwrap_err().to_string();
+    assert_eq!(
+        refused,
+        "sheet H1, cell B4: expected a number or a text, found a date"
+    );
 }
 
 /// The same cells stated to be over V* with heave down: arguments divided by 2π, coupling signs turned; a notation needs

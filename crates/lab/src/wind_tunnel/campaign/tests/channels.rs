@@ -137,15 +137,21 @@ fn absurd_numbers_are_refused_and_odd_ones_said() {
     );
     let said = hints("model_length_m = 2.5", "model_length_m = 2500");
     assert!(said[0].contains("in mm it would be 2.5 m"), "{said:?}");
-    let said = hints("name = \"one\"", "name = \"one\"\nmean_speed_m_s = 80");
+    // derivatives go with the square of the speed
+    let stated = |speed: &str| {
+        let other = format!("name = \"one\"\nmean_speed_m_s = {speed}");
+        complaint(&small().replace("name = \"one\"", &other), &a, &b)
+    };
+    let said = stated("80");
     assert!(
-        said[0].contains("the mean speed is 80 m/s, its channel says 8.0"),
-        "{said:?}"
+        said.contains("run `one`: mean_speed_m_s: expected about the 8.0"),
+        "{said}"
     );
     assert!(
-        said[0].ends_with("(ten times that: a decimal place?)"),
-        "{said:?}"
+        said.ends_with("found 80 m/s (ten times that: a decimal place?)"),
+        "{said}"
     );
+    assert!(stated("9.8").ends_with("found 9.8 m/s"));
     let said = hints("name = \"y\", unit = \"mm\"", "name = \"y\", unit = \"m\"");
     assert!(
         said.iter().any(|s| s.ends_with("millimetres for metres?")),

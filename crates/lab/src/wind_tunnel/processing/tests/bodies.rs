@@ -51,6 +51,36 @@ fn a_stated_mass_is_compared_with_still_air() {
     );
 }
 
+/// Nothing is stated, but there is one model: a run in another unit cannot be of it.
+#[test]
+fn runs_of_one_model_show_one_inertia() {
+    let mut plan = short(VirtualCampaignPlan::default());
+    plan.tunnel.speeds_m_s = vec![6.0, 10.0];
+    let mut raw = campaign(&plan).raw;
+    (raw.rig.model_mass_kg, raw.rig.model_inertia_kg_m2) = (None, None);
+    let of_last = |raw: &mut RawCampaign, factor: f64| {
+        let run = raw.runs.last_mut().unwrap();
+        for recording in [Some(&mut run.in_wind), run.still_air.as_mut()] {
+            let cells = recording.unwrap().cells.iter_mut().flatten();
+            cells.flatten().for_each(|x| *x *= factor);
+        }
+    };
+    let quiet = done(&raw, &ProcessingOptions::default()).report.warnings();
+    assert!(quiet.is_empty(), "{quiet:?}");
+    of_last(&mut raw, 1.1);
+    let warnings = done(&raw, &ProcessingOptions::default()).report.warnings();
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("another inertia in torsion motion"),
+        "{warnings:?}"
+    );
+    of_last(&mut raw, 1e-3);
+    let message = refused(&raw);
+    assert!(
+        message.starts_with("runs, still air, torsion motion: expected the inertia of one model"),
+        "{message}"
+    );
+}
+
 /// As when `near.fx` is mapped from the column of `near.fy`.
 #[test]
 fn a_channel_taken_twice_shows_in_the_mass() {
