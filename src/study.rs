@@ -51,8 +51,10 @@ use crate::aerodynamics::derivatives::{Interpolation, Missing};
 use crate::error::{Error, Place, Result, finite, of_schema, positive};
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
+use crate::flutter::FlutterSearch;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
+use crate::trained_model::Experiment;
 use crate::wind_tunnel::TunnelPlan;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -177,6 +179,28 @@ pub struct ExportBlock {
     pub author: Option<String>,
     /// Whose it is.
     pub copyright: Option<String>,
+}
+
+impl ExportBlock {
+    /// A released section just below the onset that was searched up to `limit_m_s`, so that an importer that merely runs the FMU sees
+    /// something.
+    pub fn experiment(&self, search: &FlutterSearch, limit_m_s: f64) -> Experiment {
+        let onset = search.critical_speed_m_s().unwrap_or(limit_m_s);
+        // a round number of decimetres per second reads better in an importer
+        let speed = (10.0 * self.part_of_onset * onset).floor() / 10.0;
+        Experiment {
+            wind_speed_m_s: if speed > 0.0 {
+                speed
+            } else {
+                self.part_of_onset * onset
+            },
+            initial_vertical_m: self.initial_vertical_m,
+            initial_rotation_rad: self.initial_rotation_deg.to_radians(),
+            stop_time_s: self.stop_time_s,
+            step_size_s: self.step_size_s,
+            onset_search_limit_m_s: limit_m_s,
+        }
+    }
 }
 
 impl Default for ExportBlock {

@@ -136,5 +136,5 @@ def motion_dataset(motion):
 
 def onsets_frame(onsets):
     pandas = _module("pandas")
-    names = ("speed_m_s", "frequency_hz", "tested", "unstable")
+    names = ("speed_m_s", "frequency_hz", "tested", "unstable", "judged")
     return pandas.DataFrame({name: getattr(onsets, name) for name in names})

@@ -106,8 +106,9 @@ def grid(client, section, model, axes, *, speed_max_m_s=None, part=20_000, progr
     shared = client.submit(_shared, section, model, axes, speed_max_m_s, pure=False)
     futures = [client.submit(_onsets, shared, *range_, pure=False) for range_ in ranges]
     parts = _gathered(client, futures, [last - first for first, last in ranges], progress)
-    columns = ("speed_m_s", "frequency_hz", "tested", "unstable")
-    return Onsets._from_parts(*(np.concatenate([getattr(p, name) for p in parts]) for name in columns))
+    columns = ("speed_m_s", "frequency_hz", "tested", "unstable", "judged")
+    of_all = (np.concatenate([getattr(p, name) for p in parts]) for name in columns)
+    return Onsets._from_parts(*of_all, parts[0].searched_to_m_s)
 
 
 def campaign(client, campaigns, *, progress=None, **options):

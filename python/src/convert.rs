@@ -50,11 +50,21 @@ pub fn parts<'py, T: pyo3::PyClass>(slf: &Bound<'py, T>, names: &[&str]) -> PyRe
 
 /// Keys and values as a value of the library, with the words of a study file; `place` is named when they do not fit.
 pub fn from_python<T: DeserializeOwned>(place: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
-    let text: String = value
-        .py()
-        .import("json")?
-        .call_method1("dumps", (value,))?
-        .extract()?;
+    let (py, how) = (value.py(), PyDict::new(value.py()));
+    // numbers and arrays of NumPy
+    how.set_item(
+        "default",
+        py.eval(c"lambda of_numpy: of_numpy.tolist()", None, None)?,
+    )?;
+    how.set_item("allow_nan", false)?;
+    let json = py.import("json")?;
+    let text = json
+        .call_method("dumps", (value,), Some(&how))
+        .map_err(|e| {
+            let expected = "finite numbers, texts, lists and dicts";
+            wrong(place, expected, e.value(py).to_string())
+        })?;
+    let text: String = text.extract()?;
     serde_json::from_str(&text).map_err(|e| {
         let said = e.to_string();
         // the place is one in a text that the caller never saw

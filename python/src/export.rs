@@ -2,9 +2,10 @@
 
 use crate::convert::{from_python, word};
 use crate::error::{raised, wrong};
-use crate::flutter::of_model;
+use crate::flutter::{of_model, verdict};
 use crate::model::Model;
 use crate::section::Section;
+use crate::work::detached;
 use aerodeck::files::coefficients::gust_force;
 use aerodeck::flutter::OnsetSearch;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
@@ -14,6 +15,7 @@ use aerodeck::fmu::package::{
 };
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
+use aerodeck::verdict::Verdict;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -93,19 +95,20 @@ pub fn export_fmu(
         generated: None,
     };
     let force = force(kind, strips, prediction, trained.section.width_m)?;
-    let bounds = match force {
+    let (bounds, verdict) = match force {
         None => {
             let model = model.get();
-            py.detach(|| bounds(&trained, model))?
+            let (bounds, verdict) = detached(py, || bounds(&trained, model))?;
+            (bounds, Some(verdict))
         }
-        Some(_) => None,
+        Some(_) => (None, None),
     };
     let export = Export {
         growing: growing(allow_unstable),
         force,
         bounds,
         gusts,
-        verdict: None,
+        verdict,
         listing: if reals_only {
             Listing::Reals
         } else {
@@ -115,7 +118,7 @@ pub fn export_fmu(
         version: version(fmi)?,
         reference_runs: true,
     };
-    py.detach(|| {
+    detached(py, || {
         let runtimes = match platforms {
             Some(platforms) => Runtime::chosen(&platforms)?,
             None => Runtime::available()?,
@@ -131,15 +134,17 @@ pub fn export_fmu(
     .map_err(raised)
 }
 
-/// The interval of the onset, which the archive carries where the data give one.
-fn bounds(trained: &TrainedModel, model: &Model) -> PyResult<Option<OnsetBounds>> {
+/// The interval of the onset, which the archive carries where the data give one, and the verdict, which it states.
+fn bounds(trained: &TrainedModel, model: &Model) -> PyResult<(Option<OnsetBounds>, Verdict)> {
     let search = OnsetSearch {
         speed_max_m_s: trained.experiment.onset_search_limit_m_s,
         ..OnsetSearch::default()
     };
     let found = of_model(&trained.section, model, &search, "eigenvalues")?;
     let onset = found.onset();
-    Ok(onset.and_then(|onset| OnsetBounds::from_interval(&onset.interval)))
+    let bounds = onset.and_then(|onset| OnsetBounds::from_interval(&onset.interval));
+    let verdict = verdict(&trained.section, model, &search, found, None)?;
+    Ok((bounds, verdict))
 }
 
 fn version(fmi: u32) -> PyResult<FmiVersion> {

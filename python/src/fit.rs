@@ -6,12 +6,16 @@ use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::records::Records;
 use crate::work::Work;
+use aerodeck::aerodynamics::Transfer;
 use aerodeck::aerodynamics::derivatives::DerivativeTable;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::identification::{Fitted, FrequencyFit, TimeFit, fit_records, fit_table};
 use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Provenance;
-use aerodeck::uncertainty::{CoefficientUncertainty, record_uncertainty, table_uncertainty};
+use aerodeck::uncertainty::{
+    CoefficientUncertainty, FormEnsemble, ModelUncertainty, record_uncertainty, table_uncertainty,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
@@ -126,16 +130,30 @@ fn to_table(
         let samples = table.samples(dofs);
         let fitted = fit_table(&samples, dofs, fit);
         let known = fitted.map(|fitted| {
-            let known = table_uncertainty(&samples, dofs, fit, &fitted.report);
-            (fitted, known)
+            let known = table_uncertainty(&samples, dofs, fit, &fitted.report)
+                .and_then(|known| known.leaving_out(&table.name));
+            let own = |f: &FrequencyFit| (f == fit).then(|| fitted.clone());
+            let forms = FormEnsemble::new(&samples, dofs, &own).map(Some);
+            (fitted, known, forms)
         });
         work.tell(1, 1);
         known
     })?;
-    let (fitted, known) = fitted.map_err(raised)?;
+    let (fitted, known, forms) = fitted.map_err(raised)?;
     let header = &table.header;
-    let origin = [&header.source, &header.licence, &table.name].map(String::clone);
-    Ok(model(fitted, known, origin))
+    let built_in = embedded::deck(&table.name).is_ok_and(|deck| deck == *table);
+    // the notice has to go wherever the figures go
+    let licence = match built_in {
+        true => embedded::LICENCE.to_owned(),
+        false => header.licence.clone(),
+    };
+    let source = format!("{}: {}", table.name, header.source);
+    Ok(model(
+        fitted,
+        known,
+        forms,
+        [source, licence, table.name.clone()],
+    ))
 }
 
 fn to_records(py: Python<'_>, records: &Records, fit: &TimeFit, work: &Work) -> PyResult<Model> {
@@ -147,26 +165,48 @@ fn to_records(py: Python<'_>, records: &Records, fit: &TimeFit, work: &Work) -> 
         let sources = records.sources();
         fit_records(&sources, fit, &progress).map(|fitted| {
             let known = record_uncertainty(&sources, fit, &fitted.report, &|_| work.check());
-            (fitted, known)
+            let of_deck = sources
+                .first()
+                .and_then(|r| embedded::names().find(|name| r.header().name.starts_with(name)));
+            let known = known.and_then(|known| match of_deck {
+                Some(deck) => known.leaving_out(deck),
+                None => Ok(known),
+            });
+            let dofs = Transfer::dofs(&fitted.model).to_vec();
+            let forms = FormEnsemble::of_records(&sources, &dofs).map(Some);
+            (fitted, known, forms)
         })
     })?;
-    let (fitted, known) = fitted.map_err(raised)?;
+    let (fitted, known, forms) = fitted.map_err(raised)?;
     let first = records.0.first().map(|r| &r.header);
     let source = first.map_or(String::new(), |h| h.source.clone());
     let licence = first.map_or(String::new(), |h| h.licence.clone());
-    Ok(model(fitted, known, [source, licence, "deck".to_owned()]))
+    Ok(model(
+        fitted,
+        known,
+        forms,
+        [source, licence, "deck".to_owned()],
+    ))
 }
 
 /// The model with what the data leave open, and where it comes from.
 fn model(
     fitted: Fitted,
     known: aerodeck::Result<CoefficientUncertainty>,
+    forms: aerodeck::Result<Option<FormEnsemble>>,
     [source, licence, name]: [String; 3],
 ) -> Model {
     let Fitted { model, mut report } = fitted;
     if let Ok(known) = &known {
         known.enter(&mut report);
+        report
+            .notes
+            .extend(known.speeds.iter().map(|s| s.describe()));
     }
+    let known = known.and_then(|known| {
+        let forms = FormEnsemble::or_noted(forms, &mut report)?;
+        ModelUncertainty::of_data(known, forms, report.tested_range)
+    });
     Model {
         tested: report.tested_range,
         provenance: Provenance {
@@ -178,7 +218,7 @@ fn model(
         },
         model,
         report: Some(report),
-        uncertainty: known.map_err(|e| e.to_string()),
+        uncertainty: known.map(Box::new).map_err(|e| e.to_string()),
         stored: None,
         name,
         findings: Vec::new(),

@@ -5,14 +5,16 @@ use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::onset::Onset;
 use crate::section::Section;
+use crate::work::detached;
 use aerodeck::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
-    FlutterSearch, MovedOnset, OnsetInterval, OnsetSearch, determinant_onset, find_onset, pk_onset,
+    FlutterSearch, MovedOnset, OnsetInterval, OnsetMethod, OnsetSearch, determinant_onset,
+    find_onset, pk_onset,
 };
 use aerodeck::plausibility::{Finding, of_section};
-use aerodeck::section::SectionModel;
+use aerodeck::section::{Dof, SectionModel};
 use aerodeck::study::FlutterBlock;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use aerodeck::verdict::{Evidence, RequiredSpeed, Verdict};
@@ -64,14 +66,19 @@ pub fn flutter(
             let verdict = verdict(section, model, &search, found.clone(), required_speed_m_s)?;
             PyResult::Ok((found, verdict))
         };
-        let (found, verdict) = py.detach(judged)?;
+        let (found, verdict) = detached(py, judged)?;
         return Onset::new(&found, method, &verdict);
+    }
+    let plate = model.extract::<&str>().is_ok_and(|m| m == "flat plate");
+    if plate && section.dofs() != Dof::TWO {
+        let expected = "heave and rotation: the flat plate has no forces of sway";
+        return Err(wrong("section", expected, "three motions".to_owned()));
     }
     let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
     let found = if let Ok(table) = model.cast::<Derivatives>() {
         let table = &table.get().0;
-        py.detach(|| {
+        detached(py, || {
             let dofs = section.dofs();
             let forces =
                 InterpolatedTable::new(table, &dofs, Extrapolation::Refuse).map_err(raised)?;
@@ -81,16 +88,15 @@ pub fn flutter(
                 Evidence::of_table("the table", &structure, &forces, range, found.clone());
             PyResult::Ok((found, evidence))
         })
-    } else if model
-        .extract::<&str>()
-        .is_ok_and(|name| name == "flat plate")
-    {
+    } else if plate {
         let k = ReducedFrequency::from_full_width;
         let range = ReducedFrequencyRange::between(k(PLATE_K.0), k(PLATE_K.1));
-        let plate = FlatPlate::default();
-        let found = py.detach(|| exact(range).find("flat plate", section, &plate, method));
+        let forces = FlatPlate::default();
+        let found = detached(py, || {
+            exact(range).find("flat plate", section, &forces, method)
+        });
         found.map(FlutterSearch::of_exact_forces).map(|found| {
-            let evidence = Evidence::of_exact("the flat plate", &structure, &plate, found.clone());
+            let evidence = Evidence::of_exact("the flat plate", &structure, &forces, found.clone());
             (found, evidence)
         })
     } else {
@@ -121,7 +127,7 @@ fn against(
 }
 
 /// What a trained model, of which this was found, says of a section and the speed that is required of it.
-fn verdict(
+pub fn verdict(
     section: &SectionModel,
     model: &Model,
     search: &OnsetSearch,
@@ -204,9 +210,36 @@ pub fn of_model(
     search: &OnsetSearch,
     method: &str,
 ) -> PyResult<FlutterSearch> {
+    let structure = section.structure().map_err(raised)?;
+    let mut found = without_interval(section, model, search, method)?;
+    if let FlutterSearch::Onset(onset) = &mut found {
+        onset.interval = match &model.uncertainty {
+            Ok(known) => {
+                // the same motion by every method
+                let mut by_modes = onset.clone();
+                by_modes.at.method = OnsetMethod::Eigenvalues;
+                known
+                    .interval(&model.model, &structure, &by_modes)
+                    .unwrap_or_else(|e| OnsetInterval::none(e.to_string()))
+            }
+            Err(reason) => OnsetInterval::None {
+                reason: reason.clone(),
+            },
+        };
+    }
+    Ok(found)
+}
+
+/// The onset of a trained model.
+pub fn without_interval(
+    section: &SectionModel,
+    model: &Model,
+    search: &OnsetSearch,
+    method: &str,
+) -> PyResult<FlutterSearch> {
     let tested = Some(model.tested);
     let structure = section.structure().map_err(raised)?;
-    let mut found = match method {
+    match method {
         "eigenvalues" => {
             let coupled = CoupledSection::with_model(&structure, &model.model).map_err(raised)?;
             find_onset(&model.name, &coupled, search, tested)
@@ -224,14 +257,5 @@ pub fn of_model(
             return Err(wrong("method", expected, format!("`{other}`")));
         }
     }
-    .map_err(raised)?;
-    if let FlutterSearch::Onset(onset) = &mut found {
-        onset.interval = match &model.uncertainty {
-            Ok(known) => known.onset_interval(&structure, onset).map_err(raised)?,
-            Err(reason) => OnsetInterval::None {
-                reason: reason.clone(),
-            },
-        };
-    }
-    Ok(found)
+    .map_err(raised)
 }

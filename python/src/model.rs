@@ -2,13 +2,17 @@
 
 use crate::convert::{Reduced, dof_names, reduced, restored, shown, to_python};
 use crate::error::{raised, wrong};
+use crate::flutter::without_interval;
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
 use aerodeck::identification::FitReport;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
+use aerodeck::study::ExportBlock;
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
-use aerodeck::uncertainty::{CoefficientUncertainty, UncertaintyWithData};
+use aerodeck::uncertainty::{
+    CoefficientUncertainty, FormEnsemble, ModelUncertainty, UncertaintyWithData,
+};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
@@ -26,8 +30,8 @@ pub struct Model {
     pub provenance: Provenance,
     /// `None` for a model that was read from a file.
     pub report: Option<FitReport>,
-    /// How far the data leave the coefficients open, or why that is not known.
-    pub uncertainty: Result<CoefficientUncertainty, String>,
+    /// How far the data leave coefficients and onsets open, or why that is not known.
+    pub uncertainty: Result<Box<ModelUncertainty>, String>,
     /// Section and experiment of the file it was read from.
     pub stored: Option<(SectionModel, Experiment)>,
     pub name: String,
@@ -62,7 +66,14 @@ impl Model {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let m = slf.get();
-        let known = m.uncertainty.clone().map(UncertaintyWithData::from);
+        let known = m.uncertainty.clone().map(|known| {
+            let ModelUncertainty {
+                coefficients,
+                forms,
+                ..
+            } = *known;
+            (UncertaintyWithData::from(coefficients), forms)
+        });
         let of_data = (&m.tested, &m.provenance, &m.report, &known);
         reduced(slf, &(&m.model, of_data, &m.stored, &m.name, &m.findings))
     }
@@ -71,13 +82,17 @@ impl Model {
     fn _from_state(state: &str) -> PyResult<Self> {
         let (model, of_data, stored, name, findings) = restored(state)?;
         let (tested, provenance, report, known) = of_data;
-        let known: Result<UncertaintyWithData, String> = known;
+        let known: Result<(UncertaintyWithData, Option<FormEnsemble>), String> = known;
+        let of_data = |(with_data, forms)| {
+            let coefficients = CoefficientUncertainty::from(with_data);
+            ModelUncertainty::of_data(coefficients, forms, tested).map_err(|e| e.to_string())
+        };
         Ok(Self {
             model,
             tested,
             provenance,
             report,
-            uncertainty: known.map(CoefficientUncertainty::from),
+            uncertainty: known.and_then(of_data).map(Box::new),
             stored,
             name,
             findings,
@@ -195,8 +210,14 @@ impl Model {
                 "none".to_owned(),
             )
         })?;
-        let limit = crate::section::usual_range(&section).speed_max_m_s;
-        let experiment = self.stored.as_ref().map(|(_, e)| e.clone());
+        let experiment = match &self.stored {
+            Some((_, experiment)) => experiment.clone(),
+            None => {
+                let range = crate::section::usual_range(&section);
+                let found = without_interval(&section, self, &range.search(), "eigenvalues")?;
+                ExportBlock::default().experiment(&found, range.speed_max_m_s)
+            }
+        };
         Ok(TrainedModel {
             schema_version: self.model.schema_version(),
             name: self.name.clone(),
@@ -204,14 +225,7 @@ impl Model {
             model: self.model.clone(),
             tested_range: self.tested,
             provenance: self.provenance.clone(),
-            experiment: experiment.unwrap_or(Experiment {
-                wind_speed_m_s: 0.5 * limit,
-                initial_vertical_m: 0.01,
-                initial_rotation_rad: 1f64.to_radians(),
-                stop_time_s: 10.0,
-                step_size_s: 0.01,
-                onset_search_limit_m_s: limit,
-            }),
+            experiment,
         })
     }
 }

@@ -1,11 +1,11 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
 use crate::convert::{Reduced, from_python, reduced, restored, set_default, shown, to_python};
-use crate::error::raised;
+use crate::error::{raised, wrong};
 use crate::flutter::verdict_at;
 use crate::model::Model;
 use crate::section::Section;
-use crate::work::{Work, on_threads};
+use crate::work::{Work, detached, on_threads};
 use aerodeck::uncertainty::monte_carlo::{
     self as analysis, MonteCarloPlan, MonteCarloResult, Tally,
 };
@@ -176,6 +176,9 @@ pub fn monte_carlo(
         ("speed_max_m_s", speed_max_m_s),
         ("aerodynamic_scatter", aerodynamic_scatter),
     ] {
+        if let Some(value) = value.filter(|v| !v.is_finite()) {
+            return Err(wrong(key, "a finite number", value.to_string()));
+        }
         set_default(&plan, key, value)?;
     }
     let plan = plan_of(parameters, &plan)?;
@@ -195,7 +198,7 @@ fn judged(
 ) -> PyResult<MonteCarlo> {
     let (section, model) = (&section.get().0, model.get());
     let speed = result.design.as_ref().map(|d| d.speed_m_s);
-    let judge = |speed| py.detach(|| verdict_at(section, model, speed));
+    let judge = |speed| detached(py, || verdict_at(section, model, speed));
     result.verdict = speed.map(judge).transpose()?;
     Ok(MonteCarlo(result))
 }

@@ -13,13 +13,14 @@ use std::borrow::Cow;
 #[derive(Serialize, Deserialize)]
 pub struct Onset {
     /// `onset`; `unstable` when a motion grows already at the lowest speed that could be judged (the onset is there or below);
-    /// `stable` when there is none.
+    /// `stable` when there is none up to the highest speed searched; `not_judged` when there is none as far as the data reach, which is less:
+    /// `headline` says how far and why.
     state: Cow<'static, str>,
-    /// Wind speed, m/s; None when stable.
+    /// Wind speed, m/s; None when stable or not judged.
     speed_m_s: Option<f64>,
-    /// Frequency of the motion, Hz; None when stable.
+    /// Frequency of the motion, Hz; None when stable or not judged.
     frequency_hz: Option<f64>,
-    /// V* = V/(fB); None when stable.
+    /// V* = V/(fB); None when stable or not judged.
     reduced_velocity: Option<f64>,
     /// 95 % interval of the speed, m/s, as (low, high); None when it is not known or the data do not determine the onset.
     interval: Option<(f64, f64)>,
@@ -132,7 +133,12 @@ impl Onset {
                 answer.in_tested_range = start.in_tested_range;
                 &start.at
             }
-            FlutterSearch::StableUpTo(_) => return Ok(answer),
+            FlutterSearch::StableUpTo(range) => {
+                if range.not_judged.is_some() {
+                    answer.state = "not_judged".into();
+                }
+                return Ok(answer);
+            }
         };
         answer.speed_m_s = Some(at.speed_m_s);
         answer.frequency_hz = Some(at.frequency_hz);

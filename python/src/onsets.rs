@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 /// Onsets of many sections, one entry each.
 #[pyclass(frozen, module = "aerodeck", get_all)]
 pub struct Onsets {
-    /// Onset speeds, m/s; NaN where there is none; shape (n,).
+    /// Onset speeds, m/s; NaN where there is none up to `searched_to_m_s`, and where that cannot be judged (see `judged`); shape (n,).
     speed_m_s: Py<PyArray1<f64>>,
     /// Frequencies at the onset, Hz; shape (n,).
     frequency_hz: Py<PyArray1<f64>>,
@@ -22,12 +22,26 @@ pub struct Onsets {
     tested: Py<PyArray1<bool>>,
     /// Whether a motion grows already at the lowest speed that could be judged, which then stands for the onset; shape (n,).
     unstable: Py<PyArray1<bool>>,
+    /// Whether there is an answer: an onset, or none up to the highest speed searched; False where the data end before; shape (n,).
+    judged: Py<PyArray1<bool>>,
+    /// Highest wind speed searched, m/s.
+    searched_to_m_s: f64,
 }
 
 #[pymethods]
 impl Onsets {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        parts(slf, &["speed_m_s", "frequency_hz", "tested", "unstable"])
+        parts(
+            slf,
+            &[
+                "speed_m_s",
+                "frequency_hz",
+                "tested",
+                "unstable",
+                "judged",
+                "searched_to_m_s",
+            ],
+        )
     }
 
     #[staticmethod]
@@ -36,12 +50,16 @@ impl Onsets {
         frequency_hz: Py<PyArray1<f64>>,
         tested: Py<PyArray1<bool>>,
         unstable: Py<PyArray1<bool>>,
+        judged: Py<PyArray1<bool>>,
+        searched_to_m_s: f64,
     ) -> Self {
         Self {
             speed_m_s,
             frequency_hz,
             tested,
             unstable,
+            judged,
+            searched_to_m_s,
         }
     }
 
@@ -124,7 +142,10 @@ pub fn onsets(
         let all = found.kinds.iter().map(|k| *k == kind).collect();
         PyArray1::from_vec(py, all).unbind()
     };
+    let judged = found.kinds.iter().map(|k| *k != OnsetKind::NotJudged);
     Ok(Onsets {
+        judged: PyArray1::from_vec(py, judged.collect()).unbind(),
+        searched_to_m_s: limit,
         tested: are(OnsetKind::Tested),
         unstable: are(OnsetKind::UnstableAtOrBelow),
         speed_m_s: PyArray1::from_vec(py, found.speeds_m_s).unbind(),

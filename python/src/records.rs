@@ -5,6 +5,7 @@ use crate::convert::{
 };
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
+use crate::work::detached;
 use aerodeck::error::without_control_characters;
 use aerodeck::files::text::file_name;
 use aerodeck::plausibility::Finding;
@@ -36,7 +37,7 @@ impl Records {
                 .map(read_record)
                 .collect::<aerodeck::Result<_>>()
         };
-        let records = py.detach(read).map_err(raised)?;
+        let records = detached(py, read).map_err(raised)?;
         Ok(Self(records, Vec::new()))
     }
 
@@ -143,14 +144,14 @@ impl Records {
         };
         let dofs: &[Dof] = if lateral { &Dof::THREE } else { &Dof::TWO };
         let Derivatives(table, findings) = derivatives.get();
-        py.detach(|| plan.records_from_table(table, dofs))
+        detached(py, || plan.records_from_table(table, dofs))
             .map(|records| Self(records, findings.clone()))
             .map_err(raised)
     }
 
     /// Write every record as `<name>.csv` into a folder, with `_` for characters that not every path can hold; returns the paths.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
-        py.detach(|| {
+        detached(py, || {
             let one = |record: &Record| {
                 let path = folder.join(format!("{}.csv", file_name(&record.header.name)));
                 let file = std::fs::File::create(&path)?;

@@ -4,6 +4,7 @@ use crate::convert::{Parts, dof_names, framed, parts, rows, shown};
 use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::section::Section;
+use crate::work::detached;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::response::{self, Inputs, Outputs, SectionState};
 use numpy::{PyArray1, PyArray2};
@@ -136,7 +137,7 @@ pub fn simulate(
     let dofs = section.get().0.dofs();
     let n = dofs.len();
     let released = displacement.unwrap_or_else(|| usual_release(n));
-    let run = py.detach(|| {
+    let run = detached(py, || {
         let mut state = stepper.released(&released, &vec![0.0; n])?;
         let inputs = Inputs::steady(wind_speed_m_s, n);
         let mut all: [Vec<Vec<f64>>; 4] = Default::default();

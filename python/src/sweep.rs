@@ -4,6 +4,7 @@ use crate::convert::{Parts, dof_names, framed, list, parts, rows, shown};
 use crate::error::raised;
 use crate::model::Model;
 use crate::section::{Section, usual_range};
+use crate::work::detached;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterCurves, ModePoint, trace_modes};
 use numpy::{PyArray1, PyUntypedArrayMethods};
@@ -119,7 +120,7 @@ pub fn sweep(
         Some(speeds) => list("speeds_m_s", speeds)?,
         None => usual_range(section).curve_speeds_m_s(),
     };
-    let curves = py.detach(|| {
+    let curves = detached(py, || {
         let structure = section.structure()?;
         let coupled = CoupledSection::with_model(&structure, &model.model)?;
         let curves = trace_modes(&model.name, &coupled, &speeds)?;

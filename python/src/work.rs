@@ -2,9 +2,9 @@
 
 use pyo3::prelude::*;
 use std::panic::resume_unwind;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
 /// How often signals are looked at.
@@ -41,7 +41,7 @@ impl Work {
             std::thread::scope(|threads| {
                 let worker = threads.spawn(move || {
                     let _alive = alive;
-                    work()
+                    in_this_process(work)
                 });
                 while watched.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
                     if let Err(signal) = Python::attach(|py| py.check_signals()) {
@@ -85,6 +85,24 @@ impl Work {
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Option<PyErr>> {
         self.raised.lock().unwrap_or_else(|e| e.into_inner())
+    }
+}
+
+/// Does it without the interpreter, as [`Python::detach`], on threads of this process.
+pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
+    py.detach(|| in_this_process(work))
+}
+
+/// Does it on threads that this process has: those of another, of which it was forked as `multiprocessing` does, are not here.
+fn in_this_process<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    static OWNER: OnceLock<u32> = OnceLock::new();
+    let own = std::process::id();
+    if *OWNER.get_or_init(|| own) == own {
+        return work();
+    }
+    match rayon::ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
     }
 }
 

@@ -1,6 +1,7 @@
 """The package against the library's own figures, and what a user touches first."""
 
 import copy
+import json
 import multiprocessing
 import os
 import pickle
@@ -29,6 +30,60 @@ def test_onset_is_that_of_the_library_with_an_interval_around_it(section, model)
     assert re.fullmatch(r"flutter onset 36\.9 m/s, \d+\.\d–\d+\.\d, inside the tested range", onset.headline)
     other = aerodeck.flutter(section, model, method="determinant")
     assert abs(other.speed_m_s / onset.speed_m_s - 1) < 1e-6
+
+
+def test_the_verdict_is_that_of_the_program(section):
+    """The interval holds scatter, speeds and form, and the deck is not its own witness: 36.3 m/s lies inside it."""
+    model = aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"))
+    own = aerodeck.flutter(section, model, required_speed_m_s=36.3)
+    assert own.outcome == "not_met"
+    # as `aerodeck train` and `aerodeck flutter` state it
+    assert own.interval == pytest.approx((36.272, 37.569), abs=2e-3)
+
+
+def test_less_than_an_answer_is_not_stable(section, model):
+    """Below the frequency ratio of one the data end before the search does."""
+    slow = aerodeck.flutter(section.replace({"torsion.frequency_hz": 1.0}), model)
+    assert slow.state == "not_judged" and slow.speed_m_s is None
+    many = aerodeck.onsets(section, model, {"torsion.frequency_hz": [5.0, 1.0]})
+    assert list(many.judged) == [True, False] and many.searched_to_m_s > many.speed_m_s[0]
+    sway = aerodeck.Section(**_plain(section), lateral=(15.0, 1.0, 0.003))
+    with pytest.raises(aerodeck.InputError, match="no forces of sway"):
+        aerodeck.flutter(sway, "flat plate")
+    for keyword in ("aerodynamic_scatter", "design_speed_m_s", "speed_max_m_s"):
+        with pytest.raises(aerodeck.InputError, match=keyword):
+            aerodeck.monte_carlo(section, model, {}, samples=10, **{keyword: float("nan")})
+
+
+def _plain(section):
+    stated = section.to_dict()
+    vertical, torsion = stated["vertical"], stated["torsion"]
+    return {
+        "width_m": stated["width_m"],
+        "mass_kg_m": vertical["mass_kg_m"],
+        "inertia_kg_m2_m": torsion["inertia_kg_m2_m"],
+        "vertical_frequency_hz": vertical["frequency_hz"],
+        "torsion_frequency_hz": torsion["frequency_hz"],
+        "vertical_damping_ratio": vertical["damping_ratio"],
+        "torsion_damping_ratio": torsion["damping_ratio"],
+    }
+
+
+def test_what_is_exported_starts_below_the_onset(section, model, tmp_path):
+    model.save(tmp_path / "model.json", section)
+    experiment = json.loads((tmp_path / "model.json").read_text())["experiment"]
+    assert experiment["wind_speed_m_s"] == 36.1
+
+
+def _states(terms):
+    return aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"), terms).states
+
+
+def test_a_forked_process_has_threads_of_its_own(model):
+    if "fork" not in multiprocessing.get_all_start_methods():
+        pytest.skip("no fork here")
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert len(pool.map_async(_states, [3, 4]).get(60)) == 2
 
 
 @pytest.mark.parametrize("deck", aerodeck.Derivatives.decks())

@@ -1,13 +1,11 @@
 //! Training the models of a study.
 
 use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
-use crate::aerodynamics::derivatives::TableHeader;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, MovedOnset, StableRange, find_onset};
-use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{FitReport, Fitted, OnProgress, fit_discrete, fit_records, fit_table};
-use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
+use crate::trained_model::{Model, Provenance, TrainedModel};
 use crate::uncertainty::{
     CoefficientUncertainty, FormEnsemble, ModelUncertainty, discrete_uncertainty,
     record_uncertainty, table_uncertainty,
@@ -80,7 +78,9 @@ pub fn train_one(
             notes: report.notes.clone(),
         },
         model,
-        experiment: experiment(study, &search),
+        experiment: study
+            .export
+            .experiment(&search, study.speeds().speed_max_m_s),
     };
     trained.validate()?;
     Ok(TrainedWithReport {
@@ -123,11 +123,7 @@ fn fit(
     }
     let chosen = records.select(groups)?;
     if let Some(fit) = &block.records {
-        let others = || -> Result<Option<FormEnsemble>> {
-            let found = identify_derivatives(&chosen, &DerivativeOptions::default())?;
-            let table = found.table(&block.name, TableHeader::default())?;
-            FormEnsemble::new(&table.samples(&dofs), &dofs, &|_| None).map(Some)
-        };
+        let others = || FormEnsemble::of_records(&chosen, &dofs).map(Some);
         let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
             let fitted = fit_records(&chosen, fit, progress)?;
             let estimate = record_uncertainty(&chosen, fit, &fitted.report, progress);
@@ -154,27 +150,19 @@ fn fit(
     })
 }
 
-/// Adds their onsets. An ensemble that cannot be made is noted, and the interval holds the scatter alone.
+/// Adds their onsets.
 fn with_forms(
     study: &Study,
     known: ModelUncertainty,
     forms: Result<Option<FormEnsemble>>,
     report: &mut FitReport,
 ) -> Result<ModelUncertainty> {
-    match forms {
-        Ok(Some(forms)) => {
+    match FormEnsemble::or_noted(forms, report)? {
+        Some(forms) => {
             let (structure, search) = (study.section.structure()?, study.speeds().search());
             known.with_forms(forms, &structure, &search)
         }
-        Ok(None) => Ok(known),
-        // as of fewer tests than coefficients, of which the scatter shows nothing
-        Err(error @ Error::Numerical(_)) => Err(error),
-        Err(error) => {
-            report.notes.push(format!(
-                "what the form of the model leaves open is not in its interval: {error}"
-            ));
-            Ok(known)
-        }
+        None => Ok(known),
     }
 }
 
@@ -209,25 +197,4 @@ fn model_uncertainty(
     report.notes.extend(known.speeds.explain());
     report.notes.extend(known.warning());
     Ok(known)
-}
-
-/// A released section just below the onset, so that an importer that merely runs the FMU sees something.
-fn experiment(study: &Study, search: &FlutterSearch) -> Experiment {
-    let limit = study.speeds().speed_max_m_s;
-    let onset = search.critical_speed_m_s().unwrap_or(limit);
-    let export = &study.export;
-    // a round number of decimetres per second reads better in an importer
-    let speed = (10.0 * export.part_of_onset * onset).floor() / 10.0;
-    Experiment {
-        wind_speed_m_s: if speed > 0.0 {
-            speed
-        } else {
-            export.part_of_onset * onset
-        },
-        initial_vertical_m: export.initial_vertical_m,
-        initial_rotation_rad: export.initial_rotation_deg.to_radians(),
-        stop_time_s: export.stop_time_s,
-        step_size_s: export.step_size_s,
-        onset_search_limit_m_s: limit,
-    }
 }

@@ -18,13 +18,16 @@ use crate::error::{Error, Result};
 use crate::flutter::{
     ErrorParts, FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset,
 };
+use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{
-    Constraints, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch, fit_table,
+    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
+    fit_table,
 };
 use crate::section::{Dof, Structure};
 use crate::signal::mean_and_deviation;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
+use crate::wind_tunnel::RecordSource;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -89,8 +92,8 @@ pub struct FormEnsemble {
     pub fits: Vec<AdmissibleForm>,
     /// Reduced frequencies of the tests.
     pub tested: ReducedFrequencyRange,
-    /// Ways to read the table without a fit; an ensemble from a file has none.
-    #[serde(skip)]
+    /// Ways to read the table without a fit; a file of an older version has none.
+    #[serde(default)]
     read: Vec<InterpolatedTable>,
 }
 
@@ -137,6 +140,33 @@ impl FormEnsemble {
             tested,
             read,
         })
+    }
+
+    /// Those for the derivatives that records show.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and those of [`identify_derivatives`].
+    pub fn of_records(records: &[&dyn RecordSource], dofs: &[Dof]) -> Result<Self> {
+        let found = identify_derivatives(records, &DerivativeOptions::default())?;
+        let table = found.table("records", TableHeader::default())?;
+        Self::new(&table.samples(dofs), dofs, &|_| None)
+    }
+
+    /// The ensemble; one that cannot be made is noted, and an interval holds the scatter alone.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`], as of fewer tests than coefficients, of which the scatter shows nothing either.
+    pub fn or_noted(found: Result<Option<Self>>, report: &mut FitReport) -> Result<Option<Self>> {
+        match found {
+            Ok(found) => Ok(found),
+            Err(error @ Error::Numerical(_)) => Err(error),
+            Err(error) => {
+                report.notes.push(format!(
+                    "what the form of the model leaves open is not in its interval: {error}"
+                ));
+                Ok(None)
+            }
+        }
     }
 
     /// Onsets of a section by every form.

@@ -61,16 +61,7 @@ impl ModelUncertainty {
         search: OnsetSearch,
         tested: ReducedFrequencyRange,
     ) -> Result<Self> {
-        let mut uncertainty = Self {
-            derivatives: coefficients.derivatives(tested)?,
-            coefficients,
-            onset: None,
-            block_bootstrap: None,
-            drawn_coefficients: None,
-            speeds: SpeedOnsets::default(),
-            forms: None,
-            form_spread: None,
-        };
+        let mut uncertainty = Self::of_data(coefficients, None, tested)?;
         let Some(onset) = onset else {
             return Ok(uncertainty);
         };
@@ -94,6 +85,27 @@ impl ModelUncertainty {
         uncertainty.drawn_coefficients = drawn;
         uncertainty.speeds = speeds;
         Ok(uncertainty)
+    }
+
+    /// Of data alone: no section was asked yet. [`Self::interval`] gives the interval of an onset with any.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the derivatives of the model cannot be computed.
+    pub fn of_data(
+        coefficients: CoefficientUncertainty,
+        forms: Option<FormEnsemble>,
+        tested: ReducedFrequencyRange,
+    ) -> Result<Self> {
+        Ok(Self {
+            derivatives: coefficients.derivatives(tested)?,
+            coefficients,
+            onset: None,
+            block_bootstrap: None,
+            drawn_coefficients: None,
+            speeds: SpeedOnsets::default(),
+            forms,
+            form_spread: None,
+        })
     }
 
     /// Adds other forms that explain the data as well, and their onsets with the section that the model was trained for.

@@ -50,7 +50,7 @@ pub enum Extrapolation {
 /// assert!(between.transfer(ReducedFrequency::from_v_hat(9.0)).is_err());
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InterpolatedTable {
     name: String,
     dofs: Vec<Dof>,

@@ -106,7 +106,7 @@ read_by_name!(
 );
 
 /// One derivative between its points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Curve {
     interpolation: Interpolation,
     part: Part,
