@@ -148,8 +148,10 @@ impl FormEnsemble {
     /// As [`Self::new`], and those of [`identify_derivatives`].
     pub fn of_records(records: &[&dyn RecordSource], dofs: &[Dof]) -> Result<Self> {
         let found = identify_derivatives(records, &DerivativeOptions::default())?;
-        let table = found.table("records", TableHeader::default())?;
-        Self::new(&table.samples(dofs), dofs, &|_| None)
+        let samples = found
+            .table("records", TableHeader::default())?
+            .samples(dofs);
+        Self::new(&samples, dofs, &|_| None)
     }
 
     /// The ensemble; one that cannot be made is noted, and an interval holds the scatter alone.
@@ -158,22 +160,19 @@ impl FormEnsemble {
     /// [`Error::Numerical`], as of fewer tests than coefficients, of which the scatter shows nothing either.
     pub fn or_noted(found: Result<Option<Self>>, report: &mut FitReport) -> Result<Option<Self>> {
         match found {
-            Ok(found) => Ok(found),
-            Err(error @ Error::Numerical(_)) => Err(error),
-            Err(error) => {
-                report.notes.push(format!(
-                    "what the form of the model leaves open is not in its interval: {error}"
-                ));
+            Err(error) if !matches!(error, Error::Numerical(_)) => {
+                let what = "what the form of the model leaves open is not in its interval";
+                report.notes.push(format!("{what}: {error}"));
                 Ok(None)
             }
+            other => other,
         }
     }
 
     /// Onsets of a section by every form.
     ///
     /// # Errors
-    /// [`Error::Input`] for a search range that is none and a section with other motions; [`Error::Numerical`] when eigenvalues
-    /// cannot be computed.
+    /// [`Error::Input`] for a search range that is none and other motions; [`Error::Numerical`] without eigenvalues.
     pub fn spread(&self, structure: &Structure, search: &OnsetSearch) -> Result<FormSpread> {
         let of_fit = |f: &AdmissibleForm| -> Result<FormOnset> {
             let section = CoupledSection::with_model(structure, &f.model)?;
