@@ -1,11 +1,11 @@
 //! What the form of a model does not know: the onsets of other forms that explain the same table as well.
 //!
-//! The scatter of the data under one form says nothing of what another form would have made of them between the tests and
-//! beyond. A table is therefore fitted by a set of dissipative forms, banks of 2 to 8 fixed poles spread logarithmically from half the
-//! lowest to six times the highest tested `K` (and 4 over a narrower range), rational functions with one and two lags, and
-//! read by several ways of interpolation. Those whose variance of residuals per degree of freedom is within 1.25 of the best are
-//! admissible, and the spread of their onsets belongs into the interval. Where tests surround the onset they agree to a per cent;
-//! where all tests lie beside it they do not, and nothing else would say so.
+//! The scatter of the data under one form says nothing of what another form would have made of them between the tests and beyond. A table
+//! is therefore fitted by a set of dissipative forms, banks of 2 to 8 fixed poles spread logarithmically from half the lowest to six times
+//! the highest tested `K` (and 4 over a narrower range), rational functions with one and two lags, and read by several ways of
+//! interpolation. Those whose variance of residuals per degree of freedom is within 1.25 of the best are admissible, and the spread of
+//! their onsets belongs into the interval. Where tests surround the onset they agree to a per cent; where all tests lie beside it they do
+//! not, and nothing else would say so.
 
 use super::onset::{CONFIDENCE, OnsetError};
 use super::statistics::two_sided_quantile;
@@ -148,10 +148,8 @@ impl FormEnsemble {
     /// As [`Self::new`], and those of [`identify_derivatives`].
     pub fn of_records(records: &[&dyn RecordSource], dofs: &[Dof]) -> Result<Self> {
         let found = identify_derivatives(records, &DerivativeOptions::default())?;
-        let samples = found
-            .table("records", TableHeader::default())?
-            .samples(dofs);
-        Self::new(&samples, dofs, &|_| None)
+        let table = found.table("records", TableHeader::default())?;
+        Self::new(&table.samples(dofs), dofs, &|_| None)
     }
 
     /// The ensemble; one that cannot be made is noted, and an interval holds the scatter alone.
