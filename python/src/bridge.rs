@@ -47,7 +47,9 @@ impl Bridge {
     /// The file and its folder: what it names is read again.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let file = &slf.get().0.file;
-        reduced(slf, &(file, std::path::absolute(&file.directory)?))
+        // of a file in the current folder it is empty
+        let directory = std::path::Path::new(".").join(&file.directory);
+        reduced(slf, &(file, std::path::absolute(directory)?))
     }
 
     #[staticmethod]

@@ -178,7 +178,7 @@ impl Derivatives {
         let convention: Convention = stated(Some(notation), argument, axes)?.or_usual();
         let mut text = Vec::new();
         write_csv_in(&self.0, &convention, &mut text)?;
-        Ok(std::fs::write(path, text)?)
+        std::fs::write(&path, text).map_err(|e| raised(aerodeck::Error::io(&path, e)))
     }
 
     /// Name of the deck.

@@ -61,7 +61,8 @@ impl Model {
     #[pyo3(signature = (path, section = None))]
     fn save(&self, path: PathBuf, section: Option<&Bound<'_, Section>>) -> PyResult<()> {
         let trained = self.trained(section.map(|s| s.get()))?;
-        Ok(std::fs::write(path, trained.to_json().map_err(raised)?)?)
+        let text = trained.to_json().map_err(raised)?;
+        std::fs::write(&path, text).map_err(|e| raised(aerodeck::Error::io(&path, e)))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {

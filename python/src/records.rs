@@ -151,10 +151,22 @@ impl Records {
 
     /// Write every record as `<name>.csv` into a folder, with `_` for characters that not every path can hold; returns the paths.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
+        let name = |record: &Record| format!("{}.csv", file_name(&record.header.name));
+        for (i, record) in self.0.iter().enumerate() {
+            if self.0[..i].iter().any(|other| name(other) == name(record)) {
+                let found = format!("{} twice", name(record));
+                return Err(wrong(
+                    "records",
+                    "a name of its own for every record",
+                    found,
+                ));
+            }
+        }
         detached(py, || {
             let one = |record: &Record| {
-                let path = folder.join(format!("{}.csv", file_name(&record.header.name)));
-                let file = std::fs::File::create(&path)?;
+                let path = folder.join(name(record));
+                let file = std::fs::File::create(&path);
+                let file = file.map_err(|e| raised(aerodeck::Error::io(&path, e)))?;
                 write_record(record, &mut std::io::BufWriter::new(file)).map_err(raised)?;
                 Ok(path)
             };

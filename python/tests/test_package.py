@@ -69,6 +69,16 @@ def _plain(section):
     }
 
 
+def test_files_that_cannot_be_written_are_named(section, model, table, tmp_path):
+    missing = tmp_path / "missing" / "file"
+    for write in (lambda: model.save(missing, section), lambda: table.write(missing)):
+        with pytest.raises(aerodeck.FileError, match="missing"):
+            write()
+    records = aerodeck.Records.virtual_tunnel(table)
+    with pytest.raises(aerodeck.InputError, match="twice"):
+        (records + records).write(tmp_path)
+
+
 def test_what_is_exported_starts_below_the_onset(section, model, tmp_path):
     model.save(tmp_path / "model.json", section)
     experiment = json.loads((tmp_path / "model.json").read_text())["experiment"]
