@@ -6,16 +6,13 @@ use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::records::Records;
 use crate::work::Work;
-use aerodeck::aerodynamics::Transfer;
 use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::files::derivatives::embedded;
-use aerodeck::identification::{Fitted, FrequencyFit, TimeFit, fit_records, fit_table};
+use aerodeck::identification::{Fitted, FrequencyFit, TimeFit};
 use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Provenance;
-use aerodeck::uncertainty::{
-    CoefficientUncertainty, FormEnsemble, ModelUncertainty, record_uncertainty, table_uncertainty,
-};
+use aerodeck::uncertainty::{FormEnsemble, ModelOfData, ModelUncertainty};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
@@ -126,20 +123,13 @@ fn to_table(
     work: &Work,
 ) -> PyResult<Model> {
     table.require(dofs).map_err(raised)?;
-    let fitted = work.run(py, || {
+    let found = work.run(py, || {
         let samples = table.samples(dofs);
-        let fitted = fit_table(&samples, dofs, fit);
-        let known = fitted.map(|fitted| {
-            let known = table_uncertainty(&samples, dofs, fit, &fitted.report)
-                .and_then(|known| known.leaving_out(&table.name));
-            let own = |f: &FrequencyFit| (f == fit).then(|| fitted.clone());
-            let forms = FormEnsemble::new(&samples, dofs, &own).map(Some);
-            (fitted, known, forms)
-        });
+        let found = ModelOfData::of_table(&samples, dofs, fit, Some(&table.name));
         work.tell(1, 1);
-        known
+        found
     })?;
-    let (fitted, known, forms) = fitted.map_err(raised)?;
+    let found = found.map_err(raised)?;
     let header = &table.header;
     let built_in = embedded::deck(&table.name).is_ok_and(|deck| deck == *table);
     // the notice has to go wherever the figures go
@@ -148,12 +138,7 @@ fn to_table(
         false => header.licence.clone(),
     };
     let source = format!("{}: {}", table.name, header.source);
-    Ok(model(
-        fitted,
-        known,
-        forms,
-        [source, licence, table.name.clone()],
-    ))
+    Ok(model(found, [source, licence, table.name.clone()]))
 }
 
 fn to_records(py: Python<'_>, records: &Records, fit: &TimeFit, work: &Work) -> PyResult<Model> {
@@ -161,42 +146,24 @@ fn to_records(py: Python<'_>, records: &Records, fit: &TimeFit, work: &Work) -> 
         let done = (p.pass - 1) * p.records + p.records_done;
         work.tell(done, p.passes * p.records);
     };
-    let fitted = work.run(py, || {
+    let found = work.run(py, || {
         let sources = records.sources();
-        fit_records(&sources, fit, &progress).map(|fitted| {
-            let known = record_uncertainty(&sources, fit, &fitted.report, &|_| work.check());
-            let of_deck = sources
-                .first()
-                .and_then(|r| embedded::names().find(|name| r.header().name.starts_with(name)));
-            let known = known.and_then(|known| match of_deck {
-                Some(deck) => known.leaving_out(deck),
-                None => Ok(known),
-            });
-            let dofs = Transfer::dofs(&fitted.model).to_vec();
-            let forms = FormEnsemble::of_records(&sources, &dofs).map(Some);
-            (fitted, known, forms)
-        })
+        let header = sources.first().map(|r| r.header());
+        let deck = header.and_then(|h| embedded::names().find(|deck| h.name.starts_with(deck)));
+        let dofs = header.map_or(&[][..], |h| &h.dofs);
+        ModelOfData::of_records(&sources, dofs, fit, deck, &progress)
     })?;
-    let (fitted, known, forms) = fitted.map_err(raised)?;
+    let found = found.map_err(raised)?;
     let first = records.0.first().map(|r| &r.header);
     let source = first.map_or(String::new(), |h| h.source.clone());
     let licence = first.map_or(String::new(), |h| h.licence.clone());
-    Ok(model(
-        fitted,
-        known,
-        forms,
-        [source, licence, "deck".to_owned()],
-    ))
+    Ok(model(found, [source, licence, "deck".to_owned()]))
 }
 
 /// The model with what the data leave open, and where it comes from.
-fn model(
-    fitted: Fitted,
-    known: aerodeck::Result<CoefficientUncertainty>,
-    forms: aerodeck::Result<Option<FormEnsemble>>,
-    [source, licence, name]: [String; 3],
-) -> Model {
-    let Fitted { model, mut report } = fitted;
+fn model(found: ModelOfData, [source, licence, name]: [String; 3]) -> Model {
+    let Fitted { model, mut report } = found.fitted;
+    let (known, forms) = (found.estimate, found.forms);
     if let Ok(known) = &known {
         known.enter(&mut report);
         report

@@ -4,12 +4,9 @@ use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, MovedOnset, StableRange, find_onset};
-use crate::identification::{FitReport, Fitted, OnProgress, fit_discrete, fit_records, fit_table};
+use crate::identification::{FitReport, Fitted, OnProgress};
 use crate::trained_model::{Model, Provenance, TrainedModel};
-use crate::uncertainty::{
-    CoefficientUncertainty, FormEnsemble, ModelUncertainty, discrete_uncertainty,
-    record_uncertainty, table_uncertainty,
-};
+use crate::uncertainty::{CoefficientUncertainty, FormEnsemble, ModelOfData, ModelUncertainty};
 use crate::units::ReducedFrequencyRange;
 
 /// A model with the account of its fit.
@@ -57,10 +54,6 @@ pub fn train_one(
         constraints.onset = Some(MovedOnset::new(alone.as_ref(), &search, &range, tested));
     }
     let uncertainty = estimate
-        .and_then(|estimate| match deck.table_name() {
-            Some(name) => estimate.leaving_out(name),
-            None => Ok(estimate),
-        })
         .and_then(|estimate| model_uncertainty(study, estimate, &mut report, &search))
         .and_then(|known| with_forms(study, known, forms, &mut report))
         .map(Box::new)
@@ -90,15 +83,6 @@ pub fn train_one(
     })
 }
 
-/// What the data of a model say.
-struct ModelOfData {
-    fitted: Fitted,
-    /// How far they leave the coefficients open.
-    estimate: Result<CoefficientUncertainty>,
-    /// Other forms for the same data; none for a model in discrete time, whose bias is known.
-    forms: Result<Option<FormEnsemble>>,
-}
-
 /// Fits to the table, to records, or to records in discrete time, as the block of the model says, and fits of other forms to that
 /// table, or to the derivatives that the records show.
 fn fit(
@@ -110,44 +94,20 @@ fn fit(
 ) -> Result<ModelOfData> {
     let own = block.speed_groups.as_deref();
     let groups = own.or(study.deck.speed_groups.as_deref());
-    let dofs = study.section.dofs();
+    let (dofs, name) = (study.section.dofs(), deck.table_name());
     if let Some(fit) = &block.table {
-        let samples = deck.samples(study, groups)?;
-        let fitted = fit_table(&samples, &dofs, fit)?;
-        return Ok(ModelOfData {
-            estimate: table_uncertainty(&samples, &dofs, fit, &fitted.report),
-            forms: FormEnsemble::new(&samples, &dofs, &|f| (f == fit).then(|| fitted.clone()))
-                .map(Some),
-            fitted,
-        });
+        return ModelOfData::of_table(&deck.samples(study, groups)?, &dofs, fit, name);
     }
     let chosen = records.select(groups)?;
     if let Some(fit) = &block.records {
-        let others = || FormEnsemble::of_records(&chosen, &dofs).map(Some);
-        let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
-            let fitted = fit_records(&chosen, fit, progress)?;
-            let estimate = record_uncertainty(&chosen, fit, &fitted.report, progress);
-            Ok((fitted, estimate))
-        };
-        let (own, forms) = rayon::join(own, others);
-        let (fitted, estimate) = own?;
-        return Ok(ModelOfData {
-            fitted,
-            estimate,
-            forms,
-        });
+        return ModelOfData::of_records(&chosen, &dofs, fit, name, progress);
     }
     let Some(fit) = &block.discrete else {
         let place = format!("model {}", block.name);
         let expected = "one of `records`, `table`, `discrete`";
         return Err(Error::input(place, expected, "none"));
     };
-    let fitted = fit_discrete(&chosen, fit, progress)?;
-    Ok(ModelOfData {
-        estimate: discrete_uncertainty(&chosen, fit, &fitted.model, progress),
-        forms: Ok(None),
-        fitted,
-    })
+    ModelOfData::of_discrete(&chosen, fit, name, progress)
 }
 
 /// Adds their onsets.

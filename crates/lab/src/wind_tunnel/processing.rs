@@ -82,16 +82,15 @@ pub fn process(
         .map(|run| PreparedRun::new(run, &campaign.rig, options))
         .collect();
     let mut prepared = all_or_errors(prepared)?;
-    let bodies = prepared
-        .iter()
-        .filter_map(|p| Some((&p.run.name[..], p.still_air.clone()?)));
-    let bodies: Vec<_> = bodies.collect();
     for dof in Dof::THREE {
-        if let Some(warning) = body::compare_runs(dof, &bodies)? {
-            let first = prepared.iter_mut().find(|p| p.dof == dof);
-            first
-                .into_iter()
-                .for_each(|p| p.findings.warnings.push(warning.clone()));
+        let of_dof = prepared.iter_mut().filter(|p| p.dof == dof);
+        let mut of_dof: Vec<_> = of_dof.collect();
+        let bodies = of_dof
+            .iter()
+            .filter_map(|p| Some((&p.run.name[..], p.still_air.as_ref()?)));
+        let warning = body::compare_runs(dof, bodies.collect())?;
+        if let Some(first) = of_dof.first_mut() {
+            first.findings.warnings.extend(warning);
         }
     }
     let stated = options.dofs.clone();

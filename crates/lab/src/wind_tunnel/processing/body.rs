@@ -139,15 +139,15 @@ pub(super) fn compare(
     )))
 }
 
-/// Compares the inertia of all runs in which `dof` moves, by their names, which is that of one model: a warning with the figures, or
+/// Compares the inertia of the runs in which `dof` moves, by their names, which is that of one model: a warning with the figures, or
 /// nothing.
-pub(super) fn compare_runs(dof: Dof, runs: &[(&str, StillAirInertia)]) -> Result<Option<String>> {
-    let of_dof = runs
-        .iter()
-        .filter(|(_, found)| found.dof == dof && found.is_certain());
-    let mut of_dof: Vec<_> = of_dof.collect();
-    of_dof.sort_by(|a, b| a.1.inertia.total_cmp(&b.1.inertia));
-    let [(lowest, low), .., (highest, high)] = of_dof[..] else {
+pub(super) fn compare_runs(
+    dof: Dof,
+    mut runs: Vec<(&str, &StillAirInertia)>,
+) -> Result<Option<String>> {
+    runs.retain(|(_, found)| found.is_certain());
+    runs.sort_by(|a, b| a.1.inertia.total_cmp(&b.1.inertia));
+    let [(lowest, low), .., (highest, high)] = runs[..] else {
         return Ok(None);
     };
     let error = 3.0

@@ -1,0 +1,95 @@
+//! What the data of a model say: its fit, how far they leave it open, and other forms that explain them as well.
+
+use super::{CoefficientUncertainty, FormEnsemble};
+use super::{discrete_uncertainty, record_uncertainty, table_uncertainty};
+use crate::aerodynamics::derivatives::TransferSample;
+use crate::error::Result;
+use crate::identification::{
+    DiscreteFit, Fitted, FrequencyFit, OnProgress, TimeFit, fit_discrete, fit_records, fit_table,
+};
+use crate::section::Dof;
+use crate::wind_tunnel::RecordSource;
+
+/// A fit with all that its data leave open. What cannot be estimated takes the fit with it no more than the forms do.
+pub struct ModelOfData {
+    /// The model and the account of its fit.
+    pub fitted: Fitted,
+    /// How far they leave the coefficients open.
+    pub estimate: Result<CoefficientUncertainty>,
+    /// Other forms for the same data; none for a model in discrete time, whose bias is known.
+    pub forms: Result<Option<FormEnsemble>>,
+}
+
+impl ModelOfData {
+    /// Of a table; what `deck`, where it is an embedded one, says of the scatter between mean speeds is left out, for it is no witness
+    /// of its own.
+    ///
+    /// # Errors
+    /// Those of [`fit_table`].
+    pub fn of_table(
+        samples: &[TransferSample],
+        dofs: &[Dof],
+        fit: &FrequencyFit,
+        deck: Option<&str>,
+    ) -> Result<Self> {
+        let fitted = fit_table(samples, dofs, fit)?;
+        let estimate = table_uncertainty(samples, dofs, fit, &fitted.report);
+        let own = |f: &FrequencyFit| (f == fit).then(|| fitted.clone());
+        let forms = FormEnsemble::new(samples, dofs, &own).map(Some);
+        Ok(Self::new(fitted, estimate, forms, deck))
+    }
+
+    /// Of records, with the forms that fit the derivatives they show; `deck` as for a table.
+    ///
+    /// # Errors
+    /// Those of [`fit_records`].
+    pub fn of_records(
+        records: &[&dyn RecordSource],
+        dofs: &[Dof],
+        fit: &TimeFit,
+        deck: Option<&str>,
+        progress: OnProgress<'_>,
+    ) -> Result<Self> {
+        let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
+            let fitted = fit_records(records, fit, progress)?;
+            let estimate = record_uncertainty(records, fit, &fitted.report, progress);
+            Ok((fitted, estimate))
+        };
+        let others = || FormEnsemble::of_records(records, dofs).map(Some);
+        let (own, forms) = rayon::join(own, others);
+        let (fitted, estimate) = own?;
+        Ok(Self::new(fitted, estimate, forms, deck))
+    }
+
+    /// Of records in discrete time.
+    ///
+    /// # Errors
+    /// Those of [`fit_discrete`].
+    pub fn of_discrete(
+        records: &[&dyn RecordSource],
+        fit: &DiscreteFit,
+        deck: Option<&str>,
+        progress: OnProgress<'_>,
+    ) -> Result<Self> {
+        let fitted = fit_discrete(records, fit, progress)?;
+        let estimate = discrete_uncertainty(records, fit, &fitted.model, progress);
+        Ok(Self::new(fitted, estimate, Ok(None), deck))
+    }
+
+    fn new(
+        fitted: Fitted,
+        estimate: Result<CoefficientUncertainty>,
+        forms: Result<Option<FormEnsemble>>,
+        deck: Option<&str>,
+    ) -> Self {
+        let estimate = estimate.and_then(|estimate| match deck {
+            Some(deck) => estimate.leaving_out(deck),
+            None => Ok(estimate),
+        });
+        Self {
+            fitted,
+            estimate,
+            forms,
+        }
+    }
+}
