@@ -123,4 +123,23 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         &arguments("forecast"),
         &["the channels measured, predicted, other"],
     );
+    // the time column says the rate, and contradicts another
+    let rows: String = (0..100)
+        .map(|k| format!("{},{},{}\n", 0.01 * f64::from(k), k % 7, k % 5))
+        .collect();
+    let timed = format!("time_s,measured,predicted\n{rows}");
+    let path = folder.path().join("f.csv");
+    std::fs::write(&path, &timed).unwrap();
+    let mut other = arguments("predicted");
+    other[9] = "200";
+    let said = &[
+        "f.csv: sampling frequency: expected the 200 Hz of --sampling-hz, found 100.0000 Hz by its time column",
+    ];
+    refused(folder.path(), &other, said);
+    std::fs::write(&path, timed.replace("\n0.5,", "\n0.505,")).unwrap();
+    refused(
+        folder.path(),
+        &arguments("predicted"),
+        &["`time_s`, sample 50"],
+    );
 }

@@ -41,6 +41,11 @@ fn a_known_transfer_matrix_comes_back() {
     }
     let table = found.table("plate", Default::default()).unwrap();
     assert_eq!(table.speed_groups().len(), 2);
+    // run again at the speeds they state, tests are one point with their mean
+    let twice = [&records[..], &records[..]].concat();
+    let again = identify_derivatives(&sources(&twice), &DerivativeOptions::default()).unwrap();
+    assert_eq!(again.estimates.len(), 2 * found.estimates.len());
+    assert_eq!(again.points(), found.points());
     // the table says how far the section was turned
     let amplitude = table.header.rotation_amplitude_deg.unwrap();
     assert!(
