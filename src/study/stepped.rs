@@ -230,6 +230,7 @@ fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> FlutterSea
         reason,
         warnings: Vec::new(),
         onset_above: None,
+        damped_from_m_s: None,
     }))
 }
 

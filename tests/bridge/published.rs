@@ -79,6 +79,11 @@ fn langenuen_with_negative_sway_damping_says_so() {
     assert!(by_sway > 1.5 * 0.002 * omega, "{by_sway}");
     // above, with that mode damped again, the next crossing makes the impedance singular
     let above = &start.onset_above.as_ref().unwrap().at;
+    // up to there the section grows, which is not left to be read between two speeds
+    let from = start.damped_from_m_s.unwrap();
+    assert!(start.at.speed_m_s < from && from < above.speed_m_s);
+    let said = format!("damped again only from {from:.3} m/s on");
+    assert!(start.explain().contains(&said), "{}", start.explain());
     assert!(above.speed_m_s > start.at.speed_m_s);
     let omega = 2.0 * PI * above.frequency_hz;
     let z = impedance(

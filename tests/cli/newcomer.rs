@@ -306,7 +306,7 @@ fn wrong_studies_are_refused_with_line_and_key() {
     }
     refused(at, &["study", "nowhere.toml"], &["nowhere.toml"]);
     // what was set is named, and no line, since none is where it was
-    fs::write(at.join("study.toml"), &good).unwrap();
+    fs::write(at.join("study.toml"), good).unwrap();
     let set = ["study", "study.toml", "--set", "section.width_m=-1"];
     let said = "study.toml --set section.width_m=-1: section.width_m: expected a positive number";
     refused(at, &set, &[said]);

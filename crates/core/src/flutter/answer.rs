@@ -57,6 +57,9 @@ pub struct UnstableStart {
     pub warnings: Vec<String>,
     /// The first onset above that, where all modes that grew are damped again.
     pub onset_above: Option<Box<Onset>>,
+    /// The speed below that onset from which on they are, m/s: up to it the section grows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damped_from_m_s: Option<f64>,
 }
 
 impl FlutterSearch {
@@ -120,6 +123,7 @@ impl UnstableStart {
             reason,
             warnings: Vec::new(),
             onset_above: None,
+            damped_from_m_s: None,
         }
     }
 
@@ -140,8 +144,9 @@ impl UnstableStart {
     /// What comes above, in words.
     fn above(&self) -> String {
         self.onset_above.as_ref().map_or_else(String::new, |o| {
+            let from = self.damped_from_m_s.unwrap_or(self.at.speed_m_s);
             format!(
-                "; damped again above that, then onset at {:.3} m/s: {}, {:.4} Hz, K {:.4}",
+                "; damped again only from {from:.3} m/s on, then onset at {:.3} m/s: {}, {:.4} Hz, K {:.4}",
                 o.at.speed_m_s,
                 mode_in_words(&o.branch),
                 o.at.frequency_hz,
@@ -266,6 +271,9 @@ impl Findings {
     fn start(mut self, chosen: usize, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
         let above = self.onset_above(self.starts[chosen].at.speed_m_s);
         let mut start = self.starts.swap_remove(chosen);
+        let below = |speed: &f64| above.as_ref().is_some_and(|o| *speed < o.at.speed_m_s);
+        let recoveries = self.recoveries.iter().map(|r| r.0).filter(below);
+        start.damped_from_m_s = recoveries.reduce(f64::max);
         start.onset_above = above;
         let (_, warnings) = self.below(start.at.speed_m_s, tested, "an extrapolation");
         start.warnings.extend(warnings);

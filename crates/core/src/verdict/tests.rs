@@ -83,6 +83,7 @@ fn unstable(forces: &str, speed_m_s: f64) -> FlutterReading {
         reason: "there its motion enters".to_owned(),
         warnings: Vec::new(),
         onset_above: None,
+        damped_from_m_s: None,
     };
     reading(forces, FlutterSearch::UnstableAtOrBelow(Box::new(start)))
 }
