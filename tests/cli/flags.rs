@@ -176,3 +176,14 @@ fn the_manual_lists_every_command() {
         "AERODECK_UPDATE=1 cargo test --test cli manual"
     );
 }
+
+/// What was set is named, and no line, since none is where it was.
+#[test]
+fn a_wrong_value_that_was_set_is_named() {
+    let folder = TempDir::new().unwrap();
+    let good = aerodeck::study::demo_study_text();
+    std::fs::write(folder.path().join("study.toml"), good).unwrap();
+    let set = ["study", "study.toml", "--set", "section.width_m=-1"];
+    let said = "study.toml --set section.width_m=-1: section.width_m: expected a positive number";
+    command::refused(folder.path(), &set, &[said]);
+}
