@@ -276,11 +276,7 @@ fn wrong_studies_are_refused_with_line_and_key() {
             "source = \"missing.csv\"",
             &["missing.csv"],
         ),
-        (
-            "speed_groups = [1]",
-            "speed_groups = [7]",
-            &["speed_groups: expected"],
-        ),
+        ("speed_groups = [1]", "speed_groups = [7]", &["groups", "7"]),
         (
             "schema = 1",
             "schema = 9",
