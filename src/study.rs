@@ -51,7 +51,6 @@ use crate::aerodynamics::derivatives::{Interpolation, Missing};
 use crate::error::{Error, Place, Result, finite, of_schema, positive};
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
-use crate::flutter::FlutterSearch;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
 use crate::trained_model::Experiment;
@@ -182,10 +181,10 @@ pub struct ExportBlock {
 }
 
 impl ExportBlock {
-    /// A released section just below the onset that was searched up to `limit_m_s`, so that an importer that merely runs the FMU sees
-    /// something.
-    pub fn experiment(&self, search: &FlutterSearch, limit_m_s: f64) -> Experiment {
-        let onset = search.critical_speed_m_s().unwrap_or(limit_m_s);
+    /// A released section just below the onset, or below `limit_m_s` up to which there is none, so that an importer that merely runs
+    /// the FMU sees something.
+    pub fn experiment(&self, onset_m_s: Option<f64>, limit_m_s: f64) -> Experiment {
+        let onset = onset_m_s.unwrap_or(limit_m_s);
         // a round number of decimetres per second reads better in an importer
         let speed = (10.0 * self.part_of_onset * onset).floor() / 10.0;
         Experiment {

@@ -78,7 +78,7 @@ pub fn export_fmu(
     allow_unstable: bool,
     experiment: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<()> {
-    let mut trained = model.get().trained(section.map(|s| s.get()))?;
+    let mut trained = model.get().exported(section.map(|s| s.get()))?;
     if let Some(stated) = experiment {
         let all = crate::convert::to_python(py, &trained.experiment)?;
         all.call_method1("update", (stated,))?;

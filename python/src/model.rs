@@ -60,7 +60,7 @@ impl Model {
     /// Write `model.json`: the model with the section it is coupled with (left out, that of the file it came from).
     #[pyo3(signature = (path, section = None))]
     fn save(&self, path: PathBuf, section: Option<&Bound<'_, Section>>) -> PyResult<()> {
-        let trained = self.trained(section.map(|s| s.get()))?;
+        let trained = self.exported(section.map(|s| s.get()))?;
         let text = trained.to_json().map_err(raised)?;
         std::fs::write(&path, text).map_err(|e| raised(aerodeck::Error::io(&path, e)))
     }
@@ -200,7 +200,19 @@ impl Model {
 }
 
 impl Model {
-    /// What is saved and exported, for `section` or that of the file.
+    /// What is saved and exported, for `section` or that of the file: its experiment begins below the onset.
+    pub fn exported(&self, section: Option<&Section>) -> PyResult<TrainedModel> {
+        let mut trained = self.trained(section)?;
+        if self.stored.is_none() {
+            let range = crate::section::usual_range(&trained.section);
+            let found = without_interval(&trained.section, self, &range.search(), "eigenvalues")?;
+            trained.experiment =
+                ExportBlock::default().experiment(found.critical_speed_m_s(), range.speed_max_m_s);
+        }
+        Ok(trained)
+    }
+
+    /// What is computed with, for `section` or that of the file.
     pub fn trained(&self, section: Option<&Section>) -> PyResult<TrainedModel> {
         let stored = self.stored.as_ref().map(|(s, _)| s);
         let section = section.map(|s| &s.0).or(stored).cloned();
@@ -214,9 +226,8 @@ impl Model {
         let experiment = match &self.stored {
             Some((_, experiment)) => experiment.clone(),
             None => {
-                let range = crate::section::usual_range(&section);
-                let found = without_interval(&section, self, &range.search(), "eigenvalues")?;
-                ExportBlock::default().experiment(&found, range.speed_max_m_s)
+                let limit = crate::section::usual_range(&section).speed_max_m_s;
+                ExportBlock::default().experiment(None, limit)
             }
         };
         Ok(TrainedModel {

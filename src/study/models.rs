@@ -73,7 +73,7 @@ pub fn train_one(
         model,
         experiment: study
             .export
-            .experiment(&search, study.speeds().speed_max_m_s),
+            .experiment(search.critical_speed_m_s(), study.speeds().speed_max_m_s),
     };
     trained.validate()?;
     Ok(TrainedWithReport {
