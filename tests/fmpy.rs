@@ -246,7 +246,8 @@ fn fmpy_validates_and_steps_the_exported_fmus() {
     let python = python::interpreter().unwrap_or_else(|message| panic!("{message}"));
     let suite = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmpy");
     let output = Command::new(&python)
-        .args(["-m", "pytest", "-q", "--color=no"])
+        .args(python::PYTEST)
+        .arg("--color=no")
         .arg(&suite)
         .env("AERODECK_FMUS", export())
         .env("PYTHONDONTWRITEBYTECODE", "1")

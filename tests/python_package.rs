@@ -77,7 +77,7 @@ fn the_package_builds_installs_and_passes_its_tests() {
     run(
         "the tests of the package",
         Command::new(&interpreter)
-            .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+            .args(python::PYTEST)
             .arg(root.join("python/tests"))
             .env("PYTHONPATH", &installed)
             .env("AERODECK_CAMPAIGN", campaign.join("campaign.toml")),

@@ -36,6 +36,18 @@ pub fn interpreter() -> Result<PathBuf, String> {
     Ok(python)
 }
 
+/// Words for the interpreter that runs pytest on all cores, up to eight: a test that takes long does not keep the others waiting.
+pub const PYTEST: [&str; 8] = [
+    "-m",
+    "pytest",
+    "-q",
+    "-n=auto",
+    "--maxprocesses=8",
+    "--dist=worksteal",
+    "-p",
+    "no:cacheprovider",
+];
+
 /// The target directory of the build at hand.
 pub fn target_directory() -> PathBuf {
     let tmp = Path::new(env!("CARGO_TARGET_TMPDIR"));
