@@ -181,17 +181,16 @@ pub struct ExportBlock {
 }
 
 impl ExportBlock {
-    /// A released section just below the onset, or below `limit_m_s` up to which there is none, so that an importer that merely runs
-    /// the FMU sees something.
-    pub fn experiment(&self, onset_m_s: Option<f64>, limit_m_s: f64) -> Experiment {
-        let onset = onset_m_s.unwrap_or(limit_m_s);
+    /// A released section just below the onset or what else [comes first](crate::flutter::FlutterSearch::first_limit_m_s), so that
+    /// an importer that merely runs the FMU sees something; the FMU searches its onset up to `limit_m_s`.
+    pub fn experiment(&self, first_m_s: f64, limit_m_s: f64) -> Experiment {
         // a round number of decimetres per second reads better in an importer
-        let speed = (10.0 * self.part_of_onset * onset).floor() / 10.0;
+        let speed = (10.0 * self.part_of_onset * first_m_s).floor() / 10.0;
         Experiment {
             wind_speed_m_s: if speed > 0.0 {
                 speed
             } else {
-                self.part_of_onset * onset
+                self.part_of_onset * first_m_s
             },
             initial_vertical_m: self.initial_vertical_m,
             initial_rotation_rad: self.initial_rotation_deg.to_radians(),

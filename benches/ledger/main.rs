@@ -21,6 +21,7 @@ mod growth;
 mod jobs;
 mod peak;
 mod performance;
+#[allow(dead_code)] // the environment alone
 #[path = "../../tests/common/python.rs"]
 mod python;
 mod registry;

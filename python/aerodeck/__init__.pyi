@@ -11,7 +11,7 @@ from ._study import StudyResult as StudyResult
 _Path = str | PathLike[str]
 _Floats = NDArray[np.float64]
 _Progress = Callable[[int, int], object] | None
-_Snapshot = tuple[float, Sequence[float], float, float | None]
+_Snapshot = tuple[float, Sequence[float], float, float | None, Sequence[Sequence[float]]]
 
 __version__: str
 

@@ -5,6 +5,7 @@ use crate::error::{raised, wrong};
 use crate::flutter::without_interval;
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
+use aerodeck::flutter::divergence_speed;
 use aerodeck::identification::FitReport;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
@@ -206,8 +207,12 @@ impl Model {
         if self.stored.is_none() {
             let range = crate::section::usual_range(&trained.section);
             let found = without_interval(&trained.section, self, &range.search(), "eigenvalues")?;
-            trained.experiment =
-                ExportBlock::default().experiment(found.critical_speed_m_s(), range.speed_max_m_s);
+            let limit = range.speed_max_m_s;
+            let still = self.model.transfer(ReducedFrequency::from_full_width(0.0));
+            let structure = trained.section.structure().map_err(raised)?;
+            let divergence = still.and_then(|still| divergence_speed(&structure, &still));
+            let first = found.first_limit_m_s(divergence.map_err(raised)?, limit);
+            trained.experiment = ExportBlock::default().experiment(first, limit);
         }
         Ok(trained)
     }
@@ -227,7 +232,7 @@ impl Model {
             Some((_, experiment)) => experiment.clone(),
             None => {
                 let limit = crate::section::usual_range(&section).speed_max_m_s;
-                ExportBlock::default().experiment(None, limit)
+                ExportBlock::default().experiment(limit, limit)
             }
         };
         Ok(TrainedModel {

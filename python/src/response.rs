@@ -4,7 +4,7 @@ use crate::convert::{Parts, dof_names, framed, parts, rows, shown};
 use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::section::Section;
-use crate::work::detached;
+use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::response::{self, Inputs, Outputs, SectionState};
 use numpy::{PyArray1, PyArray2};
@@ -137,12 +137,14 @@ pub fn simulate(
     let dofs = section.get().0.dofs();
     let n = dofs.len();
     let released = displacement.unwrap_or_else(|| usual_release(n));
-    let run = detached(py, || {
+    let work = Work::new(None);
+    let run = work.run(py, || {
         let mut state = stepper.released(&released, &vec![0.0; n])?;
         let inputs = Inputs::steady(wind_speed_m_s, n);
         let mut all: [Vec<Vec<f64>>; 4] = Default::default();
         let mut outputs = Outputs::default();
         for i in 0..=steps as usize {
+            work.check();
             if i > 0 {
                 stepper.advance(&mut state, &inputs, step_s)?;
             }
@@ -153,7 +155,7 @@ pub fn simulate(
         }
         aerodeck::Result::Ok(all)
     });
-    let [displacement, rate, acceleration, force] = run.map_err(raised)?;
+    let [displacement, rate, acceleration, force] = run?.map_err(raised)?;
     let array = |lists: Vec<Vec<f64>>| rows(py, n, lists).map(Bound::unbind);
     let time = (0..displacement.len()).map(|i| i as f64 * step_s).collect();
     Ok(Motion {
@@ -178,8 +180,8 @@ pub fn simulate(
 #[pyclass(frozen, module = "aerodeck")]
 pub struct Stepper(Mutex<Stepping>);
 
-/// Time, values, phase, last wind speed.
-type Snapshot = (f64, Vec<f64>, f64, Option<f64>);
+/// Time, values, phase, last wind speed, outputs.
+type Snapshot = (f64, Vec<f64>, f64, Option<f64>, [Vec<f64>; 4]);
 
 struct Stepping {
     /// What it was made of, for `pickle`.
@@ -291,7 +293,7 @@ impl Stepper {
         Ok(stepper)
     }
 
-    /// The whole state, to come back to with `restore`: (time, values, phase, last wind speed).
+    /// The whole state, to come back to with `restore`: (time, values, phase, last wind speed, outputs).
     fn snapshot(&self) -> Snapshot {
         let own = self.lock();
         let state = &own.state;
@@ -300,27 +302,34 @@ impl Stepper {
             state.values.clone(),
             state.phase,
             state.last_wind_m_s,
+            own.outputs.lists().map(Clone::clone),
         )
     }
 
-    /// Go back to a `snapshot`; the same steps then give the same bits. Outputs are those of the next step.
+    /// Go back to a `snapshot`; the same steps then give the same bits.
     fn restore(&self, snapshot: Snapshot) -> PyResult<()> {
         let mut own = self.lock();
         let expected = own.state.values.len();
-        if snapshot.1.len() != expected {
-            let found = format!("one of {}", snapshot.1.len());
-            return Err(wrong(
-                "snapshot",
-                &format!("one of {expected} states"),
-                found,
-            ));
+        let (time_s, values, phase, last_wind_m_s, outputs) = snapshot;
+        let n = own.outputs.displacement.len();
+        if values.len() != expected || outputs.iter().any(|list| list.len() != n) {
+            let found = format!("one of {}", values.len());
+            let expected = format!("one of {expected} states and {n} motions");
+            return Err(wrong("snapshot", &expected, found));
         }
-        own.time_s = snapshot.0;
+        own.time_s = time_s;
         own.state = SectionState {
-            values: snapshot.1,
-            phase: snapshot.2,
-            last_wind_m_s: snapshot.3,
+            values,
+            phase,
+            last_wind_m_s,
             ..SectionState::default()
+        };
+        let [displacement, rate, acceleration, self_excited_force] = outputs;
+        own.outputs = Outputs {
+            displacement,
+            rate,
+            acceleration,
+            self_excited_force,
         };
         Ok(())
     }

@@ -168,6 +168,9 @@ def test_motion_grows_above_the_onset_and_the_stepper_gives_the_same_bits(sectio
     early = stepper.snapshot()
     first = [stepper.step(0.01, factor * onset) for _ in range(50)]
     np.testing.assert_array_equal(first, motion.displacement[1:51])
+    copied = pickle.loads(pickle.dumps(stepper))
+    for name in ["time_s", "displacement", "rate", "acceleration", "force"]:
+        np.testing.assert_array_equal(getattr(copied, name), getattr(stepper, name))
     stepper.restore(early)
     np.testing.assert_array_equal([stepper.step(0.01, factor * onset) for _ in range(50)], first)
 

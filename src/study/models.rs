@@ -1,13 +1,14 @@
 //! Training the models of a study.
 
 use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
+use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, MovedOnset, StableRange, find_onset};
+use crate::flutter::{FlutterSearch, MovedOnset, StableRange, divergence_speed, find_onset};
 use crate::identification::{FitReport, Fitted, OnProgress};
 use crate::trained_model::{Model, Provenance, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, FormEnsemble, ModelOfData, ModelUncertainty};
-use crate::units::ReducedFrequencyRange;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
 /// A model with the account of its fit.
 #[derive(Debug, Clone)]
@@ -58,6 +59,8 @@ pub fn train_one(
         .and_then(|known| with_forms(study, known, forms, &mut report))
         .map(Box::new)
         .map_err(|e| e.to_string());
+    let limit_m_s = study.speeds().speed_max_m_s;
+    let first_m_s = search.first_limit_m_s(divergence_of(study, &model), limit_m_s);
     let trained = TrainedModel {
         schema_version: model.schema_version(),
         name: block.name.clone(),
@@ -71,9 +74,7 @@ pub fn train_one(
             notes: report.notes.clone(),
         },
         model,
-        experiment: study
-            .export
-            .experiment(search.critical_speed_m_s(), study.speeds().speed_max_m_s),
+        experiment: study.export.experiment(first_m_s, limit_m_s),
     };
     trained.validate()?;
     Ok(TrainedWithReport {
@@ -127,6 +128,14 @@ fn with_forms(
 }
 
 /// Onset of the coupled section.
+/// Divergence of the section with these forces, m/s; where it cannot be computed, the stages that follow say why.
+fn divergence_of(study: &Study, model: &Model) -> Option<f64> {
+    let still = model
+        .transfer(ReducedFrequency::from_full_width(0.0))
+        .ok()?;
+    divergence_speed(&study.section.structure().ok()?, &still).ok()?
+}
+
 fn onset_of(
     study: &Study,
     name: &str,

@@ -6,6 +6,7 @@ mod book_formulas;
 #[allow(dead_code)] // each room needs a part of it
 mod command;
 mod examples;
+#[allow(dead_code)] // the environment alone
 #[path = "../common/python.rs"]
 mod python;
 

@@ -63,6 +63,7 @@ pub use sanity::{SanityLines, sanity_lines};
 pub use scan::growth_scan;
 pub use search::{OnsetSearch, find_onset};
 pub use search::{curve_speeds_m_s, find_onset_of_modes, judged_speeds};
+pub use still_air::aliased_below;
 pub use sweep::at_samples;
 pub use sweep::stands_at_samples;
 pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};

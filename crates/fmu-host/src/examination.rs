@@ -32,9 +32,9 @@ impl Fmu {
                     .display()
                     .to_string();
                 let before = findings.0.len();
-                ran = Some(place.clone());
                 library::check_symbols(&binary, self.description.is_fmi3(), &place, &mut findings);
                 if findings.0.len() == before {
+                    ran = Some(place);
                     (trials, messages) = trials::run(self, &mut findings);
                 }
             }

@@ -2,10 +2,10 @@
 
 use super::BridgeStudy;
 use super::answers::coupled;
-use crate::aerodynamics::RationalAdmittance;
+use crate::aerodynamics::{RationalAdmittance, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
-use crate::flutter::{BridgeMotion, FlutterSearch, find_onset};
+use crate::flutter::{BridgeMotion, FlutterSearch, divergence_speed, find_onset};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -13,6 +13,7 @@ use crate::fmu::onset_start::OnsetStart;
 use crate::fmu::package::BridgeExport;
 use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
+use crate::units::ReducedFrequency;
 
 /// Amplitude of the default release where the girder moves most, of half the width.
 const RELEASE: f64 = 0.01;
@@ -56,9 +57,12 @@ impl BridgeStudy {
                 found.explain()
             )));
         }
-        let onset = found.critical_speed_m_s().unwrap_or(search.speed_max_m_s);
+        let forces = self.by_model.forces();
+        let still = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
+        let divergence = divergence_speed(&self.by_model.structure(), &still)?;
+        let first = found.first_limit_m_s(divergence, search.speed_max_m_s);
         Ok(BridgeExport {
-            model: self.first_model(onset)?,
+            model: self.first_model(first)?,
             bridge: BridgeOptions {
                 onset: found
                     .onset()
@@ -77,7 +81,7 @@ impl BridgeStudy {
     }
 
     /// The model of the first section, under the name of the bridge.
-    fn first_model(&self, onset_m_s: f64) -> Result<TrainedModel> {
+    fn first_model(&self, first_m_s: f64) -> Result<TrainedModel> {
         let section = &self.sections[0];
         let model = section
             .saved
@@ -103,7 +107,7 @@ impl BridgeStudy {
                 aerodeck_version: env!("CARGO_PKG_VERSION").to_owned(),
                 notes: self.warnings(),
             },
-            experiment: self.experiment(onset_m_s),
+            experiment: self.experiment(first_m_s),
             model,
         })
     }
@@ -233,7 +237,7 @@ impl BridgeStudy {
         initial
     }
 
-    fn experiment(&self, onset_m_s: f64) -> Experiment {
+    fn experiment(&self, first_m_s: f64) -> Experiment {
         let hertz = || self.by_model.modes.iter().map(|m| m.frequency_hz);
         let (slowest, fastest) = (
             hertz().fold(f64::MAX, f64::min),
@@ -242,7 +246,7 @@ impl BridgeStudy {
         // a round part of a second, and whole steps
         let step = 0.01 * (100.0 / (STEPS_PER_PERIOD * fastest)).floor().max(1.0);
         Experiment {
-            wind_speed_m_s: PART_OF_ONSET * onset_m_s,
+            wind_speed_m_s: PART_OF_ONSET * first_m_s,
             initial_vertical_m: 0.0,
             initial_rotation_rad: 0.0,
             stop_time_s: step * (PERIODS / slowest / step).round(),

@@ -97,6 +97,19 @@ impl FlutterSearch {
         self.critical().map(|at| at.speed_m_s)
     }
 
+    /// What comes first of onset, `divergence_m_s` and the end of what was judged, m/s; `limit_m_s`, up to which was searched, where
+    /// nothing does.
+    pub fn first_limit_m_s(&self, divergence_m_s: Option<f64>, limit_m_s: f64) -> f64 {
+        let own = match self {
+            Self::StableUpTo(range) => Some(range.to_m_s).filter(|to| *to > 0.0),
+            growing => growing.critical_speed_m_s(),
+        };
+        [own, divergence_m_s]
+            .into_iter()
+            .flatten()
+            .fold(limit_m_s, f64::min)
+    }
+
     /// The answer in words.
     pub fn explain(&self) -> String {
         match self {

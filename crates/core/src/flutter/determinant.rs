@@ -112,7 +112,8 @@ pub fn determinant_onset(
     for (omega, row) in &roots {
         let (speed, branch) = (omega.re * width / k_max, structure.branch_name(*row));
         findings.reach.entries.push((speed, branch.clone()));
-        if omega.im < -ROUNDING * omega.norm() {
+        // growth that is known only beyond the search answers nothing that was asked
+        if speed <= speed_max_m_s && omega.im < -ROUNDING * omega.norm() {
             let (method, lambda) = (OnsetMethod::Determinant, omega * Complex::i());
             let at = CriticalPoint::of_motion(name, method, structure, speed, lambda.im);
             let mut start = UnstableStart::new(at, lambda.re, branch, entry_reason(range.max));

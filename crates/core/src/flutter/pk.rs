@@ -149,7 +149,11 @@ pub fn pk_onset(
         None => found.reach.entries = reach.entries,
     }
     found.reach.exits.extend(reach.exits);
-    for entry in entries.iter().filter(|e| growing(&e.mode.lambda)) {
+    // a mode that is known only beyond the search answers nothing that was asked
+    let searched = entries
+        .iter()
+        .filter(|e| e.speed <= search.speed_max_m_s && growing(&e.mode.lambda));
+    for entry in searched {
         let reason = known.map_or("the lowest speed looked at".to_owned(), |range| {
             entry_reason(range.max)
         });

@@ -143,8 +143,9 @@ impl<'a> Scan<'a> {
         Ok(StableRange {
             from_m_s: lowest,
             to_m_s,
-            not_judged: (lowest > 0.0)
-                .then(|| "below, the sampled model has too few samples per period".to_owned()),
+            not_judged: (lowest > 0.0).then(|| {
+                format!("below {lowest:.3} m/s the sampled model has too few samples per period")
+            }),
         })
     }
 

@@ -10,6 +10,8 @@ use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
 
 /// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
 const SAMPLES_PER_PERIOD: f64 = 5.0;
+/// Samples in a period that tell a frequency from others: two, and a tenth for what slow wind changes.
+const TOLD_APART: f64 = 2.2;
 /// Relative difference of eigenvalues that is rounding.
 const EQUAL: f64 = 1e-8;
 
@@ -160,6 +162,15 @@ pub(super) fn lowest_speed(section: &CoupledSection) -> Result<f64> {
         return Ok(0.0);
     }
     Ok(start_speed(section, &natural_modes(section)?))
+}
+
+/// Wind speed, m/s, below which a sample of the sampled system lasts half a period of its fastest mode in still air, so that its
+/// eigenvalues are those of other motions; 0 for other systems.
+///
+/// # Errors
+/// Where the modes in still air are not found.
+pub fn aliased_below(section: &CoupledSection) -> Result<f64> {
+    Ok(lowest_speed(section)? * TOLD_APART / SAMPLES_PER_PERIOD)
 }
 
 pub(super) fn start_speed(section: &CoupledSection, modes: &[Mode]) -> f64 {

@@ -112,9 +112,11 @@ impl UnwantedGrowth {
                 ""
             };
             return match self.instability_from_m_s {
-                None => format!("no growth from nearly still air to {to:.3} m/s{proved}"),
+                None => {
+                    format!("no growing oscillation from nearly still air to {to:.3} m/s{proved}")
+                }
                 Some(from) => format!(
-                    "no growth from nearly still air to {to:.3} m/s but that of the instability itself, which the model \
+                    "no growing oscillation from nearly still air to {to:.3} m/s but that of the instability itself, which the model \
                      carries down to {from:.3} m/s{proved}"
                 ),
             };
@@ -173,7 +175,7 @@ mod tests {
         assert_eq!(plate.instability_from_m_s, None);
         let text = plate.explain();
         assert!(
-            text.starts_with("no growth from nearly still air to 3"),
+            text.starts_with("no growing oscillation from nearly still air to 3"),
             "{text}"
         );
         let bad = found(&feeds_fast_heave(), tested);

@@ -35,6 +35,7 @@ impl OnsetCard {
         let inside = tested.is_some_and(|range| range.contains(k));
         card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
         card.numbers.stable_below = true;
+        card.judge_divergence();
         card
     }
 
@@ -59,12 +60,13 @@ impl OnsetCard {
                 searched = found
                     .onset()
                     .and_then(|o| SearchedOnset::from_onset(built, o));
+                card.numbers.stable_below = stable;
                 card.take(found, limit);
                 card.numbers.in_tested_range = inside;
-                card.numbers.stable_below = stable;
             }
             Err(why) => card.onset_unknown(&why),
         }
+        card.judge_divergence();
         (card, searched)
     }
 }

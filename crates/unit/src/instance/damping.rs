@@ -1,8 +1,8 @@
 //! The smallest damping ratio at the present wind, which importers may read at every step.
 
 use crate::aerodynamics::Realization;
-use crate::error::Result;
-use crate::flutter::{LeastDamping, NearbyOnset, smallest_damping};
+use crate::error::{Result, ensure};
+use crate::flutter::{LeastDamping, NearbyOnset, aliased_below, smallest_damping};
 use crate::response::{Inputs, Stepper};
 use crate::state_space::{RepeatedEigenvalues, damping_ratio};
 use nalgebra::{Complex, DMatrix};
@@ -24,6 +24,8 @@ enum Way {
 /// The matrix from sample to sample, and room for its eigenvalues.
 #[derive(Debug)]
 struct Sampled {
+    /// In slower wind, m/s, a sample lasts half a period or longer.
+    lowest_m_s: f64,
     steady: Inputs,
     matrix: DMatrix<f64>,
     eigenvalues: RepeatedEigenvalues,
@@ -75,6 +77,8 @@ impl Way {
         match section.aerodynamics() {
             Realization::Continuous(_) => Self::Continuous(LeastDamping::new(section)),
             Realization::Discrete(_) => Self::Sampled(Sampled {
+                // without modes in still air there is nothing to sample
+                lowest_m_s: aliased_below(section).unwrap_or(0.0),
                 steady: Inputs::steady(0.0, section.structure().dofs.len()),
                 matrix: DMatrix::zeros(states, states),
                 eigenvalues: RepeatedEigenvalues::new(states),
@@ -85,7 +89,14 @@ impl Way {
 
 impl Sampled {
     /// By the rates `ln z/Δt`; what has died out after a sample (`z = 0`) has none. `None` where the eigenvalues are not found.
+    /// Where a sample lasts longer than half a period, `ln z` is that of another motion.
     fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<Option<f64>> {
+        let enough = format_args!(
+            "{:.3} m/s or more, below which a sample lasts half a period",
+            self.lowest_m_s
+        );
+        let found = format_args!("{wind_m_s} m/s");
+        ensure(wind_m_s >= self.lowest_m_s, "wind speed", enough, found)?;
         self.steady.wind_speed_m_s = wind_m_s;
         let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;
         let found = self.eigenvalues.eigenvalues(&mut self.matrix);

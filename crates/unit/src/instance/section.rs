@@ -161,6 +161,18 @@ impl OnsetCard {
             Ok(speed) => card.set_divergence(speed, limit),
             Err(why) => card.divergence_unknown(&why),
         }
+        card.search_onset(model, section, limit, plain);
+        card.judge_divergence();
+        card
+    }
+
+    fn search_onset(
+        &mut self,
+        model: &TrainedModel,
+        section: &CoupledSection,
+        limit: f64,
+        plain: Option<SweptOnset>,
+    ) {
         if let Some(onset) = plain {
             let width = section.structure().width_m;
             let velocity = ReducedVelocity::from(ReducedFrequency::from_circular(
@@ -168,18 +180,34 @@ impl OnsetCard {
                 width,
                 onset.speed_m_s,
             ));
-            card.set_onset(onset.speed_m_s, onset.frequency_hz, velocity, true);
-            card.numbers.stable_below = true;
-            return card;
-        }
-        match onset_of(model, section, limit) {
-            Ok(found) => card.take(found, limit),
-            Err(why) => card.onset_unknown(&why),
+            self.set_onset(onset.speed_m_s, onset.frequency_hz, velocity, true);
+            self.numbers.stable_below = true;
+            return;
         }
         // what cannot be judged is not called stable
-        card.numbers.stable_below =
+        self.numbers.stable_below =
             growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
-        card
+        match onset_of(model, section, limit) {
+            Ok(found) => self.take(found, limit),
+            Err(why) => self.onset_unknown(&why),
+        }
+    }
+
+    /// A section that diverges below the onset is not stable below it, whatever oscillates there.
+    pub(super) fn judge_divergence(&mut self) {
+        let numbers = &self.numbers;
+        let (divergence, onset) = (numbers.divergence_m_s.value, numbers.speed_m_s.value);
+        if !(numbers.divergence_found && divergence < onset) {
+            return;
+        }
+        let than = match numbers.found {
+            true => format!("before the flutter onset at {onset:.3} m/s"),
+            false => "where no oscillation grows".to_owned(),
+        };
+        self.warnings.push(format!(
+            "static divergence at {divergence:.3} m/s, {than}: the margin to flutter does not count it"
+        ));
+        self.numbers.stable_below = false;
     }
 
     /// The card of parameters that give no section at all.
@@ -225,10 +253,14 @@ impl OnsetCard {
                 self.numbers.speed_m_s = to.into();
                 if to < limit {
                     self.warnings.push(format!(
-                        "the onset is not known beyond {to} m/s: {}",
+                        "the onset is not known beyond {to:.3} m/s: {}",
                         range.explain()
                     ));
+                } else if range.from_m_s > 0.0 {
+                    self.warnings.push(range.explain());
                 }
+                // what slow wind does there is not known
+                self.numbers.stable_below &= range.from_m_s <= 0.0;
                 return;
             }
         };

@@ -79,8 +79,8 @@ pub(super) const SEARCHED: &[ComputedNumber] = &[
     ),
     searched(
         "stable_below_onset",
-        "Whether nothing grows below onset_speed: false where the model feeds energy into motions \
-         outside the tested range, or where that is not known",
+        "Whether nothing grows below onset_speed: false where the section diverges below it, where the model \
+         feeds energy into motions outside the tested range, or where that is not known",
         Flag(|p| p.onset.stable_below),
     ),
 ];
@@ -89,7 +89,7 @@ pub(super) const SEARCHED: &[ComputedNumber] = &[
 pub(super) const OF_THE_PRESENT: &[ComputedNumber] = &[
     output(
         "flutter_margin",
-        "onset_speed less wind_speed",
+        "onset_speed less wind_speed; static divergence is not in it, see divergence_speed",
         &[Known::Onset, Known::Wind],
         Real(|p| p.onset.speed_m_s - p.wind_m_s),
     )

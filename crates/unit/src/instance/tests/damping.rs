@@ -44,3 +44,21 @@ fn the_damping_is_that_of_all_eigenvalues() {
         }
     }
 }
+
+/// A sample that lasts longer than half a period shows another motion: what cannot be told is zero, with its reason.
+#[test]
+fn a_sampled_model_tells_no_damping_in_slow_wind() {
+    let mut unit = instance(Kind::Section("discrete_laguerre"), false).unwrap();
+    start(&mut unit);
+    unit.take_notices();
+    let [wind, damping] = ["wind_speed", "damping_now"].map(|name| index(&unit, name));
+    unit.set_reals(&[wind], &[0.01]).unwrap();
+    let mut found = [f64::NAN];
+    unit.reals(&[damping], &mut found).unwrap();
+    let notices = unit.take_notices().join("\n");
+    assert_eq!(found, [0.0]);
+    assert!(
+        notices.contains("damping_now is not known") && notices.contains("half a period"),
+        "{notices}"
+    );
+}

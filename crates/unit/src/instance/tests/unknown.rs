@@ -27,6 +27,39 @@ fn an_onset_that_is_not_there_is_the_limit() {
     assert!(!flag(&mut unit, "onset_found") && flag(&mut unit, "stable_below_onset"));
 }
 
+/// What runs away without oscillating is growth below the onset, and is said.
+#[test]
+fn what_diverges_below_its_onset_is_not_stable() {
+    let of_section = ["heave_frequency", "torsion_frequency"];
+    for (kind, frequencies) in [
+        (Kind::Section("rational"), of_section),
+        (Kind::Section("continuous_laguerre"), of_section),
+        (Kind::Bridge, ["mode[1].frequency", "mode[2].frequency"]),
+    ] {
+        let mut unit = instance(kind, false).unwrap();
+        unit.enter_initialization();
+        let all = ["onset_speed", "divergence_speed"];
+        let [onset, divergence] = read(&mut unit, all);
+        assert!(
+            onset < divergence && flag(&mut unit, "stable_below_onset"),
+            "{kind:?}"
+        );
+        unit.take_notices();
+        let [vertical, torsion] = frequencies.map(|name| index(&unit, name));
+        let mut lower = [f64::NAN];
+        unit.reals(&[vertical], &mut lower).unwrap();
+        unit.set_reals(&[torsion], &[0.6 * lower[0]]).unwrap();
+        let [onset, divergence] = read(&mut unit, all);
+        let notices = unit.take_notices().join("\n");
+        assert!(divergence < onset, "{kind:?}: {divergence}, {onset}");
+        assert!(!flag(&mut unit, "stable_below_onset"), "{kind:?}");
+        assert!(
+            notices.contains("static divergence at"),
+            "{kind:?}: {notices}"
+        );
+    }
+}
+
 /// Of a bridge as of a section: what cannot be computed for its parameters is zero and not found, with a notice that says so.
 /// The search limit would read as safe.
 #[test]
