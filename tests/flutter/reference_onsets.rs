@@ -1,6 +1,7 @@
 //! Eigenvalues and determinant agree; stable sections say so; curves stay on their branches. The reference figures
 //! themselves stand in `data/reference`.
 
+use crate::command::{aerodeck, refused, succeeds};
 use aerodeck::aerodynamics::{RationalModel, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
@@ -8,6 +9,9 @@ use aerodeck::flutter::{
 };
 use aerodeck::section::SectionModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
 
 fn wide_range() -> ReducedFrequencyRange {
     ReducedFrequencyRange::between(
@@ -120,4 +124,39 @@ fn curves_follow_the_branches() {
     for (point, f) in curves.branches[0].points.iter().zip(heave) {
         near(point.frequency_hz / f, 1.0, 0.02);
     }
+}
+
+/// A user's own case from a file, and one that fails.
+#[test]
+fn validate_runs_cases_of_users() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let example = include_str!("../../examples/validation_case.toml");
+    fs::write(at.join("mine.toml"), example).unwrap();
+    let text = succeeds(at, &["validate", "--case", "mine.toml"]);
+    assert!(
+        text.contains("my-iabse-1.1a") && text.contains("stated: Rocard (1963)"),
+        "{text}"
+    );
+    assert!(text.contains("12 figures, 0 outside"), "{text}");
+    fs::write(at.join("wrong.toml"), example.replace("90.466", "91.0")).unwrap();
+    let (code, stdout, _) = aerodeck(at, &["validate", "--case", "wrong.toml", "--json"]);
+    let json: Value = serde_json::from_str(&stdout).unwrap();
+    let failed = json["cases"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|r| r["passed"] == false)
+        .count();
+    assert_eq!((code, failed), (1, 1));
+    fs::write(
+        at.join("bad.toml"),
+        example.replace("tolerance = 0.05", "tolerance = \"x\""),
+    )
+    .unwrap();
+    refused(
+        at,
+        &["validate", "--case", "bad.toml"],
+        &["bad.toml", "line"],
+    );
 }
