@@ -21,6 +21,7 @@ use crate::bridge::{BridgeMode, Node};
 use crate::error::{Result, ensure, positive};
 use crate::files::header_csv::CommentHeader;
 use crate::files::text::{csv_cell, of_csv_cell, read_text};
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::Path;
 
@@ -58,11 +59,16 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
             length_m: row.number(length)?,
         });
     }
+    table.each_once(nodes.iter().map(|n| n.name.as_str()))?;
     let offsets_m = offsets(&table)?;
     check_order(&nodes)?;
+    let mut numbers = HashSet::new();
     let modes = header.all(MODE).map(|entry| {
         let (number, frequency_hz, generalised_mass) = mode_line(&entry.value)
             .ok_or_else(|| entry.wrong("`number, frequency Hz, generalised mass kg`"))?;
+        if !numbers.insert(number) {
+            return Err(entry.wrong("each mode once"));
+        }
         let place = entry.place();
         positive(format!("{place}, frequency"), frequency_hz)?;
         positive(format!("{place}, generalised mass"), generalised_mass)?;

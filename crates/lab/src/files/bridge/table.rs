@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Place, Result, ensure, without_control_characters};
 use crate::files::text::read_text;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Rows of a file at most: a thousand nodes by thousands of modes.
@@ -87,6 +88,20 @@ impl Table {
                 format!("`{}`", self.heading.join(",")),
             )
         })
+    }
+
+    /// Refuses a node in two rows; `names` are those of the nodes, row by row.
+    pub(super) fn each_once<'n>(&self, names: impl Iterator<Item = &'n str>) -> Result<()> {
+        let mut known = HashSet::new();
+        for (row, name) in self.rows.iter().zip(names) {
+            ensure(
+                known.insert(name),
+                Place::line(row.line),
+                "each node once",
+                format_args!("node {name} twice"),
+            )?;
+        }
+        Ok(())
     }
 
     /// All numbers of all rows, in order.

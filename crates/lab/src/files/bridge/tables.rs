@@ -38,14 +38,7 @@ pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
         Ok((row.name(node), at))
     };
     let nodes: Vec<(String, [f64; 3])> = table.rows.iter().map(one).collect::<Result<_>>()?;
-    for (i, (name, _)) in nodes.iter().enumerate() {
-        ensure(
-            nodes[..i].iter().all(|n| n.0 != *name),
-            Place::line(table.rows[i].line),
-            "each node once",
-            format_args!("node {name} twice"),
-        )?;
-    }
+    table.each_once(nodes.iter().map(|n| n.0.as_str()))?;
     Ok(nodes)
 }
 
@@ -61,7 +54,16 @@ fn modes(table: &Table, nodes: usize) -> Result<Vec<RawMode>> {
             shape: vec![[f64::NAN; 6]; nodes],
         })
     };
-    table.rows.iter().map(one).collect()
+    let modes: Vec<RawMode> = table.rows.iter().map(one).collect::<Result<_>>()?;
+    for (i, m) in modes.iter().enumerate() {
+        ensure(
+            modes[..i].iter().all(|before| before.number != m.number),
+            Place::line(table.rows[i].line),
+            "each mode once",
+            format_args!("mode {} twice", m.number),
+        )?;
+    }
+    Ok(modes)
 }
 
 fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> Result<()> {
@@ -97,7 +99,14 @@ fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> R
                 format!("node {name}"),
             )
         })?;
-        for (value, column) in modes[*of_mode].shape[*at].iter_mut().zip(parts) {
+        let values = &mut modes[*of_mode].shape[*at];
+        ensure(
+            values[0].is_nan(),
+            Place::line(row.line),
+            "each node once in a mode",
+            format_args!("node {name} of mode {number} twice"),
+        )?;
+        for (value, column) in values.iter_mut().zip(parts) {
             *value = row.number(column)?;
         }
     }
