@@ -31,7 +31,9 @@ use crate::bridge::{Bridge, BridgeMode, Similarity, StripGroup, similarities};
 use crate::error::{Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
-use crate::plausibility::{Finding, of_bridge, of_coefficients, of_modes_left_out, sentences};
+use crate::plausibility::{
+    Finding, of_bridge, of_coefficients, of_modes_left_out, of_profile, sentences,
+};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
@@ -130,6 +132,8 @@ impl BridgeStudy {
         let by_model = bridge(false)?;
         findings.extend(of_bridge(&by_model));
         findings.extend(of_modes_left_out(&by_model, &modes.left_out));
+        let profile: Vec<f64> = file.wind.profile.iter().map(|p| p.along_m).collect();
+        findings.extend(of_profile(&profile, &modes.nodes));
         for block in &file.sections {
             let place = format!("section {}: static.", block.name);
             let statics = block.statics.iter();

@@ -236,7 +236,7 @@ impl Bridge {
     pub fn equivalent_section(&self, dofs: &[Dof]) -> Result<SectionModel> {
         let own = |dof: Dof| {
             let i = motion_index(dof);
-            let mode = (0..self.modes.len()).find(|m| self.main_motion(&self.modes[*m]) == i);
+            let mode = (0..self.modes.len()).find(|m| self.main_motion(&self.modes[*m]) == Some(i));
             let mode = mode.map(|m| &self.modes[m])?;
             let nodes = self.nodes.iter().zip(&mode.shape);
             let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();

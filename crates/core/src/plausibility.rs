@@ -10,7 +10,7 @@ mod limits;
 mod section;
 mod table;
 
-pub use bridge::{Girder, is_same_mode, of_bridge, of_modes, of_modes_left_out};
+pub use bridge::{Girder, is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile};
 pub use coefficients::of_coefficients;
 pub use limits::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,

@@ -49,7 +49,10 @@ pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> 
             format!("{:.4}", m.frequency_hz),
             format!("{:.6e}", m.generalised_mass),
             format!("{:.3}", 100.0 * m.damping_ratio),
-            Dof::THREE[bridge.main_motion(m)].name().to_owned(),
+            bridge
+                .main_motion(m)
+                .map_or("none", |i| Dof::THREE[i].name())
+                .to_owned(),
         ]);
     }
     text.push_str(&table.text());

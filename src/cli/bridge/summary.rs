@@ -154,7 +154,10 @@ fn modes(study: &BridgeStudy) -> Vec<ModeFacts> {
         frequency_hz: m.frequency_hz,
         generalised_mass: m.generalised_mass,
         damping_ratio: m.damping_ratio,
-        main_motion: Dof::THREE[bridge.main_motion(m)].name().to_owned(),
+        main_motion: bridge
+            .main_motion(m)
+            .map_or("none", |i| Dof::THREE[i].name())
+            .to_owned(),
     })
     .collect()
 }

@@ -19,10 +19,10 @@ pub struct Similarity {
 /// A mode counts as what carries the largest part of its sum of squares, rotations times half the width.
 pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
     let kinds = bridge.modes.iter().map(|m| bridge.main_motion(m));
-    let kinds: Vec<usize> = kinds.collect();
+    let kinds: Vec<Option<usize>> = kinds.collect();
     let mut all = Vec::new();
-    for (y, _) in kinds.iter().enumerate().filter(|(_, k)| **k == 0) {
-        for (theta, _) in kinds.iter().enumerate().filter(|(_, k)| **k == 2) {
+    for (y, _) in kinds.iter().enumerate().filter(|(_, k)| **k == Some(0)) {
+        for (theta, _) in kinds.iter().enumerate().filter(|(_, k)| **k == Some(2)) {
             let product = |a: (usize, usize), b: (usize, usize)| -> f64 {
                 let shape = |m: usize, i: usize, n: usize| bridge.modes[m].shape[n][i];
                 let nodes = bridge.nodes.iter().enumerate();
@@ -44,8 +44,8 @@ pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
 
 impl Bridge {
     /// The motion that carries the largest part of a mode's sum of squares: 0 vertical, 1 lateral, 2 rotation, which
-    /// counts with half the width.
-    pub fn main_motion(&self, mode: &BridgeMode) -> usize {
+    /// counts with half the width; `None` of a shape that is zero everywhere.
+    pub fn main_motion(&self, mode: &BridgeMode) -> Option<usize> {
         let scale = [1.0, 1.0, 0.5 * self.width_m()];
         let part = |i: usize| -> f64 {
             let nodes = self.nodes.iter().zip(&mode.shape);
@@ -55,7 +55,7 @@ impl Bridge {
         };
         let parts = [part(0), part(1), part(2)];
         (0..3)
+            .filter(|i| parts[*i] > 0.0)
             .max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
-            .unwrap_or(0)
     }
 }

@@ -6,6 +6,7 @@ use super::limits::{DECK_WIDTH, beyond, significant};
 use super::section::{unusual_air, unusual_damping, unusual_radius};
 use super::{Finding, FindingKind};
 use crate::bridge::{Bridge, BridgeMode, Node};
+pub use line::of_profile;
 use line::{LENGTH, length_m, of_line};
 use std::f64::consts::{PI, TAU};
 
@@ -21,6 +22,9 @@ const MASS_RATIOS: (f64, f64) = (2.0, 300.0);
 /// Frequency of a vertical mode times the length of its half wave, the least of all modes, m/s: 100 for girders of usual
 /// slenderness whatever their span, 50 to 160 for suspended ones.
 const WAVE_SPEEDS: (f64, f64) = (15.0, 250.0);
+
+/// A motion below this part of the greatest of its mode, rotations times the width, is none.
+const LEAST_MOTION: f64 = 1e-6;
 
 /// Nodes and modes as they were read, before sections are known.
 #[derive(Debug, Clone, Copy)]
@@ -90,15 +94,19 @@ pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
 }
 
 /// Modes of the file without which the answer may be that of another bridge: the lowest that bends the girder, and the lowest that
-/// twists it.
+/// twists it; and whether the file has any motion of either kind.
 pub fn of_modes_left_out(bridge: &Bridge, left_out: &[BridgeMode]) -> Vec<Finding> {
     let lowest = |modes: &[BridgeMode], motion: usize| {
-        let own = modes.iter().filter(|m| bridge.main_motion(m) == motion);
+        let own = modes
+            .iter()
+            .filter(|m| bridge.main_motion(m) == Some(motion));
         let lowest = own.min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
         lowest.map(|m| (m.number, m.frequency_hz))
     };
     let missing = |(motion, name): (usize, &str)| {
-        let (number, hertz) = lowest(left_out, motion)?;
+        let Some((number, hertz)) = lowest(left_out, motion) else {
+            return still(bridge, motion);
+        };
         let taken = lowest(&bridge.modes, motion);
         let text = match taken {
             Some((_, taken_hertz)) if taken_hertz <= hertz => return None,
@@ -120,6 +128,30 @@ pub fn of_modes_left_out(bridge: &Bridge, left_out: &[BridgeMode]) -> Vec<Findin
         .into_iter()
         .filter_map(missing)
         .collect()
+}
+
+/// That no mode moves in this way: nothing can flutter then, which looks like a bridge that is safe in every wind.
+fn still(bridge: &Bridge, motion: usize) -> Option<Finding> {
+    let size = |m: &BridgeMode, i: usize| {
+        let scale = if i == 2 { bridge.width_m() } else { 1.0 };
+        scale * greatest(m, i)
+    };
+    let moves = |m: &BridgeMode| {
+        let others = (0..3).map(|i| size(m, i)).fold(0.0, f64::max);
+        size(m, motion) > LEAST_MOTION * others
+    };
+    if bridge.modes.iter().any(moves) {
+        return None;
+    }
+    let (text, otherwise) = match motion {
+        2 => ("none of the modes turns", "were rotations exported?"),
+        _ => (
+            "none of the modes moves up and down",
+            "were vertical displacements exported?",
+        ),
+    };
+    let found = Finding::doubt(FindingKind::Contradiction, "modes", text);
+    Some(found.otherwise(otherwise.to_owned()))
 }
 
 fn place(mode: &BridgeMode) -> String {
@@ -200,7 +232,7 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     };
     let Some((mass, vertical)) =
-        least(0).filter(|(_, i)| bridge.main_motion(&bridge.modes[*i]) == 0)
+        least(0).filter(|(_, i)| bridge.main_motion(&bridge.modes[*i]) == Some(0))
     else {
         return Vec::new();
     };
@@ -220,7 +252,7 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
         return vec![Finding::doubt(FindingKind::Unit, key, text).otherwise(otherwise)];
     }
     let Some((inertia, torsional)) =
-        least(2).filter(|(_, i)| bridge.main_motion(&bridge.modes[*i]) == 2)
+        least(2).filter(|(_, i)| bridge.main_motion(&bridge.modes[*i]) == Some(2))
     else {
         return Vec::new();
     };
@@ -240,7 +272,8 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
 
 /// The least product of frequency and half wave of the modes that move mainly up and down.
 fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
-    let vertical = (0..bridge.modes.len()).filter(|m| bridge.main_motion(&bridge.modes[*m]) == 0);
+    let vertical =
+        (0..bridge.modes.len()).filter(|m| bridge.main_motion(&bridge.modes[*m]) == Some(0));
     let speeds = vertical.map(|i| {
         let mode = &bridge.modes[i];
         (mode.frequency_hz * length_m / half_waves(mode) as f64, mode)

@@ -1,7 +1,7 @@
 //! The line of the nodes against the girder axis, which follows from the axes that are stated.
 
 use crate::bridge::Node;
-use crate::plausibility::limits::{Limits, beyond};
+use crate::plausibility::limits::{Limits, beyond, significant};
 use crate::plausibility::{Finding, FindingKind};
 
 /// Length from the first to the last node.
@@ -13,6 +13,8 @@ pub(super) const LENGTH: Limits = Limits {
 
 /// Angle between the line of the nodes in plan and the girder axis: worth a note (0.06 % of a length), and a doubt (0.4 %), degrees.
 const SKEW_DEG: (f64, f64) = (2.0, 5.0);
+/// Difference of the lengths at the nodes from the length of their line, as a part of it, that needs no word.
+const LENGTHS_WITHIN: f64 = 0.05;
 /// Rise of the line of the nodes over its length that no road has.
 const STEEPEST: f64 = 0.12;
 /// Distance of a node from the straight line in plan over the length: the ends of a circular arc then turn by 1° and by 4.6°.
@@ -36,6 +38,7 @@ pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
     let mut found: Vec<Finding> = beyond("nodes: length", length, &LENGTH)
         .into_iter()
         .collect();
+    found.extend(tributary(nodes));
     if offsets_m.len() != nodes.len() {
         return found;
     }
@@ -54,6 +57,51 @@ pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
     }
     found.extend(curve(&in_plan, length));
     found
+}
+
+/// Lengths on which the wind acts against the places of their nodes: half of them would be half the wind forces.
+fn tributary(nodes: &[Node]) -> Option<Finding> {
+    let [first, second, .., before, last] = nodes else {
+        return None;
+    };
+    let length = length_m(nodes);
+    let sum: f64 = nodes.iter().map(|n| n.length_m).sum();
+    // a girder may end half a spacing beyond its nodes, or before them
+    let ends = 0.5 * (second.along_m - first.along_m + last.along_m - before.along_m);
+    if (sum - length).abs() <= LENGTHS_WITHIN * length + ends {
+        return None;
+    }
+    let text = format!(
+        "lengths of girder at the nodes (length_m) add up to {} m, where their places (along_m) reach over {} m",
+        significant(sum),
+        significant(length)
+    );
+    Some(
+        Finding::doubt(FindingKind::Contradiction, "nodes", text)
+            .otherwise("wind forces grow with the lengths".to_owned()),
+    )
+}
+
+/// What is odd about a wind profile that is stated at the places `along_m`: none of them may say anything of the girder.
+pub fn of_profile(along_m: &[f64], nodes: &[Node]) -> Option<Finding> {
+    let ([a, .., b] | [a @ b]) = along_m else {
+        return None;
+    };
+    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
+        return None;
+    };
+    if *b >= first.along_m && *a <= last.along_m {
+        return None;
+    }
+    let text = format!(
+        "it is stated from {a} to {b} m along the girder, wholly beyond the girder from {} to {} m",
+        significant(first.along_m),
+        significant(last.along_m)
+    );
+    Some(
+        Finding::doubt(FindingKind::Contradiction, "wind.profile", text)
+            .otherwise("its last factor before the girder is taken everywhere".to_owned()),
+    )
 }
 
 fn skew(slope: f64) -> Option<Finding> {

@@ -289,6 +289,13 @@ impl BridgeFile {
         ensure(any, "section", "at least one [[section]]", "none")?;
         for (i, section) in self.sections.iter().enumerate() {
             section.validate(&format!("section[{i}]"))?;
+            let same = self.sections[..i].iter().any(|s| s.name == section.name);
+            ensure(
+                !same,
+                format_args!("section[{i}].name"),
+                "a name that no section before it has",
+                format_args!("`{}`", section.name),
+            )?;
         }
         for (i, damper) in self.dampers.iter().enumerate() {
             damper.validate(&format!("damper[{i}]"))?;
@@ -317,7 +324,12 @@ impl BridgeFile {
             DampingRatios::Same(ratio) => std::slice::from_ref(ratio),
             DampingRatios::Each(all) => all,
         };
-        let check = |ratio: &f64| non_negative("modes.damping_ratio", *ratio).map(drop);
+        let check = |ratio: &f64| {
+            non_negative("modes.damping_ratio", *ratio)?;
+            // no mode would oscillate, and none could be followed
+            let expected = "a ratio to critical damping below 1";
+            ensure(*ratio < 1.0, "modes.damping_ratio", expected, ratio)
+        };
         ratios.iter().try_for_each(check)
     }
 
@@ -373,6 +385,7 @@ impl BridgeFile {
         if let Some(select) = &block.select {
             keep(select, &mut modes)?;
         }
+        modes.check_shapes().map_err(|e| e.in_file(&path))?;
         Ok(modes)
     }
 }
