@@ -3,7 +3,7 @@
 use super::coherence::coherent_power;
 use super::problem::BuffetingProblem;
 use super::quadrature::integrate;
-use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve, by_node};
+use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve, by_node, part};
 use super::spectrum::GustComponent;
 use super::stability::{FEW, Turning, turning};
 use crate::error::{Error, Result};
@@ -228,12 +228,13 @@ impl<'a> FrequencyDomain<'a> {
             let within = peaks.iter().copied().filter(|f| (low..high).contains(f));
             let breaks: Vec<f64> = [low].into_iter().chain(within).chain([high]).collect();
             let inside = self.integral(all, &breaks, 1e-6)?;
-            Ok(inside.iter().zip(&rms).map(|(v, r)| v / (r * r)).collect())
+            let parts = inside.iter().zip(&rms);
+            Ok(parts.map(|(v, r)| part(*v, r * r, 1.0)).collect())
         });
         let crossing = rate_rms
             .iter()
             .zip(&rms)
-            .map(|(rate, rms)| rate / rms / TAU);
+            .map(|(rate, rms)| part(*rate, *rms, 0.0) / TAU);
         Ok(BuffetingResponse {
             speed_m_s: self.speed_m_s,
             acceleration_rms: accelerations.iter().map(|v| v.sqrt()).collect(),
@@ -279,10 +280,13 @@ impl<'a> FrequencyDomain<'a> {
             nodes: nodes.to_vec(),
             rms: by_node(count, |row| variances[row].sqrt()),
             crossing_frequency_hz: by_node(count, |row| {
-                (variances[rows + row] / variances[row]).sqrt() / TAU
+                part(variances[rows + row], variances[row], 0.0).sqrt() / TAU
             }),
-            part_in_tested_range: tested
-                .map(|_| by_node(count, |row| variances[2 * rows + row] / variances[row])),
+            part_in_tested_range: tested.map(|_| {
+                by_node(count, |row| {
+                    part(variances[2 * rows + row], variances[row], 1.0)
+                })
+            }),
         })
     }
 

@@ -12,7 +12,7 @@
 //! is stepped.
 
 use super::problem::BuffetingProblem;
-use super::response::by_node;
+use super::response::{by_node, part};
 use super::spectrum::GustComponent;
 use super::synthesis::{TurbulenceField, parts_in_time};
 use super::time::{all_records, root_and_error};
@@ -115,7 +115,9 @@ pub fn span_record(
         nodes: problem.names_of(nodes),
         speed_m_s,
         rms: by_node(nodes.len(), |row| found[row].0.sqrt()),
-        peak_factor: by_node(nodes.len(), |row| found[row].1 / found[row].0.sqrt()),
+        peak_factor: by_node(nodes.len(), |row| {
+            part(found[row].1, found[row].0.sqrt(), 0.0)
+        }),
     })
 }
 
@@ -304,7 +306,7 @@ fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> S
         let squares: Vec<f64> = runs.iter().map(|r| r[row].0).collect();
         let (rms, error) = root_and_error(&squares);
         let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / runs.len() as f64;
-        [rms, error, peak / rms]
+        [rms, error, part(peak, rms, 0.0)]
     };
     let each: Vec<[f64; 3]> = (0..3 * nodes.len()).map(of).collect();
     let list = |which: usize| by_node(nodes.len(), |row| each[row][which]);

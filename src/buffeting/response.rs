@@ -48,10 +48,20 @@ impl SpanResponse {
 }
 
 /// Expected greatest departure from the mean in `duration_s` of what crosses it upwards `hertz` times a second, over the root mean
-/// square (Davenport 1964).
+/// square (Davenport 1964); 0 of what does not move. Records of less than four thirds of a crossing have the least value of the formula,
+/// which would rise again.
 pub(crate) fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
-    let root = (2.0 * (hertz * duration_s).max(1.0).ln()).sqrt();
-    root + 0.577_215_664_901_532_9 / root
+    const EULER: f64 = 0.577_215_664_901_532_9;
+    if hertz == 0.0 {
+        return 0.0;
+    }
+    let root = (2.0 * (hertz * duration_s).max(1.0).ln()).max(EULER).sqrt();
+    root + EULER / root
+}
+
+/// A part of a variance, or a rate over a displacement, which is `otherwise` where nothing moves.
+pub(crate) fn part(of: f64, whole: f64, otherwise: f64) -> f64 {
+    if whole > 0.0 { of / whole } else { otherwise }
 }
 
 /// Vertical, lateral and rotation of each node, one after the other.
@@ -71,4 +81,20 @@ pub struct SpectrumCurve {
     pub gust: [Vec<f64>; 2],
     /// Spectra of the displacements, m²/Hz, rad²/Hz: those of a section (n), or vertical, lateral and rotation of each node of a bridge.
     pub motion: Vec<Vec<f64>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn peaks_of_short_records_and_of_what_is_still_are_finite() {
+        assert_eq!(peak_factor(0.0, 600.0), 0.0);
+        // 2 ln 60 = 8.1887
+        assert!((peak_factor(0.1, 600.0) - 3.0633).abs() < 1e-4);
+        let durations = [1e-3, 5.0, 10.0, 13.0, 14.0, 20.0, 100.0];
+        let peaks = durations.map(|duration_s| peak_factor(0.1, duration_s));
+        assert!(peaks[0] > 1.5 && peaks.is_sorted(), "{peaks:?}");
+        assert_eq!(part(0.0, 0.0, 1.0), 1.0);
+    }
 }

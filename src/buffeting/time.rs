@@ -1,7 +1,7 @@
 //! Response in the time domain: generated gust forces stepped through the coupled section, many records.
 
 use super::problem::BuffetingProblem;
-use super::response::BuffetingResponse;
+use super::response::{BuffetingResponse, part};
 use super::synthesis::parts_in_time;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Result, ensure, positive};
@@ -152,7 +152,8 @@ pub(super) fn root_and_error(squares: &[f64]) -> (f64, f64) {
     let count = squares.len() as f64;
     let mean = squares.iter().sum::<f64>() / count;
     let scatter = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    (mean.sqrt(), (scatter / count).sqrt() / (2.0 * mean.sqrt()))
+    let error = part((scatter / count).sqrt(), 2.0 * mean.sqrt(), 0.0);
+    (mean.sqrt(), error)
 }
 
 fn grid(

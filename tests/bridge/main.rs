@@ -13,4 +13,5 @@ mod gusts;
 mod identities;
 mod plausibility;
 mod published;
+mod refused;
 mod stated;

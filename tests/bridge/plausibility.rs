@@ -5,7 +5,8 @@ use aerodeck::bridge::{Bridge, BridgeMode, Node};
 use aerodeck::bridge::{StripGroup, tributary_lengths};
 use aerodeck::files::bridge::{BridgeModes, embedded};
 use aerodeck::plausibility::{
-    Finding, FindingKind, FindingSeverity, Girder, of_bridge, of_modes, sentences,
+    Finding, FindingKind, FindingSeverity, Girder, of_bridge, of_modes, of_modes_left_out,
+    of_profile, sentences,
 };
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -233,4 +234,74 @@ fn axes_are_compared_with_the_line_of_the_nodes() {
         girder_findings(400.0, 3.0, 0.0)[0].severity,
         FindingSeverity::Note
     );
+}
+
+/// Shapes without rotations or without vertical displacements look safe in every wind.
+#[test]
+fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {
+    for (motion, expected) in [
+        (
+            2,
+            "modes: none of the modes turns; were rotations exported?",
+        ),
+        (
+            0,
+            "modes: none of the modes moves up and down; were vertical displacements exported?",
+        ),
+    ] {
+        let still = changed(|m| m.shape.iter_mut().for_each(|s| s[motion] *= 1e-12));
+        let bridge = bridge(still, 31.0, 1.25);
+        let said = of_modes_left_out(&bridge, &[]);
+        assert_eq!(sentences(&said), [expected]);
+        assert_eq!(said[0].severity, FindingSeverity::Doubt);
+        // where the file has such modes, the selection is what is odd
+        let said = sentences(&of_modes_left_out(&bridge, &langenuen().modes));
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert!(said[0].starts_with("modes.select: "), "{said:?}");
+    }
+    let right = bridge(langenuen(), 31.0, 1.25);
+    assert!(of_modes_left_out(&right, &[]).is_empty());
+    let null = changed(|m| m.shape.iter_mut().for_each(|s| *s = [0.0; 3]));
+    assert_eq!(right.main_motion(&null.modes[0]), None);
+}
+
+#[test]
+fn lengths_of_girder_are_compared_with_the_places_of_the_nodes() {
+    let times = |factor: f64| {
+        let mut modes = langenuen();
+        modes.nodes.iter_mut().for_each(|n| n.length_m *= factor);
+        sentences(&modes.findings())
+    };
+    assert!(times(1.03).is_empty());
+    assert_eq!(
+        times(0.5),
+        [
+            "nodes: lengths of girder at the nodes (length_m) add up to 617.5 m, where their places (along_m) reach over 1235 m; \
+             wind forces grow with the lengths"
+        ]
+    );
+    // strips of full length at both ends
+    let mut modes = langenuen();
+    let last = modes.nodes.len() - 1;
+    modes.nodes[0].length_m *= 2.0;
+    modes.nodes[last].length_m *= 2.0;
+    assert!(modes.findings().is_empty());
+}
+
+#[test]
+fn a_wind_profile_beyond_the_girder_is_doubted() {
+    let nodes = langenuen().nodes;
+    for right in [&[][..], &[0.0], &[-9000.0, 9000.0], &[600.0, 9000.0]] {
+        assert_eq!(of_profile(right, &nodes), None, "{right:?}");
+    }
+    for wrong in [&[5000.0, 6000.0][..], &[-5000.0, -700.0], &[700.0]] {
+        let found = of_profile(wrong, &nodes).unwrap();
+        assert_eq!(found.severity, FindingSeverity::Doubt);
+        let text = found.to_string();
+        let end = "wholly beyond the girder from -617.5 to 617.5 m";
+        assert!(
+            text.starts_with("wind.profile: ") && text.contains(end),
+            "{text}"
+        );
+    }
 }

@@ -129,3 +129,46 @@ fn what_is_left_out_of_a_compact_file_hides_no_curve() {
         ],
     );
 }
+
+/// A model that was exported without rotations does not flutter, and that is no answer.
+#[test]
+fn a_bridge_without_rotations_cannot_be_judged() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    write_tables(at, &Girder::default());
+    let shapes = fs::read_to_string(at.join("shapes.csv")).unwrap();
+    let (heading, rows) = shapes.split_once('\n').unwrap();
+    let still = |row: &str| {
+        let cells: Vec<&str> = row.split(',').collect();
+        format!("{},0,0,0\n", cells[..5].join(","))
+    };
+    let still: String = rows.lines().map(still).collect();
+    fs::write(at.join("shapes.csv"), format!("{heading}\n{still}")).unwrap();
+    let shown = shown(at, &["bridge", "flutter", "bridge.toml"]);
+    let finding = "modes: none of the modes turns; were rotations exported?";
+    cannot_be_judged(&shown, "60", finding);
+}
+
+/// What is there stays, the files of the bridge with `--force` too; and every mode keeps what the wind acts on.
+#[test]
+fn a_compact_file_replaces_nothing_unasked() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    write_tables(at, &Girder::default());
+    let convert = |more: &[&'static str]| [&["bridge", "convert", "bridge.toml"], more].concat();
+    succeeds(at, &convert(&["one.csv"]));
+    let kept = "one.csv: expected no file there yet (or --force)";
+    refused(at, &convert(&["one.csv"]), &[kept]);
+    succeeds(at, &convert(&["one.csv", "--force"]));
+    for input in ["shapes.csv", "bridge.toml"] {
+        let before = fs::read(at.join(input)).unwrap();
+        let kept = "expected another file than those the bridge is read from";
+        refused(at, &convert(&[input, "--force"]), &[input, kept]);
+        assert_eq!(fs::read(at.join(input)).unwrap(), before);
+    }
+    refused(
+        at,
+        &convert(&["two.csv", "--every", "16"]),
+        &["--every: expected as many nodes as carry the shapes of all modes, found mode "],
+    );
+}

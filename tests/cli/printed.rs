@@ -174,3 +174,49 @@ fn the_report_of_a_bridge_has_its_response_to_turbulence() {
     let report = fs::read_to_string(at.join("r/report.html")).unwrap();
     assert!(!report.contains("Buffeting at"));
 }
+
+/// A wind in which the bridge is unstable has no response; the others do, and what does not move has no peaks.
+#[test]
+fn winds_without_a_response_are_named_beside_the_others() {
+    let folder = folder();
+    let at = folder.path();
+    let block = BUFFETING.replace("section_forces = \"forces.csv\"\n", "");
+    let text = fs::read_to_string(at.join("bridge.toml")).unwrap() + &block;
+    let bending = text.replace("2, 3, 5, 12, 14, 16, 17, 23", "2, 3, 5");
+    fs::write(at.join("bending.toml"), bending).unwrap();
+    fs::write(at.join("bridge.toml"), text).unwrap();
+    let run = ["bridge", "buffeting", "bridge.toml"];
+    let both = [&run[..], &["--speed", "30,90", "--out", "r", "--json"]].concat();
+    let (code, said, error) = aerodeck(at, &both);
+    assert_eq!(code, 1, "{said}{error}");
+    let why = "buffeting at 90 m/s: the bridge is unstable there";
+    assert!(error.contains(why), "{error}");
+    let said: Value = serde_json::from_str(&said).unwrap();
+    assert!(said["unstable"][0].as_str().unwrap().starts_with(why));
+    let answered = said["buffeting"].as_array().unwrap();
+    assert_eq!(answered.len(), 1);
+    assert_eq!(answered[0]["frequency"]["speed_m_s"], 30.0);
+    assert!(at.join("r/bridge_spectra_30.csv").exists());
+    let page = fs::read_to_string(at.join("r/buffeting.html")).unwrap();
+    assert!(page.contains(why), "not on the page");
+    let (code, _, error) = aerodeck(at, &[&run[..], &["--speed", "90"]].concat());
+    assert!(code == 1 && error.contains(why), "{code} {error}");
+
+    let file = ["--turbulence", "turbulence.csv"];
+    let several = [&run[..], &file].concat();
+    let expected = "--speed: expected one wind speed with --turbulence";
+    refused(at, &several, &[expected]);
+    let out = [&run[..], &file, &["--out", "t"]].concat();
+    refused(at, &out, &["--turbulence", "--out"]);
+
+    let still = ["bridge", "buffeting", "bending.toml", "--speed", "30"];
+    let said = succeeds(at, &still);
+    assert!(!said.contains("NaN") && !said.contains("inf"), "{said}");
+    let file = fs::read_to_string(at.join("bridge_buffeting.json")).unwrap();
+    let results: Value = serde_json::from_str(&file).unwrap();
+    let peaks = results["expected_peak_factor"][0].as_array().unwrap();
+    assert_eq!(
+        (&peaks[1], &peaks[2]),
+        (&Value::from(0.0), &Value::from(0.0))
+    );
+}

@@ -8,6 +8,7 @@ use super::args::BridgeArgs;
 use super::files::BUFFETING_PAGE;
 use super::{buffeting_page, page};
 use crate::buffeting::TurbulenceField;
+use crate::cli::common::warn;
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
@@ -32,7 +33,8 @@ pub(crate) struct BridgeBuffetingArgs {
     #[arg(long)]
     field: bool,
     /// Take the turbulence of this file instead of making records: written as by --field, or by TurbSim (`.bts`).
-    #[arg(long, conflicts_with = "field")]
+    /// One wind speed, and nothing is written.
+    #[arg(long, conflicts_with_all = ["field", "out"])]
     turbulence: Option<PathBuf>,
 }
 
@@ -47,22 +49,17 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     }
     let speeds = args.speeds(&block)?;
     let mut out = args.bridge.out()?;
-    let stage = progress.steps("records of turbulence");
-    let mut all = Vec::with_capacity(speeds.len());
-    for (i, speed) in speeds.iter().enumerate() {
-        all.push(study.buffeting(&block, *speed, &|done, of| {
-            stage.at((i * of + done) as u64, (speeds.len() * of) as u64);
-        })?);
-    }
-    drop(stage);
+    let (all, unstable) = responses(&study, &block, &speeds, progress)?;
+    warn(&args.bridge.bridge, &unstable);
     let (results, whole) = match &all[..] {
-        [one] => (serde_json::json!(one), serde_json::json!(one)),
+        [one] if speeds.len() == 1 => (serde_json::json!(one), serde_json::json!(one)),
         all => (serde_json::json!(all), serde_json::json!({ "speeds": all })),
     };
     out.write_json("bridge_buffeting.json", "bridge-buffeting-results", &whole)?;
     let mut text = String::new();
-    for (results, speed) in all.iter().zip(&speeds) {
-        let name = match all.len() {
+    for results in &all {
+        let speed = results.frequency.speed_m_s;
+        let name = match speeds.len() {
             1 => "bridge_spectra.csv".to_owned(),
             _ => format!("bridge_spectra_{speed}.csv"),
         };
@@ -75,17 +72,55 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             table(results)
         );
     }
+    for why in &unstable {
+        let _ = writeln!(text, "no answer: {why}");
+    }
     if args.field {
-        let field = study.first_field(&block, speeds[0])?;
+        let field = study.first_field(&block, all[0].frequency.speed_m_s)?;
         out.write("turbulence.csv", field_csv(&field))?;
     }
     let file = args.bridge.text()?;
-    let page = buffeting_page::page(&study, &file, &all)?;
+    let page = buffeting_page::page(&study, &file, &all, &unstable)?;
     out.write(BUFFETING_PAGE, sections_page(&page)?)?;
     let folder = out.target("");
-    let answer = judged(&study, &text, &results, |text, json| out.answer(text, json))?;
+    let answer = judged(&study, &text, &results, |text, mut json| {
+        if !unstable.is_empty() {
+            json["unstable"] = serde_json::json!(unstable);
+        }
+        out.answer(text, json)
+    })?;
     page::renew(&folder, &file)?;
-    Ok(answer)
+    Ok(answer.passed_if(unstable.is_empty()))
+}
+
+/// The responses at the speeds that have one, and why the others have none.
+///
+/// # Errors
+/// As [`BridgeStudy::buffeting`]; where no speed has a response, that of the first.
+fn responses(
+    study: &BridgeStudy,
+    block: &BuffetingBlock,
+    speeds: &[f64],
+    progress: &Progress,
+) -> Result<(Vec<BridgeBuffeting>, Vec<String>)> {
+    let stage = progress.steps("records of turbulence");
+    let mut all = Vec::with_capacity(speeds.len());
+    let mut unstable = Vec::new();
+    for (i, speed) in speeds.iter().enumerate() {
+        let found = study.buffeting(block, *speed, &|done, of| {
+            stage.at((i * of + done) as u64, (speeds.len() * of) as u64);
+        });
+        match found {
+            Ok(found) => all.push(found),
+            // what the others say holds without it
+            Err(Error::Unstable(why)) => unstable.push(why),
+            Err(e) => return Err(e),
+        }
+    }
+    match all.is_empty() {
+        true => Err(Error::Unstable(unstable.swap_remove(0))),
+        false => Ok((all, unstable)),
+    }
 }
 
 impl BridgeBuffetingArgs {
@@ -129,13 +164,17 @@ fn by_file(
     block: &BuffetingBlock,
     path: &Path,
 ) -> Result<Answer> {
-    let speed = args.speeds(block)?[0];
+    let speeds = args.speeds(block)?;
+    let [speed] = speeds[..] else {
+        let expected = "one wind speed with --turbulence, that of its file";
+        return Err(Error::input("--speed", expected, speeds.len().to_string()));
+    };
     let found = study
         .buffeting_by(block, speed, &read_field(path)?)
         .map_err(|e| e.in_file(path))?;
     let of_nodes = rows(&["RMS", "peak f."], &found.nodes, |n, i| {
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
-        vec![format!("{rms:.5e}"), format!("{peak:.3}")]
+        vec![format!("{rms:.5e}"), of_motion(rms, format!("{peak:.3}"))]
     });
     let text = format!(
         "{} at {speed} m/s in the turbulence of {}\n{of_nodes}",
@@ -146,6 +185,11 @@ fn by_file(
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
+
+/// A figure of a motion, of which there is none where nothing moves.
+pub(super) fn of_motion(rms: f64, figure: String) -> String {
+    if rms > 0.0 { figure } else { "–".to_owned() }
+}
 
 /// A line for each motion of each node, with the figures that `of` has of them.
 fn rows(heads: &[&str], nodes: &[String], of: impl Fn(usize, usize) -> Vec<String>) -> String {
@@ -176,13 +220,14 @@ fn table(results: &BridgeBuffeting) -> String {
             [
                 format!("{:.5e}", time.rms[n][i]),
                 format!("{:.2e}", time.standard_error[n][i]),
-                format!("{:.3}", time.peak_factor[n][i]),
+                of_motion(time.rms[n][i], format!("{:.3}", time.peak_factor[n][i])),
             ]
         });
+        let rms = frequency.rms[n][i];
         let mut cells = vec![
-            format!("{:.5e}", frequency.rms[n][i]),
-            format!("{:.4}", frequency.crossing_frequency_hz[n][i]),
-            format!("{:.3}", results.expected_peak_factor[n][i]),
+            format!("{rms:.5e}"),
+            of_motion(rms, format!("{:.4}", frequency.crossing_frequency_hz[n][i])),
+            of_motion(rms, format!("{:.3}", results.expected_peak_factor[n][i])),
         ];
         cells.extend(time.unwrap_or(["–"; 3].map(str::to_owned)));
         let acceleration = results.envelope.acceleration_rms[frequency.nodes[n]][i];

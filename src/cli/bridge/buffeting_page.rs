@@ -1,5 +1,6 @@
 //! The page of a response to turbulence; the report of the bridge takes it up.
 
+use super::buffeting::of_motion;
 use crate::cli::report::folder::{digest, today};
 use crate::error::Result;
 use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
@@ -13,11 +14,12 @@ const MOTIONS: [(&str, f64); 3] = [
     ("rotation,\u{a0}°", 180.0 / std::f64::consts::PI),
 ];
 
-/// A section a wind speed; `text` is that of the bridge file.
+/// A section a wind speed; `text` is that of the bridge file, and `unstable` says why other speeds have no response.
 pub(super) fn page(
     study: &BridgeStudy,
     text: &str,
     all: &[BridgeBuffeting],
+    unstable: &[String],
 ) -> Result<SectionsPage> {
     let speeds: Vec<String> = all
         .iter()
@@ -27,7 +29,13 @@ pub(super) fn page(
     Ok(SectionsPage {
         title: study.file.name.clone(),
         subtitle: "Response of the whole bridge to turbulence".to_owned(),
-        answer: format!("Response to turbulence at {} m/s", speeds.join(", ")),
+        answer: std::iter::once(format!(
+            "Response to turbulence at {} m/s",
+            speeds.join(", ")
+        ))
+        .chain(unstable.iter().cloned())
+        .collect::<Vec<_>>()
+        .join("; "),
         of: study.file.report.dated(Some(&today()?)),
         key: digest(text.as_bytes()),
         sections: sections.collect::<Result<_>>()?,
@@ -53,7 +61,7 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
                 number(mean),
                 number(rms),
                 time,
-                format!("{g:.2}"),
+                of_motion(rms, format!("{g:.2}")),
                 number(mean - g * rms),
                 number(mean + g * rms),
                 number(of.envelope.acceleration_rms[at][i]),

@@ -50,7 +50,7 @@ fn accounts(directory: &Path, model: &Path) -> Vec<PathBuf> {
 }
 
 /// Files of modes, tables and models, as the bridge file names them.
-fn named(file: &BridgeFile) -> Result<Vec<PathBuf>> {
+pub(super) fn named(file: &BridgeFile) -> Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     if file.modes.format != ModesFormat::Embedded {
         all.push(file.modes.path.clone());

@@ -6,7 +6,7 @@ use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, motion_index};
 use crate::buffeting::{
     BuffetingProblem, Coherence, FrequencyDomain, Gust, SpanEnsemble, SpanPlan, SpanRecord,
-    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, span_ensemble, span_record,
+    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, part, span_ensemble, span_record,
     turbulence_field,
 };
 use crate::error::{Error, Result, positive};
@@ -222,7 +222,7 @@ impl BridgeStudy {
         };
         let change = response.as_ref().map(|by_model| {
             let both = by_model.rms.iter().zip(&answer.rms);
-            both.map(|(m, t)| std::array::from_fn(|i| m[i] / t[i] - 1.0))
+            both.map(|(m, t)| std::array::from_fn(|i| part(m[i], t[i], 1.0) - 1.0))
                 .collect()
         });
         let sections = self.file.sections.iter().zip(&self.sections);
