@@ -249,7 +249,13 @@ fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {
             "modes: none of the modes moves up and down; were vertical displacements exported?",
         ),
     ] {
-        let still = changed(|m| m.shape.iter_mut().for_each(|s| s[motion] *= 1e-12));
+        let still = changed(|m| {
+            for s in &mut m.shape {
+                // each mode moves somehow
+                s[1] += 1e-3;
+                s[motion] *= 1e-12;
+            }
+        });
         let bridge = bridge(still, 31.0, 1.25);
         let said = of_modes_left_out(&bridge, &[]);
         assert_eq!(sentences(&said), [expected]);

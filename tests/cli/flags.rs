@@ -23,7 +23,8 @@ const WITHOUT_OUT: [&str; 13] = [
     "validate",
 ];
 /// Commands that write files which users edit or hand on. What can be computed again is replaced without being asked.
-const WITH_FORCE: [&str; 11] = [
+const WITH_FORCE: [&str; 12] = [
+    "bridge convert",
     "buffeting",
     "campaign virtual",
     "demo",

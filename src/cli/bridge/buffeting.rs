@@ -5,8 +5,9 @@ use super::super::headline;
 use super::super::progress::Progress;
 use super::super::text_table::TextTable;
 use super::args::BridgeArgs;
+use super::buffeting_page::{self, of_motion};
 use super::files::BUFFETING_PAGE;
-use super::{buffeting_page, page};
+use super::page;
 use crate::buffeting::TurbulenceField;
 use crate::cli::common::warn;
 use crate::error::{Error, Result, counted};
@@ -185,11 +186,6 @@ fn by_file(
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
-
-/// A figure of a motion, of which there is none where nothing moves.
-pub(super) fn of_motion(rms: f64, figure: String) -> String {
-    if rms > 0.0 { figure } else { "–".to_owned() }
-}
 
 /// A line for each motion of each node, with the figures that `of` has of them.
 fn rows(heads: &[&str], nodes: &[String], of: impl Fn(usize, usize) -> Vec<String>) -> String {

@@ -1,6 +1,5 @@
 //! The page of a response to turbulence; the report of the bridge takes it up.
 
-use super::buffeting::of_motion;
 use crate::cli::report::folder::{digest, today};
 use crate::error::Result;
 use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
@@ -40,6 +39,11 @@ pub(super) fn page(
         key: digest(text.as_bytes()),
         sections: sections.collect::<Result<_>>()?,
     })
+}
+
+/// A figure of a motion, of which there is none where nothing moves.
+pub(super) fn of_motion(rms: f64, figure: String) -> String {
+    if rms > 0.0 { figure } else { "–".to_owned() }
 }
 
 fn section(of: &BridgeBuffeting) -> Result<PageSection> {

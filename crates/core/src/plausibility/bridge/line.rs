@@ -100,7 +100,7 @@ pub fn of_profile(along_m: &[f64], nodes: &[Node]) -> Option<Finding> {
     );
     Some(
         Finding::doubt(FindingKind::Contradiction, "wind.profile", text)
-            .otherwise("its last factor before the girder is taken everywhere".to_owned()),
+            .otherwise("the factor of its nearest point is taken everywhere".to_owned()),
     )
 }
 
