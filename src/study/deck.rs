@@ -30,6 +30,8 @@ const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 #[derive(Debug, Clone)]
 pub struct Deck {
     source: DeckData,
+    /// The part of the table at the speed groups of the deck, where it states some: a model may still be of another.
+    chosen: Option<DerivativeTable>,
     interpolation: Interpolation,
     /// What was assumed in reading the table.
     notes: Vec<String>,
@@ -44,6 +46,23 @@ pub struct Deck {
 enum DeckData {
     Table(DerivativeTable),
     FlatPlate,
+}
+
+impl DeckData {
+    /// The table cut to the speed groups that the study asks for; none where it asks for none. Groups that only the records of a
+    /// study have are those of the records.
+    fn at_speeds(&self, study: &Study) -> Result<Option<DerivativeTable>> {
+        let (Self::Table(table), Some(groups)) = (self, &study.deck.speed_groups) else {
+            return Ok(None);
+        };
+        let count = table.speed_groups().len().max(1);
+        let of_records = !study.deck.records.is_empty() && groups.iter().any(|g| *g > count);
+        if of_records {
+            return Ok(None);
+        }
+        let cut = chosen(Some(groups), count).and_then(|groups| table.at_speed_groups(&groups));
+        cut.map(Some).map_err(|e| e.at("deck.speed_groups"))
+    }
 }
 
 /// Width at which the flat plate is tested, m: speeds and frequencies of the tunnel are those of section models.
@@ -123,6 +142,7 @@ impl Deck {
         }
         let built_in = matches!(source, DeckData::Table(_)) && !is_file;
         Ok(Self {
+            chosen: source.at_speeds(study)?,
             source,
             notes,
             findings,
@@ -214,10 +234,10 @@ impl Deck {
         }
     }
 
-    /// The measured table; `None` for the flat plate.
+    /// The measured table at the speeds of the deck; `None` for the flat plate.
     pub(crate) fn table(&self) -> Option<&DerivativeTable> {
         match &self.source {
-            DeckData::Table(table) => Some(table),
+            DeckData::Table(table) => Some(self.chosen.as_ref().unwrap_or(table)),
             DeckData::FlatPlate => None,
         }
     }
@@ -245,14 +265,14 @@ impl Deck {
     /// # Errors
     /// [`Error::Input`] when the table lacks a derivative of the section.
     pub(crate) fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
-        match &self.source {
-            DeckData::Table(table) => {
+        match self.table() {
+            Some(table) => {
                 let by = self.interpolation;
                 let model = InterpolatedTable::by(by, table, &self.dofs, Extrapolation::Hold)?;
                 let range = model.tested_range();
                 Ok((Box::new(model), Some(range)))
             }
-            DeckData::FlatPlate => Ok((Box::new(FlatPlate::default()), None)),
+            None => Ok((Box::new(FlatPlate::default()), None)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a deck itself answers: its onset by the determinant, and its forces at rest.
 
-use super::{Deck, DeckData, EXACT_RANGE};
+use super::{Deck, EXACT_RANGE};
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
@@ -29,8 +29,8 @@ impl Deck {
         structure: &Structure,
         speed_max_m_s: f64,
     ) -> Result<FlutterSearch> {
-        match &self.source {
-            DeckData::Table(table) => {
+        match self.table() {
+            Some(table) => {
                 let by = self.interpolation;
                 let mut search = self.table_onset(by, table, structure, speed_max_m_s)?;
                 if let FlutterSearch::Onset(onset) = &mut search {
@@ -38,7 +38,7 @@ impl Deck {
                 }
                 Ok(search)
             }
-            DeckData::FlatPlate => {
+            None => {
                 let range = ReducedFrequencyRange::between(
                     ReducedFrequency::from_full_width(EXACT_RANGE.0),
                     ReducedFrequency::from_full_width(EXACT_RANGE.1),

@@ -235,19 +235,31 @@ impl DerivativeTable {
     /// [`Error::Input`] when there is no such group, or a derivative was not measured in it. A table without speeds is one
     /// group.
     pub fn at_speed_group(&self, i: usize) -> Result<Self> {
+        self.at_speed_groups(&[i])
+    }
+
+    /// The part of the table that was measured at any of these groups, numbered as by [`DerivativeTable::at_speed_group`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn at_speed_groups(&self, chosen: &[usize]) -> Result<Self> {
         let groups = self.grouped_speeds();
-        if groups.is_empty() && i == 0 {
+        if groups.is_empty() && chosen == [0] {
             return Ok(self.clone());
         }
-        let group = groups.get(i).ok_or_else(|| {
-            Error::input(
-                format!("table {}", self.name),
-                format!("a speed group below {}", groups.len()),
-                i.to_string(),
-            )
-        })?;
-        let (low, high) = (group[0], group[group.len() - 1]);
-        let inside = |p: &&DerivativePoint| p.mean_speed_m_s.is_some_and(|v| low <= v && v <= high);
+        let mut ranges = Vec::with_capacity(chosen.len());
+        for i in chosen {
+            let group = groups.get(*i).ok_or_else(|| {
+                Error::input(
+                    format!("table {}", self.name),
+                    format!("a speed group below {}", groups.len()),
+                    i.to_string(),
+                )
+            })?;
+            ranges.push(group[0]..=group[group.len() - 1]);
+        }
+        let of_speed = |v: f64| ranges.iter().any(|range| range.contains(&v));
+        let inside = |p: &&DerivativePoint| p.mean_speed_m_s.is_some_and(of_speed);
         let points = self
             .points
             .iter()
