@@ -27,7 +27,7 @@ const UNITS: [(&str, &str); 13] = [
     ("_n", "N"),
 ];
 
-/// Draw columns of a CSV file of results over one of them, as SVG and PNG
+/// Draw columns of a CSV file of results over one of them, as SVG and with --png as PNG
 ///
 /// Example: aerodeck plot aerodeck-out/curves.csv --x speed_m_s --y frequency_hz,damping_ratio
 #[derive(clap::Args)]

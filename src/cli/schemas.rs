@@ -41,9 +41,10 @@ pub(super) fn asked(arguments: &[String]) -> Result<Option<Answer>> {
     }
     let words = arguments.iter().filter(|a| !a.starts_with('-'));
     let line: Vec<&str> = words.map(String::as_str).collect();
-    let line = match line.join(" ") {
-        demo if demo == "demo" => "study".to_owned(),
-        line => line,
+    let line = match line.first() {
+        Some(&"demo") if arguments.iter().any(|a| a == "--bridge") => "bridge flutter".to_owned(),
+        Some(&"demo") => "study".to_owned(),
+        _ => line.join(" "),
     };
     let is_meant = |name: &str| line == name || line.starts_with(&format!("{name} "));
     let Some((_, text)) = SCHEMAS.iter().find(|(name, _)| is_meant(name)) else {

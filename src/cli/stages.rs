@@ -141,15 +141,29 @@ pub(crate) fn train(
         trained.push(result);
         drop(stage);
     }
-    let name = Path::new(MODELS).join(TABLE);
-    match fingerprint(deck)? {
-        Some(of_table) => out.write(name, of_table)?,
-        None => out.outdated(name),
-    }
+    leave_fingerprint(deck, out)?;
     match first_error {
         Some(error @ Error::Input(_)) if trained.is_empty() => Err(error),
         _ => Ok(trained),
     }
+}
+
+/// Writes of which table the models are. What other commands left beside models of another table is not of this one.
+fn leave_fingerprint(deck: &Deck, out: &mut OutputDir) -> Result<()> {
+    let name = Path::new(MODELS).join(TABLE);
+    let own = fingerprint(deck)?;
+    let before = std::fs::read_to_string(out.target(&name)).ok();
+    if before.is_some() && before != own {
+        for stem in ["routes", "selection", "selection_metrics", "simulation"] {
+            figures::outdated(stem, out);
+        }
+        out.outdated("simulation.csv");
+    }
+    match own {
+        Some(of_table) => out.write(name, of_table)?,
+        None => out.outdated(name),
+    }
+    Ok(())
 }
 
 /// What tells the numbers of the deck's table from those of a revised one; none of a deck that is exact.

@@ -69,6 +69,13 @@ fn decks_are_compared_with_the_model_of_one() {
         &["compare", "models", "--alpha", "1.5"],
         &["alpha", "1.5"],
     );
+    for (flag, place) in [("--speed", "speed_m_s"), ("--noise", "noise_fraction")] {
+        refused(
+            folder.path(),
+            &["compare", "decks", flag, "-3"],
+            &[place, "positive number", "-3"],
+        );
+    }
 }
 
 /// A cosine and the same 20 ms late and a tenth larger: what each metric sees is known in closed form.

@@ -1,7 +1,10 @@
 //! The schemas in `docs/schema` are those of what the commands print: every output is valid, and every key of an output has its type.
 //! `AERODECK_UPDATE=1` makes them anew.
 
+mod lines;
+
 use crate::command::{aerodeck, succeeds};
+use lines::LINES;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,188 +17,13 @@ const SCATTER: &str = "schema = 1\nmodel = \"a/models/laguerre.json\"\nsamples =
 const GUSTS: &str = "[buffeting]\nspeeds_m_s = [20.0]\n[buffeting.turbulence.vertical]\nspectrum = { shape = { kind = \"von_karman\" }, \
      length_m = 20.0, intensity = 0.05 }\n";
 
-/// Command lines whose outputs make a schema, in this order: the first make the files that later ones read.
-const LINES: [(&str, &[&str]); 31] = [
-    ("", &["new", "--deck", "LN21-5200"]),
-    ("", &["new", "--deck", "flat plate", "--out", "plate.toml"]),
-    (
-        "study",
-        &["study", "study.toml", "--out", "a", "--no-figures"],
-    ),
-    (
-        "study",
-        &[
-            "study",
-            "study.toml",
-            "--out",
-            "b",
-            "--no-figures",
-            "--set",
-            "flutter.required_speed_m_s=36.7",
-        ],
-    ),
-    (
-        "study",
-        &["study", "plate.toml", "--out", "c", "--no-figures"],
-    ),
-    (
-        "study",
-        &[
-            "study",
-            "study.toml",
-            "--out",
-            "d",
-            "--no-figures",
-            "--set",
-            "section.torsion.damping_ratio=0.2",
-            "--set",
-            "flutter.speed_max_m_s=30",
-        ],
-    ),
-    (
-        "study",
-        &["study", "gusts.toml", "--out", "e", "--no-figures"],
-    ),
-    ("train", &["train", "study.toml", "--out", "a"]),
-    (
-        "flutter",
-        &["flutter", "study.toml", "--out", "a", "--no-figures"],
-    ),
-    (
-        "flutter",
-        &[
-            "flutter",
-            "study.toml",
-            "--out",
-            "a",
-            "--no-figures",
-            "--set",
-            "flutter.required_speed_m_s=20",
-        ],
-    ),
-    (
-        "monte-carlo",
-        &["monte-carlo", "scatter.toml", "--no-figures"],
-    ),
-    (
-        "simulate",
-        &[
-            "simulate",
-            "a/models/laguerre.json",
-            "--wind-speed",
-            "20",
-            "--stop-time",
-            "1",
-        ],
-    ),
-    (
-        "fmu export",
-        &["fmu", "export", "a/models/laguerre.json", "--out", "x.fmu"],
-    ),
-    (
-        "fmu export",
-        &[
-            "fmu",
-            "export",
-            "a/models/laguerre.json",
-            "--kind",
-            "force",
-            "--out",
-            "f.fmu",
-        ],
-    ),
-    ("fmu check", &["fmu", "check", "x.fmu"]),
-    ("fmu check", &["fmu", "check", "f.fmu"]),
-    ("derivatives show", &["derivatives", "show", "LN21-5200"]),
-    (
-        "derivatives show",
-        &["derivatives", "show", "LN21-6100", "--to", "polimi"],
-    ),
-    ("buffeting", &["buffeting", "--no-figures", "--out", "w"]),
-    (
-        "quasi-steady",
-        &["quasi-steady", "--no-figures", "--out", "q"],
-    ),
-    ("", &["campaign", "virtual", "LN21-5200", "--out", "raw"]),
-    (
-        "campaign check",
-        &["campaign", "check", "raw/campaign.toml"],
-    ),
-    (
-        "process",
-        &["process", "raw/campaign.toml", "--out", "p", "--no-figures"],
-    ),
-    (
-        "select",
-        &[
-            "select",
-            "study.toml",
-            "--out",
-            "s",
-            "--no-figures",
-            "--filters",
-            "3",
-            "--values",
-            "4",
-        ],
-    ),
-    ("coverage", &["coverage", "--repetitions", "8"]),
-    ("validate", &["validate", "iabse-1.1a-onset"]),
-    ("", &["new", "--bridge"]),
-    (
-        "bridge flutter",
-        &[
-            "bridge",
-            "flutter",
-            "bridge.toml",
-            "--no-figures",
-            "--out",
-            "g",
-        ],
-    ),
-    (
-        "bridge flutter",
-        &[
-            "bridge",
-            "flutter",
-            "required.toml",
-            "--no-figures",
-            "--out",
-            "h",
-        ],
-    ),
-    (
-        "bridge buffeting",
-        &[
-            "bridge",
-            "buffeting",
-            "all.toml",
-            "--speed",
-            "30",
-            "--no-figures",
-            "--out",
-            "i",
-        ],
-    ),
-    (
-        "compare signals",
-        &[
-            "compare",
-            "signals",
-            "signals.csv",
-            "--reference",
-            "a",
-            "--compared",
-            "b",
-            "--sampling-hz",
-            "100",
-        ],
-    ),
-];
-
 /// What `--json` prints, by the command.
 fn outputs(at: &Path) -> BTreeMap<&'static str, Vec<Value>> {
     fs::write(at.join("scatter.toml"), SCATTER).unwrap();
+    let template = include_str!("../../src/cli/new/monte_carlo.toml");
+    let template = template.replace("\"model.json\"", "\"a/models/laguerre.json\"");
+    let few = template.replace("samples = 100000", "samples = 300");
+    fs::write(at.join("template.toml"), few).unwrap();
     let wave = |k: usize, lag: f64| (0.1 * k as f64 - lag).sin();
     let rows = (0..400).map(|k| format!("{},{},{}\n", 0.01 * k as f64, wave(k, 0.0), wave(k, 0.3)));
     let signals: String = std::iter::once("time_s,a,b\n".to_owned())
@@ -205,10 +33,13 @@ fn outputs(at: &Path) -> BTreeMap<&'static str, Vec<Value>> {
     let mut all: BTreeMap<&str, Vec<Value>> = BTreeMap::new();
     for (command, line) in LINES {
         let line = [line, &["--json"]].concat();
+        if line.contains(&"alone.json") {
+            fs::copy(at.join("a/models/laguerre.json"), at.join("alone.json")).unwrap();
+        }
         let (code, printed, said) = aerodeck(at, &line);
         assert!(matches!(code, 0 | 1 | 3), "{line:?}: {said}");
         if command.is_empty() {
-            if line.contains(&"--bridge") {
+            if line == ["new", "--bridge", "--json"] {
                 bridges(at);
             } else if line.contains(&"LN21-5200") && line[0] == "new" {
                 let study = fs::read_to_string(at.join("study.toml")).unwrap();
@@ -395,6 +226,17 @@ fn a_command_prints_its_schema() {
     let schema: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!(schema["type"], "object");
     assert!(schema["properties"].as_object().unwrap().len() > 3);
+    for (line, kind) in [
+        (&["demo", "--out", "x"][..], "aerodeck/study 1"),
+        (
+            &["demo", "--bridge", "--out", "x"],
+            "aerodeck/bridge-flutter 1",
+        ),
+    ] {
+        let printed = succeeds(folder.path(), &[line, &["--json-schema"]].concat());
+        let schema: Value = serde_json::from_str(&printed).unwrap();
+        assert_eq!(schema["properties"]["format"]["const"], kind);
+    }
     let (code, _, said) = aerodeck(folder.path(), &["new", "--json-schema"]);
     assert_eq!(code, 2);
     assert!(said.contains("bridge flutter"), "{said}");

@@ -17,25 +17,25 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 pub(super) struct Common {
     /// Train at the tested wind speed nearest to this one, m/s.
-    #[arg(long, default_value_t = 8.0)]
+    #[arg(long, default_value_t = 8.0, allow_negative_numbers = true)]
     pub(super) speed: f64,
     /// Number of discrete Laguerre filters L.
     #[arg(long, default_value_t = 3)]
     pub(super) filters: usize,
     /// Decay factor of the discrete filters, 0 < α < 1.
-    #[arg(long, default_value_t = 0.6)]
+    #[arg(long, default_value_t = 0.6, allow_negative_numbers = true)]
     pub(super) alpha: f64,
     /// Sway and drag as well: three motions, nine transfer functions.
     #[arg(long)]
     pub(super) lateral: bool,
     /// White noise on each force, as a fraction of its RMS.
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(super) noise: f64,
     /// Seed of the noise.
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
     /// Phase lag that brings the phase metric to 1/e, degrees.
-    #[arg(long, default_value_t = 5.0)]
+    #[arg(long, default_value_t = 5.0, allow_negative_numbers = true)]
     pub(super) significant_phase: f64,
     /// Folder of tables and figures.
     #[arg(long, default_value = "aerodeck-compare")]

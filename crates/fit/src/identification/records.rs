@@ -9,7 +9,7 @@ use super::entry_report::EntryReport;
 use super::form::Form;
 use super::options::TimeFit;
 use super::own::describe_own;
-use super::report::{FitReport, Fitted, MemoryReport, OrderReport, SearchReport};
+use super::report::{FitReport, Fitted, MemoryReport, OrderReport, SearchReport, enough_rows};
 use super::time::continuous::{RecordFit, Rows, padded};
 use super::time::fitted::FittedSystems;
 use super::time::pass::OnProgress;
@@ -58,7 +58,8 @@ pub fn fit_records(
         records: &records,
         progress,
     };
-    let poles = choose_poles(&task, tested)?;
+    // what the tests do not determine fails in the search of poles, in words that say nothing of it
+    let poles = choose_poles(&task, tested).map_err(|e| task.too_few_numbers(e))?;
     let fits = task.least_squares_at(&poles)?;
     let (found, search, constraints) = task.under_constraints(fits, poles)?;
     let model = found.model()?;
@@ -93,6 +94,15 @@ pub fn fit_records(
 }
 
 impl<'a> RecordFit<'a> {
+    /// The number of filters in place of a solve that failed, where they are more than the tests determine.
+    fn too_few_numbers(&self, failed: Error) -> Error {
+        let form = &self.fit.form;
+        let unknowns = form.feed_through().count() + form.filters();
+        let alike = self.fit.own.is_empty() && matches!(failed, Error::Numerical(_));
+        let counted = enough_rows("records", self.records.rows_of_tests(), unknowns);
+        counted.err().filter(|_| alike).unwrap_or(failed)
+    }
+
     /// The pass over every sample, then least squares: a fit at the unconstrained poles and, where the constrained ones
     /// are others, one at those.
     fn least_squares_at(&'a self, poles: &ChosenPoles) -> Result<Vec<FitAtPoles<'a>>> {

@@ -9,8 +9,8 @@ use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::{
-    Constraints, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
-    fit_records, fit_table,
+    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit,
+    fit_discrete, fit_records, fit_table,
 };
 use crate::numbered::OnDone;
 use crate::section::Dof;
@@ -19,6 +19,8 @@ use serde::Serialize;
 
 /// Frequencies whose histories the thesis shows (Figures 3.29 to 3.32), Hz.
 const SHOWN_HZ: [f64; 2] = [0.5, 2.0];
+/// Filters of the thesis's model, which this program's is to have too.
+const THESIS_FILTERS: usize = 3;
 /// Periods of a history.
 const SHOWN_PERIODS: f64 = 3.0;
 
@@ -140,11 +142,14 @@ fn fits(
 ) -> Result<[(String, Fitted); 3]> {
     let discrete = fit_discrete(sources, &options.laguerre, &|_| ())?;
     let rational = fit_table(samples, &options.dofs, &thesis_rational_functions())?;
-    let continuous = fit_records(sources, &TimeFit::default(), &|_| ())?;
+    let continuous = fit_records(sources, &with_feed_through(), &|_| ())?;
     Ok([
         (format!("Laguerre, {}", options.laguerre_name()), discrete),
         ("rational functions, one lag".to_owned(), rational),
-        ("Laguerre with feed-through, L = 3".to_owned(), continuous),
+        (
+            format!("Laguerre with feed-through, L = {THESIS_FILTERS}"),
+            continuous,
+        ),
     ])
 }
 
@@ -156,6 +161,18 @@ fn rival(name: &str, report: &FitReport) -> ComparedModel {
         coefficients: entry.map_or(0, |e| e.coefficients.len()),
         poles: entry.map_or_else(Vec::new, |e| e.poles.clone()),
         notes: report.notes.clone(),
+    }
+}
+
+/// This program's fit with the filters of the thesis: left to the data there would be more of them.
+fn with_feed_through() -> TimeFit {
+    TimeFit {
+        form: Form::Laguerre {
+            filters: Some(THESIS_FILTERS),
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        },
+        ..TimeFit::default()
     }
 }
 

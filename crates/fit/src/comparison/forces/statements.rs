@@ -16,11 +16,28 @@ pub struct Statement {
     pub here: String,
 }
 
-/// Section 3.5.4 on the scores of several decks.
+/// Whether scores are to be had of records that the models were not trained on; `None` where neither kind has two decks.
+fn kind_of_two_decks(scores: &[Score]) -> Option<bool> {
+    let several = |held_out: bool| {
+        let of_kind = || scores.iter().filter(|s| s.case.held_out == held_out);
+        let first = of_kind().next();
+        first.is_some_and(|first| of_kind().any(|s| s.case.deck != first.case.deck))
+    };
+    [false, true].into_iter().find(|kind| several(*kind))
+}
+
+/// Section 3.5.4 on the scores of several decks; nothing on those of one, which differ from no other.
 pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
+    let Some(held_out) = kind_of_two_decks(scores) else {
+        return Vec::new();
+    };
     let rotating = || {
         let all = scores.iter();
-        all.filter(|s| s.case.motion == Dof::Torsion && !s.case.held_out)
+        all.filter(|s| s.case.motion == Dof::Torsion && s.case.held_out == held_out)
+    };
+    let kind = match held_out {
+        true => ", on records that the model was not trained on",
+        false => "",
     };
     let spread = |force: Dof, metric: usize| {
         let mut worst: Option<(f64, f64)> = None;
@@ -51,14 +68,14 @@ pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
             section: "3.5.4",
             thesis: "very similar metrics on the four girders under rotation, with small discrepancies, most of them in the \
                      lift (LN21-6100 at the first and last frequency)",
-            here: parts.join("; "),
+            here: parts.join("; ") + kind,
         },
         Statement {
             section: "3.5.4",
             thesis: "M_p plunges at 0.5 Hz on LN21-6100 and LN21-5800, an error of the measurement",
             here: lowest.map_or_else(String::new, |s| {
                 format!(
-                    "no spike in these records: lowest M_p {:.3} ({}, {} force, {:.2} Hz)",
+                    "no spike in these records: lowest M_p {:.3} ({}, {} force, {:.2} Hz){kind}",
                     s.metrics.peak,
                     s.case.deck,
                     s.case.force.name(),

@@ -2,7 +2,7 @@
 
 use super::options::CompareOptions;
 use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, positive};
 use crate::files::derivatives::embedded;
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
 
@@ -18,6 +18,7 @@ pub(super) struct TestedDeck {
 impl TestedDeck {
     pub(super) fn new(name: &str, options: &CompareOptions) -> Result<Self> {
         let table = embedded::deck(name)?;
+        positive("speed_m_s", options.speed_m_s)?;
         let plan = TunnelPlan {
             noise_fraction: options.noise_fraction,
             seed: options.seed,

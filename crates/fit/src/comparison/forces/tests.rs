@@ -62,7 +62,7 @@ fn time_and_frequency_domain_agree() {
     assert_eq!(results.entries.len(), 4);
     assert_eq!(results.scores.len(), 3 * 2 * 2 * 8);
     let coefficients: Vec<usize> = results.models.iter().map(|m| m.coefficients).collect();
-    assert_eq!(coefficients, [3, 3, 8]);
+    assert_eq!(coefficients, [3, 3, 6]);
     let mut checked = 0;
     for entry in &results.entries {
         for (model, points) in results.models.iter().zip(&entry.models) {
@@ -141,6 +141,25 @@ fn decks_are_compared_at_both_speeds() {
         own.map(|s| s.mean[3]).sum::<f64>()
     };
     assert!(mean(&other) < mean(&results));
+    // a spread takes two decks: of the teacher alone the forces of the others are predicted
+    let said = |r: &DecksComparison| {
+        r.statements
+            .iter()
+            .map(|s| s.here.clone())
+            .collect::<String>()
+    };
+    assert!(!said(&results).contains("not trained on"));
+    assert!(said(&other).contains("not trained on") && !said(&other).contains("0.00 in lift"));
+    let one = CompareOptions {
+        decks: vec!["LN21-6100".into()],
+        ..quick()
+    };
+    assert!(
+        compare_decks(&one, &|_, _| ())
+            .unwrap()
+            .statements
+            .is_empty()
+    );
     let last = other
         .summaries
         .iter()

@@ -151,6 +151,25 @@ fn noise_of_five_per_cent() {
     }
 }
 
+/// More coefficients than the tests have numbers are counted, as of a fit to a table.
+#[test]
+fn too_many_filters_are_counted() {
+    let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
+    let fit = TimeFit {
+        form: Form::Laguerre {
+            filters: Some(40),
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        },
+        ..TimeFit::default()
+    };
+    let message = fit_records(&sources(&all), &fit, &quiet)
+        .unwrap_err()
+        .to_string();
+    let said = "records: expected at least 43 numbers for 43 coefficients, found 16";
+    assert_eq!(message, said);
+}
+
 /// A pole for each transfer function, found in the same passes.
 #[test]
 fn own_poles_from_records() {

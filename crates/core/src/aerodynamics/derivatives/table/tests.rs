@@ -63,6 +63,9 @@ fn speed_groups_split_the_table() {
     assert_eq!(table.speed_groups(), [4.0, 8.17]);
     let slow = table.at_speed_group(0).unwrap();
     assert_eq!(slow.points(Derivative::H1).len(), 1);
+    let three = flat_plate_table(&[8.17, 4.0, 6.0], &[3.0]);
+    let outer = three.at_speed_groups(&[0, 2]).unwrap();
+    assert_eq!(outer.speed_groups(), [4.0, 8.17]);
     let message = table.at_speed_group(2).unwrap_err().to_string();
     assert_eq!(
         message,

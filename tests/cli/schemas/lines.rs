@@ -1,0 +1,217 @@
+//! The command lines whose outputs make the schemas.
+
+/// Command lines whose outputs make a schema, in this order: the first make the files that later ones read.
+pub(super) const LINES: [(&str, &[&str]); 39] = [
+    ("", &["new", "--deck", "LN21-5200"]),
+    ("", &["new", "--deck", "flat plate", "--out", "plate.toml"]),
+    (
+        "study",
+        &["study", "study.toml", "--out", "a", "--no-figures"],
+    ),
+    (
+        "study",
+        &[
+            "study",
+            "study.toml",
+            "--out",
+            "b",
+            "--no-figures",
+            "--set",
+            "flutter.required_speed_m_s=36.7",
+        ],
+    ),
+    (
+        "study",
+        &["study", "plate.toml", "--out", "c", "--no-figures"],
+    ),
+    (
+        "study",
+        &[
+            "study",
+            "study.toml",
+            "--out",
+            "d",
+            "--no-figures",
+            "--set",
+            "section.torsion.damping_ratio=0.2",
+            "--set",
+            "flutter.speed_max_m_s=30",
+        ],
+    ),
+    (
+        "study",
+        &["study", "gusts.toml", "--out", "e", "--no-figures"],
+    ),
+    ("study", &["demo", "--out", "j", "--no-figures"]),
+    ("train", &["train", "study.toml", "--out", "a"]),
+    (
+        "flutter",
+        &["flutter", "study.toml", "--out", "a", "--no-figures"],
+    ),
+    (
+        "flutter",
+        &[
+            "flutter",
+            "study.toml",
+            "--out",
+            "a",
+            "--no-figures",
+            "--set",
+            "flutter.required_speed_m_s=20",
+        ],
+    ),
+    (
+        "flutter",
+        &[
+            "flutter",
+            "study.toml",
+            "--out",
+            "a",
+            "--no-figures",
+            "--all",
+        ],
+    ),
+    (
+        "monte-carlo",
+        &["monte-carlo", "template.toml", "--no-figures"],
+    ),
+    (
+        "monte-carlo",
+        &["monte-carlo", "scatter.toml", "--no-figures"],
+    ),
+    (
+        "simulate",
+        &[
+            "simulate",
+            "a/models/laguerre.json",
+            "--wind-speed",
+            "20",
+            "--stop-time",
+            "1",
+        ],
+    ),
+    (
+        "fmu export",
+        &["fmu", "export", "a/models/laguerre.json", "--out", "x.fmu"],
+    ),
+    (
+        "fmu export",
+        &[
+            "fmu",
+            "export",
+            "a/models/laguerre.json",
+            "--kind",
+            "force",
+            "--out",
+            "f.fmu",
+        ],
+    ),
+    (
+        "fmu export",
+        &["fmu", "export", "alone.json", "--out", "y.fmu"],
+    ),
+    ("fmu check", &["fmu", "check", "x.fmu"]),
+    ("fmu check", &["fmu", "check", "f.fmu"]),
+    ("derivatives show", &["derivatives", "show", "LN21-5200"]),
+    (
+        "derivatives show",
+        &["derivatives", "show", "LN21-6100", "--to", "polimi"],
+    ),
+    ("buffeting", &["buffeting", "--no-figures", "--out", "w"]),
+    (
+        "quasi-steady",
+        &["quasi-steady", "--no-figures", "--out", "q"],
+    ),
+    ("", &["campaign", "virtual", "LN21-5200", "--out", "raw"]),
+    (
+        "campaign check",
+        &["campaign", "check", "raw/campaign.toml"],
+    ),
+    (
+        "process",
+        &["process", "raw/campaign.toml", "--out", "p", "--no-figures"],
+    ),
+    (
+        "select",
+        &[
+            "select",
+            "study.toml",
+            "--out",
+            "s",
+            "--no-figures",
+            "--filters",
+            "3",
+            "--values",
+            "4",
+        ],
+    ),
+    ("coverage", &["coverage", "--repetitions", "8"]),
+    ("coverage", &["coverage", "--family", "5"]),
+    ("validate", &["validate", "iabse-1.1a-onset"]),
+    (
+        "bridge flutter",
+        &["demo", "--bridge", "--out", "k", "--no-figures"],
+    ),
+    ("", &["new", "--bridge", "--out", "whole.toml"]),
+    (
+        "bridge flutter",
+        &[
+            "bridge",
+            "flutter",
+            "whole.toml",
+            "--no-figures",
+            "--out",
+            "l",
+        ],
+    ),
+    ("", &["new", "--bridge"]),
+    (
+        "bridge flutter",
+        &[
+            "bridge",
+            "flutter",
+            "bridge.toml",
+            "--no-figures",
+            "--out",
+            "g",
+        ],
+    ),
+    (
+        "bridge flutter",
+        &[
+            "bridge",
+            "flutter",
+            "required.toml",
+            "--no-figures",
+            "--out",
+            "h",
+        ],
+    ),
+    (
+        "bridge buffeting",
+        &[
+            "bridge",
+            "buffeting",
+            "all.toml",
+            "--speed",
+            "30",
+            "--no-figures",
+            "--out",
+            "i",
+        ],
+    ),
+    (
+        "compare signals",
+        &[
+            "compare",
+            "signals",
+            "signals.csv",
+            "--reference",
+            "a",
+            "--compared",
+            "b",
+            "--sampling-hz",
+            "100",
+        ],
+    ),
+];
