@@ -131,6 +131,8 @@ fn the_table_is_cut_to_the_speed_groups_of_the_deck() {
         let line = [
             "study",
             "c.toml",
+            "--out",
+            "r",
             "--no-figures",
             "--force",
             "--json",
@@ -139,7 +141,7 @@ fn the_table_is_cut_to_the_speed_groups_of_the_deck() {
         ];
         let printed: Value = serde_json::from_str(&succeeds(at, &line)).unwrap();
         // what another command left beside models of another table goes with them
-        let left = at.join("aerodeck-out/simulation.csv");
+        let left = at.join("r/simulation.csv");
         assert!(!left.exists());
         fs::write(left, "").unwrap();
         let own = onset_of(&printed, "interpolated table", "determinant");
