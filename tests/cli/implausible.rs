@@ -145,7 +145,7 @@ fn a_bridge_without_rotations_cannot_be_judged() {
     let still: String = rows.lines().map(still).collect();
     fs::write(at.join("shapes.csv"), format!("{heading}\n{still}")).unwrap();
     let shown = shown(at, &["bridge", "flutter", "bridge.toml"]);
-    let finding = "modes: none of the modes turns; were rotations exported?";
+    let finding = "modes: none of the modes turns; rotations may not have been exported";
     cannot_be_judged(&shown, "60", finding);
 }
 

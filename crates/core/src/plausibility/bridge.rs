@@ -144,10 +144,13 @@ fn still(bridge: &Bridge, motion: usize) -> Option<Finding> {
         return None;
     }
     let (text, otherwise) = match motion {
-        2 => ("none of the modes turns", "were rotations exported?"),
+        2 => (
+            "none of the modes turns",
+            "rotations may not have been exported",
+        ),
         _ => (
             "none of the modes moves up and down",
-            "were vertical displacements exported?",
+            "vertical displacements may not have been exported",
         ),
     };
     let found = Finding::doubt(FindingKind::Contradiction, "modes", text);
