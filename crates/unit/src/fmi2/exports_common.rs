@@ -128,7 +128,8 @@ pub(crate) fn check_name(name: Option<&CStr>) -> CallResult<()> {
 pub(crate) fn identified(resources: Resources, kind: fmi2Type, guid: &str) -> CallResult<Instance> {
     let own = resources.guid.to_string();
     if guid != own {
-        let expected = format!("{own} (from the variables and the files in resources/)");
+        let expected =
+            format!("{own} (from the variables, resources/model.json and the files beside it)");
         let wrong = crate::Error::input("GUID", &expected, format!("`{guid}`"));
         return Err(Refusal::from(wrong));
     }
