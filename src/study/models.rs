@@ -127,7 +127,6 @@ fn with_forms(
     }
 }
 
-/// Onset of the coupled section.
 /// Divergence of the section with these forces, m/s; where it cannot be computed, the stages that follow say why.
 fn divergence_of(study: &Study, model: &Model) -> Option<f64> {
     let still = model
@@ -136,6 +135,7 @@ fn divergence_of(study: &Study, model: &Model) -> Option<f64> {
     divergence_speed(&study.section.structure().ok()?, &still).ok()?
 }
 
+/// Onset of the coupled section.
 fn onset_of(
     study: &Study,
     name: &str,
