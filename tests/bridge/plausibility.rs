@@ -246,7 +246,7 @@ fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {
         ),
         (
             0,
-            "modes: none of the modes moves up and down; were vertical displacements exported?",
+            "modes: none of the modes moves up and down; vertical displacements may not have been exported",
         ),
     ] {
         let still = changed(|m| {
@@ -269,6 +269,13 @@ fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {
     assert!(of_modes_left_out(&right, &[]).is_empty());
     let null = changed(|m| m.shape.iter_mut().for_each(|s| *s = [0.0; 3]));
     assert_eq!(right.main_motion(&null.modes[0]), None);
+    let doubts = sentences(&null.findings());
+    assert!(
+        doubts
+            .iter()
+            .any(|d| d.contains("mode 1: it moves no node")),
+        "{doubts:?}"
+    );
 }
 
 #[test]

@@ -62,6 +62,11 @@ pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
                 .otherwise("is the mass that of a shape of another norm?".to_owned()),
         );
     }
+    let is_null = |m: &&BridgeMode| greatest_displacement(m).max(greatest(m, 2)) == 0.0;
+    found.extend(modes.iter().find(is_null).map(|mode| {
+        Finding::doubt(FindingKind::Contradiction, place(mode), "it moves no node")
+            .otherwise("a mode of towers or cables can be left out by modes.select".to_owned())
+    }));
     found.extend(twice(girder));
     let damping = modes
         .iter()

@@ -106,18 +106,6 @@ pub(super) fn check_order(nodes: &[Node]) -> Result<()> {
 }
 
 impl BridgeModes {
-    /// Refuses a mode that moves no node: it takes no part in the wind, and most often its shape was not exported.
-    pub(super) fn check_shapes(&self) -> Result<()> {
-        let is_null = |m: &&BridgeMode| m.shape.iter().flatten().all(|x| *x == 0.0);
-        self.modes.iter().find(is_null).map_or(Ok(()), |mode| {
-            Err(Error::input(
-                format!("mode {}", mode.number),
-                "a shape that moves some node up, sideways or turns it (modes.select can leave the mode out)",
-                "zero at every node",
-            ))
-        })
-    }
-
     /// Takes only every `n`-th node, both ends kept; tributary lengths follow by the trapezoidal rule.
     #[must_use]
     pub fn thinned(&self, n: usize) -> Self {

@@ -385,7 +385,6 @@ impl BridgeFile {
         if let Some(select) = &block.select {
             keep(select, &mut modes)?;
         }
-        modes.check_shapes().map_err(|e| e.in_file(&path))?;
         Ok(modes)
     }
 }
