@@ -5,7 +5,7 @@ use crate::error::{raised, wrong};
 use crate::flutter::without_interval;
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
-use aerodeck::flutter::divergence_speed;
+use aerodeck::flutter::divergence_with_forces;
 use aerodeck::identification::FitReport;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
@@ -208,9 +208,8 @@ impl Model {
             let range = crate::section::usual_range(&trained.section);
             let found = without_interval(&trained.section, self, &range.search(), "eigenvalues")?;
             let limit = range.speed_max_m_s;
-            let still = self.model.transfer(ReducedFrequency::from_full_width(0.0));
             let structure = trained.section.structure().map_err(raised)?;
-            let divergence = still.and_then(|still| divergence_speed(&structure, &still));
+            let divergence = divergence_with_forces(&structure, &self.model);
             let first = found.first_limit_m_s(divergence.map_err(raised)?, limit);
             trained.experiment = ExportBlock::default().experiment(first, limit);
         }

@@ -1,14 +1,13 @@
 //! Training the models of a study.
 
 use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
-use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, MovedOnset, StableRange, divergence_speed, find_onset};
+use crate::flutter::{FlutterSearch, MovedOnset, StableRange, divergence_with_forces, find_onset};
 use crate::identification::{FitReport, Fitted, OnProgress};
 use crate::trained_model::{Model, Provenance, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, FormEnsemble, ModelOfData, ModelUncertainty};
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::ReducedFrequencyRange;
 
 /// A model with the account of its fit.
 #[derive(Debug, Clone)]
@@ -60,7 +59,9 @@ pub fn train_one(
         .map(Box::new)
         .map_err(|e| e.to_string());
     let limit_m_s = study.speeds().speed_max_m_s;
-    let first_m_s = search.first_limit_m_s(divergence_of(study, &model), limit_m_s);
+    // where it cannot be computed, the stages that follow say why
+    let divergence = divergence_with_forces(&study.section.structure()?, &model);
+    let first_m_s = search.first_limit_m_s(divergence.ok().flatten(), limit_m_s);
     let trained = TrainedModel {
         schema_version: model.schema_version(),
         name: block.name.clone(),
@@ -125,14 +126,6 @@ fn with_forms(
         }
         None => Ok(known),
     }
-}
-
-/// Divergence of the section with these forces, m/s; where it cannot be computed, the stages that follow say why.
-fn divergence_of(study: &Study, model: &Model) -> Option<f64> {
-    let still = model
-        .transfer(ReducedFrequency::from_full_width(0.0))
-        .ok()?;
-    divergence_speed(&study.section.structure().ok()?, &still).ok()?
 }
 
 /// Onset of the coupled section.

@@ -2,17 +2,16 @@
 
 use super::routes::THEORY;
 use super::{Deck, StageFailure, Study, attempt};
-use crate::aerodynamics::{Realizable, Realization, Transfer};
+use crate::aerodynamics::{Realizable, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
     AssumedAtRest, FlutterCurves, FlutterSearch, Onset, OnsetMethod, QuasiSteadyOnset, StableRange,
-    UnstableStart, UnwantedGrowth, determinant_onset, divergence_speed, find_onset,
-    quasi_steady_onset, trace_modes, unwanted_growth,
+    UnstableStart, UnwantedGrowth, determinant_onset, divergence_speed, divergence_with_forces,
+    find_onset, quasi_steady_onset, trace_modes, unwanted_growth,
 };
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
-use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 
 /// Results of all models of a study.
@@ -184,10 +183,7 @@ impl FlutterStudy {
             model: name.clone(),
             growth,
         }));
-        let steady = model
-            .model
-            .transfer(ReducedFrequency::from_full_width(0.0))
-            .and_then(|still| divergence_speed(structure, &still));
+        let steady = divergence_with_forces(structure, &model.model);
         if let Some(speed_m_s) = attempt(failed, format!("divergence of {name}"), steady)? {
             self.divergence.push(Divergence {
                 model: name.clone(),

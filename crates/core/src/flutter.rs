@@ -46,7 +46,7 @@ pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::table_tested_from;
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::{AssumedAtRest, static_part};
-pub use divergence::{divergence_by_eigenvalues, divergence_speed};
+pub use divergence::{divergence_by_eigenvalues, divergence_speed, divergence_with_forces};
 pub use elimination::{pivots, solve_complex};
 pub use growth_band::GrowthBand;
 pub use instability::{Instability, ModeAtOnset, Participation, classify};

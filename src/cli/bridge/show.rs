@@ -7,7 +7,6 @@ use super::super::text_table::TextTable;
 use super::args::BridgeArgs;
 use crate::error::{Result, counted};
 use crate::report::modes_figure;
-use crate::section::Dof;
 use std::fmt::Write as _;
 
 /// Pairs of modes whose similarity is stated.
@@ -49,10 +48,7 @@ pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> 
             format!("{:.4}", m.frequency_hz),
             format!("{:.6e}", m.generalised_mass),
             format!("{:.3}", 100.0 * m.damping_ratio),
-            bridge
-                .main_motion(m)
-                .map_or("none", |i| Dof::THREE[i].name())
-                .to_owned(),
+            bridge.main_motion_name(m).to_owned(),
         ]);
     }
     text.push_str(&table.text());

@@ -5,7 +5,6 @@ use crate::cli::report::folder::today;
 use crate::error::Result;
 use crate::flutter::Onset;
 use crate::plausibility::Finding;
-use crate::section::Dof;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
 use crate::units::ReducedFrequencyRange;
 use crate::verdict::Verdict;
@@ -154,10 +153,7 @@ fn modes(study: &BridgeStudy) -> Vec<ModeFacts> {
         frequency_hz: m.frequency_hz,
         generalised_mass: m.generalised_mass,
         damping_ratio: m.damping_ratio,
-        main_motion: bridge
-            .main_motion(m)
-            .map_or("none", |i| Dof::THREE[i].name())
-            .to_owned(),
+        main_motion: bridge.main_motion_name(m).to_owned(),
     })
     .collect()
 }

@@ -7,8 +7,8 @@ use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
     AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, MovedOnset, Onset, OnsetSearch,
-    UnwantedGrowth, divergence_speed, find_onset, find_onset_of_modes, motion_at_onset, pk_onset,
-    static_deflection, static_part, trace_modes, unwanted_growth_below,
+    UnwantedGrowth, divergence_speed, divergence_with_forces, find_onset, find_onset_of_modes,
+    motion_at_onset, pk_onset, static_deflection, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{ModesLeftOut, UntestedParts};
@@ -233,9 +233,7 @@ fn table_divergence(study: &BridgeStudy) -> Result<Option<TableDivergence>> {
     }
     let Some(k) = lowest else { return Ok(None) };
     let assumed = AssumedAtRest::below(k)?;
-    let forces = still.forces();
-    let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
-    let speed_m_s = divergence_speed(&still.structure(), &at_rest)?;
+    let speed_m_s = divergence_with_forces(&still.structure(), &still.forces())?;
     Ok(Some(TableDivergence {
         speed_m_s,
         lower_m_s: speed_m_s.map(|v| assumed.lower_m_s(v)),

@@ -2,10 +2,10 @@
 
 use super::BridgeStudy;
 use super::answers::coupled;
-use crate::aerodynamics::{RationalAdmittance, Transfer};
+use crate::aerodynamics::RationalAdmittance;
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
-use crate::flutter::{BridgeMotion, FlutterSearch, divergence_speed, find_onset};
+use crate::flutter::{BridgeMotion, FlutterSearch, divergence_with_forces, find_onset};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -13,7 +13,6 @@ use crate::fmu::onset_start::OnsetStart;
 use crate::fmu::package::BridgeExport;
 use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
-use crate::units::ReducedFrequency;
 
 /// Amplitude of the default release where the girder moves most, of half the width.
 const RELEASE: f64 = 0.01;
@@ -57,9 +56,8 @@ impl BridgeStudy {
                 found.explain()
             )));
         }
-        let forces = self.by_model.forces();
-        let still = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
-        let divergence = divergence_speed(&self.by_model.structure(), &still)?;
+        let bridge = &self.by_model;
+        let divergence = divergence_with_forces(&bridge.structure(), &bridge.forces())?;
         let first = found.first_limit_m_s(divergence, search.speed_max_m_s);
         Ok(BridgeExport {
             model: self.first_model(first)?,

@@ -1,6 +1,7 @@
 //! How alike two mode shapes are: what decides whether two modes may be treated as one section.
 
 use super::{Bridge, BridgeMode};
+use crate::section::Dof;
 use serde::Serialize;
 
 /// Similarity of a vertical and a torsional mode.
@@ -57,5 +58,11 @@ impl Bridge {
         (0..3)
             .filter(|i| parts[*i] > 0.0)
             .max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
+    }
+
+    /// Its name; `none` where there is none.
+    pub fn main_motion_name(&self, mode: &BridgeMode) -> &'static str {
+        self.main_motion(mode)
+            .map_or("none", |i| Dof::THREE[i].name())
     }
 }

@@ -11,6 +11,15 @@ use nalgebra::DMatrix;
 /// Speeds at which the sign of the determinant is looked at.
 const SPEEDS: usize = 400;
 
+/// [`divergence_speed`] under the forces that a model has at rest, m/s.
+///
+/// # Errors
+/// As there, and where the model has no forces at `K = 0`.
+pub fn divergence_with_forces(structure: &Structure, forces: &dyn Transfer) -> Result<Option<f64>> {
+    let still = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
+    divergence_speed(structure, &still)
+}
+
 /// Lowest speed at which `det(K − ½ρV² P(G(0))) = 0`, m/s; `None` when the steady forces never overcome the springs.
 ///
 /// `static_transfer` is `G` at `K = 0`, n×n.

@@ -3,9 +3,7 @@
 use super::bridge_built::BuiltBridge;
 use super::bridge_followed::SearchedOnset;
 use super::section::OnsetCard;
-use crate::aerodynamics::Transfer;
-use crate::error::Result;
-use crate::flutter::{FlutterSearch, FoundOnset, OnsetSearch, divergence_speed, find_onset};
+use crate::flutter::{FlutterSearch, FoundOnset, OnsetSearch, divergence_with_forces, find_onset};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
 
 /// Speeds of the search for the onset; more than for a section would take seconds.
@@ -15,7 +13,10 @@ impl OnsetCard {
     /// With the divergence of a bridge and nothing else.
     fn with_divergence(built: &BuiltBridge, limit: f64) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
-        match divergence_of(built) {
+        match divergence_with_forces(
+            built.stepper.section().structure(),
+            &built.own.bridge.forces(),
+        ) {
             Ok(speed) => card.set_divergence(speed, limit),
             Err(why) => card.divergence_unknown(&why),
         }
@@ -69,10 +70,4 @@ impl OnsetCard {
         card.judge_divergence();
         (card, searched)
     }
-}
-
-fn divergence_of(built: &BuiltBridge) -> Result<Option<f64>> {
-    let still = ReducedFrequency::from_full_width(0.0);
-    let forces = built.own.bridge.forces().transfer(still)?;
-    divergence_speed(built.stepper.section().structure(), &forces)
 }

@@ -77,7 +77,7 @@ impl Way {
         match section.aerodynamics() {
             Realization::Continuous(_) => Self::Continuous(LeastDamping::new(section)),
             Realization::Discrete(_) => Self::Sampled(Sampled {
-                // without modes in still air there is nothing to sample
+                // a motion without a spring has no period in still air, and damping is told by what is there
                 lowest_m_s: aliased_below(section).unwrap_or(0.0),
                 steady: Inputs::steady(0.0, section.structure().dofs.len()),
                 matrix: DMatrix::zeros(states, states),

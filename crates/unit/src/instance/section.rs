@@ -1,11 +1,10 @@
 //! The section that the current parameters describe, and what follows from it alone: onset and divergence.
 
-use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
-    at_samples, divergence_speed, find_onset, stands_at_samples, unwanted_growth,
+    at_samples, divergence_with_forces, find_onset, stands_at_samples, unwanted_growth,
 };
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
@@ -157,7 +156,7 @@ impl OnsetCard {
         plain: Option<SweptOnset>,
     ) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
-        match divergence_of(model, section) {
+        match divergence_with_forces(section.structure(), &model.model) {
             Ok(speed) => card.set_divergence(speed, limit),
             Err(why) => card.divergence_unknown(&why),
         }
@@ -200,12 +199,12 @@ impl OnsetCard {
         if !(numbers.divergence_found && divergence < onset) {
             return;
         }
-        let than = match numbers.found {
+        let flutter = match numbers.found {
             true => format!("before the flutter onset at {onset:.3} m/s"),
             false => "where no oscillation grows".to_owned(),
         };
         self.warnings.push(format!(
-            "static divergence at {divergence:.3} m/s, {than}: the margin to flutter does not count it"
+            "static divergence at {divergence:.3} m/s, {flutter}: the margin to flutter does not count it"
         ));
         self.numbers.stable_below = false;
     }
@@ -347,9 +346,4 @@ fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Resul
         ));
     }
     Ok(own)
-}
-
-fn divergence_of(model: &TrainedModel, section: &CoupledSection) -> Result<Option<f64>> {
-    let still = ReducedFrequency::from_full_width(0.0);
-    divergence_speed(section.structure(), &model.model.transfer(still)?)
 }
