@@ -11,7 +11,7 @@
 
 use super::problem::{BuffetingProblem, Gust};
 use super::spectrum::GustComponent;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::signal::{Fourier, random_stream};
 use nalgebra::{Complex, DMatrix};
 use rand::Rng;
@@ -45,7 +45,7 @@ impl TurbulenceField {
 /// the same field.
 ///
 /// # Errors
-/// [`Error::Input`] for a step that is not positive and a number of samples that is odd or not between 16 and 2²⁴.
+/// [`Error::Input`] for a step that is not positive or longer than a quarter of the shortest period, and a number of samples that is odd or not between 16 and 2²⁴.
 pub fn turbulence_field(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
@@ -84,6 +84,15 @@ impl BuffetingProblem<'_> {
     pub(super) fn check_record(&self, speed_m_s: f64, step_s: f64, samples: usize) -> Result<()> {
         positive("wind speed", speed_m_s)?;
         positive("time step of the turbulence", step_s)?;
+        let (highest_hz, longest_s) = (self.highest_hz, 0.25 / self.highest_hz);
+        ensure(
+            step_s <= longest_s,
+            "time step of the turbulence",
+            format_args!(
+                "at most {longest_s:.4} s, a quarter of the shortest period, for a mode at {highest_hz:.4} Hz"
+            ),
+            format_args!("{step_s} s"),
+        )?;
         let fits = 2 * self.nodes.len().saturating_mul(samples) <= NUMBERS_AT_MOST;
         if SAMPLES.contains(&samples) && samples.is_multiple_of(2) && fits {
             return Ok(());

@@ -8,19 +8,22 @@ use serde::{Deserialize, Serialize};
 pub const BOUNDS_FILE: &str = "onset_interval.json";
 
 /// 95 % interval of the onset speed of the section as it was exported.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OnsetBounds {
     /// Lower end, m/s.
     pub low_m_s: f64,
     /// Upper end, m/s.
     pub high_m_s: f64,
+    /// Why the speed is no result, where the data leave it that far open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undetermined: Option<String>,
 }
 
 impl OnsetBounds {
     /// Those of an interval that is a statement of probability, also of one that leaves nearly everything open; `None` for any other.
     pub fn from_interval(interval: &OnsetInterval) -> Option<Self> {
-        match *interval {
+        match interval {
             OnsetInterval::Known {
                 low_m_s, high_m_s, ..
             }
@@ -28,7 +31,8 @@ impl OnsetBounds {
                 low_m_s, high_m_s, ..
             } => Some(Self {
                 low_m_s: low_m_s.max(0.0),
-                high_m_s,
+                high_m_s: *high_m_s,
+                undetermined: interval.reason().map(str::to_owned),
             }),
             _ => None,
         }
@@ -47,7 +51,9 @@ impl OnsetBounds {
 
     /// Whether the ends are an interval of speeds.
     pub(super) fn check(&self) -> Result<()> {
-        let Self { low_m_s, high_m_s } = self;
+        let Self {
+            low_m_s, high_m_s, ..
+        } = self;
         if *low_m_s >= 0.0 && low_m_s <= high_m_s && high_m_s.is_finite() {
             return Ok(());
         }

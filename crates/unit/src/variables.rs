@@ -47,6 +47,8 @@ use crate::trained_model::TrainedModel;
 #[derive(Debug, Clone, PartialEq)]
 pub struct VariableTable {
     variables: Vec<Variable>,
+    /// Why the onset of what was exported is no result, where the data leave it that far open.
+    pub(crate) onset_undetermined: Option<String>,
 }
 
 impl VariableTable {
@@ -62,10 +64,10 @@ impl VariableTable {
         bounds: Option<OnsetBounds>,
     ) -> Result<Self> {
         let variables = match force {
-            None => section::variables(model, gusts, bounds)?,
+            None => section::variables(model, gusts, bounds.as_ref())?,
             Some(options) => force::variables(model, options, gusts)?,
         };
-        Self::checked(variables)
+        Self::checked(variables, bounds.as_ref())
     }
 
     /// The table of a whole bridge that is stepped by `stepper`, with or without turbulence of its own.
@@ -78,7 +80,8 @@ impl VariableTable {
         stepper: &Stepper,
         turbulence: bool,
     ) -> Result<Self> {
-        Self::checked(bridge::variables(model, options, stepper, turbulence)?)
+        let variables = bridge::variables(model, options, stepper, turbulence)?;
+        Self::checked(variables, options.onset_interval.as_ref())
     }
 
     /// The same table with one more number, of forces alone one for each strip; for units that run in this process.
@@ -97,9 +100,12 @@ impl VariableTable {
         self
     }
 
-    fn checked(variables: Vec<Variable>) -> Result<Self> {
+    fn checked(variables: Vec<Variable>, bounds: Option<&OnsetBounds>) -> Result<Self> {
         variables.iter().try_for_each(check_start)?;
-        Ok(Self { variables })
+        Ok(Self {
+            variables,
+            onset_undetermined: bounds.and_then(|b| b.undetermined.clone()),
+        })
     }
 
     /// The variables; the index of each is its value reference.

@@ -43,7 +43,7 @@ pub(super) fn files(
         entry.saying("Every parameter as it was exported"),
         parameters,
     );
-    for set in unit.sets(bounds)? {
+    for set in unit.sets(bounds.as_ref())? {
         let mut experiments = Vec::new();
         for planned in &set.runs {
             let Some(run) = unit.run(planned)? else {

@@ -11,6 +11,8 @@ pub(super) struct CalculatedNumbers {
     variables: Vec<(usize, &'static ComputedNumber)>,
     /// For the parameters as they are; `None` until they are asked for.
     onset: Option<OnsetNumbers>,
+    /// Why the onset of what was exported is no result.
+    undetermined: Option<String>,
 }
 
 impl CalculatedNumbers {
@@ -25,6 +27,7 @@ impl CalculatedNumbers {
         Self {
             variables: calculated.collect(),
             onset: None,
+            undetermined: table.onset_undetermined.clone(),
         }
     }
 
@@ -60,6 +63,8 @@ impl CalculatedNumbers {
         self.onset = Some(card.numbers);
         self.write(card.numbers, memory);
         notices.extend(card.warnings);
+        let undetermined = self.undetermined.take().into_iter();
+        notices.extend(undetermined.map(|why| format!("onset_speed as exported: {why}")));
     }
 
     fn write(&self, onset: OnsetNumbers, memory: &mut Memory) {

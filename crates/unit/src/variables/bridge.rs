@@ -39,7 +39,7 @@ pub(super) fn variables(
     table.extend(SEARCHED.iter().map(ComputedNumber::variable));
     let filters = stepper.section().aerodynamics().states();
     table.extend(constants(&[model], filters)?);
-    let interval = options.onset_interval.into_iter();
+    let interval = options.onset_interval.iter();
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(OF_THE_PRESENT.iter().map(ComputedNumber::variable));
     bridge_states::add(&mut table, options, stepper);

@@ -47,7 +47,10 @@ impl VariableTable {
         });
         let variables = variables.collect();
         ListedVariables {
-            table: VariableTable { variables },
+            table: VariableTable {
+                variables,
+                onset_undetermined: self.onset_undetermined.clone(),
+            },
             references,
         }
     }

@@ -27,7 +27,7 @@ const USUAL_VARIABLES: usize = 80;
 pub(super) fn variables(
     model: &TrainedModel,
     gusts: Option<&GustForce>,
-    bounds: Option<OnsetBounds>,
+    bounds: Option<&OnsetBounds>,
 ) -> Result<Vec<Variable>> {
     let dofs = model.section.dofs();
     let realization = model.model.realize();
@@ -61,7 +61,7 @@ pub(super) fn variables(
 }
 
 /// The interval that the data leave of the onset of a section or bridge.
-pub(super) fn onset_bounds(bounds: OnsetBounds, of: &str) -> [Variable; 2] {
+pub(super) fn onset_bounds(bounds: &OnsetBounds, of: &str) -> [Variable; 2] {
     let end = |name, end, value| {
         let text = format!(
             "{end} end of the 95 % interval of the flutter onset by the scatter of the data, for the {of} as exported"

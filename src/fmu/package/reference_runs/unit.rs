@@ -116,7 +116,7 @@ impl ReferenceUnit {
     }
 
     /// What is run: short to see whether it runs at all, and around the onset where there is one.
-    pub(super) fn sets(&self, bounds: Option<OnsetBounds>) -> Result<Vec<ReferenceSet>> {
+    pub(super) fn sets(&self, bounds: Option<&OnsetBounds>) -> Result<Vec<ReferenceSet>> {
         let mut sets = vec![ReferenceSet {
             name: "smoke_test",
             role: "experiment/smoke-test",

@@ -229,6 +229,38 @@ fn blocks_do_not_matter() {
     assert!((a.transfer(k).unwrap() - b.transfer(k).unwrap()).camax() < 1e-10);
 }
 
+/// A second of a record counts the same, however often it was sampled: where two speeds contradict each other, the half of the
+/// samples of one of them decide no less.
+#[test]
+fn a_second_counts_the_same_at_every_sampling_rate() {
+    let fit = TimeFit {
+        poles: PoleSearch::fixed(&[0.3]),
+        low_pass_hz: Some(5.0),
+        ..records_alone()
+    };
+    let mut all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
+    all.extend(records(&RationalModel::jones_flat_plate(), &[4.0], 0.0, 1));
+    let transfer = |all: &[Record]| {
+        let model = fit_records(&sources(all), &fit, &quiet).unwrap().model;
+        model
+            .transfer(ReducedFrequency::from_full_width(0.4))
+            .unwrap()
+    };
+    for force in &mut all[2].force {
+        force.iter_mut().for_each(|f| *f *= 1.5);
+    }
+    let every = transfer(&all);
+    all[2].header.sampling_hz *= 0.5;
+    for channel in all[2..3]
+        .iter_mut()
+        .flat_map(|r| r.motion.iter_mut().chain(&mut r.force))
+    {
+        *channel = channel.iter().copied().step_by(2).collect();
+    }
+    let moved = (transfer(&all) - &every).camax() / every.camax();
+    assert!(moved < 1e-3, "{moved}");
+}
+
 #[test]
 fn bad_records_are_refused_with_their_place() {
     let good = records(&FlatPlate::default(), &[8.17], 0.0, 1);

@@ -165,8 +165,10 @@ pub(crate) fn pass_over<C: Columns>(
     make: impl Fn(&DimensionlessRecord) -> Result<C> + Sync,
 ) -> Result<Pass> {
     let finished = AtomicUsize::new(0);
+    let steps_s = records.iter().map(|record| record.step_s);
+    let finest_s = steps_s.fold(f64::INFINITY, f64::min);
     let parts = numbered(records.len(), &|_, _| (), |r| {
-        let part = one_record(r, &records[r], plan, &mut make(&records[r])?);
+        let part = one_record(r, &records[r], plan, finest_s, &mut make(&records[r])?);
         progress(FitProgress {
             pass: plan.number.0,
             passes: plan.number.1,
@@ -181,11 +183,12 @@ pub(crate) fn pass_over<C: Columns>(
     })
 }
 
-/// The stretches of one record.
+/// The stretches of one record, where the finest step of all is `finest_s`.
 fn one_record<C: Columns>(
     index: usize,
     record: &DimensionlessRecord,
     plan: &PassPlan,
+    finest_s: f64,
     maker: &mut C,
 ) -> Result<Vec<Stretch>> {
     let (resampled, step_s) = record.at_step(plan.delta_s)?;
@@ -226,6 +229,12 @@ fn one_record<C: Columns>(
         rows,
     )?;
     weigh(&mut closed, record, plan.weights);
+    if plan.delta_s.is_none() {
+        // a second counts the same, however often it was sampled
+        let weight = (record.step_s / finest_s).sqrt();
+        let weights = closed.iter_mut().flat_map(|s| &mut s.weights);
+        weights.for_each(|w| *w *= weight);
+    }
     Ok(closed)
 }
 

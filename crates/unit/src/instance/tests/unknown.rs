@@ -1,7 +1,10 @@
 //! What is not known reads as nothing that is safe.
 
-use super::{Kind, index, instance};
+use super::{Kind, bridge_of, fixture, index, instance};
 use crate::instance::Instance;
+use crate::onset_bounds::OnsetBounds;
+use crate::resources::{OptionFiles, Resources};
+use crate::trained_model::TrainedModel;
 
 fn read<const N: usize>(unit: &mut Instance, names: [&str; N]) -> [f64; N] {
     let references = names.map(|name| index(unit, name));
@@ -56,6 +59,39 @@ fn what_diverges_below_its_onset_is_not_stable() {
         assert!(
             notices.contains("static divergence at"),
             "{kind:?}: {notices}"
+        );
+    }
+}
+
+/// What the data leave so far open that it is no result is not read from the ends of its interval alone.
+#[test]
+fn an_onset_that_data_do_not_determine_says_so() {
+    let model = fixture("rational");
+    let bounds = OnsetBounds {
+        low_m_s: 0.0,
+        high_m_s: 60.0,
+        undetermined: Some("not determined by these data: the interval contains zero".into()),
+    };
+    let json = serde_json::to_string(&bounds).unwrap();
+    let files = OptionFiles {
+        bounds: Some(json.as_bytes()),
+        ..OptionFiles::default()
+    };
+    let section = Resources::from_bytes(&model, files).unwrap();
+    let trained = TrainedModel::from_json(std::str::from_utf8(&model).unwrap()).unwrap();
+    let mut options = bridge_of(&trained);
+    options.onset_interval = Some(bounds);
+    let options = options.to_json().unwrap();
+    let bridge = Resources::of_bridge(&model, options.as_bytes(), None).unwrap();
+    for resources in [section, bridge] {
+        let mut unit = Instance::new(resources).unwrap();
+        unit.enter_initialization();
+        let [onset, low] = read(&mut unit, ["onset_speed", "onset_speed_low"]);
+        let notices = unit.take_notices().join("\n");
+        assert!(onset > low && low == 0.0);
+        assert!(
+            notices.contains("onset_speed as exported: not determined"),
+            "{notices}"
         );
     }
 }
