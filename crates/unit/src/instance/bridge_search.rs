@@ -36,7 +36,7 @@ impl OnsetCard {
         let inside = tested.is_some_and(|range| range.contains(k));
         card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
         card.numbers.stable_below = true;
-        card.judge_divergence();
+        card.judge(tested.as_ref());
         card
     }
 
@@ -67,7 +67,7 @@ impl OnsetCard {
             }
             Err(why) => card.onset_unknown(&why),
         }
-        card.judge_divergence();
+        card.judge(tested.as_ref());
         (card, searched)
     }
 }

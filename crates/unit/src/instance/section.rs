@@ -8,8 +8,9 @@ use crate::flutter::{
 };
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
-use crate::units::{ReducedFrequency, ReducedVelocity};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
 use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
+use crate::verdict::{GUESSED, tell_of_slow_wind};
 
 /// The section of the model with the parameters in `values` (one number per variable of `table`).
 ///
@@ -161,7 +162,7 @@ impl OnsetCard {
             Err(why) => card.divergence_unknown(&why),
         }
         card.search_onset(model, section, limit, plain);
-        card.judge_divergence();
+        card.judge(Some(&model.tested_range));
         card
     }
 
@@ -192,8 +193,13 @@ impl OnsetCard {
         }
     }
 
-    /// A section that diverges below the onset is not stable below it, whatever oscillates there.
-    pub(super) fn judge_divergence(&mut self) {
+    /// What slow wind does where no test tells is not stable; nor is what diverges below the onset, whatever oscillates there.
+    pub(super) fn judge(&mut self, tested: Option<&ReducedFrequencyRange>) {
+        if self.numbers.stable_below && tested.is_some_and(|range| !tell_of_slow_wind(range)) {
+            self.numbers.stable_below = false;
+            let warning = format!("in slow wind motions are faster than every test: {GUESSED}");
+            self.warnings.push(warning);
+        }
         let numbers = &self.numbers;
         let (divergence, onset) = (numbers.divergence_m_s.value, numbers.speed_m_s.value);
         if !(numbers.divergence_found && divergence < onset) {

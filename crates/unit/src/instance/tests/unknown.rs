@@ -5,6 +5,7 @@ use crate::instance::Instance;
 use crate::onset_bounds::OnsetBounds;
 use crate::resources::{OptionFiles, Resources};
 use crate::trained_model::TrainedModel;
+use crate::units::ReducedFrequency;
 
 fn read<const N: usize>(unit: &mut Instance, names: [&str; N]) -> [f64; N] {
     let references = names.map(|name| index(unit, name));
@@ -60,6 +61,34 @@ fn what_diverges_below_its_onset_is_not_stable() {
             notices.contains("static divergence at"),
             "{kind:?}: {notices}"
         );
+    }
+}
+
+/// Tests that do not lead up to still air leave slow wind to a guess, also where an onset was found among them.
+#[test]
+fn slow_wind_of_which_no_test_tells_is_not_stable() {
+    let json = fixture("rational");
+    let mut model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
+    for reaches in [true, false] {
+        if !reaches {
+            model.tested_range.max = ReducedFrequency::from_full_width(0.7);
+        }
+        let json = model.to_json().unwrap();
+        let options = bridge_of(&model).to_json().unwrap();
+        let section = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+        let bridge = Resources::of_bridge(json.as_bytes(), options.as_bytes(), None).unwrap();
+        for resources in [section, bridge] {
+            let mut unit = Instance::new(resources).unwrap();
+            unit.enter_initialization();
+            assert!(flag(&mut unit, "onset_found"));
+            assert_eq!(flag(&mut unit, "stable_below_onset"), reaches);
+            let notices = unit.take_notices().join("\n");
+            assert_eq!(
+                notices.contains("damping there is a guess"),
+                !reaches,
+                "{notices}"
+            );
+        }
     }
 }
 
