@@ -27,9 +27,10 @@ pub(crate) use evidence::{OwnModel, saved_evidence, section_evidence};
 pub use failures::StageFailure;
 pub(crate) use failures::{attempt, is_of_a_file};
 pub(crate) use intervals::{
-    FITS, KnownUncertainty, UNCERTAINTY, interval_of, saved_moved_onset, saved_uncertainty,
-    state_intervals, state_route_intervals, uncertainty_beside,
+    FITS, UNCERTAINTY, interval_of, saved_moved_onset, saved_uncertainty, state_intervals,
+    state_route_intervals,
 };
+pub use intervals::{KnownUncertainty, uncertainty_beside};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};
 pub(crate) use plausibility::study_findings;

@@ -74,13 +74,23 @@ fn the_package_builds_installs_and_passes_its_tests() {
             .args(["campaign", "virtual", "LN21-5200", "--out"])
             .arg(&campaign),
     );
+    // a trained model with its covariance beside it
+    let trained = target.join("tmp/python-trained");
+    let study = trained.join("study.toml");
+    let _ = fs::remove_dir_all(&trained);
+    fs::create_dir_all(&trained).unwrap();
+    for command in [&["new", "--out"][..], &["study", "-q", "--no-figures"]] {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_aerodeck"));
+        run("training", program.args(command).arg(&study));
+    }
     run(
         "the tests of the package",
         Command::new(&interpreter)
             .args(python::PYTEST)
             .arg(root.join("python/tests"))
             .env("PYTHONPATH", &installed)
-            .env("AERODECK_CAMPAIGN", campaign.join("campaign.toml")),
+            .env("AERODECK_CAMPAIGN", campaign.join("campaign.toml"))
+            .env("AERODECK_TRAINED", trained.join("model.json")),
     );
 }
 

@@ -119,6 +119,7 @@ pub fn list(place: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
             found.chars().take(80).collect(),
         )
     };
+    refuse_masked(place, value)?;
     let array: PyArrayLike1<'_, f64, AllowTypeChange> = value.extract().map_err(|_| wrong())?;
     Ok(array.as_array().to_vec())
 }
@@ -128,10 +129,26 @@ pub fn table<'py>(
     place: &str,
     value: &Bound<'py, PyAny>,
 ) -> PyResult<PyArrayLike2<'py, f64, AllowTypeChange>> {
+    refuse_masked(place, value)?;
     value.extract().map_err(|_| {
         let found = value.get_type().to_string();
         wrong(place, "numbers, in rows of one length", found)
     })
+}
+
+/// What a mask marks as bad is not used as a number.
+fn refuse_masked(place: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    let Ok(mask) = value.getattr("mask") else {
+        return Ok(());
+    };
+    match mask.call_method0("any").and_then(|any| any.is_truthy()) {
+        Ok(true) => Err(wrong(
+            place,
+            "numbers without a mask",
+            "masked entries".into(),
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Rows as an array.

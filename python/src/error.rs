@@ -11,12 +11,15 @@ pub fn raised(error: Error) -> PyErr {
 
 /// Says what is odd by `warnings.warn`, as `AerodeckWarning`.
 pub fn warned(py: Python<'_>, findings: &[Finding]) -> PyResult<()> {
+    let mut texts = findings.iter().map(ToString::to_string);
+    texts.try_for_each(|text| warn(py, &text))
+}
+
+/// Says this by `warnings.warn`, as `AerodeckWarning`.
+pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let class = py.import("aerodeck._errors")?.getattr("AerodeckWarning")?;
-    let warn = py.import("warnings")?.getattr("warn")?;
-    for finding in findings {
-        warn.call1((finding.to_string(), &class, 1))?;
-    }
-    Ok(())
+    let warnings = py.import("warnings")?;
+    warnings.call_method1("warn", (text, class, 1)).map(drop)
 }
 
 /// Wrong input at `place`.

@@ -9,7 +9,7 @@ use aerodeck::flutter::divergence_with_forces;
 use aerodeck::identification::FitReport;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
-use aerodeck::study::ExportBlock;
+use aerodeck::study::{ExportBlock, uncertainty_beside};
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
 use aerodeck::uncertainty::{
     CoefficientUncertainty, FormEnsemble, ModelUncertainty, UncertaintyWithData,
@@ -42,16 +42,17 @@ pub struct Model {
 
 #[pymethods]
 impl Model {
-    /// Read `model.json` as `save` and `aerodeck train` write it.
+    /// Read `model.json` as `save` and `aerodeck train` write it, with the covariance that `train` leaves beside it.
     #[staticmethod]
     fn load(path: PathBuf) -> PyResult<Self> {
         let trained = TrainedModel::read(&path).map_err(raised)?;
+        let uncertainty = uncertainty_beside(&path, &trained).map_err(raised)?;
         Ok(Self {
             model: trained.model,
             tested: trained.tested_range,
             provenance: trained.provenance,
             report: None,
-            uncertainty: Err("no covariance is saved with a model".to_owned()),
+            uncertainty,
             stored: Some((trained.section, trained.experiment)),
             name: trained.name,
             findings: Vec::new(),

@@ -1,7 +1,7 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
 use crate::convert::{Reduced, from_python, reduced, restored, set_default, shown, to_python};
-use crate::error::{raised, wrong};
+use crate::error::{raised, warn, wrong};
 use crate::flutter::verdict_at;
 use crate::model::Model;
 use crate::section::Section;
@@ -12,7 +12,7 @@ use aerodeck::uncertainty::monte_carlo::{
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Distribution of the onset speed.
 #[pyclass(frozen, module = "aerodeck")]
@@ -38,20 +38,22 @@ impl MonteCarlo {
         self.0.standard_deviation_m_s
     }
 
-    /// Numbers of samples by what became of them: onsets, unstable, stable, failed.
+    /// Numbers of samples by what became of them: onsets, unstable, stable, not judged to the highest speed, failed.
     #[getter]
     fn counts(&self) -> std::collections::BTreeMap<&'static str, usize> {
         [
             ("samples", self.0.samples),
             ("onsets", self.0.onsets),
             ("unstable", self.0.unstable_at_or_below),
-            ("stable", self.0.stable),
+            ("stable", self.0.stable - self.0.not_judged),
+            ("not_judged", self.0.not_judged),
             ("failed", self.0.failed),
         ]
         .into()
     }
 
-    /// Speeds below which a part of all sections flutters, m/s, by that part; None where it is above the searched speeds.
+    /// Speeds below which a part of all sections flutters, m/s, by that part; None where it is above the searched speeds
+    /// or depends on samples that failed or could not be judged so far (`ends_m_s` in `to_dict()`).
     #[getter]
     fn quantiles(&self) -> Vec<(f64, Option<f64>)> {
         let one = |q: &analysis::Quantile| (q.probability, q.speed_m_s);
@@ -200,6 +202,12 @@ fn judged(
     let speed = result.design.as_ref().map(|d| d.speed_m_s);
     let judge = |speed| detached(py, || verdict_at(section, model, speed));
     result.verdict = speed.map(judge).transpose()?;
+    if result.failed + result.not_judged > 0 {
+        warn(
+            py,
+            &format!("{} samples: {}", result.samples, result.counts_in_words()),
+        )?;
+    }
     Ok(MonteCarlo(result))
 }
 
@@ -210,6 +218,13 @@ fn plan_of(
 ) -> PyResult<MonteCarloPlan> {
     let py = parameters.py();
     let plan = keywords.copy()?;
+    if plan.contains("parameter")? {
+        return Err(wrong(
+            "parameter",
+            "the distributions as `parameters`",
+            "`parameter`".into(),
+        ));
+    }
     let list = PyList::empty(py);
     for (name, distribution) in parameters {
         let one = PyDict::new(py);
@@ -220,9 +235,13 @@ fn plan_of(
     plan.set_item("parameter", list)?;
     if let Some(scatter) = plan.get_item("aerodynamic_scatter")? {
         plan.del_item("aerodynamic_scatter")?;
+        if plan.contains("aerodynamics")? {
+            let expected = "`aerodynamics` or `aerodynamic_scatter`";
+            return Err(wrong("aerodynamic_scatter", expected, "both".into()));
+        }
         let block = PyDict::new(py);
         block.set_item("relative_scatter", scatter)?;
-        set_default(&plan, "aerodynamics", from_python::<Value>("", &block)?)?;
+        plan.set_item("aerodynamics", block)?;
     }
     set_default(&plan, "schema", json!(1))?;
     set_default(&plan, "model", json!("model.json"))?;

@@ -38,7 +38,7 @@ impl Records {
                 .collect::<aerodeck::Result<_>>()
         };
         let records = detached(py, read).map_err(raised)?;
-        Ok(Self(records, Vec::new()))
+        Self::once_each(records, Vec::new())
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
@@ -211,11 +211,11 @@ impl Records {
         self.0.len()
     }
 
-    fn __add__(&self, other: &Bound<'_, Self>) -> Self {
+    fn __add__(&self, other: &Bound<'_, Self>) -> PyResult<Self> {
         let (other, mut findings) = (other.get(), self.1.clone());
         let new = other.1.iter().filter(|f| !self.1.contains(f));
         findings.extend(new.cloned());
-        Self([&self.0[..], &other.0].concat(), findings)
+        Self::once_each([&self.0[..], &other.0].concat(), findings)
     }
 
     fn __repr__(&self) -> String {
@@ -225,6 +225,20 @@ impl Records {
 }
 
 impl Records {
+    fn once_each(records: Vec<Record>, findings: Vec<Finding>) -> PyResult<Self> {
+        for (i, record) in records.iter().enumerate() {
+            if records[..i].contains(record) {
+                let expected = "each record once: what stands twice looks better known than it is";
+                return Err(wrong(
+                    "records",
+                    expected,
+                    format!("{} twice", record.header.name),
+                ));
+            }
+        }
+        Ok(Self(records, findings))
+    }
+
     fn get(&self, index: usize) -> PyResult<&Record> {
         let missing = || PyIndexError::new_err(format!("{} records, not {index}", self.0.len()));
         self.0.get(index).ok_or_else(missing)

@@ -75,8 +75,11 @@ def test_files_that_cannot_be_written_are_named(section, model, table, tmp_path)
         with pytest.raises(aerodeck.FileError, match="missing"):
             write()
     records = aerodeck.Records.virtual_tunnel(table)
+    again = aerodeck.Records.virtual_tunnel(table, noise_fraction=0.01)
     with pytest.raises(aerodeck.InputError, match="twice"):
-        (records + records).write(tmp_path)
+        (records + again).write(tmp_path)
+    with pytest.raises(aerodeck.InputError, match="each record once: what stands twice looks better known"):
+        records + records
 
 
 def test_what_is_exported_starts_below_the_onset(section, model, tmp_path):
@@ -195,6 +198,17 @@ def test_monte_carlo_is_seeded_and_the_design_speed_counts(section, model):
     # what the model itself says of that speed, as `flutter` does
     assert a.verdict == aerodeck.flutter(section, model, required_speed_m_s=36).verdict == a.to_dict()["verdict"]
     assert aerodeck.monte_carlo(section, model, scatter, samples=10).verdict is None
+    # what a sample cannot tell is said, and nothing that was asked for is dropped
+    negative = {"torsion.damping_ratio": {"kind": "normal", "mean": 0.003, "standard_deviation": 0.003}}
+    with pytest.warns(aerodeck.AerodeckWarning, match="failed"):
+        some = aerodeck.monte_carlo(section, model, negative, samples=200, design_speed_m_s=20)
+    assert some.probability[0] == some.counts["failed"] / 200 > 0.1
+    for keywords, place in [
+        ({"aerodynamic_scatter": 0.05, "aerodynamics": {"relative_scatter": 0.1}}, "aerodynamic_scatter"),
+        ({"parameter": []}, "parameter"),
+    ]:
+        with pytest.raises(aerodeck.InputError, match=place):
+            aerodeck.monte_carlo(section, model, scatter, samples=10, **keywords)
 
 
 def test_records_from_arrays_are_those_of_the_tunnel(table, section):
@@ -212,6 +226,12 @@ def test_records_from_arrays_are_those_of_the_tunnel(table, section):
         rebuilt = one if rebuilt is None else rebuilt + one
     assert aerodeck.flutter(section, aerodeck.fit_laguerre(rebuilt)).speed_m_s == direct.speed_m_s
     assert direct.interval is not None
+
+
+@pytest.mark.skipif("AERODECK_TRAINED" not in os.environ, reason="no model trained by the program")
+def test_a_loaded_model_has_the_covariance_beside_it():
+    model = aerodeck.Model.load(os.environ["AERODECK_TRAINED"])
+    assert aerodeck.flutter(model.section, model).interval == pytest.approx((36.27, 37.57), abs=0.01)
 
 
 def test_saved_models_and_records_come_back(tmp_path, table, section, model):
@@ -307,7 +327,8 @@ def test_what_is_odd_is_warned_of_and_doubted(table, section, tmp_path):
     with pytest.warns(aerodeck.AerodeckWarning, match=r"read as Scanlan with 1/2, over v_hat"):
         mislabelled = aerodeck.Derivatives.read(wrong)
     records = aerodeck.Records.virtual_tunnel(mislabelled)
-    for data in (mislabelled, aerodeck.fit_laguerre(mislabelled), aerodeck.fit_rational(records + records)):
+    both = records + aerodeck.Records.virtual_tunnel(mislabelled, noise_fraction=0.01)
+    for data in (mislabelled, aerodeck.fit_laguerre(mislabelled), aerodeck.fit_rational(both)):
         onset = aerodeck.flutter(section, data, required_speed_m_s=5.0)
         assert onset.outcome == "cannot_be_judged", onset.headline
         said = [w for w in onset.warnings if "read as Scanlan with 1/2, over v_hat" in w]

@@ -92,14 +92,11 @@ fn verdict(plan: &MonteCarloPlan, model: &TrainedModel) -> Result<Option<Verdict
 /// How many samples have an onset, where it lies, and how it scatters.
 fn onsets(r: &MonteCarloResult) -> Vec<String> {
     let mut lines = vec![format!(
-        "{}: {}, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed",
+        "{}: {}, seed {}: {}",
         r.model,
         counted(r.samples, "sample"),
         r.seed,
-        r.onsets,
-        r.speed_max_m_s,
-        r.stable,
-        r.failed
+        r.counts_in_words()
     )];
     if let Some(speed) = r.unstable_up_to_m_s {
         lines.push(format!(
@@ -108,20 +105,15 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
             r.unstable_at_or_below
         ));
     }
-    let speed = |v: Option<f64>| match v {
-        Some(v) => format!("{v:.3} m/s"),
-        // samples that tests judge no further may flutter from there on
-        None => format!(
-            "above {:.3} m/s",
-            r.judged_up_to_m_s.unwrap_or(r.speed_max_m_s)
-        ),
-    };
     let or_below = if r.nominal_or_below {
         "at or below "
     } else {
         ""
     };
-    let nominal = speed(r.nominal_m_s);
+    let nominal = match r.nominal_m_s {
+        Some(v) => format!("{v:.3} m/s"),
+        None => format!("above {:.3} m/s", r.speed_max_m_s),
+    };
     lines.push(format!("Onset     of the model itself {or_below}{nominal}"));
     if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
         lines.push(format!(
@@ -129,11 +121,14 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
         ));
     }
     lines.extend(r.quantiles.iter().map(|q| {
-        format!(
-            "          {:>6} % of all sections flutter at or below {}",
-            100.0 * q.probability,
-            speed(q.speed_m_s).replace("above", "a speed above")
-        )
+        let speed = match (q.speed_m_s, q.ends_m_s) {
+            (Some(v), _) => format!("{v:.3} m/s"),
+            // by what becomes of samples that failed or are not judged so far
+            (None, [Some(low), Some(high)]) => format!("a speed from {low:.3} to {high:.3} m/s"),
+            (None, [low, _]) => format!("a speed above {:.3} m/s", low.unwrap_or(r.speed_max_m_s)),
+        };
+        let percent = 100.0 * q.probability;
+        format!("          {percent:>6} % of all sections flutter at or below {speed}")
     }));
     lines
 }
@@ -154,7 +149,7 @@ fn design(r: &MonteCarloResult) -> Vec<String> {
     )];
     if d.undecided > 0 {
         lines.push(format!(
-            "          {} more cannot be judged at {:.3} m/s, which the tests do not reach or reach only above: they count in the probability and in its upper limit",
+            "          {} more failed or cannot be judged at {:.3} m/s, which the tests do not reach or reach only above: they count in the probability and in its upper limit",
             d.undecided, d.speed_m_s
         ));
     }

@@ -41,8 +41,10 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
     Drawing {
         name: PLACE,
         title: Some(format!(
-            "{}: onset of {} random sections, {} of them stable up to {:.3} m/s",
-            result.model, result.samples, result.stable, result.speed_max_m_s
+            "{}: {} random sections, {}",
+            result.model,
+            result.samples,
+            result.counts_in_words()
         )),
         panels: vec![share, distribution],
         columns: 1,
@@ -55,11 +57,10 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
 /// Points over wind speed, per cent.
 type Curve = Vec<(f64, f64)>;
 
-/// Outline of the histogram, and the distribution function, of all answered samples.
+/// Outline of the histogram, and the distribution function, of all samples.
 fn curves(result: &MonteCarloResult) -> (Curve, Curve) {
     let (h, unstable) = (&result.histogram, result.unstable_at_or_below);
-    let answered = (result.onsets + unstable + result.stable) as f64;
-    let percent = |count: u64| 100.0 * count as f64 / answered;
+    let percent = |count: u64| 100.0 * count as f64 / result.samples as f64;
     let edge = |i: usize| h.from_m_s + h.width_m_s * i as f64;
     // their onsets lie somewhere below
     let mut sum = unstable as u64;

@@ -8,7 +8,7 @@ use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
 };
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
     ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
 };
@@ -210,8 +210,9 @@ impl Deck {
                     return Ok(table.samples(&self.dofs));
                 };
                 let mut samples = Vec::new();
-                for group in groups {
-                    let part = table.at_speed_group(group_index(*group)?)?;
+                let count = table.speed_groups().len().max(1);
+                for group in chosen(Some(groups), count)? {
+                    let part = table.at_speed_group(group)?;
                     samples.extend(part.samples(&self.dofs));
                 }
                 Ok(samples)
@@ -277,30 +278,18 @@ impl Deck {
     }
 }
 
-fn group_index(group: usize) -> Result<usize> {
-    group
-        .checked_sub(1)
-        .ok_or_else(|| Error::input("speed_groups", "numbers from 1", "0"))
-}
-
-/// Indices of the chosen groups among `count`.
+/// Indices of the chosen groups among `count`, each once: what stands twice would look better known than it is.
 pub(super) fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
     let Some(groups) = groups else {
         return Ok((0..count).collect());
     };
-    groups
-        .iter()
-        .map(|group| {
-            let index = group_index(*group)?;
-            if index < count {
-                Ok(index)
-            } else {
-                Err(Error::input(
-                    "speed_groups",
-                    format!("numbers from 1 to {count}"),
-                    group.to_string(),
-                ))
-            }
-        })
-        .collect()
+    let right =
+        |(i, group): (usize, &usize)| (1..=count).contains(group) && !groups[..i].contains(group);
+    ensure(
+        !groups.is_empty() && groups.iter().enumerate().all(right),
+        "speed_groups",
+        format_args!("numbers from 1 to {count}, each once"),
+        format_args!("{groups:?}"),
+    )?;
+    Ok(groups.iter().map(|group| group - 1).collect())
 }

@@ -12,7 +12,7 @@ use crate::uncertainty::ModelUncertainty;
 use std::path::{Path, PathBuf};
 
 /// Uncertainty of one model, or why it is not known.
-pub(crate) type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
+pub type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
 
 /// Folder of the fit reports in a folder of results.
 pub(crate) const FITS: &str = "fits";
@@ -59,8 +59,11 @@ pub(crate) fn saved_moved_onset(
     Ok(Some(moved))
 }
 
-/// The uncertainty for the file of a model: beside it, or beside the folder it is in.
-pub(crate) fn uncertainty_beside(file: &Path, model: &TrainedModel) -> Result<KnownUncertainty> {
+/// The uncertainty that training left for the file of a model, beside it or beside the folder it is in; or why it is not known.
+///
+/// # Errors
+/// [`Error::Io`] and [`Error::Input`] for a file of uncertainties that cannot be read.
+pub fn uncertainty_beside(file: &Path, model: &TrainedModel) -> Result<KnownUncertainty> {
     let folder = file.parent().unwrap_or(Path::new(""));
     match saved_uncertainty(model, folder)? {
         Err(_) => saved_uncertainty(model, &folder.join("..")),

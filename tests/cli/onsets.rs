@@ -151,10 +151,10 @@ fn the_table_is_cut_to_the_speed_groups_of_the_deck() {
         let found = table(groups);
         assert!((found - speed).abs() < 0.002, "{groups}: {found}");
     }
-    let wrong = ["study", "c.toml", "--set", "deck.speed_groups=[3]"];
-    refused(
-        at,
-        &wrong,
-        &["deck.speed_groups", "numbers from 1 to 2", "3"],
-    );
+    let expected = "numbers from 1 to 2, each once";
+    for wrong in ["[3]", "[1, 2, 2]", "[]"] {
+        let set = format!("deck.speed_groups={wrong}");
+        let said = ["deck.speed_groups", expected, wrong];
+        refused(at, &["study", "c.toml", "--set", &set], &said);
+    }
 }

@@ -56,7 +56,7 @@ pub struct MonteCarloResult {
     /// Standard deviation of the onsets, m/s.
     pub standard_deviation_m_s: Option<f64>,
     /// Quantiles of the onset speed; samples without onset count as above the highest speed, those that grow at the
-    /// lowest speed that could be judged with that speed.
+    /// lowest speed that could be judged with that speed; those that failed may flutter anywhere.
     pub quantiles: Vec<Quantile>,
     /// Onsets counted in bins of equal width.
     pub histogram: Histogram,
@@ -64,6 +64,24 @@ pub struct MonteCarloResult {
     pub design: Option<DesignCheck>,
     /// What the model itself can say of that speed; of whoever holds it with its fit, and so none as [`summarise`](super::summarise) leaves it.
     pub verdict: Option<Verdict>,
+}
+
+impl MonteCarloResult {
+    /// How many samples have an onset, and what became of the others.
+    pub fn counts_in_words(&self) -> String {
+        let found = self.onsets + self.unstable_at_or_below;
+        let mut words = format!("{found} with an onset up to {:.3} m/s", self.speed_max_m_s);
+        for (count, what) in [
+            (self.stable - self.not_judged, "without"),
+            (self.not_judged, "not judged so far"),
+            (self.failed, "failed"),
+        ] {
+            if count > 0 {
+                words.push_str(&format!(", {count} {what}"));
+            }
+        }
+        words
+    }
 }
 
 /// A sample without an answer.
@@ -80,8 +98,11 @@ pub struct FailedSample {
 pub struct Quantile {
     /// Probability of an onset at or below the speed.
     pub probability: f64,
-    /// m/s; `null` above the highest speed searched, and where it depends on samples that could not be judged so far.
+    /// m/s; `null` above the highest speed searched, and where it depends on samples that failed or could not be judged so far.
     pub speed_m_s: Option<f64>,
+    /// Ends between which it lies whatever becomes of those samples, m/s; `null` above the highest speed searched.
+    #[serde(default)]
+    pub ends_m_s: [Option<f64>; 2],
     /// Whether the quantile is that of samples whose onset lies there or below.
     pub or_below: bool,
 }
@@ -104,10 +125,10 @@ pub struct DesignCheck {
     pub speed_m_s: f64,
     /// Samples with an onset below it.
     pub below: u64,
-    /// Samples that grow at the lowest speed that could be judged, which is not below the design speed, and samples that
-    /// could not be judged up to it: not counted as safe.
+    /// Samples that grow at the lowest speed that could be judged, which is not below the design speed, samples that
+    /// could not be judged up to it, and those that failed: not counted as safe.
     pub undecided: u64,
-    /// Part of all samples with an answer that have an onset below the design speed, or may have.
+    /// Part of all samples that have an onset below the design speed, or may have.
     pub probability: f64,
     /// Lower end of the exact (Clopper–Pearson) confidence interval, of the samples known to lie below.
     pub lower: f64,
@@ -201,11 +222,12 @@ impl Tally {
             SweepOutcome::Onset(o) | SweepOutcome::UnstableAtOrBelow(o) => Some(o.speed_m_s),
             SweepOutcome::Stable { .. } | SweepOutcome::Unresolved => None,
         };
-        let answered = self.onsets.len() + self.starts.len() + self.stable.len();
+        let drawn = self.len();
         let open = || self.stable.iter().copied().filter(|v| *v < speed_max_m_s);
         let unsafe_speeds = joined(&self.onsets, self.starts.iter().copied());
-        // an onset of a sample that was not judged to the end may lie anywhere beyond
-        let earliest = joined(&unsafe_speeds, open());
+        // an onset of a sample that was not judged to the end may lie anywhere beyond, of one that failed anywhere
+        let failed = std::iter::repeat_n(0.0, self.failed);
+        let earliest = joined(&unsafe_speeds, open().chain(failed));
         let (mean, deviation) = mean_and_deviation(self.onsets.iter().copied());
         MonteCarloResult {
             model: model.to_owned(),
@@ -230,12 +252,12 @@ impl Tally {
                 .quantiles
                 .iter()
                 .map(|p| {
-                    let known = sample_quantile(&earliest, answered, *p);
-                    let found = sample_quantile(&unsafe_speeds, answered, *p);
+                    let ends = [&earliest, &unsafe_speeds].map(|s| sample_quantile(s, drawn, *p));
                     Quantile {
                         probability: *p,
-                        speed_m_s: found.filter(|v| known == Some(*v)),
-                        or_below: is_a_start(&unsafe_speeds, &self.starts, rank(answered, *p)),
+                        speed_m_s: ends[1].filter(|v| ends[0] == Some(*v)),
+                        ends_m_s: ends,
+                        or_below: is_a_start(&unsafe_speeds, &self.starts, rank(drawn, *p)),
                     }
                 })
                 .collect(),
@@ -243,8 +265,8 @@ impl Tally {
             verdict: None,
             design: plan
                 .design_speed_m_s
-                .filter(|_| answered > 0)
-                .map(|speed| design(&self, answered, speed, plan.confidence)),
+                .filter(|_| drawn > 0)
+                .map(|speed| design(&self, speed, plan.confidence)),
             failures: self.failures,
         }
     }
@@ -262,8 +284,8 @@ fn joined(sorted: &[f64], others: impl Iterator<Item = f64>) -> Cow<'_, [f64]> {
 }
 
 /// Place at or below that of a quantile.
-fn rank(answered: usize, probability: f64) -> usize {
-    (probability * (answered.max(1) - 1) as f64).floor() as usize
+fn rank(drawn: usize, probability: f64) -> usize {
+    (probability * (drawn.max(1) - 1) as f64).floor() as usize
 }
 
 /// Whether the quantile at a place among sorted speeds is that of one of `starts`, sorted as well: known to lie there or below.
@@ -303,20 +325,22 @@ fn histogram(sorted: &[f64]) -> Histogram {
     }
 }
 
-fn design(tally: &Tally, answered: usize, speed_m_s: f64, confidence: f64) -> DesignCheck {
+fn design(tally: &Tally, speed_m_s: f64, confidence: f64) -> DesignCheck {
+    let drawn = tally.len() as u64;
     let known = |sorted: &[f64]| sorted.partition_point(|v| *v < speed_m_s) as u64;
     // at or below a speed that is not above the design speed
     let starts = tally.starts.partition_point(|v| *v <= speed_m_s) as u64;
     let below = known(&tally.onsets) + starts;
     let open = tally.stable.iter().filter(|v| **v < speed_m_s);
-    let undecided = tally.starts.len() as u64 - starts + open.count() as u64;
-    let (lower, _) = clopper_pearson(below, answered as u64, confidence);
-    let (_, upper) = clopper_pearson(below + undecided, answered as u64, confidence);
+    let not_known = open.count() + tally.failed;
+    let undecided = tally.starts.len() as u64 - starts + not_known as u64;
+    let (lower, _) = clopper_pearson(below, drawn, confidence);
+    let (_, upper) = clopper_pearson(below + undecided, drawn, confidence);
     DesignCheck {
         speed_m_s,
         below,
         undecided,
-        probability: (below + undecided) as f64 / answered as f64,
+        probability: (below + undecided) as f64 / drawn as f64,
         lower,
         upper,
         confidence,

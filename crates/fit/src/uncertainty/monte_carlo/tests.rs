@@ -151,11 +151,26 @@ fn samples_are_those_of_single_searches() {
 
 #[test]
 fn impossible_samples_are_counted_and_named() {
-    let plan = plan(
+    let mut plan = plan(
         "[[parameter]]\nname = \"vertical.mass_kg_m\"\n\
          distribution = { kind = \"normal\", coefficient_of_variation = 0.5 }\n",
     );
+    plan.design_speed_m_s = Some(1.0);
+    plan.quantiles = vec![0.01, 0.5];
     let result = run(&plan);
+    // they may flutter anywhere: not safe at the design speed, and below every quantile or above it
+    let design = result.design.unwrap();
+    assert_eq!(design.undecided, result.failed as u64);
+    assert_eq!(design.probability, result.failed as f64 / 4000.0);
+    assert!(design.upper > design.probability && design.below == 0 && design.lower == 0.0);
+    let [first, median] = &result.quantiles[..] else {
+        panic!("{:?}", result.quantiles);
+    };
+    assert_eq!((first.ends_m_s[0], first.speed_m_s), (Some(0.0), None));
+    let [Some(low), Some(high)] = median.ends_m_s else {
+        panic!("{median:?}");
+    };
+    assert!(low < high && high < 1.05 * low, "{low}, {high}");
     // Φ(−2) = 2.3 % of the masses are negative
     assert!((60..130).contains(&result.failed), "{}", result.failed);
     assert!(
