@@ -29,4 +29,4 @@ pub(crate) use response::{part, peak_factor};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub use synthesis::{TurbulenceField, turbulence_field};
 pub use time::{ComponentComparison, Ensemble, compare};
-pub(crate) use time::{TimePlan, time_ensemble};
+pub(crate) use time::{TimePlan, check_plan, time_ensemble};

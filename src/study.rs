@@ -49,7 +49,7 @@ pub use wind::{CoefficientsBlock, SectionBuffetingBlock, example_wind_study_text
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
-use crate::error::{Error, Place, Result, finite, of_schema, positive};
+use crate::error::{Error, Place, Result, ensure, finite, of_schema, positive};
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
@@ -61,6 +61,8 @@ use std::path::{Path, PathBuf};
 
 /// Version of the study file.
 pub(crate) const STUDY_SCHEMA: u32 = 1;
+/// Wind speed of the default experiment over the onset at most.
+const MOST_OF_ONSET: f64 = 2.0;
 
 /// Contents of a study file.
 ///
@@ -241,7 +243,9 @@ impl Study {
     fn validate(&self) -> Result<()> {
         of_schema(STUDY_SCHEMA, self.schema)?;
         self.section.structure()?;
-        self.tunnel.validate()?;
+        let named = !self.name.trim().is_empty();
+        ensure(named, "name", "a name", "an empty one")?;
+        self.tunnel.validate().map_err(|e| e.within("tunnel"))?;
         if self.models.is_empty() {
             return Err(Error::input("model", "at least one [[model]]", "none"));
         }
@@ -355,8 +359,19 @@ impl ModelBlock {
 impl ExportBlock {
     fn validate(&self) -> Result<()> {
         positive("export.part_of_onset", self.part_of_onset)?;
+        let expected = format_args!("at most {MOST_OF_ONSET}: 1 is the onset");
+        let part = self.part_of_onset;
+        ensure(
+            part <= MOST_OF_ONSET,
+            "export.part_of_onset",
+            expected,
+            part,
+        )?;
         positive("export.stop_time_s", self.stop_time_s)?;
         positive("export.step_size_s", self.step_size_s)?;
+        let expected = format_args!("at most stop_time_s ({} s)", self.stop_time_s);
+        let fits = self.step_size_s <= self.stop_time_s;
+        ensure(fits, "export.step_size_s", expected, self.step_size_s)?;
         finite("export.initial_vertical_m", self.initial_vertical_m)?;
         finite("export.initial_rotation_deg", self.initial_rotation_deg)?;
         Ok(())

@@ -17,7 +17,7 @@ use super::spectrum::GustComponent;
 use super::synthesis::{TurbulenceField, parts_in_time};
 use super::time::{all_records, root_and_error};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Error, Result, counted};
 use crate::numbered::OnDone;
 use crate::signal::Fourier;
 use crate::state_space::{StateEquation, c2d};
@@ -134,8 +134,6 @@ pub(crate) fn span_ensemble(
     progress: OnDone<'_>,
 ) -> Result<SpanEnsemble> {
     let (duration, step) = (plan.duration_s, plan.step_s);
-    positive("duration_s", duration)?;
-    positive("step_s", step)?;
     let samples = 2 * (0.5 * duration / step).round() as usize;
     problem.check_record(speed_m_s, step, samples)?;
     let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, step, samples)?;

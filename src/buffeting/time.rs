@@ -48,6 +48,22 @@ impl Default for TimePlan {
     }
 }
 
+/// Refuses a plan that no structure could take; `place` is its key.
+pub(crate) fn check_plan(
+    place: &str,
+    records: usize,
+    duration_s: Option<f64>,
+    step_s: Option<f64>,
+) -> Result<()> {
+    let expected = format_args!("a number from 2 to {MOST_RECORDS}");
+    let fits = (2..=MOST_RECORDS).contains(&records);
+    ensure(fits, format!("{place}.records"), expected, records)?;
+    for (key, value) in [("duration_s", duration_s), ("step_s", step_s)] {
+        value.map_or(Ok(0.0), |v| positive(format!("{place}.{key}"), v))?;
+    }
+    Ok(())
+}
+
 /// Root mean squares over many records; vectors in the order of the degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ensemble {
@@ -134,16 +150,13 @@ pub(crate) fn time_ensemble(
 /// Makes every record of a plan by its own seed, side by side; `progress` gets how many are done and how many there are.
 ///
 /// # Errors
-/// [`Error::Input`] for a number of records that cannot be, and those of a record.
+/// Those of a record.
 pub(super) fn all_records<T: Send>(
     records: usize,
     seed: u64,
     progress: OnDone<'_>,
     record: impl Fn(u64) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let expected = format_args!("a number from 2 to {MOST_RECORDS}");
-    let fits = (2..=MOST_RECORDS).contains(&records);
-    ensure(fits, "records", expected, records)?;
     numbered(records, progress, |i| record(seed.wrapping_add(i as u64)))
 }
 
@@ -163,11 +176,11 @@ fn grid(
     plan: &TimePlan,
 ) -> Result<TimeGrid> {
     let step_s = match plan.step_s {
-        Some(step) => positive("step_s", step)?,
+        Some(step) => step,
         None => 1.0 / (SAMPLES_PER_PERIOD * problem.highest_hz),
     };
     let duration = match plan.duration_s {
-        Some(duration) => positive("duration_s", duration)?,
+        Some(duration) => duration,
         None => DECAY_TIMES_BY_DEFAULT / slowest,
     };
     let warm_up_s = DECAY_TIMES / slowest;

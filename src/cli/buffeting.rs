@@ -6,7 +6,7 @@ use super::progress::Progress;
 use super::text_table::TextTable;
 use super::wind::WindArgs;
 use super::{buffeting_page, figures, headline};
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Result};
 use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_page};
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
 use std::fmt::Write as _;
@@ -76,7 +76,10 @@ pub(super) fn of_study(
     });
     let rms: Vec<String> = rms.collect();
     let line = format!("RMS at {} m/s: {}", last.speed_m_s, rms.join(", "));
-    let line = std::iter::once(line).chain(results.without_response());
+    let tested = buffeting_page::tested(&results);
+    let further = results.without_response().into_iter();
+    let further = further.chain(tested.lines().map(str::to_owned));
+    let line = std::iter::once(line).chain(further);
     let line = line.collect::<Vec<_>>().join("; ");
     write(&study.name, OF_STUDY, &results, out)?;
     Ok(line)
@@ -123,63 +126,7 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
     for line in results.without_response() {
         let _ = writeln!(text, "{line}");
     }
-    text.push_str(&tested(results));
-    text.push_str(&time_domain(results));
-    text
-}
-
-/// A warning where much of the response lies outside the tested range.
-fn tested(results: &BuffetingStudy) -> String {
-    let least = results
-        .responses
-        .iter()
-        .filter_map(|r| Some((r.speed_m_s, r.part_in_tested_range.as_ref()?)))
-        .map(|(v, parts)| (v, parts.iter().copied().fold(f64::INFINITY, f64::min)))
-        .min_by(|a, b| a.1.total_cmp(&b.1));
-    least.map_or(String::new(), |(speed, part)| {
-        format!(
-            "variance inside the tested range of K: {:.0} % at least (at {speed:.2} m/s); the rest is extrapolation\n",
-            100.0 * part
-        )
-    })
-}
-
-fn time_domain(results: &BuffetingStudy) -> String {
-    let mut text = String::new();
-    for domain in &results.time {
-        let e = &domain.ensemble;
-        let _ = writeln!(
-            text,
-            "\ntime domain at {} m/s: {} of {:.0} s, step {:.4} s, warm-up {:.0} s",
-            e.speed_m_s,
-            counted(e.rms_of_records.len(), "record"),
-            e.duration_s,
-            e.step_s,
-            e.warm_up_s
-        );
-        for c in &domain.comparison {
-            let (factor, unit) = c.dof.shown_in();
-            let _ = writeln!(
-                text,
-                "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",
-                c.dof.symbol(),
-                factor * c.time_rms,
-                factor * c.standard_error,
-                unit,
-                factor * c.frequency_rms,
-                c.deviations
-            );
-        }
-        if let (Some(change), Some(fit)) = (&domain.model_change, &results.fit) {
-            let of = results.dofs.iter().zip(change);
-            let parts = of.map(|(dof, part)| format!("{} {:+.1} %", dof.symbol(), 100.0 * part));
-            let parts: Vec<String> = parts.collect();
-            let _ = writeln!(
-                text,
-                "  it takes a model ({fit}), whose RMS in the frequency domain differs from that of the table: {}",
-                parts.join(", ")
-            );
-        }
-    }
+    text.push_str(&buffeting_page::tested(results));
+    text.push_str(&buffeting_page::time_domain(results));
     text
 }

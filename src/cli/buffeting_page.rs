@@ -2,10 +2,11 @@
 
 use super::report::folder::today;
 use crate::buffeting::peak_factor;
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::files::report_block::ReportBlock;
 use crate::report::{PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure};
 use crate::study::BuffetingStudy;
+use std::fmt::Write as _;
 
 /// Length of record for which peaks are expected, s.
 const DURATION_S: f64 = 600.0;
@@ -51,6 +52,8 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
             results.aerodynamics
         ))
         .chain(results.without_response().into_iter().map(|line| format!("No response {line}.")))
+        .chain([tested(results), time_domain(results)].concat().lines().map(str::to_owned))
+        .filter(|line| !line.is_empty())
         .collect(),
         header: vec![
             "V m/s",
@@ -79,4 +82,61 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
         key: key.to_owned(),
         sections: vec![table],
     })
+}
+
+/// How much of the response lies inside the tested range, where it does least.
+pub(super) fn tested(results: &BuffetingStudy) -> String {
+    let least = results
+        .responses
+        .iter()
+        .filter_map(|r| Some((r.speed_m_s, r.part_in_tested_range.as_ref()?)))
+        .map(|(v, parts)| (v, parts.iter().copied().fold(f64::INFINITY, f64::min)))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    least.map_or(String::new(), |(speed, part)| {
+        format!(
+            "variance inside the tested range of K: {:.0} % at least (at {speed:.2} m/s); the rest is extrapolation\n",
+            100.0 * part
+        )
+    })
+}
+
+/// Both domains side by side, at the speeds of the time domain.
+pub(super) fn time_domain(results: &BuffetingStudy) -> String {
+    let mut text = String::new();
+    for domain in &results.time {
+        let e = &domain.ensemble;
+        let _ = writeln!(
+            text,
+            "\ntime domain at {} m/s: {} of {:.0} s, step {:.4} s, warm-up {:.0} s",
+            e.speed_m_s,
+            counted(e.rms_of_records.len(), "record"),
+            e.duration_s,
+            e.step_s,
+            e.warm_up_s
+        );
+        for c in &domain.comparison {
+            let (factor, unit) = c.dof.shown_in();
+            let _ = writeln!(
+                text,
+                "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",
+                c.dof.symbol(),
+                factor * c.time_rms,
+                factor * c.standard_error,
+                unit,
+                factor * c.frequency_rms,
+                c.deviations
+            );
+        }
+        if let (Some(change), Some(fit)) = (&domain.model_change, &results.fit) {
+            let of = results.dofs.iter().zip(change);
+            let parts = of.map(|(dof, part)| format!("{} {:+.1} %", dof.symbol(), 100.0 * part));
+            let parts: Vec<String> = parts.collect();
+            let _ = writeln!(
+                text,
+                "  it takes a model ({fit}), whose RMS in the frequency domain differs from that of the table: {}",
+                parts.join(", ")
+            );
+        }
+    }
+    text
 }

@@ -12,7 +12,7 @@ use super::{FlutterBlock, SpeedRange, Study, is_default};
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, Interpolation};
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
-use crate::buffeting::{TimePlan, Turbulence};
+use crate::buffeting::{TimePlan, Turbulence, check_plan};
 use crate::error::{Error, Result, finite, of_schema, positive};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::named_table;
@@ -105,7 +105,7 @@ impl SectionBuffetingBlock {
     pub(in crate::study) fn validate(&self, place: &str) -> Result<()> {
         self.turbulence.validate(&format!("{place}.turbulence"))?;
         all_positive(&format!("{place}.speeds_m_s"), &self.speeds_m_s)?;
-        all_positive(&format!("{place}.time.speeds_m_s"), &self.time.speeds_m_s)
+        self.time.validate(&format!("{place}.time"))
     }
 }
 
@@ -124,6 +124,19 @@ pub(crate) struct TimeBlock {
     pub speeds_m_s: Vec<f64>,
     /// Records at each.
     pub plan: TimePlan,
+}
+
+impl TimeBlock {
+    fn validate(&self, place: &str) -> Result<()> {
+        all_positive(&format!("{place}.speeds_m_s"), &self.speeds_m_s)?;
+        let TimePlan {
+            records,
+            duration_s,
+            step_s,
+            ..
+        } = self.plan;
+        check_plan(&format!("{place}.plan"), records, duration_s, step_s)
+    }
 }
 
 /// A run with nonlinear quasi-steady forces, released from the static equilibrium.
@@ -179,7 +192,7 @@ impl WindStudy {
         if let Some(turbulence) = &self.turbulence {
             turbulence.validate("turbulence")?;
         }
-        all_positive("time.speeds_m_s", &self.time.speeds_m_s)?;
+        self.time.validate("time")?;
         if let Some(block) = &self.coefficients {
             block.validate("coefficients")?;
         }

@@ -74,6 +74,25 @@ fn a_damping_in_per_cent_reaches_the_page_of_a_section() {
     );
 }
 
+/// Numbers of the tunnel and of the export in another unit are refused where they stand.
+#[test]
+fn tunnel_and_export_have_their_units() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    for (set, said) in [
+        (
+            "export.part_of_onset=98",
+            "export.part_of_onset: expected at most",
+        ),
+        ("export.step_size_s=20", "at most stop_time_s (10 s)"),
+        ("tunnel.segment_s=-1", "tunnel.segment_s: expected"),
+        ("name=''", "name: expected a name"),
+    ] {
+        refused(at, &["study", "s.toml", "--set", set], &[said]);
+    }
+}
+
 /// Wind that does not blow square to the nodes: 91.7 m/s instead of 77, as the file that was converted from it says as well.
 #[test]
 fn axes_that_are_turned_reach_the_page_of_a_bridge_and_of_what_is_converted() {

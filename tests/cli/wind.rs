@@ -248,6 +248,16 @@ fn wrong_wind_files_are_refused_with_their_line() {
             "`arms` or `arms_from`",
         ),
         ("[time]", "[tmie]", "line "),
+        (
+            "records = 32",
+            "records = 1",
+            "time.plan.records: expected a number from 2 to 100000, found 1",
+        ),
+        (
+            "seed = 1 }",
+            "seed = 1, step_s = 0 }",
+            "time.plan.step_s: expected a positive number, found 0",
+        ),
     ];
     for (old, new, expected) in cases {
         write(&folder, old, new);
@@ -368,6 +378,16 @@ fn buffeting_answers_stable_speeds_and_names_the_others() {
     assert!(page.contains("No response at ") && page.contains(" 110.00"));
     assert!(text.contains("time domain at 20 m/s"), "{text}");
     assert!(!text.contains("time domain at 110 m/s"), "{text}");
+    // a step that holds no mode takes nothing of the frequency domain with it
+    let coarse = fs::read_to_string(&file).unwrap();
+    fs::write(
+        &file,
+        coarse.replace("seed = 1 }", "seed = 1, step_s = 5.0 }"),
+    )
+    .unwrap();
+    let text = flowing(&succeeds(folder.path(), &["buffeting", "wind.toml"]));
+    let why = "at 20.00 m/s: no time domain: time step of the turbulence: expected at most";
+    assert!(text.contains(why) && text.contains("RMS y"), "{text}");
 }
 
 /// A study that states turbulence has the response of the command on a wind file with its model, in its report too; one whose
@@ -385,8 +405,11 @@ fn a_study_states_its_turbulence() {
     fs::write(at.join("gusts.toml"), &gusts).unwrap();
     let text = succeeds(at, &["study", "gusts.toml", "--out", "r"]);
     assert!(text.contains("\nGusts     RMS at 14 m/s: y "), "{text}");
+    let extrapolated = "variance inside the tested range of K: ";
+    assert!(flowing(&text).contains(extrapolated), "{text}");
     let page = fs::read_to_string(at.join("r/report.html")).unwrap();
     assert!(page.contains("Response to turbulence") && page.contains("expected peak"));
+    assert!(page.contains(extrapolated));
     let of_study: Value =
         serde_json::from_str(&fs::read_to_string(at.join("r/buffeting.json")).unwrap()).unwrap();
     let wind = format!(

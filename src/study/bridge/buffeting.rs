@@ -6,10 +6,10 @@ use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, motion_index};
 use crate::buffeting::{
     BuffetingProblem, Coherence, FrequencyDomain, Gust, SpanEnsemble, SpanPlan, SpanRecord,
-    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, part, span_ensemble, span_record,
-    turbulence_field,
+    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, check_plan, part, span_ensemble,
+    span_record, turbulence_field,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -107,8 +107,8 @@ impl BridgeStudy {
             )
         })?;
         block.coherence.validate("buffeting.coherence")?;
-        positive("buffeting.time.duration_s", block.time.duration_s)?;
-        positive("buffeting.time.step_s", block.time.step_s)?;
+        let (duration_s, step_s) = (Some(block.time.duration_s), Some(block.time.step_s));
+        check_plan("buffeting.time", block.time.records, duration_s, step_s)?;
         Ok(block)
     }
 

@@ -136,6 +136,8 @@ pub(crate) fn buffeting_study(
                 Error::Unstable(why) if setting.fitted.is_some() => Error::Unstable(format!(
                     "no time domain, the model fitted to the table grows: {why}"
                 )),
+                // what the frequency domain has found stays
+                Error::Input(why) => Error::Unstable(format!("no time domain: {why}")),
                 other => other,
             });
         time.extend(answered(response.speed_m_s, domains, &mut left_out)?);

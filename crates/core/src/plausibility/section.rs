@@ -75,7 +75,7 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
 }
 
 /// A density that is not that of air.
-pub(super) fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
+pub fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
     beyond(key, density_kg_m3, &AIR)
 }
 

@@ -2,7 +2,7 @@
 
 use super::TunnelPlan;
 use crate::error::{Error, Result, ensure, non_negative, positive};
-use crate::plausibility::{Finding, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond};
+use crate::plausibility::{Finding, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond, unusual_air};
 
 /// Faster than any load cell of a wind tunnel is read, Hz.
 const MOST_HERTZ: f64 = 1e5;
@@ -55,6 +55,10 @@ impl TunnelPlan {
             .map(|f| beyond("tunnel.frequencies_hz", *f, &MOTION_FREQUENCY))
             .chain(speeds.map(|v| beyond("tunnel.speeds_m_s", *v, &WIND_SPEED)))
             .chain([beyond("tunnel.sampling_hz", self.sampling_hz, &SAMPLING)])
+            .chain([unusual_air(
+                "tunnel.air_density_kg_m3",
+                self.air_density_kg_m3,
+            )])
             .flatten()
             .collect()
     }
