@@ -221,6 +221,35 @@ fn slips_to_the_unsafe_side_are_doubts() {
             let by = |d| if d == halved { 0.5 } else { 1.0 };
             doubted(&scaled(&deck, by), &[slopes]);
         }
+        let about_edge = rewritten(&deck, |d| {
+            let mut points = deck.points(d).to_vec();
+            if d.force() == Dof::Torsion {
+                let lift = deck.points(Derivative::from_entry(Dof::Vertical, d.motion(), d.part()));
+                let both = points.iter_mut().zip(lift);
+                both.for_each(|(moment, lift)| moment.value -= 0.5 * lift.value);
+            }
+            points
+        });
+        let words = [
+            "read as moments about the leading edge",
+            those_of,
+            "beside a lift of",
+        ];
+        doubted(&about_edge, &words);
+        for turned in [A1, A3] {
+            let in_upper_half = rewritten(&deck, |d| {
+                let mut points = deck.points(d).to_vec();
+                points.sort_by(|a, b| a.v_hat.total_cmp(&b.v_hat));
+                let middle = points[points.len() / 2].v_hat;
+                let mut points = deck.points(d).to_vec();
+                let above = points
+                    .iter_mut()
+                    .filter(|p| d == turned && p.v_hat >= middle);
+                above.for_each(|p| p.value = -p.value);
+                points
+            });
+            doubted(&in_upper_half, &["at high V̂ A1* and A3* are ", slopes]);
+        }
     }
     // where H4* is that of a streamlined deck; on the other two the onset comes down
     for name in ["LN20-5500", "LN21-5200", "LN21-5500"] {

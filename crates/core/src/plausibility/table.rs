@@ -37,11 +37,16 @@ const NO_DECK: f64 = 5.0;
 /// Two derivatives with one slope behind them differ by less than this, both over the flat plate's: `A1*/A3*` is 0.96 to 1.05 on the
 /// embedded decks (also by speeds) and of IABSE 2a, 0.67 on the bluff deck of the tests, `H1*/H3*` 0.84 to 1.16. Half of one is beyond.
 const ONE_SLOPE: f64 = 1.8;
+/// The moment over the flat plate's below which both slopes of it are too small beside a lift above the other: moments about
+/// another axis. The embedded decks have 0.88 to 0.95, decks with wide gaps half of it.
+const LEAST_MOMENT: f64 = 0.35;
+const MUCH_LIFT: f64 = 0.5;
 /// `A2*` over the flat plate's above which a deck would damp rotation as none does: 0.36 to 0.61 is measured, less on bluff decks.
 const MOST_A2: f64 = 1.5;
 
-/// The five numbers at low reduced velocity, over those of the flat plate; `None` where the table has no such derivative.
-struct Signature([Option<f64>; 5]);
+/// The five numbers in the lower and the upper half of the reduced velocities, over those of the flat plate; `None` where the table
+/// has no such derivative.
+struct Signature([[Option<f64>; 5]; 2]);
 
 /// What looks wrong in a table: signs, sizes and units that are those of another convention. Empty when nothing does. `label` is
 /// the convention that the file states, or that was stated for it.
@@ -55,7 +60,7 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     if score < ODD {
         return found;
     }
-    let contradict = !own.contradictions().is_empty();
+    let contradict = own.contradictions().iter().any(|half| !half.is_empty());
     // by themselves the sizes of a bluff deck may resemble those of an exchange
     let slips = contradict.then(|| single_slips(table, *label));
     let best = candidates(table, *label)
@@ -130,7 +135,27 @@ fn candidates(
     // between reduced frequencies this factor is another argument
     let by_velocity = matches!(label.argument, Argument::VHat | Argument::VStar);
     let by_semi_chord = by_velocity.then(|| (words.to_owned(), by_semi_chord));
-    conventions.chain([per_degree]).chain(by_semi_chord)
+    conventions
+        .chain([per_degree, about_mid_chord(table)])
+        .chain(by_semi_chord)
+}
+
+/// Moments moved by half a width from the leading edge to mid-chord, where the lift was measured as well.
+fn about_mid_chord(table: &DerivativeTable) -> (String, Reading<'_>) {
+    let reading: Reading<'_> = Box::new(|d| {
+        let mut points = table.points(d).to_vec();
+        if d.force() == Dof::Torsion {
+            let lift = Derivative::from_entry(Dof::Vertical, d.motion(), d.part());
+            for p in &mut points {
+                let is_same = |l: &&DerivativePoint| (l.v_hat / p.v_hat - 1.0).abs() < 1e-6;
+                let lift = table.points(lift).iter().find(is_same);
+                p.value += lift.map_or(0.0, |l| 0.5 * l.value);
+            }
+        }
+        points
+    });
+    let words = "read as moments about the leading edge (A* + H*/2 about mid-chord)";
+    (words.to_owned(), reading)
 }
 
 /// Two derivatives exchanged, and one that couples the motions with its sign turned.
@@ -176,22 +201,27 @@ fn times(point: &DerivativePoint, factor: f64) -> DerivativePoint {
 }
 
 impl Signature {
-    /// Medians over the lower half of the reduced velocities.
+    /// Medians over each half of the reduced velocities.
     fn new(reading: &dyn Fn(Derivative) -> Vec<DerivativePoint>) -> Self {
-        Self(USUAL.map(|(derivative, _, _)| {
+        let mut halves = [[None; 5]; 2];
+        for (i, (derivative, _, _)) in USUAL.into_iter().enumerate() {
             let mut points = reading(derivative);
             points.sort_by(|a, b| a.v_hat.total_cmp(&b.v_hat));
-            points.truncate(points.len().div_ceil(2));
             let ratio = |p: &DerivativePoint| p.value / flat_plate(derivative, p);
-            let mut ratios: Vec<f64> = points.iter().map(ratio).collect();
-            ratios.sort_by(f64::total_cmp);
-            ratios.get(ratios.len() / 2).copied()
-        }))
+            let median = |points: &[DerivativePoint]| {
+                let mut ratios: Vec<f64> = points.iter().map(ratio).collect();
+                ratios.sort_by(f64::total_cmp);
+                ratios.get(ratios.len() / 2).copied()
+            };
+            let (low, high) = points.split_at(points.len().div_ceil(2));
+            (halves[0][i], halves[1][i]) = (median(low), median(high));
+        }
+        Self(halves)
     }
 
-    /// Those that the table has, each with its derivative, usual size and spread.
+    /// Those that the table has at low reduced velocities, each with its derivative, usual size and spread.
     fn known(&self) -> impl Iterator<Item = (f64, (Derivative, f64, f64))> {
-        let all = self.0.into_iter().zip(USUAL);
+        let all = self.0[0].into_iter().zip(USUAL);
         all.filter_map(|(ratio, usual)| Some((ratio?, usual)))
     }
 
@@ -206,14 +236,23 @@ impl Signature {
                 WRONG_SIGN
             }
         });
-        terms.sum::<f64>() + WRONG_SIGN * self.contradictions().len() as f64
+        terms.sum::<f64>() + WRONG_SIGN * self.contradictions().concat().len() as f64
     }
 
-    /// What no deck can have whatever its shape, and errs to the side of a high onset.
-    fn contradictions(&self) -> Vec<String> {
+    /// What no deck can have whatever its shape, and errs to the side of a high onset, in the lower half of the reduced velocities, or
+    /// where nothing is wrong there in the upper one.
+    fn contradictions(&self) -> [Vec<String>; 2] {
+        let low = Self::contradictions_of(&self.0[0]);
+        match low.is_empty() {
+            true => [low, Self::contradictions_of(&self.0[1])],
+            false => [low, Vec::new()],
+        }
+    }
+
+    fn contradictions_of(half: &[Option<f64>; 5]) -> Vec<String> {
         let below = |a: f64, b: f64| b > 0.0 && a * ONE_SLOPE < b;
         let one_slope = |i: usize, j: usize, force: &str| {
-            let (a, b) = (self.0[i]?, self.0[j]?);
+            let (a, b) = (half[i]?, half[j]?);
             // an H1* that is small or feeds heave is that of a bluff deck, and lowers the onset
             let odd = below(b, a) || force == "moment" && below(a, b);
             let (x, y) = (USUAL[i].0, USUAL[j].0);
@@ -222,11 +261,26 @@ impl Signature {
             );
             odd.then_some(words)
         };
-        let damping = self.0[3].filter(|a2| *a2 > MOST_A2);
+        let damping = half[3].filter(|a2| *a2 > MOST_A2);
         let damping = damping.map(|a2| {
             format!("A2* damps rotation {a2:.2} times as much as a flat plate's, where decks have 0.3 to 0.7")
         });
-        let found = [one_slope(0, 1, "lift"), one_slope(2, 4, "moment"), damping];
+        let without_moment = || {
+            let [h1, h3, a1, _, a3] = *half;
+            let (h1, h3, a1, a3) = (h1?, h3?, a1?, a3?);
+            let odd = a1.max(a3) < LEAST_MOMENT && h1.min(h3) > MUCH_LIFT;
+            odd.then(|| {
+                format!(
+                    "A1* and A3* are {a1:.2} and {a3:.2} times a flat plate's beside a lift of {h1:.2} and {h3:.2} times its own"
+                )
+            })
+        };
+        let found = [
+            one_slope(0, 1, "lift"),
+            one_slope(2, 4, "moment"),
+            damping,
+            without_moment(),
+        ];
         found.into_iter().flatten().collect()
     }
 
@@ -247,14 +301,19 @@ impl Signature {
             let far = (ratio / usual).ln().abs() > 2.0 * spread;
             far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
         });
-        let odd: Vec<String> = odd.chain(self.contradictions()).collect();
-        let wrong = |i: usize| self.0[i].is_some_and(|ratio| ratio <= 0.0);
+        let [low, high] = self.contradictions();
+        let odd: Vec<String> = odd.chain(low).collect();
+        let wrong = |i: usize| self.0[0][i].is_some_and(|ratio| ratio <= 0.0);
         let both = if wrong(0) && wrong(3) {
             " (H1* and A2* both positive: a section that gallops and flutters at once, or PoliMi's h1*, a2*)"
         } else {
             ""
         };
-        format!("at low V̂ {}{both}", odd.join(", "))
+        let said = [("low", odd, both), ("high", high, "")].into_iter();
+        let said = said
+            .filter(|(_, odd, _)| !odd.is_empty())
+            .map(|(at, odd, more)| format!("at {at} V̂ {}{more}", odd.join(", ")));
+        said.collect::<Vec<_>>().join("; ")
     }
 }
 
@@ -281,7 +340,8 @@ mod tests {
     /// A table of some derivatives is judged by those.
     #[test]
     fn what_is_missing_is_no_doubt() {
-        let part = Signature([Some(0.85), None, None, None, Some(0.9)]);
+        let half = [Some(0.85), None, None, None, Some(0.9)];
+        let part = Signature([half, half]);
         assert!(part.score() < 1e-9);
     }
 
