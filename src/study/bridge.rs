@@ -32,7 +32,8 @@ use crate::error::{Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;
 use crate::plausibility::{
-    Finding, of_bridge, of_coefficients, of_modes_left_out, of_profile, sentences,
+    Finding, of_bridge, of_coefficients, of_modes_left_out, of_profile, of_required_speed,
+    sentences,
 };
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -132,6 +133,8 @@ impl BridgeStudy {
         let by_model = bridge(false)?;
         findings.extend(of_bridge(&by_model));
         findings.extend(of_modes_left_out(&by_model, &modes.left_out));
+        let required = file.flutter.required_speed_m_s;
+        findings.extend(of_required_speed(required, by_model.width_m()));
         let profile: Vec<f64> = file.wind.profile.iter().map(|p| p.along_m).collect();
         findings.extend(of_profile(&profile, &modes.nodes));
         for block in &file.sections {

@@ -1,7 +1,7 @@
 //! What is odd about a study: its section and its virtual tunnel.
 
 use super::Study;
-use crate::plausibility::{Finding, of_section};
+use crate::plausibility::{Finding, of_required_speed, of_section};
 
 /// Largest amplitude over the width.
 const MOST_AMPLITUDE: f64 = 0.5;
@@ -14,6 +14,7 @@ const LEAST_ROTATION_DEG: f64 = 0.05;
 pub(crate) fn study_findings(study: &Study) -> Vec<Finding> {
     let mut found = of_section(&study.section);
     let width = study.section.width_m;
+    found.extend(of_required_speed(study.flutter.required_speed_m_s, width));
     let plan = &study.tunnel;
     for (key, amplitude) in [
         ("tunnel.vertical_amplitude_m", plan.vertical_amplitude_m),

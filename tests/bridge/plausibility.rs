@@ -86,7 +86,7 @@ fn other_units_are_recognised() {
     );
     assert_eq!(
         doubt(changed(|m| m.damping_ratio = 0.3), 31.0, 1.25),
-        "modes.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.02; in per cent it would be 0.003"
+        "modes.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.01; in per cent it would be 0.003"
     );
     let text = doubt(changed(|m| m.frequency_hz *= TAU), 31.0, 1.25);
     assert!(text.starts_with("mode 3: frequency_hz = 0.8727"), "{text}");

@@ -17,7 +17,7 @@ pub use limits::{
     ratio_hint,
 };
 pub use section::WIDEST_MODEL_M;
-pub use section::{of_section, unusual_air};
+pub use section::{of_required_speed, of_section, unusual_air};
 pub use table::of_table;
 
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 mod line;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
-use super::section::{unusual_air, unusual_damping, unusual_radius};
+use super::section::{DAMPING, unusual_air, unusual_damping, unusual_radius};
 use super::{Finding, FindingKind};
 use crate::bridge::{Bridge, BridgeMode, Node};
 pub use line::of_profile;
@@ -70,7 +70,7 @@ pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
     found.extend(twice(girder));
     let damping = modes
         .iter()
-        .find_map(|m| unusual_damping("modes.damping_ratio", m.damping_ratio));
+        .find_map(|m| unusual_damping("modes.damping_ratio", m.damping_ratio, DAMPING));
     found.extend(damping);
     found
 }

@@ -11,15 +11,18 @@ const AIR: Limits = Limits {
     usual: (0.7, 1.6),
     meant: &[("g/m³", 1e-3), ("kg/l", 1e3)],
 };
-/// Ratio to critical damping: bridges and rigs have 0.001 to 0.01, with dampers up to 0.02. Less is on the safe side, zero an
-/// idealisation.
-const DAMPING: (f64, f64) = (5e-4, 0.02);
+/// Ratio to critical damping: bridges and rigs have 0.001 to 0.01, and rigs with dampers up to 0.02. Less is on the safe side, zero
+/// an idealisation.
+pub(super) const DAMPING: (f64, f64) = (5e-4, 0.01);
+const DAMPING_OF_MODELS: (f64, f64) = (5e-4, 0.02);
 /// From here on it is no ratio of a structure.
 const MOST_DAMPING: f64 = 0.1;
 /// Decks narrower than this are models, m …
 pub const WIDEST_MODEL_M: f64 = 2.0;
 /// … and those wider than this carry roads: long bridges, with low frequencies, m.
 const NARROWEST_ROAD_M: f64 = 10.0;
+/// Less than any code asks of a bridge with a road, m/s.
+const LEAST_REQUIRED_M_S: f64 = 10.0;
 /// Mass over that of the air in a square of the width, `m/(ρB²)`: steel boxes have 10 to 30, concrete decks to 100, footbridges to
 /// 200; models may be as heavy as their rig.
 const MASS_RATIOS: (f64, f64) = (3.0, 300.0);
@@ -28,6 +31,8 @@ const MASS_RATIOS_OF_MODELS: (f64, f64) = (1.5, 1000.0);
 const RADII: (f64, f64) = (0.2, 0.45);
 /// Nothing inside the width has more; less than the other only a girder without a deck.
 const POSSIBLE_RADII: (f64, f64) = (0.15, 0.5);
+/// Frequency of torsion over that of heave.
+const FREQUENCY_RATIOS: (f64, f64) = (1.3, 4.0);
 /// Flutter of a flat plate with these numbers above this is that of no long bridge and of no model, m/s …
 const FASTEST_PLATE_M_S: f64 = 200.0;
 /// … and of no footbridge, which are stiff.
@@ -58,7 +63,12 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
     let scale_is_usual = found.is_empty();
     let mut damping = |name: &str, ratio| {
         let key = format!("section.{name}.damping_ratio");
-        found.extend(unusual_damping(&key, ratio));
+        let usual = if section.width_m < WIDEST_MODEL_M {
+            DAMPING_OF_MODELS
+        } else {
+            DAMPING
+        };
+        found.extend(unusual_damping(&key, ratio, usual));
     };
     damping("vertical", heave.damping_ratio);
     damping("torsion", twist.damping_ratio);
@@ -66,6 +76,7 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
         damping("lateral", s.damping_ratio);
     }
     if scale_is_usual {
+        found.extend(axis_beyond_edge(section));
         let of_mass = masses(section);
         let masses_are_usual = of_mass.iter().all(|f| f.severity < FindingSeverity::Doubt);
         found.extend(of_mass);
@@ -74,14 +85,36 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
     found
 }
 
+/// A required wind speed, m/s, that is odd for a deck of this width.
+pub fn of_required_speed(speed_m_s: Option<f64>, width_m: f64) -> Option<Finding> {
+    let slow = speed_m_s.filter(|v| *v < LEAST_REQUIRED_M_S && width_m >= NARROWEST_ROAD_M)?;
+    let text = format!("no deck of {width_m} m is built for less than {LEAST_REQUIRED_M_S} m/s");
+    let found = Finding::unit("flutter.required_speed_m_s", slow, text);
+    let otherwise = "is it at the scale of a model, or in another unit?".to_owned();
+    Some(found.otherwise(otherwise).into_note())
+}
+
+/// An axis of rotation beyond the edge of the deck.
+fn axis_beyond_edge(section: &SectionModel) -> Option<Finding> {
+    let offset = section.axis_offset_m.unwrap_or(0.0);
+    (offset.abs() > 0.5 * section.width_m).then(|| {
+        let text = format!(
+            "the edge of the deck is {} m from mid-chord",
+            0.5 * section.width_m
+        );
+        let otherwise = format!("in mm it would be {} m", significant(offset / 1e3));
+        Finding::unit("section.axis_offset_m", offset, text).otherwise(otherwise)
+    })
+}
+
 /// A density that is not that of air.
 pub fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
     beyond(key, density_kg_m3, &AIR)
 }
 
 /// A damping ratio that no structure has.
-pub(super) fn unusual_damping(key: &str, ratio: f64) -> Option<Finding> {
-    let (least, most) = DAMPING;
+pub(super) fn unusual_damping(key: &str, ratio: f64, usual: (f64, f64)) -> Option<Finding> {
+    let (least, most) = usual;
     if ratio == 0.0 || (least..=most).contains(&ratio) {
         return None;
     }
@@ -266,12 +299,12 @@ fn unusual_frequency(key: &str, name: &str, hertz: f64, width_m: f64) -> Option<
 
 /// A flat plate of these numbers flutters at `V = 3.7 f_t B √(m r/(ρB³) (1 − (f_v/f_t)²))` (Selberg's formula, within some per
 /// cent): a speed beyond every bridge says that frequencies, or all masses, stand in another unit.
-fn fast_plate(section: &SectionModel, heave_hz: f64, twist_hz: f64) -> Option<Finding> {
+pub(super) fn fast_plate(section: &SectionModel, heave_hz: f64, twist_hz: f64) -> Option<Finding> {
     let (width, density) = (section.width_m, section.air_density_kg_m3);
     let mass = section.vertical.mass_kg_m;
     let radius = (section.torsion.inertia_kg_m2_m / mass).sqrt();
     if twist_hz <= heave_hz {
-        return None;
+        return slow_twist(heave_hz, twist_hz);
     }
     let apart = 1.0 - (heave_hz / twist_hz).powi(2);
     let speed = 3.7 * twist_hz * width * (mass * radius / (density * width.powi(3)) * apart).sqrt();
@@ -293,6 +326,27 @@ fn fast_plate(section: &SectionModel, heave_hz: f64, twist_hz: f64) -> Option<Fi
         "with these masses and frequencies ({heave_hz:.4} and {twist_hz:.4} Hz) a flat plate flutters near {speed:.0} m/s, above \
          {fastest:.0} m/s as no deck of {width} m"
     );
+    let found = Finding::unit("section.torsion.frequency_hz", twist_hz, text);
+    Some(found.otherwise(otherwise))
+}
+
+/// Torsion no faster than heave, which do not couple into flutter then.
+fn slow_twist(heave_hz: f64, twist_hz: f64) -> Option<Finding> {
+    // a motion without a spring has no frequency
+    if twist_hz == 0.0 {
+        return None;
+    }
+    let (low, high) = FREQUENCY_RATIOS;
+    let text = format!(
+        "it is not above that of heave, {heave_hz:.4} Hz, where decks have {low} to {high} times it"
+    );
+    let in_hertz = heave_hz / TAU;
+    let otherwise = (low..=high).contains(&(twist_hz / in_hertz)).then(|| {
+        format!(
+            "were heave in rad/s, it would have {} Hz",
+            significant(in_hertz)
+        )
+    });
     let found = Finding::unit("section.torsion.frequency_hz", twist_hz, text);
     Some(found.otherwise(otherwise))
 }

@@ -93,6 +93,10 @@ fn other_units_are_recognised_by_key() {
         "section.torsion.inertia_kg_m2_m = 600: with the mass that is a radius of gyration of 12.649 widths (decks have 0.2 to \
          0.45; 0.5 is all mass in both edges); were the mass in t/m, it would be 0.400 widths"
     );
+    assert_eq!(
+        doubt(|s| s.axis_offset_m = Some(-55.0)),
+        "section.axis_offset_m = -55: the edge of the deck is 0.25 m from mid-chord; in mm it would be -0.055 m"
+    );
     assert!(doubt(|s| s.width_m = 22_000.0).ends_with("in mm it would be 22 m"));
 }
 
@@ -139,6 +143,39 @@ fn circular_frequencies_of_a_wide_deck_are_recognised() {
     assert_eq!(found[0].severity, FindingSeverity::Doubt);
 }
 
+/// Torsion below heave couples into no flutter, which looks safe.
+#[test]
+fn torsion_is_faster_than_heave() {
+    let said = |change: fn(&mut SectionModel)| {
+        let found = found(box_girder(), change);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].severity, FindingSeverity::Doubt);
+        found[0].to_string()
+    };
+    assert_eq!(
+        said(|s| s.vertical.frequency_hz = Some(0.823)),
+        "section.torsion.frequency_hz = 0.36: it is not above that of heave, 0.8230 Hz, where decks have 1.3 to 4 times it; were \
+         heave in rad/s, it would have 0.131 Hz"
+    );
+    assert!(
+        said(|s| s.vertical.frequency_hz = s.torsion.frequency_hz).ends_with("1.3 to 4 times it")
+    );
+}
+
+#[test]
+fn a_requirement_at_the_scale_of_a_model_is_a_note() {
+    let found = of_required_speed(Some(7.5), 31.0).unwrap();
+    assert_eq!(found.severity, FindingSeverity::Note);
+    assert_eq!(
+        found.to_string(),
+        "flutter.required_speed_m_s = 7.5: no deck of 31 m is built for less than 10 m/s; is it at the scale of a model, or in \
+         another unit?"
+    );
+    for (speed, width) in [(Some(7.5), 0.5), (Some(60.0), 31.0), (None, 31.0)] {
+        assert!(of_required_speed(speed, width).is_none());
+    }
+}
+
 /// Stiffnesses are judged as the frequencies that they are.
 #[test]
 fn a_stiffness_is_a_frequency() {
@@ -160,7 +197,11 @@ fn rare_values_are_notes() {
             0.05,
             "as a logarithmic decrement it would be a ratio of 0.007958",
         ),
-        (1e-4, "usually 0.0005 to 0.02"),
+        (
+            0.0126,
+            "usually 0.0005 to 0.01; as a logarithmic decrement it would be a ratio of 0.002005",
+        ),
+        (1e-4, "usually 0.0005 to 0.01"),
     ] {
         let found = found(box_girder(), |s| s.torsion.damping_ratio = damping);
         assert_eq!(found.len(), 1);
