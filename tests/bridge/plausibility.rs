@@ -88,6 +88,10 @@ fn other_units_are_recognised() {
         doubt(changed(|m| m.damping_ratio = 0.3), 31.0, 1.25),
         "modes.damping_ratio = 0.3: a ratio to critical damping is usually 0.0005 to 0.01; in per cent it would be 0.003"
     );
+    assert!(
+        sentences(&changed(|m| m.damping_ratio = 0.0126).findings())[0]
+            .ends_with("as a logarithmic decrement it would be a ratio of 0.002005")
+    );
     let text = doubt(changed(|m| m.frequency_hz *= TAU), 31.0, 1.25);
     assert!(text.starts_with("mode 3: frequency_hz = 0.8727"), "{text}");
     assert!(
@@ -100,6 +104,12 @@ fn other_units_are_recognised() {
     assert!(
         text.contains("in t it would be 1.71e4 kg/m")
             || text.contains("in t it would be 17100 kg/m"),
+        "{text}"
+    );
+    let text = doubt(changed(|m| m.generalised_mass *= 9.81), 31.0, 1.25);
+    assert!(
+        text.starts_with("mode 23: frequency_hz = 0.3963: with these masses and frequencies (")
+            && text.contains("above 200 m/s as no deck of 31 m"),
         "{text}"
     );
     let text = doubt(right(), 15.5, 1.25);
@@ -242,18 +252,18 @@ fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {
     for (motion, expected) in [
         (
             2,
-            "modes: none of the modes turns; rotations may not have been exported",
+            "modes: none of the modes is mainly torsional; more of them may have to be exported, rotations with them, in radians",
         ),
         (
             0,
-            "modes: none of the modes moves up and down; vertical displacements may not have been exported",
+            "modes: none of the modes is mainly vertical; more of them may have to be exported, vertical displacements with them, in m",
         ),
     ] {
         let still = changed(|m| {
             for s in &mut m.shape {
                 // each mode moves somehow
                 s[1] += 1e-3;
-                s[motion] *= 1e-12;
+                s[motion] *= 1e-5;
             }
         });
         let bridge = bridge(still, 31.0, 1.25);
@@ -264,6 +274,14 @@ fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {
         let said = sentences(&of_modes_left_out(&bridge, &langenuen().modes));
         assert_eq!(said.len(), 1, "{said:?}");
         assert!(said[0].starts_with("modes.select: "), "{said:?}");
+    }
+    // a few modes of which no torsional one is there, and rotations × π/180 once too often
+    let mut few = langenuen();
+    few.modes.truncate(10);
+    let small = changed(|m| m.shape.iter_mut().for_each(|s| s[2] = s[2].to_radians()));
+    for modes in [few, small] {
+        let said = of_modes_left_out(&bridge(modes, 31.0, 1.25), &[]);
+        assert!(said[0].text == "none of the modes is mainly torsional");
     }
     let right = bridge(langenuen(), 31.0, 1.25);
     assert!(of_modes_left_out(&right, &[]).is_empty());

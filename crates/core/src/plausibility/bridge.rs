@@ -3,9 +3,10 @@
 mod line;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
-use super::section::{DAMPING, unusual_air, unusual_damping, unusual_radius};
+use super::section::{DAMPING, fast_plate, unusual_air, unusual_damping, unusual_radius};
 use super::{Finding, FindingKind};
-use crate::bridge::{Bridge, BridgeMode, Node};
+use crate::bridge::{Bridge, BridgeMode, Node, StripGroup};
+use crate::section::{Dof, Rotation, SectionModel, Translation};
 pub use line::of_profile;
 use line::{LENGTH, length_m, of_line};
 use std::f64::consts::{PI, TAU};
@@ -22,9 +23,6 @@ const MASS_RATIOS: (f64, f64) = (2.0, 300.0);
 /// Frequency of a vertical mode times the length of its half wave, the least of all modes, m/s: 100 for girders of usual
 /// slenderness whatever their span, 50 to 160 for suspended ones.
 const WAVE_SPEEDS: (f64, f64) = (15.0, 250.0);
-
-/// A motion below this part of the greatest of its mode, rotations times the width, is none.
-const LEAST_MOTION: f64 = 1e-6;
 
 /// Nodes and modes as they were read, before sections are known.
 #[derive(Debug, Clone, Copy)]
@@ -92,8 +90,9 @@ pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
     let length = length_m(&bridge.nodes);
     let scale_is_usual = found.is_empty() && beyond("", length, &LENGTH).is_none();
     if scale_is_usual && bridge.nodes.len() > 2 {
-        found.extend(masses(bridge));
-        found.extend(frequencies(bridge, length));
+        let of_frequencies = frequencies(bridge, length);
+        found.extend(masses(bridge, of_frequencies.is_empty()));
+        found.extend(of_frequencies);
     }
     found
 }
@@ -109,17 +108,15 @@ pub fn of_modes_left_out(bridge: &Bridge, left_out: &[BridgeMode]) -> Vec<Findin
         lowest.map(|m| (m.number, m.frequency_hz))
     };
     let missing = |(motion, name): (usize, &str)| {
-        let Some((number, hertz)) = lowest(left_out, motion) else {
-            return still(bridge, motion);
-        };
-        let taken = lowest(&bridge.modes, motion);
-        let text = match taken {
-            Some((_, taken_hertz)) if taken_hertz <= hertz => return None,
-            Some((taken, taken_hertz)) => format!(
+        let text = match (lowest(left_out, motion), lowest(&bridge.modes, motion)) {
+            (None, None) => return still(bridge, motion, name),
+            (None, Some(_)) => return None,
+            (Some((_, hertz)), Some((_, taken_hertz))) if taken_hertz <= hertz => return None,
+            (Some((number, hertz)), Some((taken, taken_hertz))) => format!(
                 "the lowest {name} mode of the file, {number} ({hertz:.4} Hz), is left out, the lowest that is taken is {taken} \
                  ({taken_hertz:.4} Hz)"
             ),
-            None => format!(
+            (Some((number, hertz)), None) => format!(
                 "none of the modes that are taken is {name}; of the file {number} ({hertz:.4} Hz) is the lowest"
             ),
         };
@@ -135,28 +132,17 @@ pub fn of_modes_left_out(bridge: &Bridge, left_out: &[BridgeMode]) -> Vec<Findin
         .collect()
 }
 
-/// That no mode moves in this way: nothing can flutter then, which looks like a bridge that is safe in every wind.
-fn still(bridge: &Bridge, motion: usize) -> Option<Finding> {
-    let size = |m: &BridgeMode, i: usize| {
-        let scale = if i == 2 { bridge.width_m() } else { 1.0 };
-        scale * greatest(m, i)
-    };
-    let moves = |m: &BridgeMode| {
-        let others = (0..3).map(|i| size(m, i)).fold(0.0, f64::max);
-        size(m, motion) > LEAST_MOTION * others
-    };
-    if bridge.modes.iter().any(moves) {
+/// That no mode moves mainly in this way, in which forces act: nothing can flutter then, which looks like a bridge that is safe in
+/// every wind.
+fn still(bridge: &Bridge, motion: usize, name: &str) -> Option<Finding> {
+    let acts = |group: &StripGroup| group.forces.dofs().contains(&Dof::THREE[motion]);
+    if !bridge.groups.iter().any(acts) {
         return None;
     }
-    let (text, otherwise) = match motion {
-        2 => (
-            "none of the modes turns",
-            "rotations may not have been exported",
-        ),
-        _ => (
-            "none of the modes moves up and down",
-            "vertical displacements may not have been exported",
-        ),
+    let text = format!("none of the modes is mainly {name}");
+    let otherwise = match motion {
+        2 => "more of them may have to be exported, rotations with them, in radians",
+        _ => "more of them may have to be exported, vertical displacements with them, in m",
     };
     let found = Finding::doubt(FindingKind::Contradiction, "modes", text);
     Some(found.otherwise(otherwise.to_owned()))
@@ -230,8 +216,8 @@ fn twice(girder: &Girder<'_>) -> Vec<Finding> {
 }
 
 /// Mass and inertia per length: `M/∫φ²` of each mode is no less than they are, since the rest of the mode has mass as well, and
-/// equal to them in a mode of one motion.
-fn masses(bridge: &Bridge) -> Vec<Finding> {
+/// equal to them in a mode of one motion. With usual frequencies they say where a flat plate flutters.
+fn masses(bridge: &Bridge, frequencies_are_usual: bool) -> Vec<Finding> {
     let least = |motion: usize| {
         let each = bridge.modes.iter().enumerate().filter_map(|(i, m)| {
             let square = product(&bridge.nodes, m, m, motion);
@@ -275,7 +261,30 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
             Some(_) => f,
         }
     });
-    found.into_iter().collect()
+    let fast = || fast_bridge(bridge, mass, inertia).filter(|_| frequencies_are_usual);
+    found.or_else(fast).into_iter().collect()
+}
+
+/// The flat plate of [`fast_plate`] with mass and inertia per length, and the lowest frequencies of the modes.
+fn fast_bridge(bridge: &Bridge, mass_kg_m: f64, inertia_kg_m2_m: f64) -> Option<Finding> {
+    let lowest = |motion: usize| {
+        let own = bridge.modes.iter();
+        let own = own.filter(|m| bridge.main_motion(m) == Some(motion));
+        own.min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz))
+    };
+    let (heave, twist) = (lowest(0)?, lowest(2)?);
+    let plate = SectionModel::two_dof(
+        bridge.width_m(),
+        bridge.air_density_kg_m3,
+        Translation::new(mass_kg_m, heave.frequency_hz, 0.0),
+        Rotation::new(inertia_kg_m2_m, twist.frequency_hz, 0.0),
+    );
+    let found = fast_plate(&plate, heave.frequency_hz, twist.frequency_hz)?;
+    let key = format!("{}: frequency_hz", place(twist));
+    Some(Finding {
+        place: key,
+        ..found
+    })
 }
 
 /// The least product of frequency and half wave of the modes that move mainly up and down.
