@@ -312,8 +312,9 @@ impl Weighed<'_> {
             let kind = DoubtKind::Amplitude {
                 tested_rotation_deg,
             };
-            let text =
-                format!("Rotations beyond the {tested_rotation_deg}° of the tests are not covered");
+            let text = format!(
+                "Rotations beyond the {tested_rotation_deg:.2}° of the tests are not covered"
+            );
             Doubt::new(Severity::Minor, kind, text)
         }));
         all.extend(evidence.remarks.iter().map(|text| remark(text)));

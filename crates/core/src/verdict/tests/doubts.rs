@@ -243,7 +243,7 @@ fn failures_input_and_rotation_are_weighed() {
     assert_eq!(
         texts,
         [
-            "Rotations beyond the 2° of the tests are not covered",
+            "Rotations beyond the 2.00° of the tests are not covered",
             "a remark"
         ]
     );
