@@ -25,6 +25,12 @@ pub fn read_text(path: &Path) -> Result<String> {
     })
 }
 
+/// Whether a line of a table is empty, or has only the separators that a spreadsheet leaves of empty cells.
+pub(crate) fn is_blank(line: &str) -> bool {
+    line.trim_matches([',', ';', '\t', ' ', '\r', '"'])
+        .is_empty()
+}
+
 /// Refuses a text in UTF-16 by the mark before it, as Windows calls "Unicode".
 pub(crate) fn refuse_utf16(bytes: &[u8]) -> Result<()> {
     let marked = [[0xff, 0xfe], [0xfe, 0xff]]

@@ -1,7 +1,8 @@
-//! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
+//! Tables of numbers as programs write them: semicolons, tabs, commas or blanks between, the same in all rows, comments and headings
+//! in front. Where no comma stands between, numbers may have decimal commas.
 
-use crate::error::{Error, Place, Result, ensure, without_control_characters};
-use crate::files::text::read_text;
+use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
+use crate::files::text::{is_blank, read_text};
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -23,18 +24,35 @@ pub(super) struct TableRow {
     pub(super) cells: Vec<String>,
 }
 
-/// Cells of a line: between commas, semicolons or tabs, else between blanks.
-fn cells(line: &str) -> Vec<String> {
-    let marked = line.contains([',', ';', '\t']);
-    let parts: Vec<&str> = if marked {
-        line.split([',', ';', '\t']).collect()
-    } else {
-        line.split_whitespace().collect()
+/// Between columns that are not marked.
+const BLANK: char = ' ';
+
+/// What stands between the cells of a line by itself.
+fn separator(line: &str) -> char {
+    let marks = [';', '\t', ','];
+    let found = marks.into_iter().find(|c| line.contains(*c));
+    found.unwrap_or(BLANK)
+}
+
+/// Cells of a line.
+fn cells(line: &str, between: char) -> Vec<String> {
+    let parts: Vec<&str> = match between {
+        BLANK => line.split_whitespace().collect(),
+        mark => line.split(mark).collect(),
     };
-    parts
-        .iter()
-        .map(|c| c.trim().trim_matches('"').to_owned())
-        .collect()
+    let cell = |text: &&str| {
+        let text = text.trim().trim_matches('"');
+        let with_point = text.replace(',', ".");
+        match with_point.parse::<f64>() {
+            Ok(_) => with_point,
+            Err(_) => text.to_owned(),
+        }
+    };
+    parts.iter().map(cell).collect()
+}
+
+fn are_names(cells: &[String]) -> bool {
+    cells.iter().all(|c| c.parse::<f64>().is_err())
 }
 
 impl Table {
@@ -46,19 +64,25 @@ impl Table {
 
     pub(super) fn parse(text: &str) -> Result<Self> {
         let mut table = Self::default();
+        let mut between = None;
         for (i, line) in text.lines().enumerate() {
             let line = line.trim();
-            if line.is_empty() || line.starts_with(['#', '*', '%']) {
+            if is_blank(line) || line.starts_with(['#', '*', '%']) {
                 continue;
             }
             // names of nodes and columns are shown and written
             without_control_characters(Place::line(i + 1), line)?;
-            let cells = cells(line);
-            let is_heading = cells.iter().all(|c| c.parse::<f64>().is_err());
-            if table.rows.is_empty() && is_heading {
-                table.heading = cells;
+            let own = separator(line);
+            let mut cells = self::cells(line, *between.get_or_insert(own));
+            let by_itself = self::cells(line, own);
+            if table.rows.is_empty() && are_names(&cells) && are_names(&by_itself) {
+                between = Some(own);
+                table.heading = by_itself;
                 continue;
             }
+            table
+                .fit(&mut cells, between)
+                .map_err(|e| e.at(Place::line(i + 1)))?;
             ensure(
                 table.rows.len() != ROWS_AT_MOST,
                 Place::line(i + 1),
@@ -70,6 +94,23 @@ impl Table {
         }
         ensure(!table.rows.is_empty(), "", "rows of numbers", "none")?;
         Ok(table)
+    }
+
+    /// Refuses a row that has not as many cells as the heading, as far as these are marked; empty ones behind are none.
+    fn fit(&self, cells: &mut Vec<String>, between: Option<char>) -> Result<()> {
+        let columns = self.heading.len();
+        if columns == 0 || between == Some(BLANK) {
+            return Ok(());
+        }
+        while cells.len() > columns && cells.last().is_some_and(String::is_empty) {
+            cells.pop();
+        }
+        ensure(
+            cells.len() == columns,
+            "",
+            counted(columns, "column"),
+            cells.len(),
+        )
     }
 
     /// Place of the column with one of these names, in any case.
@@ -157,6 +198,51 @@ impl TableRow {
         match cell.parse::<f64>() {
             Ok(x) if x.fract() == 0.0 && x.abs() < 1e15 => format!("{x:.0}"),
             _ => cell.to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Result<Vec<f64>> {
+        Table::parse(text)?.all_numbers()
+    }
+
+    /// Semicolons or blanks with decimal commas, tabs, a title above, what a spreadsheet leaves of empty cells.
+    #[test]
+    fn one_separator_is_that_of_the_heading() {
+        for text in [
+            "mode;frequency_hz;mass\n1;0,055;234,5\n2;0,31;2\n;;\n",
+            "mode frequency_hz mass\n1  0,055 234,5\n2 0.31 2\n",
+            "Modes of the bridge\nmode\tfrequency_hz\tmass\n1\t0,055\t234.5\n2\t0.31\t2\t\n",
+            "mode,frequency_hz,mass\n1,0.055,234.5\n2,0.31,2,,\n,,\n",
+            "1 0,055 234,5\n2 0,31 2\n",
+            "1,0.055,234.5\n2,0.31,2\n",
+        ] {
+            let found = numbers(text).unwrap_or_default();
+            let expected = [1.0, 0.055, 234.5, 2.0, 0.31, 2.0];
+            // a comma in the first row without a heading stands between
+            match text.starts_with("1 ") {
+                true => assert!(found.is_empty(), "{text}: {found:?}"),
+                false => assert_eq!(found, expected, "{text}"),
+            }
+        }
+        let table = Table::parse("mode;f\n1;0,5\n").unwrap();
+        assert_eq!(table.heading, ["mode", "f"]);
+    }
+
+    #[test]
+    fn rows_have_the_cells_of_the_heading() {
+        for (text, expected) in [
+            (
+                "mode,f,m\n1,0,055,234,5\n",
+                "line 2: expected 3 columns, found 5",
+            ),
+            ("a;b\n1;2\n\n3\n", "line 4: expected 2 columns, found 1"),
+        ] {
+            assert_eq!(numbers(text).unwrap_err().to_string(), expected);
         }
     }
 }
