@@ -227,6 +227,10 @@ fn read_rows(
     let mut rows = Rows::new();
     for record in reader.records() {
         let record = record.map_err(csv_error)?;
+        // what a spreadsheet leaves of empty cells
+        if record.iter().all(str::is_empty) {
+            continue;
+        }
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |column: usize| record.get(columns[column]).unwrap_or("");
         let place = |column: usize| {

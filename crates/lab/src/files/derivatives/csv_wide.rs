@@ -9,8 +9,8 @@
 //! The first row names the columns: derivatives as in the notation, with or without a star; the argument (`v_hat`,
 //! `v_star`, `k_full`, `k_semi`, or any name when the argument is stated and one column is left over); `mean_speed_m_s` if
 //! it is known. A cell may be empty where a derivative was not measured. Semicolons between the cells, then also decimal
-//! commas, and tabs are understood. The `# key: value` lines of the long form may stand above, all of them optional but
-//! what states the convention.
+//! commas (in all numbers or in none), and tabs are understood. The `# key: value` lines of the long form may stand above,
+//! all of them optional but what states the convention.
 
 use crate::aerodynamics::derivatives::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint, Notation};
@@ -19,6 +19,7 @@ use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTa
 use crate::error::{Error, Place, Result, counted, ensure, positive};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, WIDTH_ASSUMED};
 use crate::files::header_csv::number;
+use crate::files::text::is_blank;
 use std::collections::BTreeMap;
 
 const SPEED: &str = "mean_speed_m_s";
@@ -53,9 +54,7 @@ fn cells(row: &str, separator: char) -> Vec<&str> {
 
 /// Whether the first row after the header is that of a wide table: no column `derivative`.
 pub(super) fn is_wide(text: &str) -> bool {
-    let mut rows = text
-        .lines()
-        .filter(|l| !l.starts_with('#') && !l.trim().is_empty());
+    let mut rows = text.lines().filter(|l| !l.starts_with('#') && !is_blank(l));
     rows.next()
         .is_some_and(|row| !cells(row, separator(row)).contains(&"derivative"))
 }
@@ -70,28 +69,29 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
     let mut lines = (1..)
         .zip(text.lines())
         .skip(head.lines())
-        .filter(|l| !l.1.trim().is_empty());
+        .filter(|l| !is_blank(l.1));
     let (line, row) = lines
         .next()
         .ok_or_else(|| Error::input("", "a row of column names", "an empty file"))?;
     let between = separator(row);
     let names: Vec<&str> = cells(row, between).into_iter().map(without_unit).collect();
     let mut stated = head.stated()?;
-    let known = Argument::ALL
-        .into_iter()
-        .find(|a| names.iter().any(|n| is_argument(n, *a)));
-    if options.convention.argument.is_none() && stated.argument.is_none() {
-        stated.argument = known;
-    }
+    let said = options.convention.argument;
+    stated.argument =
+        argument_of(&names, said, stated.argument).map_err(|e| e.at(Place::line(line)))?;
     let convention = options.convention.with_file(stated)?;
     let columns = find_columns(&names, line, &convention)?;
     let mut rows = Rows::new();
+    let decimal_comma = between != ','
+        && lines
+            .clone()
+            .any(|(_, row)| has_decimal_comma(row, between));
     for (line, text) in lines {
         let row = WideRow {
             line,
             cells: cells(text, between),
             names: &names,
-            decimal_comma: between == ';',
+            decimal_comma,
         };
         row.enter(&columns, &convention, &mut rows)?;
     }
@@ -100,11 +100,36 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
     Ok(TableInConvention { table, convention })
 }
 
+/// What the columns and the head say of the argument, where `stated` is what the caller says; of several columns the one is meant that
+/// either names.
+fn argument_of(
+    names: &[&str],
+    stated: Option<Argument>,
+    head: Option<Argument>,
+) -> Result<Option<Argument>> {
+    let is_there = |a: &Argument| names.iter().any(|n| is_argument(n, *a));
+    let column = Argument::ALL.into_iter().find(is_there);
+    let Some(column) = column.filter(|_| !stated.or(head).as_ref().is_some_and(is_there)) else {
+        return Ok(head);
+    };
+    if let Some(head) = head {
+        let expected = format_args!("a column `{head}` as the header says");
+        ensure(head == column, "", expected, format_args!("`{column}`"))?;
+    }
+    Ok(Some(column))
+}
+
+fn has_decimal_comma(row: &str, between: char) -> bool {
+    let is_one = |c: &str| c.contains(',') && c.replace(',', ".").parse::<f64>().is_ok();
+    cells(row, between).into_iter().any(is_one)
+}
+
 /// One line of numbers.
 struct WideRow<'a> {
     line: usize,
     cells: Vec<&'a str>,
     names: &'a [&'a str],
+    /// Whether numbers of the file have one.
     decimal_comma: bool,
 }
 
@@ -115,12 +140,22 @@ impl WideRow<'_> {
 
     /// The number in a column; `None` for an empty cell.
     fn number(&self, column: usize) -> Result<Option<f64>> {
-        let text = match (self.cells[column], self.decimal_comma) {
-            ("", _) => return Ok(None),
-            (text, true) => text.replace(',', "."),
-            (text, false) => text.to_owned(),
+        let (text, place) = (self.cells[column], self.place(column));
+        if text.is_empty() {
+            return Ok(None);
+        }
+        // 1.234 among them may be a thousand
+        ensure(
+            !self.decimal_comma || !text.contains('.'),
+            &place,
+            "a number with a decimal comma, as others of the file have",
+            format_args!("`{text}`"),
+        )?;
+        let text = match self.decimal_comma {
+            true => text.replace(',', "."),
+            false => text.to_owned(),
         };
-        number(self.place(column), &text).map(Some)
+        number(place, &text).map(Some)
     }
 
     /// Adds the points of this line.

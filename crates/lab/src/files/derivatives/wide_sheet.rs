@@ -27,11 +27,7 @@ pub(super) fn read(
     let stated = options.convention.notation;
     let (name, cells, names) = chosen(book, sheet, stated)?;
     let notes = notes_of(book)?;
-    let mut convention = options.convention;
-    let own = notes.convention()?;
-    convention.notation = convention.notation.or(own.notation);
-    convention.argument = convention.argument.or(own.argument);
-    convention.axes = convention.axes.or(own.axes);
+    let convention = options.convention.and_file(notes.convention()?)?;
     let width = notes.number("width_m")?;
     let width_m = options.width_m.or(width).map(|w| positive("width_m", w));
     let options = ReadOptions {

@@ -97,15 +97,29 @@ impl StatedConvention {
     /// # Errors
     /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
     pub fn with_file(self, file: Self) -> Result<Convention> {
-        let notation = agree("notation", self.notation, file.notation)?
+        let both = self.and_file(file)?;
+        let notation = both
+            .notation
             .ok_or_else(|| unstated("notation", &Notation::words()))?;
-        let argument = agree("argument", self.argument, file.argument)?
+        let argument = both
+            .argument
             .ok_or_else(|| unstated("argument", &Argument::ALL.map(Argument::name).join(", ")))?;
-        let axes = agree("axes", self.axes, file.axes)?.unwrap_or(notation.usual_axes());
         Ok(Convention {
             notation,
             argument,
-            axes,
+            axes: both.axes.unwrap_or(notation.usual_axes()),
+        })
+    }
+
+    /// What either states, of which neither may contradict the other.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a contradiction.
+    pub fn and_file(self, file: Self) -> Result<Self> {
+        Ok(Self {
+            notation: agree("notation", self.notation, file.notation)?,
+            argument: agree("argument", self.argument, file.argument)?,
+            axes: agree("axes", self.axes, file.axes)?,
         })
     }
 }

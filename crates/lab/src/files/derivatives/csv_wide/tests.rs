@@ -20,7 +20,7 @@ fn scanlan() -> ReadOptions {
 /// Six derivatives, decimal commas, an empty cell, a column that means nothing, no speeds, no width, no header.
 #[test]
 fn a_table_of_a_paper_is_read_with_notes() {
-    let text = "v_hat;H1*;H2*;H3*;A1*;A2*;A3*;run\n2,0;-9,1;0,8;13,6;-2,4;-0,6;3,5;a\n4;-20;;60;-5;-1;15;b\n";
+    let text = "v_hat;H1*;H2*;H3*;A1*;A2*;A3*;run\n2,0;-9,1;0,8;13,6;-2,4;-0,6;3,5;a\n4;-20;;60;-5;-1;15;b\n;;;;;;;\n";
     let table = read(text, &scanlan()).unwrap();
     assert_eq!(table.name, "deck");
     assert_eq!(table.points(Derivative::H1)[0].value, -9.1);
@@ -96,6 +96,33 @@ fn a_stated_argument_needs_no_name() {
     assert!((table.points(Derivative::H1)[0].v_hat - 1.0).abs() < 1e-15);
 }
 
+/// V* taken for V̂ would be a factor of 2π: what is stated may not contradict the column, here or in the head.
+#[test]
+fn a_stated_argument_does_not_contradict_the_column() {
+    let text = "V/(fB),H1,H2,H3,A1,A2,A3\n6,-9,1,13,-2,-1,3\n";
+    let mut options = scanlan();
+    assert!(read(text, &options).is_ok());
+    options.convention.argument = Some(Argument::VHat);
+    let message = read(text, &options).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "argument: expected `v_hat` as stated on import, found `v_star` stated in the file"
+    );
+    let message = read(&format!("# argument: v_hat\n{text}"), &scanlan()).unwrap_err();
+    assert_eq!(
+        message.to_string(),
+        "line 2: expected a column `v_hat` as the header says, found `v_star`"
+    );
+    // where both are there, the one that is stated is meant
+    let both = "v_hat,v_star,H1,H2,H3,A1,A2,A3\n1,6,-9,1,13,-2,-1,3\n";
+    options.convention.argument = Some(Argument::VStar);
+    let table = read(both, &options).unwrap();
+    assert_eq!(
+        Argument::VStar.at_v_hat(table.points(Derivative::H1)[0].v_hat),
+        6.0
+    );
+}
+
 #[test]
 fn what_is_wrong_is_named() {
     let long = format!(
@@ -109,6 +136,10 @@ fn what_is_wrong_is_named() {
             "line 1: expected columns of derivatives",
         ),
         ("v_hat,H1\n1,2,3\n", "line 2: expected 2 columns, found 3"),
+        (
+            "v_hat;H1;H2\n1,5;-2,25;3\n2,5;-1.234;4\n",
+            "line 3, column H1: expected a number with a decimal comma, as others of the file have, found `-1.234`",
+        ),
         (
             "v_hat,H1\n0,2\n",
             "line 2, column v_hat: expected a positive number",
