@@ -2,8 +2,8 @@
 //! a cell whose dense range fills the memory.
 
 use crate::error::{Error, Result, ensure};
-use calamine::{Data, DataRef, Reader, Sheets, XlsxError, open_workbook_auto};
-use std::collections::BTreeMap;
+use calamine::{Data, DataRef, Reader, Sheets, Xlsx, XlsxError, open_workbook_auto};
+use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -16,6 +16,9 @@ const BYTES_AT_MOST: u64 = 256 << 20;
 const OLD_BYTES_AT_MOST: u64 = 64 << 20;
 /// Cells with a content in one sheet: 18 derivatives at more than ten thousand points.
 const CELLS_AT_MOST: usize = 200_000;
+
+/// What a cell holds whose formula nobody evaluated: no number, so that it is refused where one is read, and no empty cell.
+const NO_VALUE: &str = "a formula without a value: save the workbook once in a spreadsheet";
 
 /// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,15 +156,7 @@ impl CheckedWorkbook {
             |e: &dyn std::fmt::Display| Error::input(place(), "readable cells", e.to_string());
         let mut sheet = Sheet::default();
         match &mut self.book {
-            Sheets::Xlsx(book) => {
-                let opened = book.worksheet_cells_reader(name);
-                let mut reader = opened.map_err(|e| unreadable(&e))?;
-                let next = |e: XlsxError| unreadable(&e);
-                while let Some(cell) = reader.next_cell().map_err(next)? {
-                    let (row, column) = cell.get_position();
-                    sheet.insert(&place, row, column, cell.get_value())?;
-                }
-            }
+            Sheets::Xlsx(book) => read_xlsx(book, name, &place, &mut sheet)?,
             other => {
                 let range = other.worksheet_range(name).map_err(|e| unreadable(&e))?;
                 let (row, column) = range.start().unwrap_or_default();
@@ -173,6 +168,35 @@ impl CheckedWorkbook {
         }
         Ok(Some(sheet))
     }
+}
+
+/// The cells of a sheet one by one, then those of its formulas that nobody evaluated.
+fn read_xlsx(
+    book: &mut Xlsx<BufReader<File>>,
+    name: &str,
+    place: &dyn Fn() -> String,
+    sheet: &mut Sheet,
+) -> Result<()> {
+    let unreadable = |e: XlsxError| Error::input(place(), "readable cells", e.to_string());
+    let mut stored = HashSet::new();
+    let mut reader = book.worksheet_cells_reader(name).map_err(unreadable)?;
+    while let Some(cell) = reader.next_cell().map_err(unreadable)? {
+        let (row, column) = cell.get_position();
+        if !matches!(cell.get_value(), DataRef::Empty) {
+            stored.insert((row, column));
+        }
+        sheet.insert(place, row, column, cell.get_value())?;
+    }
+    drop(reader);
+    let mut formulas = book.worksheet_cells_reader(name).map_err(unreadable)?;
+    while let Some(formula) = formulas.next_formula().map_err(unreadable)? {
+        let (row, column) = formula.get_position();
+        if !formula.get_value().is_empty() && !stored.contains(&(row, column)) {
+            let value = DataRef::String(NO_VALUE.to_owned());
+            sheet.insert(place, row, column, &value)?;
+        }
+    }
+    Ok(())
 }
 
 /// The cell as spreadsheets name it, `C5`, for row and column counted from 0.

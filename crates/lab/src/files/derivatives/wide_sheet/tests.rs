@@ -7,6 +7,7 @@ use crate::files::derivatives::{
     ReadOptions, embedded, read_table, read_table_with, template_bytes,
 };
 use rust_xlsxwriter::{Format, Workbook, Worksheet};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -168,6 +169,41 @@ fn what_is_not_understood_is_named() {
     let message = in_scanlan(&path).unwrap_err().to_string();
     assert!(
         message.contains("sheet Sheet1, line 5, column H2*: expected a number, found `n. a.`"),
+        "{message}"
+    );
+}
+
+/// As programs write formulas that no spreadsheet has evaluated yet: they are no cells that were not measured.
+#[test]
+fn a_formula_without_a_value_is_no_empty_cell() {
+    let (folder, path) = saved(|book| {
+        let sheet = book.add_worksheet();
+        write(sheet, 0, "V*", NAMES, 1.0);
+        sheet.write_formula(4, 3, "=2*C5").unwrap();
+    });
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(&path).unwrap()).unwrap();
+    let bare = folder.path().join("bare.xlsx");
+    let mut written = zip::ZipWriter::new(std::fs::File::create(&bare).unwrap());
+    for i in 0..archive.len() {
+        let mut part = archive.by_index(i).unwrap();
+        let mut bytes = Vec::new();
+        part.read_to_end(&mut bytes).unwrap();
+        let name = part.name().unwrap().into_owned();
+        if name.ends_with("sheet1.xml") {
+            let text = String::from_utf8(bytes).unwrap();
+            assert!(text.contains("</f><v>0</v>"));
+            bytes = text.replace("</f><v>0</v>", "</f>").into_bytes();
+        }
+        let plain = zip::write::SimpleFileOptions::default();
+        written.start_file(name, plain).unwrap();
+        written.write_all(&bytes).unwrap();
+    }
+    written.finish().unwrap();
+    let message = in_scanlan(&bare).unwrap_err().to_string();
+    assert!(
+        message.contains(
+            "sheet Sheet1, line 5, column H2*: expected a number, found `a formula without a value"
+        ),
         "{message}"
     );
 }
