@@ -283,6 +283,7 @@ fn turbulence_of_the_archive_is_buffeting() {
         step_s: field.step_s,
         along_m: field.along_m,
         from_middle: false,
+        mean_speed_m_s: None,
         gusts: field.gusts,
     };
     let expected = study.buffeting_by(&block, WIND, &field).unwrap();

@@ -136,6 +136,7 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
             step_s: field.step_s,
             along_m: field.along_m,
             from_middle: false,
+            mean_speed_m_s: None,
             gusts: field.gusts,
         }),
         ..BridgeExportOptions::default()

@@ -328,6 +328,7 @@ fn damped_bridges_in_gusts_depend_on_what_is_stated() {
         turbulence: Some(FieldTable {
             step_s: field.step_s,
             from_middle: false,
+            mean_speed_m_s: None,
             gusts: field.gusts,
             along_m: field.along_m,
         }),

@@ -170,8 +170,11 @@ fn by_file(
         let expected = "one wind speed with --turbulence, that of its file";
         return Err(Error::input("--speed", expected, speeds.len().to_string()));
     };
+    let field = read_field(path)?;
+    let odd = field.odd_speed(speed).map_err(|e| e.in_file(path))?;
+    warn(path, &Vec::from_iter(odd));
     let found = study
-        .buffeting_by(block, speed, &read_field(path)?)
+        .buffeting_by(block, speed, &field)
         .map_err(|e| e.in_file(path))?;
     let of_nodes = rows(&["RMS", "peak f."], &found.nodes, |n, i| {
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);

@@ -2,10 +2,14 @@
 
 use super::table::Table;
 use crate::error::{Error, Place, Result, ensure};
+use crate::plausibility::ratio_hint;
 use std::path::Path;
 
 /// Nodes and columns this close are at one place, m: places are written with a few digits.
 const SAME_PLACE: f64 = 1e-3;
+/// Mean speeds farther apart than this deserve a word, and beyond that are different ones, as those of a recording.
+const SPEED_OFF_AT_MOST: f64 = 0.05;
+const ANOTHER_SPEED: f64 = 0.2;
 /// Steps may differ by this part: times are written with a few digits.
 const SAME_STEP: f64 = 1e-6;
 
@@ -18,6 +22,8 @@ pub struct FieldTable {
     pub along_m: Vec<f64>,
     /// Whether places count from the middle of the bridge; else they are those of the girder.
     pub from_middle: bool,
+    /// Mean wind speed of the turbulence, m/s, where the file says it.
+    pub mean_speed_m_s: Option<f64>,
     /// `u` then `w`: a row of samples per place.
     pub gusts: [Vec<Vec<f64>>; 2],
 }
@@ -28,6 +34,27 @@ pub(super) fn read(path: &Path) -> Result<FieldTable> {
 }
 
 impl FieldTable {
+    /// What is odd about these gusts in a mean wind of `speed_m_s`, m/s: the file says another.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is wholly another.
+    pub fn odd_speed(&self, speed_m_s: f64) -> Result<Option<String>> {
+        let Some(mean) = self.mean_speed_m_s else {
+            return Ok(None);
+        };
+        let off = (speed_m_s / mean - 1.0).abs();
+        ensure(
+            off <= ANOTHER_SPEED,
+            "mean wind speed",
+            format_args!("about the {mean:.3} m/s of the turbulence"),
+            format_args!("{speed_m_s} m/s{}", ratio_hint(speed_m_s / mean)),
+        )?;
+        let odd = off > SPEED_OFF_AT_MOST;
+        Ok(odd.then(|| {
+            format!("the turbulence is that of {mean:.3} m/s, the response at {speed_m_s} m/s")
+        }))
+    }
+
     /// The field at other places, m: its own where a place is one of them, else on the straight line between its neighbours.
     ///
     /// # Errors
@@ -60,6 +87,7 @@ impl FieldTable {
             step_s: self.step_s,
             along_m: wanted.to_vec(),
             from_middle: false,
+            mean_speed_m_s: self.mean_speed_m_s,
             gusts: [of(&self.gusts[0]), of(&self.gusts[1])],
         })
     }
@@ -117,6 +145,7 @@ fn parse(table: &Table) -> Result<FieldTable> {
         step_s,
         along_m: places(&u),
         from_middle: false,
+        mean_speed_m_s: None,
         gusts: [samples(&u)?, samples(&w)?],
     })
 }
@@ -171,6 +200,7 @@ mod tests {
             step_s: 0.1,
             along_m: vec![-10.0, 0.0, 20.0],
             from_middle: true,
+            mean_speed_m_s: None,
             gusts: [
                 vec![vec![1.0, 2.0], vec![3.0, 4.0], vec![7.0, 9.0]],
                 vec![vec![0.0, 0.0]; 3],

@@ -14,6 +14,8 @@ pub(super) const ENDING: &str = "bts";
 const KINDS: [i16; 2] = [7, 8];
 /// Components of the wind in a file.
 const COMPONENTS: usize = 3;
+/// Heights are written with 7 digits, m.
+const SAME_HEIGHT: f64 = 1e-2;
 /// The components that act on a girder: along the mean wind, and up.
 const ALONG_AND_UP: [usize; 2] = [0, 2];
 
@@ -65,6 +67,8 @@ struct TurbSimHeader {
     counts: [usize; 4],
     /// Distances upwards and across, m, and the time step, s.
     steps: [f64; 3],
+    /// At the height of the hub.
+    mean_speed_m_s: f64,
     hub_height_m: f64,
     lowest_m: f64,
     /// Slope and intercept of each component: `(integer − intercept)/slope` is in m/s.
@@ -94,7 +98,7 @@ impl TurbSimHeader {
             bytes.number("distance across")?,
             bytes.number("time step")?,
         ];
-        bytes.number("mean wind")?;
+        let mean_speed_m_s = bytes.number("mean wind")?;
         let (hub_height_m, lowest_m) = (
             bytes.number("height of the hub")?,
             bytes.number("lowest height")?,
@@ -107,6 +111,7 @@ impl TurbSimHeader {
         let head = Self {
             counts,
             steps,
+            mean_speed_m_s,
             hub_height_m,
             lowest_m,
             scales,
@@ -123,6 +128,15 @@ impl TurbSimHeader {
         };
         positive("distance across", self.steps[1])?;
         positive("time step", self.steps[2])?;
+        positive("mean wind", self.mean_speed_m_s)?;
+        let top = self.lowest_m + (self.counts[0] - 1) as f64 * self.steps[0];
+        let rows = (self.lowest_m - SAME_HEIGHT)..=(top + SAME_HEIGHT);
+        ensure(
+            self.counts[0] == 1 || rows.contains(&self.hub_height_m),
+            "height of the hub",
+            format_args!("one within the grid, {} to {top} m", self.lowest_m),
+            format_args!("{} m", self.hub_height_m),
+        )?;
         for c in ALONG_AND_UP {
             ensure(
                 self.scales[c][0] != 0.0,
@@ -199,6 +213,7 @@ fn parse(bytes: &[u8]) -> Result<FieldTable> {
             .map(|p| (p as f64 - middle) * head.steps[1])
             .collect(),
         from_middle: true,
+        mean_speed_m_s: Some(head.mean_speed_m_s),
         gusts,
     })
 }
@@ -248,6 +263,18 @@ mod tests {
         assert_eq!(field.along_m, [-50.0, 0.0, 50.0]);
         assert!((field.step_s - 0.25).abs() < 1e-7);
         assert!(field.from_middle);
+        assert_eq!(field.mean_speed_m_s, Some(20.0));
+        assert_eq!(field.odd_speed(20.9).unwrap(), None);
+        let odd = field.odd_speed(22.0).unwrap().unwrap();
+        assert_eq!(
+            odd,
+            "the turbulence is that of 20.000 m/s, the response at 22 m/s"
+        );
+        let refused = field.odd_speed(72.0).unwrap_err().to_string();
+        assert_eq!(
+            refused,
+            "mean wind speed: expected about the 20.000 m/s of the turbulence, found 72 m/s (3.6 times that: km/h for m/s?)"
+        );
         for point in 0..3 {
             for t in 0..4 {
                 // the mean over the times is taken off; what remains is the same in every row
@@ -278,6 +305,10 @@ mod tests {
             (
                 changed(26, &f32::NAN.to_le_bytes()),
                 "byte 26, time step: expected a finite number",
+            ),
+            (
+                changed(34, &75.0_f32.to_le_bytes()),
+                "height of the hub: expected one within the grid, 60 to 70 m, found 75 m",
             ),
             (
                 changed(42, &0.0_f32.to_le_bytes()),
