@@ -5,7 +5,7 @@
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use crate::error::{Error, Place, Result, counted};
+use crate::error::{Error, Place, Result, counted, ensure};
 use crate::files::text::refuse_utf16;
 use std::borrow::Cow;
 
@@ -153,6 +153,8 @@ struct ChannelTable {
     columns: Vec<Option<Vec<f64>>>,
     rows: usize,
     units_taken: bool,
+    /// Comma or point of the first number that has one.
+    mark: Option<u8>,
 }
 
 impl ChannelTable {
@@ -176,6 +178,7 @@ impl ChannelTable {
             },
             rows: usize::from(numbers.is_some()),
             units_taken: numbers.is_some(),
+            mark: None,
         }
     }
 
@@ -197,7 +200,10 @@ impl ChannelTable {
                 continue;
             };
             match self.style.number(cell) {
-                Some(x) => column.push(x),
+                Some(x) => {
+                    column.push(x);
+                    self.one_mark(cell, line, c)?;
+                }
                 None if self.rows == 0 => self.columns[c] = None,
                 None => {
                     let found = format!("`{}`", String::from_utf8_lossy(cell));
@@ -208,6 +214,25 @@ impl ChannelTable {
         }
         self.rows += 1;
         check_count(Place::line(line), (self.rows * self.names.len()) as u64)
+    }
+
+    /// Refuses a number with a point beside others with a comma, and the other way round: it may be a thousand.
+    fn one_mark(&mut self, cell: &[u8], line: usize, column: usize) -> Result<()> {
+        let is_mark = |byte: &&u8| matches!(byte, b',' | b'.');
+        let Some(mark) = cell
+            .iter()
+            .find(is_mark)
+            .filter(|_| self.style.decimal_comma)
+        else {
+            return Ok(());
+        };
+        let first = *self.mark.get_or_insert(*mark);
+        ensure(
+            first == *mark,
+            Place::line(line).column(&self.names[column]),
+            format_args!("decimals behind `{}` as above", char::from(first)),
+            format_args!("`{}`", String::from_utf8_lossy(cell)),
+        )
     }
 
     /// Takes a row without any number as units.

@@ -61,6 +61,16 @@ fn csv_with_semicolons_and_decimal_commas() {
     assert_eq!(set.sampling_hz, None);
 }
 
+/// `1.234` among decimal commas may be a thousand.
+#[test]
+fn one_file_has_one_decimal_mark() {
+    let message = complaint("a.csv", b"t;y\n0,5;1\n1,5;1.234\n", None);
+    assert_eq!(
+        message,
+        "line 3, column y: expected decimals behind `,` as above, found `1.234`"
+    );
+}
+
 #[test]
 fn csv_with_comments_and_a_row_of_units() {
     let set = read("units_row.csv", None);
