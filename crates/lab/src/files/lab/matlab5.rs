@@ -88,7 +88,7 @@ fn check_elements(bytes: &[u8]) -> Result<()> {
         Some([0, 1, b'I', b'M']) => true,
         Some([1, 0, b'M', b'I']) => false,
         _ => {
-            let expected = "a MATLAB file of version 5 or later";
+            let expected = "a MATLAB file of version 5 to 7 (save it with `-v7`)";
             let found = if bytes.len() < HEADER_BYTES {
                 format!("{} bytes", bytes.len())
             } else {
