@@ -9,17 +9,17 @@ use crate::aerodynamics::derivatives::notation::{
     StatedConvention,
 };
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
-    ReadOptions, TableInConvention, embedded, is_table_file, named_sheet, read_table_with,
-    template_bytes, workbook_bytes_in, write_csv_in,
+    ReadOptions, TableInConvention, embedded, file_and_sheet, is_table_file, named_sheet,
+    read_table_with, template_bytes, workbook_bytes_in, write_csv_in,
 };
 use crate::plausibility::{of_table, sentences};
 use crate::report::axes_sketch;
 use crate::signal::extremes;
 use clap::Subcommand;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Show tables of aerodynamic derivatives and convert them between notations
 #[derive(Subcommand)]
@@ -141,6 +141,7 @@ fn convert(args: &ConvertArgs) -> Result<Answer> {
         convention: from,
     } = args.table.read()?;
     let to = args.table.target();
+    refuse_own_input(args)?;
     let bytes = if is_workbook {
         workbook_bytes_in(&table, &to)?
     } else {
@@ -150,13 +151,38 @@ fn convert(args: &ConvertArgs) -> Result<Answer> {
     };
     let mut out = OutputDir::new(folder_of(&args.out))?;
     out.write(name, bytes)?;
-    let text = format!(
+    let mut text = format!(
         "{}: {} derivatives\n  from {from}\n  to   {to}\n",
         table.name,
         table.derivatives().count()
     );
-    let value = serde_json::json!({ "table": table.name, "from": from, "to": to });
+    let warnings = warnings(&table, &from, &mut text);
+    let value =
+        serde_json::json!({ "table": table.name, "from": from, "to": to, "warnings": warnings });
     out.answer(text, value)
+}
+
+/// The table that is read stays as it is.
+fn refuse_own_input(args: &ConvertArgs) -> Result<()> {
+    let place = |path: &Path| path.canonicalize().ok();
+    let input = place(file_and_sheet(&args.table.table).0.as_ref());
+    ensure(
+        input.is_none() || input != place(&args.out),
+        "out",
+        "another file than the table that is read",
+        "that, which was left as it is",
+    )
+    .map_err(|e| e.in_file(&args.out))
+}
+
+/// What the reader took for granted and what looks wrong, also as lines of the text.
+fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Vec<String> {
+    let found = sentences(&of_table(table, from));
+    let warnings = [table.header.notes.clone(), found].concat();
+    for warning in &warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
+    warnings
 }
 
 /// Show a table of derivatives: where it comes from, its convention, ranges or all its points
@@ -179,16 +205,7 @@ fn show(args: &ShowArgs) -> Result<Answer> {
     } = args.table.read()?;
     let expressed = args.table.target().express(&table);
     let mut text = head(&table, &from, &expressed.convention);
-    let warnings: Vec<String> = table
-        .header
-        .notes
-        .iter()
-        .cloned()
-        .chain(sentences(&of_table(&table, &from)))
-        .collect();
-    for warning in &warnings {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
+    let warnings = warnings(&table, &from, &mut text);
     for derivative in &expressed.derivatives {
         let symbol = expressed.convention.symbol(derivative.derivative);
         if args.points {

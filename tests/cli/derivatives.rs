@@ -289,3 +289,25 @@ fn a_sheet_of_a_workbook_goes_into_a_study() {
         &["expected no file there yet (or --force)"],
     );
 }
+
+/// What is taken for granted on the way is said, and the table that is read stays as it is.
+#[test]
+fn a_conversion_warns_as_show_does_and_keeps_its_input() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let table = "# notation: scanlan\nv_hat,H1,H2,H3,A1,A2,A3\n2,-9.1,0.8,13.6,-2.4,-0.6,3.5\n4,-20,1,60,-5,-1,15\n";
+    fs::write(at.join("t.csv"), table).unwrap();
+    let convert = ["derivatives", "convert", "t.csv", "out.csv"];
+    let said = flowing(&succeeds(at, &convert));
+    let shown = succeeds(at, &["derivatives", "show", "t.csv", "--json"]);
+    let shown: Value = serde_json::from_str(&shown).unwrap();
+    let json = succeeds(at, &[&convert[..], &["--json"]].concat());
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["warnings"], shown["warnings"]);
+    for part in ["warning: H4*, A4*: taken as zero", "1 m is assumed"] {
+        assert!(said.contains(part), "{said}");
+    }
+    let kept = "t.csv: out: expected another file than the table that is read";
+    refused(at, &["derivatives", "convert", "t.csv", "./t.csv"], &[kept]);
+    assert_eq!(fs::read_to_string(at.join("t.csv")).unwrap(), table);
+}
