@@ -3,7 +3,7 @@
 mod line;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
-use super::section::{DAMPING, fast_plate, unusual_air, unusual_damping, unusual_radius};
+use super::section::{USUAL_DAMPING, fast_plate, unusual_air, unusual_damping, unusual_radius};
 use super::{Finding, FindingKind};
 use crate::bridge::{Bridge, BridgeMode, Node, StripGroup};
 use crate::section::{Dof, Rotation, SectionModel, Translation};
@@ -68,7 +68,7 @@ pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
     found.extend(twice(girder));
     let damping = modes
         .iter()
-        .find_map(|m| unusual_damping("modes.damping_ratio", m.damping_ratio, DAMPING));
+        .find_map(|m| unusual_damping("modes.damping_ratio", m.damping_ratio, USUAL_DAMPING));
     found.extend(damping);
     found
 }

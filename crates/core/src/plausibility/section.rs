@@ -13,8 +13,9 @@ const AIR: Limits = Limits {
 };
 /// Ratio to critical damping: bridges and rigs have 0.001 to 0.01, and rigs with dampers up to 0.02. Less is on the safe side, zero
 /// an idealisation.
-pub(super) const DAMPING: (f64, f64) = (5e-4, 0.01);
-const DAMPING_OF_MODELS: (f64, f64) = (5e-4, 0.02);
+const LEAST_DAMPING: f64 = 5e-4;
+pub(super) const USUAL_DAMPING: f64 = 0.01;
+const DAMPING_OF_MODELS: f64 = 0.02;
 /// From here on it is no ratio of a structure.
 const MOST_DAMPING: f64 = 0.1;
 /// Decks narrower than this are models, m …
@@ -63,12 +64,12 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
     let scale_is_usual = found.is_empty();
     let mut damping = |name: &str, ratio| {
         let key = format!("section.{name}.damping_ratio");
-        let usual = if section.width_m < WIDEST_MODEL_M {
+        let most = if section.width_m < WIDEST_MODEL_M {
             DAMPING_OF_MODELS
         } else {
-            DAMPING
+            USUAL_DAMPING
         };
-        found.extend(unusual_damping(&key, ratio, usual));
+        found.extend(unusual_damping(&key, ratio, most));
     };
     damping("vertical", heave.damping_ratio);
     damping("torsion", twist.damping_ratio);
@@ -112,9 +113,9 @@ pub fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
     beyond(key, density_kg_m3, &AIR)
 }
 
-/// A damping ratio that no structure has.
-pub(super) fn unusual_damping(key: &str, ratio: f64, usual: (f64, f64)) -> Option<Finding> {
-    let (least, most) = usual;
+/// A damping ratio that no structure has, or few: above `most`.
+pub(super) fn unusual_damping(key: &str, ratio: f64, most: f64) -> Option<Finding> {
+    let least = LEAST_DAMPING;
     if ratio == 0.0 || (least..=most).contains(&ratio) {
         return None;
     }
