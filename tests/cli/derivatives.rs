@@ -304,7 +304,10 @@ fn a_conversion_warns_as_show_does_and_keeps_its_input() {
     let json = succeeds(at, &[&convert[..], &["--json"]].concat());
     let json: Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["warnings"], shown["warnings"]);
-    for part in ["warning: the table does not hold H4*, A4*: taken as zero", "1 m is assumed"] {
+    for part in [
+        "warning: the table does not hold H4*, A4*: taken as zero",
+        "1 m is assumed",
+    ] {
         assert!(said.contains(part), "{said}");
     }
     let kept = "t.csv: out: expected another file than the table that is read";
