@@ -1,7 +1,7 @@
 //! Harmonics in a stretch of a signal: least squares for constant, trend and amplitudes at a frequency and its multiples.
 
 use crate::error::{Error, Result, ensure};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -235,15 +235,11 @@ pub fn plateau(
         return None;
     }
     let starts: Vec<usize> = (range.start..=range.end - window).step_by(hop).collect();
-    let angle = TAU * frequency_hz / sampling_hz;
-    let back: Vec<_> = (0..window)
-        .map(|k| Complex::cis(-angle * k as f64))
-        .collect();
+    let weights = amplitude_weights(window, TAU * frequency_hz / sampling_hz)?;
     let amplitude = |start: &usize| {
         let samples = &signal[*start..start + window];
-        let mean = samples.iter().sum::<f64>() / window as f64;
-        let turned = back.iter().zip(samples).map(|(turn, x)| turn * (x - mean));
-        2.0 * turned.sum::<Complex<f64>>().norm() / window as f64
+        let weighted = weights.iter().zip(samples).map(|(w, x)| w * x);
+        weighted.sum::<Complex<f64>>().norm()
     };
     let amplitudes: Vec<f64> = starts.iter().map(amplitude).collect();
     let largest = amplitudes.iter().copied().fold(0.0, f64::max);
@@ -277,6 +273,28 @@ pub fn plateau(
         samples: ((periods as f64 * period).round() as usize).min(end - first),
         periods,
     })
+}
+
+/// Windows of so many samples are a whole number of periods nearly enough for the transform of one frequency.
+const MANY_SAMPLES: usize = 20;
+
+/// What each of `window` samples counts in the amplitude of a harmonic; of few samples, which may be half a sample off a whole number of
+/// periods, in the one that least squares finds beside a constant. `angle` is that of the harmonic from sample to sample.
+fn amplitude_weights(window: usize, angle: f64) -> Option<Vec<Complex<f64>>> {
+    let row = |k: usize| {
+        let (sin, cos) = (angle * k as f64).sin_cos();
+        Vector3::new(1.0, cos, sin)
+    };
+    if window >= MANY_SAMPLES {
+        let turn = |k: usize| Complex::cis(-angle * k as f64);
+        let mean = (0..window).map(turn).sum::<Complex<f64>>() / window as f64;
+        let weights = (0..window).map(|k| (turn(k) - mean) * (2.0 / window as f64));
+        return Some(weights.collect());
+    }
+    let gram: Matrix3<f64> = (0..window).map(|k| row(k) * row(k).transpose()).sum();
+    let inverse = gram.try_inverse()?;
+    let weights = (0..window).map(|k| inverse * row(k));
+    Some(weights.map(|w| Complex::new(w[1], -w[2])).collect())
 }
 
 #[cfg(test)]
@@ -317,5 +335,17 @@ mod tests {
         let f = refine_frequency(&signal, found.range(), 200.0, 1.08).unwrap();
         assert!((f - 1.1).abs() < 1e-4, "{f}");
         assert!(plateau(&signal, 0..100, 200.0, 1.1, 0.99).is_none());
+    }
+
+    /// The samples of a window are no whole period: all of a clean sine is at full amplitude all the same.
+    #[test]
+    fn few_samples_in_a_period_are_no_change_of_amplitude() {
+        for per_period in [3.7, 4.3, 5.0, 5.3, 7.7, 9.4, 11.3, 13.3] {
+            let sine = |k: u32| 2.0 + (TAU * f64::from(k) / per_period + 0.3).sin();
+            let signal: Vec<f64> = (0..200).map(sine).collect();
+            let found = plateau(&signal, 0..200, per_period, 1.0, 0.99).unwrap();
+            let all = (200.0 / per_period) as usize;
+            assert_eq!((found.first, found.periods), (0, all), "{per_period}");
+        }
     }
 }
