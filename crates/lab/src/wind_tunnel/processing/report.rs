@@ -7,9 +7,11 @@ use super::drift::CellDrift;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
+use super::segmentation::is_near;
 use super::signals::{HarmonicSegment, Level, SectionSignals, level};
 use super::spikes::Replaced;
 use super::still_air::{Alignment, RemovedInertia};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::wind_tunnel::{RawRun, Rig};
 use serde::{Deserialize, Serialize};
@@ -145,42 +147,78 @@ pub struct ProcessingReport {
 }
 
 impl ProcessingReport {
-    /// Every warning with its run.
+    /// Every warning with its run, and stated frequencies that no run has.
     pub fn warnings(&self) -> Vec<String> {
-        self.runs
-            .iter()
-            .flat_map(|r| {
-                r.warnings
-                    .iter()
-                    .map(move |w| format!("run {}: {w}", r.run))
-            })
-            .collect()
+        let of_run = |r: &RunReport, w: &String| format!("run {}: {w}", r.run);
+        let of_runs = self.runs.iter();
+        let of_runs = of_runs.flat_map(|r| r.warnings.iter().map(move |w| of_run(r, w)));
+        let found = |f: &f64| {
+            let mut segments = self.runs.iter().flat_map(|r| &r.segments);
+            segments.any(|s| is_near(s.segment.frequency_hz, *f))
+        };
+        let stated = self.options.segments.frequencies_hz.iter();
+        let lost = stated.filter(|f| !found(f));
+        let lost = lost.map(|f| format!("no run moves at the stated {f} Hz"));
+        of_runs.chain(lost).collect()
     }
 }
 
 /// A lag of one run is off that of the campaign when it is this many standard errors and a fiftieth of a sample away.
 const LAG_OFF: (f64, f64) = (5.0, 0.02);
+/// Phase by which a lag may turn the highest frequency of a run, degrees: beyond the one it is said to be grave, beyond the other it is
+/// refused, unless the lag is stated.
+const LAG_TURNS: (f64, f64) = (2.0, 5.0);
 /// Amplitudes in wind and in still air may differ by this fraction without a warning.
 const SAME_AMPLITUDE: f64 = 0.01;
 
+impl RunReport {
+    /// What to say of the lag that the inertia of this run shows: nothing where it is the one that was corrected.
+    fn lag_warning(&self, found: &StillAirInertia, is_stated: bool) -> Result<Option<String>> {
+        let off = (found.lag_s - self.lag_corrected_s).abs();
+        let (errors, samples) = LAG_OFF;
+        if off <= errors * found.lag_standard_error_s || off * self.sampling_hz <= samples {
+            return Ok(None);
+        }
+        let frequencies = self.segments.iter().map(|s| s.segment.frequency_hz);
+        let highest = frequencies.fold(0.0, f64::max);
+        let turned = 360.0 * highest * off;
+        let (grave, most) = LAG_TURNS;
+        let corrected = 1e3 * self.lag_corrected_s;
+        let own = format!(
+            "a lag of {:.3} ms, {turned:.1}° of phase off at {highest:.3} Hz",
+            1e3 * found.lag_s
+        );
+        ensure(
+            is_stated || turned <= most,
+            format_args!("run {}, still air", self.run),
+            format_args!(
+                "the {corrected:.3} ms by which the force channels of all runs lag, to {most}° of phase (or a stated `lag_s`)"
+            ),
+            &own,
+        )?;
+        let grave = if turned > grave {
+            ": its derivatives are wrong by as much"
+        } else {
+            ""
+        };
+        Ok(Some(format!(
+            "its own inertia says {own}; {corrected:.3} ms were corrected{grave}"
+        )))
+    }
+}
+
 /// Warnings from the figures of the report, besides those that are in it.
-pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) {
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) naming the run, of a lag that is not that of the others.
+pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) -> Result<()> {
     let mut warnings = Vec::new();
     if report.segments.is_empty() {
         warnings.push("no stretch of harmonic motion: no test points".into());
     }
-    let rate = report.sampling_hz;
     match &report.still_air {
-        Some(s) if s.tells_lag(rate) => {
-            let off = (s.lag_s - report.lag_corrected_s).abs();
-            let (errors, samples) = LAG_OFF;
-            if off > errors * s.lag_standard_error_s && off * rate > samples {
-                warnings.push(format!(
-                    "its own inertia says a lag of {:.3} ms, {:.3} ms were corrected",
-                    1e3 * s.lag_s,
-                    1e3 * report.lag_corrected_s
-                ));
-            }
+        Some(s) if s.tells_lag(report.sampling_hz) => {
+            warnings.extend(report.lag_warning(s, options.lag_s.is_some())?);
         }
         _ if options.lag_s.is_none() && report.alignment.is_some() => warnings
             .push("the inertia in still air is too small to tell the lag of the channels".into()),
@@ -203,4 +241,5 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) {
         ));
     }
     report.warnings.extend(warnings);
+    Ok(())
 }

@@ -10,6 +10,7 @@ use super::rest::{CrossTalk, RemovedMeans, Rest, remove_means, rest, still_the_r
 use super::signals::{HarmonicSegment, SectionSignals, level};
 use super::still_air::{Alignment, RemovedInertia};
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
+use crate::Error;
 use crate::error::Result;
 use crate::section::Dof;
 use crate::signal::{ButterworthLowPass, delayed, extremes};
@@ -60,7 +61,7 @@ pub(super) fn process_run(
     run.subtract_still_air();
     run.clean_and_filter()?;
     run.still_the_rest();
-    report::warn(&mut run.report, options);
+    report::warn(&mut run.report, options)?;
     let records = signals::records(
         campaign,
         dofs,
@@ -214,7 +215,8 @@ impl<'a> RunInProgress<'a> {
             &self.options.spikes,
             self.rig.model_width_m,
             &self.clipped,
-        )?;
+        )
+        .map_err(|e| of_recording(e, &self.prepared.run.name, "in wind"))?;
         self.report.replaced = cleaned.replaced;
         self.done("spikes replaced");
         let range = std::array::from_fn(|d| {
@@ -249,15 +251,16 @@ fn in_step(
     degree: usize,
 ) -> Result<AlignedRecordings> {
     let run = prepared.run;
-    let ready = |recording: &RawRecording, segments: &[HarmonicSegment]| {
+    let ready = |recording: &RawRecording, segments: &[HarmonicSegment], what: &str| {
         let mut recording = without_lag(recording, lag_s);
         let motion = still_air::from_rest(&recording.motion[index(prepared.dof)]);
         let rotation = rotation(&recording);
         let drift =
-            drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)?;
-        Ok::<_, crate::Error>((recording, drift))
+            drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)
+                .map_err(|e| of_recording(e, &run.name, what))?;
+        Ok::<_, Error>((recording, drift))
     };
-    let (wind, cell_drift) = ready(&run.in_wind, &prepared.segments)?;
+    let (wind, cell_drift) = ready(&run.in_wind, &prepared.segments, "in wind")?;
     let Some(still) = &run.still_air else {
         let (wind, shares) = on_the_model(&wind, rig);
         let nothing = wind.force.each_ref().map(|f| vec![0.0; f.len()]);
@@ -273,7 +276,7 @@ fn in_step(
             cell_drift,
         });
     };
-    let (still, _) = ready(still, &prepared.still_segments)?;
+    let (still, _) = ready(still, &prepared.still_segments, "still air")?;
     let aligned = still_air::align(&run.name, &wind, &still, prepared.dof)?;
     let covered = aligned.covered;
     let (wind, shares) = on_the_model(&wind.map(|x| x[covered.clone()].to_vec()), rig);
@@ -286,6 +289,14 @@ fn in_step(
         alignment: Some(aligned.alignment),
         cell_drift,
     })
+}
+
+/// An error of a computation, with the recording that it is of.
+fn of_recording(error: Error, run: &str, what: &str) -> Error {
+    match error {
+        Error::Numerical(text) => Error::Numerical(format!("run {run}, {what}: {text}")),
+        other => other,
+    }
 }
 
 /// Force channels earlier by the lag.

@@ -32,6 +32,11 @@ pub(crate) fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
         .max_by(|a, b| size(*a).total_cmp(&size(*b)))
 }
 
+/// Whether a motion meets a stated frequency.
+pub(super) fn is_near(frequency_hz: f64, stated_hz: f64) -> bool {
+    (frequency_hz / stated_hz - 1.0).abs() <= SAME_FREQUENCY
+}
+
 /// The harmonic stretches of a motion, in order; empty when it is something else.
 pub(crate) fn find_segments(
     motion: &[f64],
@@ -70,8 +75,7 @@ pub(crate) fn find_segments(
             continue;
         };
         let stated = &options.frequencies_hz;
-        let near = |f: &f64| (frequency_hz / f - 1.0).abs() <= SAME_FREQUENCY;
-        if stated.is_empty() || stated.iter().any(near) {
+        if stated.is_empty() || stated.iter().any(|f| is_near(frequency_hz, *f)) {
             found.push(HarmonicSegment {
                 segment: Segment {
                     frequency_hz,
