@@ -6,7 +6,7 @@
 
 use crate::error::{Result, ensure};
 use crate::section::Dof;
-use crate::wind_tunnel::Rig;
+use crate::wind_tunnel::{RawRecording, Rig};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -16,6 +16,8 @@ const SAME_BODY: f64 = 0.03;
 const ANOTHER_BODY: f64 = 0.2;
 /// Mass of air that moves with the model over that with a flat plate of its width, at most.
 const AIR_OVER_PLATE: f64 = 1.5;
+/// What else gives another inertia: forces count once in it, the motion and the square of the sampling rate divide it.
+const WHAT_IS_WRONG: &str = "a load-cell channel is missing, taken twice, or in another unit, or the motion or the sampling rate is";
 /// `1/(2r)` with `r = B/20`, times B.
 const LEVER_OF_ROTATION: f64 = 10.0;
 /// A sign is certain when the figure is this many standard errors from zero.
@@ -91,6 +93,29 @@ pub(super) fn check_motion(
     )
 }
 
+/// What the rig states of the inertia in `dof`: its key, value and unit.
+fn stated(rig: &Rig, dof: Dof) -> (&'static str, Option<f64>, &'static str) {
+    match dof {
+        Dof::Torsion => ("rig.model_inertia_kg_m2", rig.model_inertia_kg_m2, "kg·m²"),
+        _ => ("rig.model_mass_kg", rig.model_mass_kg, "kg"),
+    }
+}
+
+/// Refuses a recording in still air of a model that moves in `dof` and pushes no cell.
+pub(super) fn check_force(run: &str, rig: &Rig, still: &RawRecording, dof: Dof) -> Result<()> {
+    let mut channels = still.cells.iter().flatten();
+    let expected = match stated(rig, dof) {
+        (key, Some(stated), unit) => format!("about the {stated:.4} {unit} that `{key}` states"),
+        _ => "the inertia of the model".to_owned(),
+    };
+    ensure(
+        channels.any(|c| c.iter().any(|f| *f != c[0])),
+        format_args!("run {run}, still air, {} motion", dof.name()),
+        expected,
+        "no force: no load-cell channel ever changes",
+    )
+}
+
 /// Compares the inertia with that of the rig, if it states one: a warning with the figures, or nothing.
 pub(super) fn compare(
     run: &str,
@@ -99,22 +124,12 @@ pub(super) fn compare(
     air_density_kg_m3: f64,
 ) -> Result<Option<String>> {
     let (width, length) = (rig.model_width_m, rig.model_length_m);
-    let (key, stated, air, unit) = match found.dof {
-        Dof::Torsion => (
-            "rig.model_inertia_kg_m2",
-            rig.model_inertia_kg_m2,
-            PI / 128.0 * width.powi(4),
-            "kg·m²",
-        ),
-        _ => (
-            "rig.model_mass_kg",
-            rig.model_mass_kg,
-            PI / 4.0 * width.powi(2),
-            "kg",
-        ),
-    };
-    let Some(stated) = stated else {
+    let (key, Some(stated), unit) = stated(rig, found.dof) else {
         return Ok(None);
+    };
+    let air = match found.dof {
+        Dof::Torsion => PI / 128.0 * width.powi(4),
+        _ => PI / 4.0 * width.powi(2),
     };
     // a real tunnel at rest adds the mass of the air that moves with the model
     let with_air = stated + AIR_OVER_PLATE * air * air_density_kg_m3 * length;
@@ -131,7 +146,10 @@ pub(super) fn compare(
         beyond <= ANOTHER_BODY * stated + error,
         format_args!("run {run}, still air, {} motion", found.dof.name()),
         format_args!("about the {stated:.4} {unit} that `{key}` states"),
-        format_args!("{shown}: a load-cell channel is missing, taken twice, or in another unit"),
+        format_args!(
+            "{shown}, {:.4} times that: {WHAT_IS_WRONG}",
+            found.inertia / stated
+        ),
     )?;
     Ok(Some(format!(
         "still air shows {shown} in {} motion, `{key}` states {stated} {unit}",
@@ -170,7 +188,10 @@ pub(super) fn compare_runs(
         apart <= ANOTHER_BODY * high.inertia + error,
         format_args!("runs, still air, {} motion", dof.name()),
         "the inertia of one model in all of them",
-        format_args!("{found}: a load-cell channel is missing, taken twice, or in another unit"),
+        format_args!(
+            "{found}, {:.4} times that: {WHAT_IS_WRONG}",
+            high.inertia / low.inertia
+        ),
     )?;
     let name = dof.name();
     Ok(Some(format!(

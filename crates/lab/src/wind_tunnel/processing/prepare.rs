@@ -53,6 +53,7 @@ impl<'a> PreparedRun<'a> {
                 format_args!("the {} motion of the recording in wind", dof.name()),
                 format_args!("a {} motion", in_still_air.name()),
             )?;
+            body::check_force(&run.name, rig, still, dof)?;
             still_segments = find(still);
             still_air = still_air_inertia(&run.name, still, rig, dof, &still_segments)?;
             if let Some(inertia) = &still_air {

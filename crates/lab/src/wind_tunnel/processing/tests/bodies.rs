@@ -37,7 +37,8 @@ fn a_stated_mass_is_compared_with_still_air() {
     raw.rig.model_mass_kg = Some(2.0 * mass);
     let message = refused(&raw);
     assert!(
-        message.contains("still air, vertical motion: expected about the 10.7200 kg"),
+        message.contains("still air, vertical motion: expected about the 10.7200 kg")
+            && message.contains("0.500"),
         "{message}"
     );
     raw.rig.model_mass_kg = None;
@@ -81,6 +82,53 @@ fn runs_of_one_model_show_one_inertia() {
     );
 }
 
+/// Zeros pass for a model without mass.
+#[test]
+fn still_air_without_a_force_is_refused() {
+    let mut raw = made().raw;
+    for run in &mut raw.runs {
+        let cells = run.still_air.as_mut().unwrap().cells.iter_mut();
+        cells.flatten().for_each(|x| x.fill(0.0));
+    }
+    let message = refused(&raw);
+    assert!(
+        message.contains(
+            "vertical motion: expected about the 5.3600 kg that `rig.model_mass_kg` states, found no force"
+        ),
+        "{message}"
+    );
+}
+
+/// The lag is a property of the wiring: 15 ms more in one run are no scatter.
+#[test]
+fn a_run_of_another_lag_is_refused_unless_the_lag_is_stated() {
+    let mut raw = made().raw;
+    let late = |raw: &mut RawCampaign, samples: usize| {
+        let run = raw.runs.last_mut().unwrap();
+        for recording in [Some(&mut run.in_wind), run.still_air.as_mut()] {
+            for x in recording.unwrap().cells.iter_mut().flatten() {
+                x.rotate_right(samples);
+                let first = x[samples];
+                x[..samples].fill(first);
+            }
+        }
+    };
+    late(&mut raw, 3);
+    let message = refused(&raw);
+    assert!(message.contains("of phase off at 2.000 Hz"), "{message}");
+    let stated = ProcessingOptions {
+        lag_s: Some(0.0),
+        ..ProcessingOptions::default()
+    };
+    let warnings = done(&raw, &stated).report.warnings();
+    assert!(
+        warnings
+            .iter()
+            .any(|w| w.contains("15.0") && w.contains("10.8°") && w.contains("wrong by as much")),
+        "{warnings:?}"
+    );
+}
+
 /// As when `near.fx` is mapped from the column of `near.fy`.
 #[test]
 fn a_channel_taken_twice_shows_in_the_mass() {
@@ -88,7 +136,9 @@ fn a_channel_taken_twice_shows_in_the_mass() {
     everywhere(&mut raw, |r| r.cells[0][0] = r.cells[0][1].clone());
     let message = refused(&raw);
     assert!(
-        message.contains("missing, taken twice, or in another unit"),
+        message.contains(
+            "missing, taken twice, or in another unit, or the motion or the sampling rate is"
+        ),
         "{message}"
     );
 }
