@@ -8,7 +8,7 @@
 //!
 //! which is (1.14) without dimensions, for every force i and every motion j that some run of the point drives; constant and trend
 //! belong to the run. A run that moves a little in a second degree of freedom is therefore no harm when that one has a run of its
-//! own. The rate is not a difference of samples: whole periods of the motion are fitted by three harmonics, and motion and rate are
+//! own. The rate is not a difference of samples: whole periods of the motion are fitted by up to three harmonics, and motion and rate are
 //! those of the fit, so that neither noise nor a one-sided difference turns the phase.
 //!
 //! # Standard errors
@@ -32,7 +32,7 @@ use crate::wind_tunnel::RecordSource;
 ///
 /// # Errors
 /// [`crate::Error::Input`] for records of different width or degrees of freedom, without segments or with samples that are
-/// not finite, and for test points at which the motions cannot be told apart.
+/// not finite, or without a force, for less than four samples in a period, and for test points at which the motions cannot be told apart.
 pub fn identify_derivatives(
     records: &[&dyn RecordSource],
     options: &DerivativeOptions,

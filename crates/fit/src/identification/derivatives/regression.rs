@@ -1,9 +1,9 @@
 //! Least squares at one test point, and the standard errors of its solution.
 
 use super::result::{DerivativeEstimate, IdentifiedDerivatives};
-use super::test_points::{CROSS_TALK, RunSamples, TestRun};
+use super::test_points::{CROSS_TALK, DRIVEN_TOO, RunSamples, TestRun};
 use crate::aerodynamics::derivatives::{Derivative, Part};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::section::Dof;
 use crate::signal::mean;
@@ -20,7 +20,7 @@ pub(super) fn solve(
     result: &mut IdentifiedDerivatives,
 ) -> Result<()> {
     let point = TestPointEquations::new(dofs, group)?;
-    result.warnings.extend(point.cross_talk());
+    result.warnings.extend(point.cross_talk()?);
     let factor = point.factor()?;
     let solution = factor.solve(point.columns)?;
     let inverse = factor.inverse_gram(point.columns)?;
@@ -76,25 +76,39 @@ impl<'a> TestPointEquations<'a> {
     }
 
     /// Warnings of motions that no run drives.
-    fn cross_talk(&self) -> Vec<String> {
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the run, of one that drives several at once.
+    fn cross_talk(&self) -> Result<Vec<String>> {
         let mut warnings = Vec::new();
         for stretch in self.group {
             let own = stretch.amplitude[stretch.driven];
             for j in (0..self.dofs.len()).filter(|j| !self.active.contains(j)) {
-                if stretch.amplitude[j] > CROSS_TALK * own {
+                let part = stretch.amplitude[j] / own;
+                let (run, hertz) = (&stretch.run, stretch.frequency_hz);
+                let (driven, other) = (self.dofs[stretch.driven].name(), self.dofs[j].name());
+                ensure(
+                    part <= DRIVEN_TOO,
+                    format_args!("run {run} at {hertz:.3} Hz"),
+                    format_args!(
+                        "{driven} motion alone, or a run of {other} motion at that frequency and speed: forces of motions that are driven \
+                         at once are not told apart"
+                    ),
+                    format_args!(
+                        "{other} motion of {:.0} % of that, both over the width",
+                        100.0 * part
+                    ),
+                )?;
+                if part > CROSS_TALK {
                     warnings.push(format!(
-                        "run {} at {:.3} Hz also moves {} by {:.1} % and no run drives that: its share of the force is \
-                         taken for that of {}",
-                        stretch.run,
-                        stretch.frequency_hz,
-                        self.dofs[j].name(),
-                        100.0 * stretch.amplitude[j] / own,
-                        self.dofs[stretch.driven].name()
+                        "run {run} at {hertz:.3} Hz also moves {other} by {:.1} % and no run drives that: its share of the force is \
+                         taken for that of {driven}",
+                        100.0 * part
                     ));
                 }
             }
         }
-        warnings
+        Ok(warnings)
     }
 
     /// The triangular factor of all runs, with the forces as right-hand sides.

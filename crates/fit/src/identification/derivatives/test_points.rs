@@ -14,10 +14,18 @@ use crate::wind_tunnel::{RecordHeader, RecordSource};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Harmonics of a driven motion: a rig is not perfectly linear.
+/// Harmonics of a driven motion at most: a rig is not perfectly linear …
 const HARMONICS: usize = 3;
+/// … and up to this part of the sampling frequency: at half of it a harmonic has no phase, beyond it is another one.
+const HARMONICS_OVER_SAMPLING: f64 = 0.45;
+/// Samples of a period at least: below, the third harmonic of the rig shows as the motion itself.
+const SAMPLES_AT_LEAST: f64 = 4.0;
+/// Fewer samples of a period are said.
+const SAMPLES_ENOUGH: f64 = 8.0;
 /// A motion below this part of the greatest is cross-talk.
 pub(super) const CROSS_TALK: f64 = 0.05;
+/// A motion above this part of the greatest is driven as well.
+pub(super) const DRIVEN_TOO: f64 = 0.2;
 
 /// One run at one test point, without dimensions.
 pub(super) struct TestRun {
@@ -47,6 +55,17 @@ pub(super) struct RunSamples {
 }
 
 impl TestRun {
+    /// A warning of a motion that is sampled so rarely that its harmonics, or those of the force, show as one another.
+    fn few_samples(&self) -> Option<String> {
+        let samples = self.header.sampling_hz / self.frequency_hz;
+        (samples < SAMPLES_ENOUGH).then(|| {
+            format!(
+                "run {} at {:.3} Hz has {samples:.1} samples in a period: harmonics of the motion are not told from it",
+                self.run, self.frequency_hz
+            )
+        })
+    }
+
     /// Its samples; only the harmonics of the motion, which alone is free of noise.
     ///
     /// # Errors
@@ -115,6 +134,7 @@ pub(super) fn collect(
         let header = records[r].header();
         check(header, first)?;
         let signals = Arc::new(Signals::from_record(records[r])?);
+        check_forces(header, &signals)?;
         numbered(header.segments.len(), &|_, _| (), |i| {
             stretch(header, &signals, i, options)
         })
@@ -123,7 +143,10 @@ pub(super) fn collect(
         let header = record.header();
         for (stretch, segment) in stretches.into_iter().zip(&header.segments) {
             match stretch {
-                Some(stretch) => insert(&mut points.groups, stretch, options),
+                Some(stretch) => {
+                    points.warnings.extend(stretch.few_samples());
+                    insert(&mut points.groups, stretch, options);
+                }
                 None => points.warnings.push(format!(
                     "record {}: no whole period of steady motion at {:.3} Hz",
                     header.name, segment.frequency_hz
@@ -152,6 +175,18 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
     header.check_width(first.width_m, place("width_m"), "in the first record")
 }
 
+/// Refuses a record of no force at all: derivatives of zero look like results.
+fn check_forces(header: &RecordHeader, signals: &Signals) -> Result<()> {
+    let channels = signals.range(0..signals.len())?;
+    let mut forces = channels[header.dofs.len()..].iter().flatten();
+    ensure(
+        forces.any(|f| *f != 0.0),
+        format_args!("record {}", header.name),
+        "a force",
+        "none: all channels are zero throughout",
+    )
+}
+
 /// The steady part of one segment; `None` when it has no whole period.
 fn stretch(
     header: &RecordHeader,
@@ -160,6 +195,15 @@ fn stretch(
     options: &DerivativeOptions,
 ) -> Result<Option<TestRun>> {
     let (s, rate) = (header.segments[segment], header.sampling_hz);
+    ensure(
+        rate / s.frequency_hz >= SAMPLES_AT_LEAST,
+        format_args!(
+            "record {}: segment at {:.3} Hz",
+            header.name, s.frequency_hz
+        ),
+        format_args!("at least {SAMPLES_AT_LEAST} samples in a period"),
+        format_args!("{:.2} ({rate} Hz)", rate / s.frequency_hz),
+    )?;
     let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(signals.len());
     let start = at(s.start_s);
     let mut channels = signals.range(start..at(s.end_s))?;
@@ -172,9 +216,10 @@ fn stretch(
         frequency_hz,
         plateau: p,
     } = steady;
+    let harmonics = HARMONICS.min((HARMONICS_OVER_SAMPLING * rate / frequency_hz) as usize);
     let fit = |x: &Vec<f64>| {
         let run = &x[p.range()];
-        fit_harmonics(run, 0..p.samples, rate, frequency_hz, HARMONICS, &|_| true)
+        fit_harmonics(run, 0..p.samples, rate, frequency_hz, harmonics, &|_| true)
     };
     let fits = channels.iter().map(fit).collect::<Result<Vec<_>>>()?;
     let amplitudes = header.dofs.iter().zip(&fits);

@@ -175,4 +175,102 @@ fn records_that_do_not_fit_together_are_refused() {
     records[1].header.width_m = 0.5;
     records[1].force[0][77] = f64::NAN;
     assert!(message(&records).contains("sample 77"));
+    records[1].force.iter_mut().for_each(|f| f.fill(0.0));
+    assert!(message(&records).contains("expected a force, found none"));
+}
+
+/// Heave with as much rotation at once says nothing of either; with a run of rotation it says all.
+#[test]
+fn motions_that_are_driven_at_once_need_a_run_of_one() {
+    let plan = TunnelPlan {
+        speeds_m_s: vec![8.0],
+        ..TunnelPlan::default()
+    };
+    let plate = RationalModel::jones_flat_plate();
+    let records = plan.records_from_model(&plate, "plate", 0.5).unwrap();
+    let [heave, rotation] = &records[..] else {
+        panic!("two runs");
+    };
+    let sum = |a: &[Vec<f64>], b: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + b).collect();
+        a.iter().zip(b).map(of).collect()
+    };
+    let mut both = heave.clone();
+    both.header.name = "both".to_owned();
+    both.motion = sum(&heave.motion, &rotation.motion);
+    both.force = sum(&heave.force, &rotation.force);
+    let alone = identify_derivatives(&[&both], &DerivativeOptions::default());
+    let message = alone.unwrap_err().to_string();
+    assert!(
+        message.contains("run both at") && message.contains("are not told apart"),
+        "{message}"
+    );
+    let each = identify_derivatives(&sources(&records), &DerivativeOptions::default()).unwrap();
+    let joint = identify_derivatives(&[rotation, &both], &DerivativeOptions::default());
+    let pairs = |d| {
+        joint
+            .as_ref()
+            .unwrap()
+            .each(d)
+            .zip(each.each(d))
+            .collect::<Vec<_>>()
+    };
+    for d in Derivative::ALL
+        .into_iter()
+        .filter(|d| d.motion() != Dof::Lateral)
+    {
+        for (joint, each) in pairs(d) {
+            assert!(
+                (joint.value / each.value - 1.0).abs() < 2e-2,
+                "{joint:?} {each:?}"
+            );
+        }
+    }
+}
+
+/// A record of pure tones, sampled from seldom to often: harmonics beyond half the sampling rate are not fitted.
+#[test]
+fn few_samples_in_a_period_do_not_spoil_the_derivatives() {
+    let plan = TunnelPlan {
+        speeds_m_s: vec![8.0],
+        ..TunnelPlan::default()
+    };
+    let plate = RationalModel::jones_flat_plate();
+    let mut record = plan
+        .records_from_model(&plate, "plate", 0.5)
+        .unwrap()
+        .remove(0);
+    let frequency_hz = 1.0;
+    let mut found = |per_period: f64| {
+        let phase = |k: u32| std::f64::consts::TAU * f64::from(k) / per_period + 0.4;
+        let tone = |size: f64, turn: f64| -> Vec<f64> {
+            (0..300).map(|k| size * (phase(k) + turn).sin()).collect()
+        };
+        record.header.sampling_hz = per_period * frequency_hz;
+        record.header.segments = vec![crate::wind_tunnel::Segment {
+            frequency_hz,
+            start_s: 0.0,
+            end_s: 300.0 / per_period,
+        }];
+        record.motion = vec![tone(0.01, 0.0), tone(0.0, 0.0)];
+        record.force = vec![tone(2.0, 0.7), tone(0.5, -0.3)];
+        identify_derivatives(&[&record], &DerivativeOptions::default())
+    };
+    let often = found(40.0).unwrap();
+    assert!(often.warnings.is_empty(), "{:?}", often.warnings);
+    for per_period in [4.0, 4.7, 5.0, 5.3, 6.0, 6.5, 7.0, 7.7] {
+        let seldom = found(per_period).unwrap();
+        assert!(seldom.warnings[0].contains("samples in a period"));
+        for (a, b) in seldom.estimates.iter().zip(&often.estimates) {
+            assert!(
+                (a.value / b.value - 1.0).abs() < 1e-6,
+                "{per_period}: {a:?} {b:?}"
+            );
+        }
+    }
+    let message = found(3.6).unwrap_err().to_string();
+    assert!(
+        message.contains("at least 4 samples in a period"),
+        "{message}"
+    );
 }
