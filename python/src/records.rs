@@ -118,6 +118,8 @@ impl Records {
                 licence: "as of the data".to_owned(),
             },
         };
+        let checked = record.header.check_segments(&record.motion);
+        checked.map_err(raised)?;
         Ok(Self(vec![record], Vec::new()))
     }
 

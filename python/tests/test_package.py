@@ -223,6 +223,11 @@ def test_records_from_arrays_are_those_of_the_tunnel(table, section):
             width_m=head["width_m"], air_density_kg_m3=head["air_density_kg_m3"], name=head["name"],
             segments=[(s["frequency_hz"], s["start_s"], s["end_s"]) for s in head["segments"]],
         )
+        with pytest.raises(aerodeck.InputError, match="which no motion has there"):
+            aerodeck.Records.from_arrays(
+                motion, force, sampling_hz=head["sampling_hz"], mean_speed_m_s=head["mean_speed_m_s"],
+                width_m=head["width_m"], air_density_kg_m3=head["air_density_kg_m3"], segments=[(7.0, 8.0, 34.0)],
+            )
         rebuilt = one if rebuilt is None else rebuilt + one
     assert aerodeck.flutter(section, aerodeck.fit_laguerre(rebuilt)).speed_m_s == direct.speed_m_s
     assert direct.interval is not None

@@ -89,7 +89,9 @@ impl RecordSource for RecordFile {
 /// # Errors
 /// [`Error::Io`]; [`Error::Input`] with file and line for everything that is wrong in it.
 pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
-    Record::whole(&RecordFile::open(path)?)
+    let record = Record::whole(&RecordFile::open(&path)?)?;
+    let checked = record.header.check_segments(&record.motion);
+    checked.map_err(|e| e.in_file(path)).map(|()| record)
 }
 
 /// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
@@ -283,7 +285,8 @@ impl<'a> RecordRows<'a> {
             "column time_s",
             format_args!("samples at {} Hz as in the header", self.header.sampling_hz),
             format_args!("{mean:.4} Hz"),
-        )
+        )?;
+        self.header.check_ends(self.read)
     }
 }
 

@@ -1,9 +1,11 @@
 //! Forced-vibration records: sampled motion and self-excited force of a section model.
 
-use crate::error::{Place, Result, ensure};
+use crate::error::{Place, Result, ensure, positive};
 use crate::section::Dof;
+use crate::signal::{fit_sine, largest_about_mean};
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
+use std::ops::Range;
 
 /// A stretch of a record with one frequency of motion, from rest to rest: with the ramps at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -42,6 +44,11 @@ pub struct RecordHeader {
     pub licence: String,
 }
 
+/// In the middle of a segment, so many periods are looked at …
+const PERIODS_LOOKED_AT: f64 = 8.0;
+/// … of which a sine of the stated frequency must be this part of the variance: at 5.5 % off it is not.
+const OF_ITS_FREQUENCY: f64 = 0.5;
+
 /// Widths of records that differ by no more, relatively, are one.
 const SAME_WIDTH: f64 = 1e-6;
 
@@ -59,6 +66,82 @@ impl RecordHeader {
         let same = (self.width_m / width_m - 1.0).abs() <= SAME_WIDTH;
         let expected = format_args!("{width_m} m, as {where_it_stands}");
         ensure(same, place, expected, format_args!("{} m", self.width_m))
+    }
+}
+
+impl RecordHeader {
+    /// Refuses segments that do not lie one after the other within `samples`.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) naming the record and the segment.
+    pub fn check_ends(&self, samples: usize) -> Result<()> {
+        let step_s = 1.0 / self.sampling_hz;
+        let (mut free_s, last_s) = (0.0, samples as f64 * step_s);
+        for s in &self.segments {
+            positive(self.place(s), s.frequency_hz)?;
+            ensure(
+                s.start_s >= free_s - step_s && s.end_s > s.start_s && s.end_s <= last_s + step_s,
+                self.place(s),
+                format_args!(
+                    "a stretch of its own between {free_s} s and the end of the record at {last_s} s"
+                ),
+                format_args!("{} s to {} s", s.start_s, s.end_s),
+            )?;
+            free_s = s.end_s;
+        }
+        Ok(())
+    }
+
+    /// Refuses segments that do not lie one after the other in the record, or whose frequency is not that of its `motions`.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) naming the record and the segment.
+    pub fn check_segments(&self, motions: &[Vec<f64>]) -> Result<()> {
+        self.check_ends(motions.first().map_or(0, Vec::len))?;
+        self.segments.iter().try_for_each(|s| {
+            let middle = |x: &Vec<f64>| x[self.middle(s, x.len())].to_vec();
+            let middle: Vec<_> = motions.iter().map(middle).collect();
+            self.check_frequency(s, &middle)
+        })
+    }
+
+    /// The samples, of so many, that tell the frequency of a segment that lies within them.
+    pub fn middle(&self, segment: &Segment, samples: usize) -> Range<usize> {
+        let centre = 0.5 * (segment.start_s + segment.end_s);
+        let half = 0.5 * PERIODS_LOOKED_AT / segment.frequency_hz;
+        let at = |t: f64| ((t * self.sampling_hz) as usize).min(samples);
+        at((centre - half).max(segment.start_s))..at((centre + half).min(segment.end_s))
+    }
+
+    /// Refuses a segment of whose [middle](Self::middle) no motion has the stated frequency.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) naming the record and the segment.
+    pub fn check_frequency(&self, segment: &Segment, middle: &[Vec<f64>]) -> Result<()> {
+        let mut moves = middle
+            .iter()
+            .filter(|x| largest_about_mean(x) > 0.0)
+            .peekable();
+        let is_stated = |x: &Vec<f64>| {
+            let fit = fit_sine(x, 0..x.len(), self.sampling_hz, segment.frequency_hz);
+            fit.is_ok_and(|fit| {
+                let sine = 0.5 * fit.fundamental().norm_sqr();
+                sine >= OF_ITS_FREQUENCY * (sine + fit.residual_rms.powi(2))
+            })
+        };
+        ensure(
+            moves.peek().is_none() || moves.any(is_stated),
+            self.place(segment),
+            "the frequency of the motion, to 5 %",
+            format_args!("{} Hz, which no motion has there", segment.frequency_hz),
+        )
+    }
+
+    fn place(&self, segment: &Segment) -> String {
+        format!(
+            "record {}: segment at {} Hz",
+            self.name, segment.frequency_hz
+        )
     }
 }
 

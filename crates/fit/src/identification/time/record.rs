@@ -119,9 +119,6 @@ pub(crate) fn check_numbers(header: &RecordHeader) -> Result<()> {
 fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
     let place = |key: &str| format!("record {}: {key}", header.name);
     check_numbers(header)?;
-    for segment in &header.segments {
-        positive(place("segments: frequency_hz"), segment.frequency_hz)?;
-    }
     for dof in dofs {
         index_of(&header.dofs, *dof, &place("dofs"))?;
     }
@@ -166,9 +163,15 @@ impl DimensionlessRecord {
             let channels = [motions, forces].concat();
             signals.extend(channels[0].0.len(), |c, k| channels[c].1 * channels[c].0[k])
         })?;
+        let signals = signals.finish()?;
+        header.check_ends(signals.len())?;
+        for segment in &header.segments {
+            let middle = signals.range(header.middle(segment, signals.len()))?;
+            header.check_frequency(segment, &middle[..dofs.len()])?;
+        }
         Ok(Self {
             header: header.clone(),
-            signals: signals.finish()?,
+            signals,
             rate: speed / width,
             step_s: 1.0 / header.sampling_hz,
         })

@@ -164,6 +164,37 @@ fn with_line(number: usize, change: impl Fn(&str) -> String) -> String {
         .collect()
 }
 
+/// Stretches of rest, of another motion, and beyond the samples.
+#[test]
+fn segments_that_are_not_those_of_the_motion_are_refused() {
+    let good = record();
+    let refused = |change: &dyn Fn(&mut Record)| {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let by_arrays = bad
+            .header
+            .check_segments(&bad.motion)
+            .unwrap_err()
+            .to_string();
+        let file = in_file(written(&bad).as_bytes());
+        let by_file = read_record(file.path()).unwrap_err().to_string();
+        assert!(by_file.ends_with(&by_arrays), "{by_file} {by_arrays}");
+        by_arrays
+    };
+    let message = refused(&|r| r.header.segments[1].end_s = 30.0);
+    assert!(message.contains("end of the record at 18 s"), "{message}");
+    let message = refused(&|r| r.header.segments[1].start_s = 7.0);
+    assert!(message.contains("between 10 s and"), "{message}");
+    for frequency_hz in [5.0, 2.7, 1.25] {
+        let message = refused(&|r| r.header.segments[1].frequency_hz = frequency_hz);
+        let expected = format!("found {frequency_hz} Hz, which no motion has there");
+        assert!(message.contains(&expected), "{message}");
+    }
+    let mut near = good.clone();
+    near.header.segments[1].frequency_hz = 2.55;
+    near.header.check_segments(&near.motion).unwrap();
+}
+
 #[test]
 fn bad_samples_are_explained() {
     let cells = |l: &str, n: usize| l.splitn(5, ',').take(n).collect::<Vec<_>>().join(",");
