@@ -19,6 +19,7 @@ use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
+use crate::json;
 use crate::plausibility::{Finding, of_table, sentences};
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
@@ -28,13 +29,15 @@ use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
 use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
-use crate::wind_tunnel::processing::{Processed, ProcessingOptions, process};
+use crate::wind_tunnel::processing::{Processed, ProcessingOptions, ProcessingReport, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// File of the table of derivatives.
 const TABLE: &str = "derivatives.csv";
+/// File of what was done.
+const REPORT: &str = "processing.json";
 /// File of the study.
 const STUDY: &str = "study.toml";
 
@@ -93,13 +96,16 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let derivatives = derivatives(&processed, &mut notes)?;
     drop(stage);
     let mut out = OutputDir::new(&args.out)?;
+    outdate(&raw.section, args.force, &mut out);
     let names = write_records(&processed, &mut out)?;
     draw_stages(&processed, &mut out, progress)?;
-    out.write_json("processing.json", "processing", &processed.report)?;
+    out.write_json(REPORT, "processing", &processed.report)?;
+    let mut tabled = false;
     if let Some(found) = &derivatives {
         write_derivatives(args, &raw, found, &mut out)?;
         match write_table(&raw, found, &notes, &mut out) {
             Ok(odd) => {
+                tabled = true;
                 notes.extend(sentences(&odd));
                 let (base, section) = (base.as_ref(), section.as_ref());
                 let dofs = &found.dofs;
@@ -111,6 +117,11 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
             Err(e) => return Err(e),
         }
     }
+    if !tabled && !args.force && out.target(STUDY).exists() {
+        notes.push(format!(
+            "{STUDY} of an earlier run is left; --force removes it"
+        ));
+    }
     let found = derivatives.as_ref();
     let page = laboratory_page(&raw, &processed.report, found, &notes, &out);
     out.write(super::report::folder::REPORT, sections_page(&page)?)?;
@@ -121,7 +132,40 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
         "derivatives": derivatives,
         "notes": notes,
     });
-    out.answer(text, value)
+    Ok(out.answer(text, value)?.passed_if(derivatives.is_some()))
+}
+
+/// What an earlier run left of results goes where this one has none of the name; a study, which users edit, only where it is replaced.
+fn outdate(section: &str, force: bool, out: &mut OutputDir) {
+    let workbook = workbook_name(section);
+    for name in [TABLE, "derivatives.json", &workbook] {
+        out.outdated(name);
+    }
+    figures::outdated("derivatives", out);
+    if force {
+        out.outdated(STUDY);
+    }
+    let text = std::fs::read_to_string(out.target(REPORT)).unwrap_or_default();
+    let Ok(earlier) = json::read::<ProcessingReport>("processing", &text) else {
+        return;
+    };
+    out.outdated(workbook_name(&earlier.section));
+    for run in &earlier.runs {
+        figures::outdated(&format!("processing/{}", file_name(&run.run)), out);
+        out.outdated(record_path(&run.run));
+        for segment in &run.segments {
+            out.outdated(record_path(&segment.record_name(&run.run)));
+        }
+    }
+}
+
+fn workbook_name(section: &str) -> String {
+    format!("AerodynamicDerivatives_{}.xlsx", file_name(section))
+}
+
+/// Path of a record from the folder of the results.
+fn record_path(name: &str) -> PathBuf {
+    Path::new(RECORDS).join(format!("{}.csv", file_name(name)))
 }
 
 impl ProcessArgs {
@@ -216,7 +260,7 @@ fn write_study(
 fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathBuf>> {
     let mut names = Vec::with_capacity(processed.records.len());
     for record in &processed.records {
-        let name = Path::new(RECORDS).join(format!("{}.csv", file_name(&record.header.name)));
+        let name = record_path(&record.header.name);
         if names.contains(&name) {
             return Err(Error::input(
                 "campaign",
@@ -259,10 +303,7 @@ fn write_table(
     let mut text = Vec::new();
     write_csv(&table, &mut text).map_err(|e| Error::io(TABLE, e))?;
     out.write(TABLE, text)?;
-    out.write(
-        format!("AerodynamicDerivatives_{}.xlsx", file_name(&raw.section)),
-        workbook_bytes(&table)?,
-    )?;
+    out.write(workbook_name(&raw.section), workbook_bytes(&table)?)?;
     Ok(of_table(&table, &Convention::default()))
 }
 
@@ -353,6 +394,7 @@ fn text(
             let relative: Vec<f64> = found
                 .estimates
                 .iter()
+                .filter(|e| e.value != 0.0)
                 .map(|e| (e.standard_error / e.value).abs())
                 .collect();
             crate::signal::median(&relative)

@@ -203,6 +203,62 @@ fn a_record_shorter_than_a_period_is_an_error() {
     );
 }
 
+/// The second run of the command has one motion, the third no test point: what the first wrote beyond that is gone.
+#[test]
+fn results_of_an_earlier_run_go() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(
+        at.join("plan.toml"),
+        "[tunnel]\nfrequencies_hz = [0.5, 1.0]\nspeeds_m_s = [8.0]\nstill_s = 2.0\nsegment_s = 14.0\nramp_s = 2.0\n",
+    )
+    .unwrap();
+    let made = [
+        "campaign",
+        "virtual",
+        "LN21-5200",
+        "--clean",
+        "--plan",
+        "plan.toml",
+        "--out",
+        "raw",
+    ];
+    succeeds(at, &made);
+    let process = ["process", "raw/campaign.toml", "--out", "results"];
+    succeeds(at, &process);
+    let out = at.join("results");
+    let old = out.join("records").read_dir().unwrap().count();
+    let file = fs::read_to_string(at.join("raw/campaign.toml")).unwrap();
+    let first = file.match_indices("[[run]]").nth(1).unwrap().0;
+    fs::write(at.join("raw/campaign.toml"), &file[..first]).unwrap();
+    let said = succeeds(at, &process);
+    assert!(
+        flowing(&said).contains("study.toml of an earlier run is left"),
+        "{said}"
+    );
+    assert_eq!(
+        (old, out.join("records").read_dir().unwrap().count()),
+        (2, 1)
+    );
+    assert!(!out.join("AerodynamicDerivatives_LN21-5200.xlsx").exists());
+    assert!(out.join("derivatives.csv").exists());
+    fs::write(
+        at.join("options.toml"),
+        "[segments]\nfrequencies_hz = [3.0]\n",
+    )
+    .unwrap();
+    let options = ["--options", "options.toml", "--force"];
+    let (code, said, _) = command::aerodeck(at, &[&process[..], &options].concat());
+    assert_eq!(code, 1, "{said}");
+    assert!(
+        flowing(&said).contains("no run moves at the stated 3 Hz"),
+        "{said}"
+    );
+    for gone in ["derivatives.csv", "derivatives.json", "study.toml"] {
+        assert!(!out.join(gone).exists(), "{gone}");
+    }
+}
+
 /// Three speeds of which neighbours lie within 5 %: sorted, tabled, and no panic.
 #[test]
 fn three_speeds_close_together_are_processed() {

@@ -22,6 +22,11 @@ pub struct HarmonicSegment {
 }
 
 impl HarmonicSegment {
+    /// Name of the record of this segment alone, of a run.
+    pub fn record_name(&self, run: &str) -> String {
+        format!("{run}-{:.3}Hz", self.segment.frequency_hz)
+    }
+
     /// Samples of the whole segment in a recording of `count` samples.
     pub(crate) fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
         let at = |t: f64| ((t * sampling_hz).round().max(0.0) as usize).min(count);
@@ -113,8 +118,10 @@ pub(super) fn records(
                     start_s: 0.0,
                     end_s: s.plateau.samples as f64 / signals.sampling_hz,
                 };
-                let name = format!("{}-{:.3}Hz", run.name, s.segment.frequency_hz);
-                part(s.plateau.range(), header(name, vec![whole]))
+                part(
+                    s.plateau.range(),
+                    header(s.record_name(&run.name), vec![whole]),
+                )
             })
             .collect(),
     }
