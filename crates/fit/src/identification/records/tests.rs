@@ -281,10 +281,16 @@ fn bad_records_are_refused_with_their_place() {
         "record test-torsion-8.17, force, sample 1234: expected a finite number, found NaN"
     );
     let mut short = good.clone();
-    let Record { motion, force, .. } = &mut short[0];
+    let Record {
+        header,
+        motion,
+        force,
+    } = &mut short[0];
     for channel in motion.iter_mut().chain(force) {
         channel.truncate(20);
     }
+    header.segments.truncate(1);
+    (header.segments[0].start_s, header.segments[0].end_s) = (0.0, 0.1);
     assert!(message(&short, &default).contains("record test-vertical-8.17: expected at least"));
     let one = message(&good[..1], &default);
     assert!(one.contains("a torsion motion rich enough"), "{one}");
