@@ -62,12 +62,14 @@ pub(crate) fn study_findings(study: &Study) -> Vec<Finding> {
 mod tests {
     use super::*;
 
+    type Change = fn(&mut Study);
+
     #[test]
     fn numbers_in_another_unit_are_found_at_their_key() {
         let text = crate::study::new_study_text("LN21-5200", &Default::default());
         let study = Study::from_toml(&text, ".".into()).unwrap();
         assert_eq!(study_findings(&study), Vec::new());
-        let changes: [(&str, fn(&mut Study)); 5] = [
+        let changes: [(&str, Change); 5] = [
             ("noise_fraction", |s| s.tunnel.noise_fraction = 5.0),
             ("torsion_amplitude_deg", |s| {
                 s.tunnel.torsion_amplitude_deg = 90.0

@@ -59,6 +59,7 @@ fn tables() -> String {
     let bounds = OnsetBounds {
         low_m_s: 30.0,
         high_m_s: 40.0,
+        undetermined: None,
     };
     model.section.axis_offset_m = Some(0.01);
     model.section.mass_offset_m = Some(0.01);
