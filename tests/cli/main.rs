@@ -31,5 +31,6 @@ mod required_speeds;
 mod schemas;
 mod select;
 mod templates;
+mod turbulence;
 mod verdicts;
 mod wind;
