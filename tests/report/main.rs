@@ -8,4 +8,5 @@ mod browser;
 mod command;
 
 mod figures;
+mod images;
 mod live;
