@@ -238,7 +238,7 @@ fn results_of_an_earlier_run_go() {
     );
     assert_eq!(
         (old, out.join("records").read_dir().unwrap().count()),
-        (2, 1)
+        (4, 1)
     );
     assert!(!out.join("AerodynamicDerivatives_LN21-5200.xlsx").exists());
     assert!(out.join("derivatives.csv").exists());
