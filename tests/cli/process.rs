@@ -203,6 +203,21 @@ fn a_record_shorter_than_a_period_is_an_error() {
     );
 }
 
+/// Noise has no test points: its records are all that is asked for.
+#[test]
+fn broadband_runs_become_records() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let plan =
+        "[tunnel]\nspeeds_m_s = [8.0]\nmotion = { kind = \"white_noise\", duration_s = 30.0 }\n";
+    fs::write(at.join("plan.toml"), plan).unwrap();
+    let made = "campaign virtual jones --width 0.5 --plan plan.toml --out raw";
+    succeeds(at, &made.split(' ').collect::<Vec<_>>());
+    let said = succeeds(at, &["process", "raw/campaign.toml", "--out", "r"]);
+    assert!(flowing(&said).contains("no derivatives: records"), "{said}");
+    assert_eq!(at.join("r/records").read_dir().unwrap().count(), 2);
+}
+
 /// The second run of the command has one motion, the third no test point: what the first wrote beyond that is gone.
 #[test]
 fn results_of_an_earlier_run_go() {
