@@ -59,7 +59,8 @@ pub(crate) fn check_plan(
     let fits = (2..=MOST_RECORDS).contains(&records);
     ensure(fits, format!("{place}.records"), expected, records)?;
     for (key, value) in [("duration_s", duration_s), ("step_s", step_s)] {
-        value.map_or(Ok(0.0), |v| positive(format!("{place}.{key}"), v))?;
+        let value = value.map(|v| positive(format!("{place}.{key}"), v));
+        value.transpose()?;
     }
     Ok(())
 }
