@@ -11,23 +11,28 @@ use std::f64::consts::PI;
 const SERIES_BELOW: f64 = 1e-2;
 
 /// A factor on the amplitude of the gust force. Square moduli, which some sources print, multiply the spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Admittance {
     /// One: gusts much longer than the deck is wide.
-    #[default]
-    None,
+    None {},
     /// Sears's function of the thin plate, `C(k)(J₀(k) − iJ₁(k)) + iJ₁(k)` with `k = K/2` and the gust taken at mid-chord
     /// (W. R. Sears, J. Aeronaut. Sci. 8 (1941) 104).
-    Sears,
+    Sears {},
     /// Liepmann's approximation of its modulus, `1/√(1 + 2πk)` (H. W. Liepmann, J. Aeronaut. Sci. 19 (1952) 793).
-    Liepmann,
+    Liepmann {},
     /// Davenport's function `2(z − 1 + e^(−z))/z²`, `z = decay · fB/V`, on the amplitude as the IABSE benchmark has it.
     Davenport {
         /// Decay factor; 7 in the benchmark.
         #[serde(default = "benchmark_decay")]
         decay: f64,
     },
+}
+
+impl Default for Admittance {
+    fn default() -> Self {
+        Self::None {}
+    }
 }
 
 fn benchmark_decay() -> f64 {
@@ -47,12 +52,12 @@ impl Admittance {
     pub(crate) fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
         let k = frequency.semi_chord();
         match self {
-            Self::None => Complex::new(1.0, 0.0),
-            Self::Sears => {
+            Self::None {} => Complex::new(1.0, 0.0),
+            Self::Sears {} => {
                 let (j0, j1) = (libm::j0(k), libm::j1(k));
                 theodorsen(k) * Complex::new(j0, -j1) + Complex::new(0.0, j1)
             }
-            Self::Liepmann => (1.0 / (1.0 + 2.0 * PI * k).sqrt()).into(),
+            Self::Liepmann {} => (1.0 / (1.0 + 2.0 * PI * k).sqrt()).into(),
             Self::Davenport { decay } => {
                 // fB/V = 1/V*
                 let z = if frequency.full_width() == 0.0 {
@@ -84,9 +89,9 @@ mod tests {
     #[test]
     fn all_are_one_for_long_gusts() {
         for admittance in [
-            Admittance::None,
-            Admittance::Sears,
-            Admittance::Liepmann,
+            Admittance::None {},
+            Admittance::Sears {},
+            Admittance::Liepmann {},
             Admittance::Davenport { decay: 7.0 },
         ] {
             assert_eq!(at(admittance, 0.0), Complex::new(1.0, 0.0));
@@ -97,18 +102,26 @@ mod tests {
     #[test]
     fn sears_against_scipy_and_liepmann() {
         for (k, re, im) in SEARS {
-            let exact = at(Admittance::Sears, k);
+            let exact = at(Admittance::Sears {}, k);
             assert!(
                 (exact - Complex::new(re, im)).norm() < 1e-14,
                 "{k}: {exact}"
             );
-            let near = at(Admittance::Liepmann, k).re;
+            let near = at(Admittance::Liepmann {}, k).re;
             assert!(
                 (near / exact.norm() - 1.0).abs() < 0.07,
                 "{k}: {near} {}",
                 exact.norm()
             );
         }
+    }
+
+    #[test]
+    fn a_key_of_another_kind_is_refused() {
+        let read = |text| serde_json::from_str::<Admittance>(text).map_err(|e| e.to_string());
+        let message = read(r#"{ "kind": "sears", "decay": 7 }"#).unwrap_err();
+        assert!(message.contains("unknown field `decay`"), "{message}");
+        assert_eq!(read(r#"{ "kind": "none" }"#), Ok(Admittance::default()));
     }
 
     /// From the definition with 40 digits, and both sides of the change to the series.

@@ -26,9 +26,9 @@ impl GustComponent {
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum SpectrumShape {
     /// Von Kármán: `u: 4x/(1 + 70.8x²)^(5/6)`, `w: 4x(1 + 755.2x²)/(1 + 283.2x²)^(11/6)`.
-    VonKarman,
+    VonKarman {},
     /// Kaimal in the form of EN 1991-1-4, B.1, and Handbook N400: `A x/(1 + 1.5 A x)^(5/3)`, `A_u = 6.8`, `A_w = 9.4`.
-    Kaimal,
+    Kaimal {},
     /// Constants of the user's own; the integral must be the variance within 1 %.
     General(SpectrumFormula),
 }
@@ -87,11 +87,11 @@ impl SpectrumShape {
     fn formula(&self, component: GustComponent) -> SpectrumFormula {
         let formula = |a, b, c, d, e| SpectrumFormula { a, b, c, d, e };
         match (*self, component) {
-            (Self::VonKarman, GustComponent::Along) => formula(4.0, 70.8, 2.0, 5.0 / 6.0, 0.0),
-            (Self::VonKarman, GustComponent::Vertical) => {
+            (Self::VonKarman {}, GustComponent::Along) => formula(4.0, 70.8, 2.0, 5.0 / 6.0, 0.0),
+            (Self::VonKarman {}, GustComponent::Vertical) => {
                 formula(4.0, 283.2, 2.0, 11.0 / 6.0, 755.2)
             }
-            (Self::Kaimal, component) => {
+            (Self::Kaimal {}, component) => {
                 let factor = match component {
                     GustComponent::Along => 6.8,
                     GustComponent::Vertical => 9.4,
@@ -183,7 +183,7 @@ mod tests {
     /// IABSE 1.1a: `S_w(0.278 Hz, 45 m/s) = 5.26 m²/s² / Hz`.
     #[test]
     fn the_benchmark_value() {
-        let s = spectrum(SpectrumShape::VonKarman);
+        let s = spectrum(SpectrumShape::VonKarman {});
         let value = s.density(GustComponent::Vertical, 0.278, 45.0);
         assert!((value - 5.26).abs() < 0.005, "{value}");
     }
@@ -191,7 +191,7 @@ mod tests {
     /// Sums over 10 decades against the closed integral, and both against one: constants have four digits at most.
     #[test]
     fn spectra_integrate_to_their_variance() {
-        for shape in [SpectrumShape::VonKarman, SpectrumShape::Kaimal] {
+        for shape in [SpectrumShape::VonKarman {}, SpectrumShape::Kaimal {}] {
             for component in GustComponent::BOTH {
                 let s = spectrum(shape);
                 let steps = 40_000;
@@ -242,7 +242,10 @@ mod tests {
             let message = bad.validate("w").unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
         }
-        let mut percent = spectrum(SpectrumShape::Kaimal);
+        let read = serde_json::from_str::<SpectrumShape>(r#"{ "kind": "kaimal", "a": 6.8 }"#);
+        let message = read.unwrap_err().to_string();
+        assert!(message.contains("unknown field `a`"), "{message}");
+        let mut percent = spectrum(SpectrumShape::Kaimal {});
         percent.intensity = 5.0;
         let message = percent.validate("w").unwrap_err().to_string();
         assert!(message.contains("not per cent"), "{message}");

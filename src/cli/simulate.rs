@@ -11,6 +11,7 @@ use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use serde::Serialize;
+use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -37,17 +38,6 @@ pub(crate) struct SimulateArgs {
     /// Where the results go; by default the folder of the model.
     #[arg(long)]
     out: Option<PathBuf>,
-}
-
-/// The motion of one run.
-#[derive(Debug, Serialize)]
-struct Trajectory {
-    /// Column names with units.
-    columns: Vec<String>,
-    /// One row per step.
-    rows: Vec<Vec<f64>>,
-    /// The modes at this wind speed, the least damped first.
-    modes: Vec<ModeSummary>,
 }
 
 /// A mode at the wind speed of the run.
@@ -111,30 +101,43 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
             format!("{:.1e}", stop / step),
         ));
     }
-    let trajectory = simulate(&model, speed, stop, step)?;
+    let rows = simulated(&model, speed, stop, step)?;
+    let modes = modes(&section_of(&model)?, speed)?;
+    let columns = columns(&model.section.dofs());
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
-    out.write("simulation.csv", csv(&model, speed, &trajectory))?;
+    out.write("simulation.csv", csv(&model, speed, &columns, &rows))?;
     let title = format!("{} at {speed} m/s", model.name);
     figures::write("simulation", &mut out, || {
-        let runs = [(&model.name[..], &trajectory.rows[..])];
+        let runs = [(&model.name[..], &rows[..])];
         let panels = motion_panels(&model.section.dofs(), &runs);
         time_history_figure(&title, &panels, "Time t (s)")
     })?;
     let written = out.commit()?;
     let text = format!(
         "{title}: {} of {step} s\n{}{}",
-        counted(trajectory.rows.len() - 1, "step"),
-        verdict(&trajectory.modes),
+        counted(rows.len() - 1, "step"),
+        verdict(&modes),
         list(&written)
     );
-    Answer::new(text, &trajectory)
+    Answer::new(
+        text,
+        &json!({ "columns": columns, "rows": rows, "modes": modes }),
+    )
 }
 
-fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Trajectory> {
-    let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
-    let dofs = section.structure().dofs.clone();
-    let n = dofs.len();
-    let modes = modes(&section, speed)?;
+fn section_of(model: &TrainedModel) -> Result<CoupledSection> {
+    CoupledSection::with_model(&model.section.structure()?, &model.model)
+}
+
+/// Rows of time (s) and motion of the released section, as `simulation.csv` has them, up to the time `stop` (s).
+pub(super) fn simulated(
+    model: &TrainedModel,
+    speed: f64,
+    stop: f64,
+    step: f64,
+) -> Result<Vec<Vec<f64>>> {
+    let section = section_of(model)?;
+    let n = section.structure().dofs.len();
     let mut stepper = Stepper::new(section);
     let mut released = vec![0.0; n];
     released[0] = model.experiment.initial_vertical_m;
@@ -160,6 +163,11 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
         }
         rows.push(row);
     }
+    Ok(rows)
+}
+
+/// Names of the columns, with units.
+fn columns(dofs: &[Dof]) -> Vec<String> {
     let mut columns = vec!["time_s".to_owned()];
     for (name, linear, angular) in [
         ("", "m", "rad"),
@@ -167,26 +175,12 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
         ("_acceleration", "m_s2", "rad_s2"),
         ("_force", "n_m", "n_m_m"),
     ] {
-        columns.extend(motion_columns(&dofs, name, linear, angular));
+        columns.extend(motion_columns(dofs, name, linear, angular));
     }
-    Ok(Trajectory {
-        columns,
-        rows,
-        modes,
-    })
+    columns
 }
 
-/// Rows of time (s) and motion of the released section, as `simulation.csv` has them, up to the time `stop` (s).
-pub(super) fn simulated(
-    model: &TrainedModel,
-    speed: f64,
-    stop: f64,
-    step: f64,
-) -> Result<Vec<Vec<f64>>> {
-    simulate(model, speed, stop, step).map(|t| t.rows)
-}
-
-fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
+fn csv(model: &TrainedModel, speed: f64, columns: &[String], rows: &[Vec<f64>]) -> String {
     let mut text = format!(
         "# {}; {} at {speed} m/s\n# source: {}\n# licence: {}\n# per unit length of span; y and lift up, theta and moment nose-up\n",
         model.name.replace('\n', " "),
@@ -194,8 +188,8 @@ fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
         model.provenance.source.replace('\n', " "),
         model.provenance.licence.replace('\n', " "),
     );
-    let _ = writeln!(text, "{}", trajectory.columns.join(","));
-    for row in &trajectory.rows {
+    let _ = writeln!(text, "{}", columns.join(","));
+    for row in rows {
         let values: Vec<String> = row.iter().map(f64::to_string).collect();
         let _ = writeln!(text, "{}", values.join(","));
     }

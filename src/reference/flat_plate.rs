@@ -270,7 +270,7 @@ const SPEEDS_M_S: [f64; 5] = [15.0, 30.0, 45.0, 60.0, 75.0];
 
 const W: Gust = Gust {
     spectrum: GustSpectrum {
-        shape: SpectrumShape::VonKarman,
+        shape: SpectrumShape::VonKarman {},
         length_m: 20.0,
         intensity: 0.05,
     },

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
 use crate::verdict::{Outcome, Severity, Verdict};
 use askama::Template;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 const UPLOT_JS: &str = include_str!("../../templates/uplot/uPlot.iife.min.js");
 /// Has to go wherever the library goes.
@@ -164,32 +164,11 @@ struct Page<'a> {
     of: &'a StudyPage,
 }
 
-#[derive(Serialize)]
-struct Charts<'a> {
-    speeds: &'a [f64],
-    onset: Option<f64>,
-    interval: Option<(f64, f64)>,
-    required: Option<f64>,
-    required_colour: &'static str,
-    series: Vec<ChartSeries<'a>>,
-}
-
-#[derive(Serialize)]
-struct ChartSeries<'a> {
-    label: &'a str,
-    colour: &'static str,
-    width: f64,
-    dash: Vec<f64>,
-    frequency: &'a [Option<f64>],
-    damping: &'a [Option<f64>],
-}
-
 /// The page as HTML text; the same content always gives the same bytes.
 pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
-    let failed = |e: String| Error::Numerical(format!("report: {e}"));
     let charts = match of.curves.is_empty() {
         true => String::new(),
-        false => charts(of).map_err(|e| failed(e.to_string()))?,
+        false => charts(of),
     };
     let page = Page {
         edges: at_edges(&of.of, &of.title, &of.generator),
@@ -202,7 +181,8 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
         live: of.live.as_deref().map_or(String::new(), in_script),
         of,
     };
-    let page = page.render().map_err(|e| failed(e.to_string()))?;
+    let page = page.render();
+    let page = page.map_err(|e| Error::Numerical(format!("report: {e}")))?;
     Ok(with_contents(&page))
 }
 
@@ -212,26 +192,27 @@ fn in_script(json: &str) -> String {
 }
 
 /// The curves as a value of JavaScript.
-fn charts(of: &StudyPage) -> serde_json::Result<String> {
-    let charts = Charts {
-        speeds: &of.speeds,
-        onset: of.onset,
-        interval: of.interval,
-        required: of.verdict.required_m_s,
-        required_colour: of.verdict.colour,
-        series: of.curves.iter().map(series).collect(),
-    };
-    Ok(in_script(&serde_json::to_string(&charts)?))
+fn charts(of: &StudyPage) -> String {
+    let charts = json!({
+        "speeds": of.speeds,
+        "onset": of.onset,
+        "interval": of.interval,
+        "required": of.verdict.required_m_s,
+        "required_colour": of.verdict.colour,
+        "series": of.curves.iter().map(series).collect::<Vec<_>>(),
+    });
+    in_script(&charts.to_string())
 }
 
-fn series(of: &PageCurve) -> ChartSeries<'_> {
+fn series(of: &PageCurve) -> Value {
     let numbers = |d: &str| d.split(' ').filter_map(|x| x.parse().ok()).collect();
-    ChartSeries {
-        label: &of.label,
-        colour: COLOURS[of.model % COLOURS.len()],
-        width: branch_width(of.branch),
-        dash: dash(of.model).map_or(vec![], numbers),
-        frequency: &of.frequency,
-        damping: &of.damping,
-    }
+    let dash: Vec<f64> = dash(of.model).map_or(vec![], numbers);
+    json!({
+        "label": of.label,
+        "colour": COLOURS[of.model % COLOURS.len()],
+        "width": branch_width(of.branch),
+        "dash": dash,
+        "frequency": of.frequency,
+        "damping": of.damping,
+    })
 }

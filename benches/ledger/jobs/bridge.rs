@@ -246,7 +246,7 @@ pub(crate) fn problem(bridge: &Bridge) -> BuffetingProblem<'static> {
     let gust = |length_m, intensity| {
         Some(Gust {
             spectrum: GustSpectrum {
-                shape: SpectrumShape::Kaimal,
+                shape: SpectrumShape::Kaimal {},
                 length_m,
                 intensity,
             },

@@ -51,7 +51,7 @@ pub use elimination::{pivots, solve_complex};
 pub use growth_band::GrowthBand;
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
-pub use judged::{JudgedSpeeds, damps_fast_motion};
+pub use judged::{JudgedSpeeds, bridge_damps_fast_motion, damps_fast_motion};
 pub(crate) use mode_words::the_mode;
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, ModeRatio, Onset, OnsetInterval};

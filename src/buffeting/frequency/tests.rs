@@ -16,11 +16,11 @@ fn a_section_is_a_bridge_of_one_node() {
     let section = SectionModel::iabse_1_1a();
     let gust = Gust {
         spectrum: GustSpectrum {
-            shape: SpectrumShape::Kaimal,
+            shape: SpectrumShape::Kaimal {},
             length_m: 40.0,
             intensity: 0.06,
         },
-        admittance: Admittance::Sears,
+        admittance: Admittance::Sears {},
     };
     let turbulence = Turbulence {
         along: None,

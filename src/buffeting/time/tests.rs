@@ -24,8 +24,8 @@ fn turbulence(admittance: Admittance) -> Turbulence {
         admittance,
     };
     Turbulence {
-        along: Some(gust(SpectrumShape::Kaimal, 120.0, 0.1)),
-        vertical: Some(gust(SpectrumShape::VonKarman, 40.0, 0.06)),
+        along: Some(gust(SpectrumShape::Kaimal {}, 120.0, 0.1)),
+        vertical: Some(gust(SpectrumShape::VonKarman {}, 40.0, 0.06)),
     }
 }
 
@@ -95,7 +95,7 @@ fn one_record_is_the_sum_of_its_frequencies() {
             &structure,
             &linear,
             Some(&linear),
-            &turbulence(Admittance::Liepmann),
+            &turbulence(Admittance::Liepmann {}),
         )
         .unwrap(),
         30.0,
@@ -106,7 +106,7 @@ fn one_record_is_the_sum_of_its_frequencies() {
             &structure,
             &RationalModel::jones_flat_plate(),
             None,
-            &turbulence(Admittance::Sears),
+            &turbulence(Admittance::Sears {}),
         )
         .unwrap(),
         45.0,
@@ -150,7 +150,7 @@ fn domains_agree_within_the_sampling_error() {
             &structure,
             &RationalModel::jones_flat_plate(),
             None,
-            &turbulence(Admittance::Sears),
+            &turbulence(Admittance::Sears {}),
         )
         .unwrap(),
         45.0,
@@ -163,7 +163,7 @@ fn domains_agree_within_the_sampling_error() {
 fn gusts_have_the_stated_variance() {
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
-    let gusts = turbulence(Admittance::None);
+    let gusts = turbulence(Admittance::None {});
     let problem = BuffetingProblem::of_section(&structure, &jones, None, &gusts).unwrap();
     let variance = |series: &[f64]| series.iter().map(|x| x * x).sum::<f64>() / series.len() as f64;
     let expected = problem.expected_variance(40.0, 0.1, 6000);
@@ -195,7 +195,7 @@ fn gusts_have_the_stated_variance() {
 fn records_repeat_with_their_seed_and_plans_are_checked() {
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
-    let gusts = turbulence(Admittance::None);
+    let gusts = turbulence(Admittance::None {});
     let problem = BuffetingProblem::of_section(&structure, &jones, None, &gusts).unwrap();
     let record = |seed| turbulence_field(&problem, 40.0, 0.1, 64, seed).unwrap();
     assert_eq!(record(3), record(3));

@@ -2,15 +2,13 @@
 
 use super::BridgeStudy;
 use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
-use crate::aerodynamics::Transfer;
 use crate::error::Result;
-use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::flutter::{FastMotion, bridge_damps_fast_motion, judged_speeds};
+use crate::units::ReducedFrequencyRange;
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
     MeanRotation, Reach, RequiredSpeed, Verdict,
 };
-use std::sync::Arc;
 
 /// Whose forces the two routes take, in the order of the answers.
 const TABLES: &str = "the tables";
@@ -86,36 +84,10 @@ impl BridgeStudy {
         let section = coupled(&self.by_model)?;
         let mut judged = judged_speeds(&section, &self.search(), Some(tested))?;
         if let Some(from) = &mut judged.tested_from {
-            from.below = match self.damps_fast_motion(tested.max)? {
-                true => FastMotion::Damped,
-                false => FastMotion::Open,
-            };
+            let damped = bridge_damps_fast_motion(&self.by_model, tested.max)?;
+            from.below = FastMotion::damped_if(damped);
         }
         Ok(Reach::new(judged, &results.curves, self.by_model.width_m()))
-    }
-
-    /// Whether the model of every section takes energy out of each motion faster than `k`, a reduced frequency of the bridge.
-    fn damps_fast_motion(&self, k: ReducedFrequency) -> Result<bool> {
-        let bridge = &self.by_model;
-        let mut asked: Vec<(&Arc<dyn Transfer>, f64)> = Vec::new();
-        for group in bridge.groups.iter().filter(|g| g.wind_factor > 0.0) {
-            let of_group = k.full_width() * group.width_m / (group.wind_factor * bridge.width_m());
-            // sections in many winds are asked once, from the lowest on
-            match asked
-                .iter_mut()
-                .find(|(forces, _)| Arc::ptr_eq(forces, &group.forces))
-            {
-                Some((_, least)) => *least = least.min(of_group),
-                None => asked.push((&group.forces, of_group)),
-            }
-        }
-        for (forces, k_max) in asked {
-            let k_max = ReducedFrequency::from_full_width(k_max);
-            if !damps_fast_motion(forces.dofs(), k_max, |k| forces.transfer(k))? {
-                return Ok(false);
-            }
-        }
-        Ok(true)
     }
 
     /// By the tables, where there are some, then by the models.

@@ -1,13 +1,15 @@
 //! How far a search can be believed: the speeds at which every mode was inside what was tested.
 
 use super::mode_words::the_mode;
-use crate::aerodynamics::TransferMatrix;
+use crate::aerodynamics::{Transfer, TransferMatrix};
+use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::section::Dof;
 use crate::state_space::ValueAt;
 use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Reduced frequencies above the tested range at which forces are asked whether they damp.
 const SAMPLES: usize = 120;
@@ -91,6 +93,16 @@ pub enum FastMotion {
     DampedAtTheEnd,
     /// Neither: forces may feed some.
     Open,
+}
+
+impl FastMotion {
+    /// By what the forces of a fit do to [all](damps_fast_motion) of them.
+    pub fn damped_if(damped: bool) -> Self {
+        match damped {
+            true => Self::Damped,
+            false => Self::Open,
+        }
+    }
 }
 
 /// The last mode that comes down among the tests as the wind rises.
@@ -185,10 +197,7 @@ impl RangePassages {
         self.last_entry().map(|(speed_m_s, branch)| TestedFrom {
             speed_m_s: *speed_m_s,
             branch: branch.clone(),
-            below: match self.damped_before {
-                true => FastMotion::Damped,
-                false => FastMotion::Open,
-            },
+            below: FastMotion::damped_if(self.damped_before),
         })
     }
 
@@ -260,6 +269,33 @@ pub fn damps_fast_motion(
             }
         }
         before = Some((k, g));
+    }
+    Ok(true)
+}
+
+/// Whether the forces of every section of a bridge take energy out of each motion faster than `k`, a reduced frequency of the
+/// bridge.
+///
+/// # Errors
+/// As the forces of a section at a `K`.
+pub fn bridge_damps_fast_motion(bridge: &Bridge, k: ReducedFrequency) -> Result<bool> {
+    let mut asked: Vec<(&Arc<dyn Transfer>, f64)> = Vec::new();
+    for group in bridge.groups.iter().filter(|g| g.wind_factor > 0.0) {
+        let of_group = k.full_width() * group.width_m / (group.wind_factor * bridge.width_m());
+        // sections in many winds are asked once, from the lowest on
+        match asked
+            .iter_mut()
+            .find(|(forces, _)| Arc::ptr_eq(forces, &group.forces))
+        {
+            Some((_, least)) => *least = least.min(of_group),
+            None => asked.push((&group.forces, of_group)),
+        }
+    }
+    for (forces, k_max) in asked {
+        let k_max = ReducedFrequency::from_full_width(k_max);
+        if !damps_fast_motion(forces.dofs(), k_max, |k| forces.transfer(k))? {
+            return Ok(false);
+        }
     }
     Ok(true)
 }

@@ -6,11 +6,21 @@ use super::words::speed;
 use crate::flutter::{FastMotion, the_mode};
 use crate::units::ReducedFrequencyRange;
 
-/// Why damping in slow wind is not known from tests that do not tell of it.
-pub const GUESSED: &str = "damping there is a guess: tests have to reach K 0.8 and to lead up to the highest over a factor of 2.5";
+/// Why damping in wind slower than every test is not known; `None` where no motion gains energy there and tests tell how forces
+/// go over into those of still air.
+pub fn why_slow_wind_is_open(
+    tested: &ReducedFrequencyRange,
+    below: FastMotion,
+) -> Option<&'static str> {
+    let guessed = "damping there is a guess: tests have to reach K 0.8 and to lead up to the highest over a factor of 2.5";
+    match below {
+        FastMotion::Open => Some("a motion may gain energy there"),
+        _ => (!tell_of_slow_wind(tested)).then_some(guessed),
+    }
+}
 
-/// Whether tests tell how forces go over into those of still air: measured in docs/verdict.md on decks cut to other tests.
-pub fn tell_of_slow_wind(tested: &ReducedFrequencyRange) -> bool {
+/// Measured in docs/verdict.md on decks cut to other tests.
+fn tell_of_slow_wind(tested: &ReducedFrequencyRange) -> bool {
     let k = tested.max.full_width();
     let lower_ends = tested.lower_ends().map(|(end, _)| end.full_width());
     k >= 0.8 && k >= 2.5 * lower_ends.fold(0.0, f64::max)
@@ -28,14 +38,12 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };
     let k = range.max.full_width();
-    let tells = tell_of_slow_wind(range);
-    let what = match tested.below {
-        FastMotion::Open => "a motion may gain energy there",
-        _ if !tells => GUESSED,
-        FastMotion::Damped => "every motion loses energy at all higher K",
+    let open = why_slow_wind_is_open(range, tested.below);
+    let what = open.unwrap_or(match tested.below {
         FastMotion::DampedAtTheEnd => "every motion loses energy at the highest K tested",
-    };
-    let severity = Severity::severe_if(!tells || tested.below == FastMotion::Open);
+        _ => "every motion loses energy at all higher K",
+    });
+    let severity = Severity::severe_if(open.is_some());
     let text = format!(
         "Below {} {} lies at K above {k:.2}, where nothing was tested; by {} {what}",
         speed(from_m_s),

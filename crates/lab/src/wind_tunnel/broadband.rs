@@ -25,7 +25,7 @@ impl TrainingMotion {
     /// The motion in words.
     pub(super) fn describe(&self) -> String {
         match self {
-            Self::Harmonic => "harmonic motions".into(),
+            Self::Harmonic {} => "harmonic motions".into(),
             Self::MultiSine { .. } => "a multi-sine".into(),
             Self::WhiteNoise { min_hz, max_hz, .. } => {
                 format!("white noise from {min_hz} to {max_hz} Hz")
@@ -36,7 +36,7 @@ impl TrainingMotion {
     /// Checks duration and band against the other keys of a plan.
     pub(super) fn validate(&self, timing: Timing) -> Result<()> {
         let duration = match self {
-            Self::Harmonic => return Ok(()),
+            Self::Harmonic {} => return Ok(()),
             Self::MultiSine { duration_s } => *duration_s,
             Self::WhiteNoise {
                 min_hz,
@@ -127,7 +127,7 @@ impl TunnelPlan {
     /// The motion at unit amplitude; harmonic motions have the given frequencies.
     pub(super) fn unit_motion(&self, frequencies_hz: &[f64], delay_s: f64) -> UnitMotion {
         match &self.motion {
-            TrainingMotion::Harmonic => UnitMotion::new(frequencies_hz, self.timing(delay_s)),
+            TrainingMotion::Harmonic {} => UnitMotion::new(frequencies_hz, self.timing(delay_s)),
             motion => UnitMotion::broadband(
                 motion,
                 &self.frequencies_hz,
@@ -151,7 +151,7 @@ impl Lines {
     ) -> (Self, f64) {
         let mut random = random_stream(seed, MOTION_STREAM);
         match motion {
-            TrainingMotion::Harmonic => (Self(Vec::new()), timing.segment_s),
+            TrainingMotion::Harmonic {} => (Self(Vec::new()), timing.segment_s),
             TrainingMotion::MultiSine { duration_s } => {
                 let sine = |f: &f64| {
                     let phase = TAU * random.random::<f64>();
@@ -327,5 +327,8 @@ mod tests {
             duration_s: f64::INFINITY,
         };
         assert!(message(endless).starts_with("motion.duration_s"));
+        let text = r#"{ "kind": "harmonic", "duration_s": 60.0 }"#;
+        let other = serde_json::from_str::<TrainingMotion>(text).unwrap_err();
+        assert!(other.to_string().contains("unknown field `duration_s`"));
     }
 }

@@ -5,12 +5,11 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// How the rig moves the section.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TrainingMotion {
     /// One ramped sine per frequency of the plan, in turn (Table 3.2 of the thesis).
-    #[default]
-    Harmonic,
+    Harmonic {},
     /// All frequencies of the plan at once with equal amplitudes; their phases follow from the seed.
     MultiSine {
         /// Duration of the motion, ramps included, s.
@@ -29,6 +28,12 @@ pub enum TrainingMotion {
         #[serde(default = "three_minutes")]
         duration_s: f64,
     },
+}
+
+impl Default for TrainingMotion {
+    fn default() -> Self {
+        Self::Harmonic {}
+    }
 }
 
 fn three_minutes() -> f64 {

@@ -81,7 +81,7 @@ pub struct TunnelPlan {
 impl Default for TunnelPlan {
     fn default() -> Self {
         Self {
-            motion: TrainingMotion::Harmonic,
+            motion: TrainingMotion::Harmonic {},
             interpolate_table: false,
             frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
             speeds_m_s: vec![8.17, 4.0],
@@ -124,7 +124,7 @@ impl TunnelPlan {
         let mut records = Vec::new();
         for (i, speed) in speeds.iter().enumerate() {
             let group = table.at_speed_group(i)?;
-            if self.motion != TrainingMotion::Harmonic {
+            if self.motion != TrainingMotion::default() {
                 records.extend(self.interpolated_records(&group, dofs, *speed, delay_s)?);
                 continue;
             }

@@ -3,11 +3,23 @@
 use super::bridge_built::BuiltBridge;
 use super::bridge_followed::SearchedOnset;
 use super::section::OnsetCard;
-use crate::flutter::{FlutterSearch, FoundOnset, OnsetSearch, divergence_with_forces, find_onset};
+use crate::bridge::Bridge;
+use crate::flutter::{
+    FastMotion, FlutterSearch, FoundOnset, OnsetSearch, bridge_damps_fast_motion,
+    divergence_with_forces, find_onset,
+};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
+use crate::verdict::why_slow_wind_is_open;
 
 /// Speeds of the search for the onset; more than for a section would take seconds.
 const SPEEDS: usize = 60;
+
+/// Why damping is not known in wind slower than every test of a bridge; no parameter changes it.
+pub(super) fn slow_wind(bridge: &Bridge, tested: ReducedFrequencyRange) -> Option<&'static str> {
+    // what cannot be said is not said to be damped
+    let damps = bridge_damps_fast_motion(bridge, tested.max).unwrap_or(false);
+    why_slow_wind_is_open(&tested, FastMotion::damped_if(damps))
+}
 
 impl OnsetCard {
     /// With the divergence of a bridge and nothing else.
@@ -27,6 +39,7 @@ impl OnsetCard {
     pub(super) fn of_followed(
         built: &BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
+        slow_wind: Option<&str>,
         limit: f64,
         onset: &FoundOnset,
     ) -> Self {
@@ -36,7 +49,7 @@ impl OnsetCard {
         let inside = tested.is_some_and(|range| range.contains(k));
         card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
         card.numbers.stable_below = true;
-        card.judge(tested.as_ref());
+        card.judge(slow_wind);
         card
     }
 
@@ -45,6 +58,7 @@ impl OnsetCard {
     pub(super) fn of_bridge(
         built: &BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
+        slow_wind: Option<&str>,
         limit: f64,
     ) -> (Self, Option<SearchedOnset>) {
         let mut card = Self::with_divergence(built, limit);
@@ -67,7 +81,7 @@ impl OnsetCard {
             }
             Err(why) => card.onset_unknown(&why),
         }
-        card.judge(tested.as_ref());
+        card.judge(slow_wind);
         (card, searched)
     }
 }

@@ -5,6 +5,7 @@
 
 use super::bridge_built::{BuiltBridge, TunedBridge};
 use super::bridge_followed::SearchedOnset;
+use super::bridge_search::slow_wind;
 use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
 use super::section::OnsetCard;
@@ -27,6 +28,8 @@ pub(super) struct ModalBridge {
     /// Motions and modes: indices, and what they stand for.
     responses: Vec<(usize, Role)>,
     tested: Option<ReducedFrequencyRange>,
+    /// Why damping is not known in wind slower than every test.
+    slow_wind: Option<&'static str>,
     /// Root of the generalised mass of each mode.
     roots: Vec<f64>,
     /// Onset of the bridge as it was exported, until something follows from it.
@@ -51,10 +54,13 @@ impl BridgeUnit {
             )
         });
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
+        let bridge = options.bridge()?;
+        let tested = options.tested_range;
         let own = ModalBridge {
             responses: responses.map(|(index, v)| (index, v.role)).collect(),
             roots: masses.collect(),
-            tested: options.tested_range,
+            tested,
+            slow_wind: tested.and_then(|tested| slow_wind(&bridge, tested)),
             // without a start the first onset is searched for
             start: options.onset,
             searched: None,
@@ -219,7 +225,8 @@ impl CoupledKind for ModalBridge {
     }
 
     fn searched(unit: &BridgeUnit, _: &Resources, memory: &Memory) -> OnsetCard {
-        OnsetCard::of_bridge(&unit.built, unit.own.tested, unit.indices.limit(memory)).0
+        let (own, limit) = (&unit.own, unit.indices.limit(memory));
+        OnsetCard::of_bridge(&unit.built, own.tested, own.slow_wind, limit).0
     }
 
     /// Followed, where it can be.
@@ -229,9 +236,10 @@ impl CoupledKind for ModalBridge {
         let (own, built) = (&mut unit.own, &mut unit.built);
         let known = own.searched.as_ref();
         match known.and_then(|known| known.followed(built, limit)) {
-            Some(onset) => OnsetCard::of_followed(built, own.tested, limit, &onset),
+            Some(onset) => OnsetCard::of_followed(built, own.tested, own.slow_wind, limit, &onset),
             None => {
-                let (card, searched) = OnsetCard::of_bridge(built, own.tested, limit);
+                let (card, searched) =
+                    OnsetCard::of_bridge(built, own.tested, own.slow_wind, limit);
                 own.searched = searched;
                 card
             }

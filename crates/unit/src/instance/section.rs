@@ -1,16 +1,18 @@
 //! The section that the current parameters describe, and what follows from it alone: onset and divergence.
 
+use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
-    at_samples, divergence_with_forces, find_onset, stands_at_samples, unwanted_growth,
+    FastMotion, FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
+    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, find_onset,
+    stands_at_samples, unwanted_growth,
 };
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
-use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
+use crate::units::{ReducedFrequency, ReducedVelocity};
 use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
-use crate::verdict::{GUESSED, tell_of_slow_wind};
+use crate::verdict::why_slow_wind_is_open;
 
 /// The section of the model with the parameters in `values` (one number per variable of `table`).
 ///
@@ -138,6 +140,15 @@ fn check_searchable(section: &CoupledSection) -> Result<()> {
     }
 }
 
+/// Why damping is not known in wind slower than every test of a model; no parameter of the section changes it.
+pub(super) fn slow_wind(model: &TrainedModel) -> Option<&'static str> {
+    let (forces, dofs) = (&model.model, model.section.dofs());
+    let k = model.tested_range.max;
+    // what cannot be said is not said to be damped
+    let damps = damps_fast_motion(&dofs, k, |k| forces.transfer(k)).unwrap_or(false);
+    why_slow_wind_is_open(&model.tested_range, FastMotion::damped_if(damps))
+}
+
 /// Onset and divergence of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OnsetCard {
@@ -155,6 +166,7 @@ impl OnsetCard {
         section: &CoupledSection,
         limit: f64,
         plain: Option<SweptOnset>,
+        slow_wind: Option<&str>,
     ) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_with_forces(section.structure(), &model.model) {
@@ -162,7 +174,7 @@ impl OnsetCard {
             Err(why) => card.divergence_unknown(&why),
         }
         card.search_onset(model, section, limit, plain);
-        card.judge(Some(&model.tested_range));
+        card.judge(slow_wind);
         card
     }
 
@@ -194,10 +206,11 @@ impl OnsetCard {
     }
 
     /// What slow wind does where no test tells is not stable; nor is what diverges below the onset, whatever oscillates there.
-    pub(super) fn judge(&mut self, tested: Option<&ReducedFrequencyRange>) {
-        if self.numbers.stable_below && tested.is_some_and(|range| !tell_of_slow_wind(range)) {
+    /// `slow_wind`: why damping there is not known.
+    pub(super) fn judge(&mut self, slow_wind: Option<&str>) {
+        if let Some(why) = slow_wind.filter(|_| self.numbers.stable_below) {
             self.numbers.stable_below = false;
-            let warning = format!("in slow wind motions are faster than every test: {GUESSED}");
+            let warning = format!("in slow wind motions are faster than every test: {why}");
             self.warnings.push(warning);
         }
         let numbers = &self.numbers;

@@ -28,6 +28,8 @@ type ResponseIndices = Vec<[usize; 4]>;
 pub(super) struct SuspendedSection {
     responses: ResponseIndices,
     aerodynamics: Realization,
+    /// Why damping is not known in wind slower than every test.
+    slow_wind: Option<&'static str>,
     /// Whether growth below the onset has been looked for with the current parameters.
     growth_known: bool,
     /// Searches for growth that this instance may still do.
@@ -50,6 +52,7 @@ impl SectionUnit {
         let own = SuspendedSection {
             responses,
             aerodynamics: resources.model.model.realize(),
+            slow_wind: section::slow_wind(&resources.model),
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
             wind_was_tested: false,
@@ -210,7 +213,7 @@ impl CoupledKind for SuspendedSection {
         match unit.own.coupled(resources, &memory.values) {
             Ok((section, coupled)) => {
                 let plain = section::plain_onset(model, &section, &coupled, limit);
-                OnsetCard::search(model, &coupled, limit, plain)
+                OnsetCard::search(model, &coupled, limit, plain, unit.own.slow_wind)
             }
             Err(why) => OnsetCard::unknown(&why),
         }

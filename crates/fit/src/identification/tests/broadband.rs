@@ -70,7 +70,7 @@ fn broadband_motions_train_models() {
     };
     let (white, sines) = (
         condition(noise(0.01, 40.0)),
-        condition(TrainingMotion::Harmonic),
+        condition(TrainingMotion::Harmonic {}),
     );
     // exactly 1 for noise up to half the sampling frequency; 40 of 100 Hz hold most of the filters' power
     assert!(white < 4.0 && sines > 10.0 * white, "{white} {sines}");

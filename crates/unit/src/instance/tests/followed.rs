@@ -20,7 +20,7 @@ fn built(resources: &Resources, changed: &[(&str, f64)]) -> BuiltBridge {
 }
 
 fn searched(built: &BuiltBridge) -> (OnsetCard, SearchedOnset) {
-    let (card, searched) = OnsetCard::of_bridge(built, None, LIMIT);
+    let (card, searched) = OnsetCard::of_bridge(built, None, None, LIMIT);
     (card, searched.unwrap())
 }
 
