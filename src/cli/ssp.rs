@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::bridge;
 use super::progress::Progress;
-use super::stages;
+use super::{headline, stages};
 use crate::error::{Result, counted};
 use crate::fmu::package::{Label, Overwrite, Runtime, write_archive};
 use crate::study::bridge::BridgeExportOptions;
@@ -55,10 +55,9 @@ pub(super) fn run(command: &SspCommand, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
     let parameters: usize = system.components.iter().map(|c| c.values.len()).sum();
+    let text = headline::text(&study.file.name, &verdict, &[]);
     let text = format!(
-        "{}: {}\nwrote {}: {} ({}), {}, {}\n",
-        study.file.name,
-        verdict.headline,
+        "{text}wrote {}: {} ({}), {}, {}\n",
         path.display(),
         counted(names.len(), "unit"),
         names.join(", "),

@@ -273,6 +273,13 @@ fn wrong_bridge_files_are_named_with_their_line() {
             "bridge.toml: line 14, wind.profile: expected wind somewhere along the bridge, found zero everywhere",
         ],
     );
+    let percent = "[wind]\nprofile = [{ along_m = 0.0, factor = 90.0 }]\n";
+    refused(
+        |_| text("csv", percent),
+        &[
+            "wind.profile[0].factor: expected at most 3 times the wind speed of the bridge (a factor, not per cent), found 90",
+        ],
+    );
     refused(
         |_| text("csv", "").replace("\"-y\"", "\"z\""),
         &["modes.axes.downwind: expected a direction square to `up`"],

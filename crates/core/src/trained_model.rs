@@ -184,7 +184,7 @@ pub struct TrainedModel {
     pub section: SectionModel,
     /// The force model.
     pub model: Model,
-    /// Reduced frequencies `K = ωB/V` at which the data were taken.
+    /// Reduced frequencies `K = ωB/V` at which every force was measured in every motion.
     pub tested_range: ReducedFrequencyRange,
     /// Where it comes from.
     pub provenance: Provenance,

@@ -39,16 +39,19 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
     };
     let k = range.max.full_width();
     let open = why_slow_wind_is_open(range, tested.below);
-    let what = open.unwrap_or(match tested.below {
-        FastMotion::DampedAtTheEnd => "every motion loses energy at the highest K tested",
-        _ => "every motion loses energy at all higher K",
-    });
+    let lose = "heave with rotation, and sway by itself, lose energy at";
+    let what = match (open, tested.below) {
+        (Some(open), _) => format!("by {} {open}", first.forces),
+        (None, FastMotion::DampedAtTheEnd) => {
+            format!("by {} {lose} the highest K tested", first.forces)
+        }
+        (None, _) => format!("by fitted forces {lose} all higher K"),
+    };
     let severity = Severity::severe_if(open.is_some());
     let text = format!(
-        "Below {} {} lies at K above {k:.2}, where nothing was tested; by {} {what}",
+        "Below {} {} lies at K above {k:.2}, where nothing was tested; {what}",
         speed(from_m_s),
         the_mode(&tested.branch),
-        first.forces
     );
     Doubt::new(severity, kind, text).settled_by(format!("tests at K above {k:.2}"))
 }

@@ -22,19 +22,24 @@ pub(super) fn headline(judgement: &Judgement, evidence: &Evidence) -> String {
     }
 }
 
-/// What governs, then what the search for flutter found.
+/// What governs, then what the search for flutter found; and what is expected before flutter although its own lower end is not
+/// known.
 fn what(critical: &Critical, evidence: &Evidence) -> String {
     let flutter = flutter(evidence);
+    let says = |c: &CriticalSpeed| {
+        let (name, best) = (c.phenomenon.name(), speed(c.best_m_s));
+        format!("{name} at {best} ({})", c.forces)
+    };
     match &critical.governs {
-        Some(c) if c.phenomenon != Phenomenon::Flutter => {
-            format!(
-                "{} at {} ({}); {flutter}",
-                c.phenomenon.name(),
-                speed(c.best_m_s),
-                c.forces
-            )
+        Some(c) if c.phenomenon != Phenomenon::Flutter => format!("{}; {flutter}", says(c)),
+        Some(c) => {
+            let mut others = critical.others.iter();
+            let before = others
+                .find(|o| o.phenomenon != Phenomenon::Flutter && o.best_m_s < c.best_m_s)
+                .map(|o| format!("; {} comes before it", says(o)));
+            flutter + &before.unwrap_or_default()
         }
-        _ => flutter,
+        None => flutter,
     }
 }
 

@@ -166,6 +166,21 @@ fn divergence_below_the_required_speed_is_not_met() {
     );
 }
 
+/// An onset of 36.1 m/s (29.1 to 43.2) was the headline of a section that diverges at 30.5.
+#[test]
+fn divergence_that_is_expected_before_flutter_is_in_the_headline() {
+    let mut evidence = scanned(21.0, vec![found("the model", 36.1, 7.0)]);
+    evidence.divergence = vec![DivergenceReading::at("the model", Some(30.5))];
+    let headline = Verdict::judge(&evidence).headline;
+    let says = "; static divergence at 30.5 m/s (the model) comes before it";
+    assert!(
+        headline.contains("flutter onset 36.1 m/s") && headline.ends_with(says),
+        "{headline}"
+    );
+    evidence.divergence = vec![DivergenceReading::at("the model", Some(36.2))];
+    assert!(!Verdict::judge(&evidence).headline.contains("divergence"));
+}
+
 /// A bridge that diverges at 62.6 m/s was headed "no flutter up to 120 m/s"; a deck with divergence at 14.8 "onset at 21.2".
 #[test]
 fn what_begins_first_governs_also_without_a_requirement() {

@@ -96,7 +96,7 @@ pub fn fit_discrete(
 ) -> Result<Fitted> {
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;
-    let (dofs, tested) = (&records.dofs, records.tested_range()?);
+    let (dofs, spanned) = (&records.dofs, records.spanned_range()?);
     let delta_s = records.longest_step();
     let parameters = fit.parameters(dofs)?;
     let rows = parameters.chunks(dofs.len());
@@ -132,12 +132,12 @@ pub fn fit_discrete(
         ),
         weights: fit.weights.describe().into(),
         samples: fitted.systems.whole(0).rows,
-        tested_range: tested,
+        tested_range: records.tested_range()?,
         condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
         entries,
         search: Vec::new(),
         orders: if shared { fitted.orders(0) } else { Vec::new() },
-        alpha_guideline: Some(guideline(&parameters, tested, delta_s, &records)),
+        alpha_guideline: Some(guideline(&parameters, spanned, delta_s, &records)),
         static_terms: [records.removed_means.clone(), fitted.constants()?].concat(),
         memory: memory(&parameters, &records, delta_s)?,
         constraints: None,

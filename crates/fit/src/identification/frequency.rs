@@ -14,13 +14,14 @@ use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
 use super::report::{FitReport, Fitted, FittedTable, variance};
 use super::samples::{EntrySamples, sizes, sort_by_entry, state_requirements};
-use crate::aerodynamics::derivatives::TransferSample;
+use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
-use crate::units::ReducedFrequencyRange;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use joint::{Joint, JointFit, by_noise};
 use poles::{choose_poles, choose_poles_together};
+use std::collections::BTreeMap;
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
 ///
@@ -49,11 +50,12 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     let fewest = entries.iter().map(|e| e.rows.len()).min();
     let fit = &fit.with_filters_for(fewest.unwrap_or(0));
     state_requirements(&mut entries, dofs, fit)?;
-    let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
+    let spanned = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
+    let tested_range = tested_range(samples, spanned)?;
     let fitted = match fit.form {
-        Form::MinimumState { .. } => fit_minimum_state(&entries, dofs, fit, tested_range)?,
-        _ => fit_linear(&entries, dofs, fit, tested_range)?,
+        Form::MinimumState { .. } => fit_minimum_state(&entries, dofs, fit, spanned)?,
+        _ => fit_linear(&entries, dofs, fit, spanned)?,
     };
     if fit.regularization > 0.0 {
         notes.push(format!(
@@ -93,6 +95,23 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
     Ok(Fitted { model, report })
+}
+
+/// Reduced frequencies in which every number was tested, as those of a table.
+fn tested_range(
+    samples: &[TransferSample],
+    spanned: ReducedFrequencyRange,
+) -> Result<ReducedFrequencyRange> {
+    let mut tested: BTreeMap<_, Vec<ReducedFrequency>> = BTreeMap::new();
+    for s in samples {
+        let number = (s.force, s.motion, s.part == Part::Real);
+        tested.entry(number).or_default().push(s.k);
+    }
+    let ranges = tested
+        .into_values()
+        .filter_map(ReducedFrequencyRange::spanning);
+    let common = ranges.reduce(ReducedFrequencyRange::intersection);
+    common.unwrap_or(spanned).not_empty()
 }
 
 /// Every form whose entries are linear in their coefficients once the poles are known: each entry by itself, and all of

@@ -52,14 +52,14 @@ pub fn fit_records(
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;
     let fit = &fit.with_filters_for(&records);
-    let tested = records.tested_range()?;
+    let spanned = records.spanned_range()?;
     let task = RecordFit {
         fit,
         records: &records,
         progress,
     };
     // what the tests do not determine fails in the search of poles, in words that say nothing of it
-    let poles = choose_poles(&task, tested).map_err(|e| task.too_few_numbers(e))?;
+    let poles = choose_poles(&task, spanned).map_err(|e| task.too_few_numbers(e))?;
     let fits = task.least_squares_at(&poles)?;
     let (found, search, constraints) = task.under_constraints(fits, poles)?;
     let model = found.model()?;
@@ -73,7 +73,7 @@ pub fn fit_records(
         ),
         weights: fit.weights.describe().into(),
         samples: found.fitted.systems.whole(0).rows,
-        tested_range: tested,
+        tested_range: records.tested_range()?,
         condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
         entries,
         search,

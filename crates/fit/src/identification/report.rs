@@ -46,7 +46,7 @@ pub struct FitReport {
     pub weights: String,
     /// Real numbers (parts of table entries, or rows of records) that entered the least squares.
     pub samples: usize,
-    /// Reduced frequencies the data cover.
+    /// Reduced frequencies at which the data have every force in every motion.
     pub tested_range: ReducedFrequencyRange,
     /// Largest condition number of the columns, each scaled to unit norm.
     pub condition: f64,

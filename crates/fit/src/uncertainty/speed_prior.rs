@@ -25,10 +25,10 @@ const PRIOR_FREEDOM: f64 = 6.0;
 /// to the tables of heave and rotation. The test `ratios_are_those_of_the_embedded_decks` computes them anew.
 pub(super) const MEASURED: [(&str, [f64; 4]); 5] = [
     ("LN20-5500", [9.64, 3.08, 3.59, 3.97]),
-    ("LN21-5200", [6.47, 1.34, 0.84, 1.38]),
-    ("LN21-5500", [5.17, 1.20, 2.34, 2.34]),
+    ("LN21-5200", [6.48, 1.34, 0.84, 1.38]),
+    ("LN21-5500", [5.18, 1.21, 2.34, 2.35]),
     ("LN21-5800", [6.13, 1.09, 2.03, 2.33]),
-    ("LN21-6100", [1.17, 2.16, 2.63, 3.00]),
+    ("LN21-6100", [1.16, 2.16, 2.63, 3.01]),
 ];
 
 /// Distribution of the ratio of the variance between speeds to that of independent test runs.
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn the_prior_of_the_measured_decks() {
         let all = SpeedPrior::measured(None);
-        assert!((all.ratio - 3.735).abs() < 1e-3, "{all:?}");
+        assert!((all.ratio - 3.737).abs() < 1e-3, "{all:?}");
         for (name, _) in MEASURED {
             let without = SpeedPrior::measured(Some(name));
             assert!((2.5..4.5).contains(&without.ratio), "{name}: {without:?}");

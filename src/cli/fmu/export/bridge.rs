@@ -4,7 +4,7 @@ use super::{ExportKind, FmuExportArgs};
 use crate::cli::answer::Answer;
 use crate::cli::bridge::{self, files::BRIDGE_FMU};
 use crate::cli::progress::Progress;
-use crate::cli::stages;
+use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::fmu::package::{BridgeExport, package, package_bridge, write_archive};
@@ -122,10 +122,9 @@ impl FmuExportArgs {
         let named: Vec<String> = (0..bridge.named.len())
             .map(|n| bridge.node_name(n))
             .collect();
+        let text = headline::text(&bridge.name, verdict, &[]);
         let text = format!(
-            "{}: {}\nwrote {}: {}{} with {}; inputs and outputs at the {} {}\n",
-            bridge.name,
-            verdict.headline,
+            "{text}wrote {}: {}{} with {}; inputs and outputs at the {} {}\n",
             path.display(),
             if bridge.structure_alone {
                 "the structure of "
@@ -165,10 +164,9 @@ impl FmuExportArgs {
         let path = self.place("bridge_force.fmu");
         write_archive(&path, &bytes, self.overwrite())?;
         let nodes = &forces.options.nodes;
+        let text = headline::text(&study.file.name, verdict, &[]);
         let text = format!(
-            "{}: {}\nwrote {}: forces on {} of {}, at the nodes {} to {}\n",
-            study.file.name,
-            verdict.headline,
+            "{text}wrote {}: forces on {} of {}, at the nodes {} to {}\n",
             path.display(),
             counted(nodes.len(), "strip"),
             forces.name,

@@ -267,8 +267,8 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
     let verdict = below(FastMotion::Damped);
     assert!(verdict.is_met());
     assert_eq!(verdict.critical.judged_from_m_s, 16.4);
-    let text = "Below 16.4 m/s the torsion mode lies at K above 0.97, where nothing was tested; by the model every motion \
-                loses energy at all higher K";
+    let text = "Below 16.4 m/s the torsion mode lies at K above 0.97, where nothing was tested; by fitted forces heave with \
+                rotation, and sway by itself, lose energy at all higher K";
     assert_eq!(verdict.doubts[0].text, text);
     assert_eq!(verdict.doubts[0].severity, Severity::Minor);
     assert!(verdict.explanation.contains(text));

@@ -1,10 +1,11 @@
 //! Least squares at one test point, and the standard errors of its solution.
 
 use super::result::{DerivativeEstimate, IdentifiedDerivatives};
-use super::test_points::{CROSS_TALK, DRIVEN_TOO, RunSamples, TestRun};
+use super::test_points::{CROSS_TALK, RunSamples, TestRun};
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Error, Result, ensure};
 use crate::identification::least_squares::{Factor, StreamingQr};
+use crate::identification::time::driven::DRIVEN_TOO;
 use crate::section::Dof;
 use crate::signal::mean;
 use nalgebra::{Complex, DMatrix, DVector};

@@ -24,8 +24,6 @@ const SAMPLES_AT_LEAST: f64 = 4.0;
 const SAMPLES_ENOUGH: f64 = 8.0;
 /// A motion below this part of the greatest is cross-talk.
 pub(super) const CROSS_TALK: f64 = 0.05;
-/// A motion above this part of the greatest is driven as well.
-pub(super) const DRIVEN_TOO: f64 = 0.2;
 
 /// One run at one test point, without dimensions.
 pub(super) struct TestRun {

@@ -156,6 +156,24 @@ fn rational_function_is_recovered_from_its_samples() {
         assert!(entry.relative_rms.unwrap() < 1e-6 && entry.worst_relative.unwrap() < 1e-6);
     }
     assert_eq!(report.tested_range.max.full_width(), 1.6);
+    // what one number lacks was not tested, and numbers that have no K in common cannot be judged together
+    let without = |lacking: &dyn Fn(f64) -> bool| {
+        let kept = |s: &&TransferSample| s.motion != Dof::Torsion || !lacking(s.k.full_width());
+        let kept: Vec<TransferSample> = samples.iter().filter(kept).copied().collect();
+        fit_table(&kept, &Dof::TWO, &rational(2, true)).map(|fit| fit.report.tested_range)
+    };
+    let range = without(&|k| k < 0.55).unwrap();
+    assert_eq!(range.min.full_width(), ks[5].full_width());
+    let apart = samples.iter().filter(|s| {
+        let low = s.k.full_width() < 0.75;
+        low == (s.motion == Dof::Torsion)
+    });
+    let apart: Vec<TransferSample> = apart.copied().collect();
+    let message = fit_table(&apart, &Dof::TWO, &rational(2, true)).unwrap_err();
+    assert!(
+        message.to_string().contains("all forces were tested"),
+        "{message}"
+    );
 }
 
 /// With a pole for each transfer function every entry is fitted at least as well as with a common one.

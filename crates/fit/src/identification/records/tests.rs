@@ -61,6 +61,10 @@ fn rational_function_is_recovered_from_its_records() {
         assert!((range.min.full_width() / k(0.25, 8.17) - 1.0).abs() < 1e-12);
         assert!((range.max.full_width() / k(2.5, 4.0) - 1.0).abs() < 1e-12);
     }
+    // a motion that is driven in one of the winds alone is not tested at the frequencies of the other
+    let fit = fit_records(&sources(&all[..3]), &jones_fit(TimeWeights::None), &quiet).unwrap();
+    let range = fit.report.tested_range;
+    assert!((range.max.full_width() / k(2.5, 8.17) - 1.0).abs() < 1e-12);
 }
 
 /// The sum of the records of the single motions, moving at once, carries the same coefficients.

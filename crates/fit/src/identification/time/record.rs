@@ -1,5 +1,6 @@
 //! A record without dimensions.
 
+use super::driven::{driven_bands, driven_motions};
 use super::signals::{SignalWriter, Signals};
 use crate::error::{Error, Result, ensure, positive};
 use crate::identification::basis::index_of;
@@ -8,9 +9,9 @@ use crate::identification::own::StaticTerm;
 use crate::identification::report::StaticReport;
 use crate::numbered::numbered;
 use crate::section::Dof;
-use crate::signal::{Fourier, mean, resampled};
+use crate::signal::resampled;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
+use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource};
 use std::f64::consts::TAU;
 
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
@@ -25,6 +26,8 @@ const GROWTH: f64 = 1.01;
 pub(crate) struct DimensionlessRecord {
     pub header: RecordHeader,
     pub signals: Signals,
+    /// Reduced frequencies at which each motion was driven: those of the segments, of other motions the band that holds its power.
+    pub driven: Vec<Vec<ReducedFrequencyRange>>,
     /// `V/B`, 1/s.
     pub rate: f64,
     /// Sampling step, s.
@@ -76,24 +79,34 @@ impl Records {
         })
     }
 
-    /// Range of all records together.
-    pub(crate) fn tested_range(&self) -> Result<ReducedFrequencyRange> {
-        let tested = self.each.iter().map(DimensionlessRecord::tested);
-        let tested = tested.collect::<Result<Vec<_>>>()?;
-        ReducedFrequencyRange::covering(tested.into_iter().flatten())
+    /// Reduced frequencies at which any motion was driven.
+    pub(crate) fn spanned_range(&self) -> Result<ReducedFrequencyRange> {
+        let all = self.each.iter().flat_map(|record| &record.driven);
+        ReducedFrequencyRange::covering(all.flatten().copied())
             .ok_or_else(|| Error::input("records", "a motion", "none that moves"))
+    }
+
+    /// Reduced frequencies at which every motion was driven.
+    pub(crate) fn tested_range(&self) -> Result<ReducedFrequencyRange> {
+        let of = |motion: usize| {
+            let driven = self.each.iter().flat_map(|record| &record.driven[motion]);
+            let driven = ReducedFrequencyRange::covering(driven.copied());
+            let name = self.dofs[motion].name();
+            driven.ok_or_else(|| Error::input("records", format!("a {name} motion"), "none"))
+        };
+        let all: Vec<_> = (0..self.dofs.len()).map(of).collect::<Result<_>>()?;
+        let common = all.into_iter().reduce(ReducedFrequencyRange::intersection);
+        common.map_or_else(|| self.spanned_range(), |range| range.not_empty())
     }
 
     /// Numbers of a transfer function that the tests determine: two for each frequency and speed at which one degree of freedom
     /// was moved; no end of them where records move a whole band.
     pub(crate) fn rows_of_tests(&self) -> usize {
-        // a record that cannot be read has no range: `tested_range` says why
-        let tested = self.each.iter().filter_map(|record| record.tested().ok());
-        let tested: Vec<_> = tested.flatten().collect();
-        if tested.iter().any(|range| range.min < range.max) {
+        let segments = self.each.iter().map(|record| record.header.segments.len());
+        if segments.clone().any(|count| count == 0) {
             return usize::MAX;
         }
-        2 * tested.len() / self.dofs.len().max(1)
+        2 * segments.sum::<usize>() / self.dofs.len().max(1)
     }
 
     /// The longest dimensionless step, to which the discrete model resamples all records.
@@ -165,36 +178,32 @@ impl DimensionlessRecord {
         })?;
         let signals = signals.finish()?;
         header.check_ends(signals.len())?;
+        let (rate, step_s) = (speed / width, 1.0 / header.sampling_hz);
+        let mut driven = vec![Vec::new(); dofs.len()];
         for segment in &header.segments {
             let middle = signals.range(header.middle(segment, signals.len()))?;
-            header.check_frequency(segment, &middle[..dofs.len()])?;
+            let motions = &middle[..dofs.len()];
+            header.check_frequency(segment, motions)?;
+            let k = ReducedFrequency::from_full_width(TAU * segment.frequency_hz / rate);
+            for motion in driven_motions(motions) {
+                driven[motion].push(ReducedFrequencyRange::between(k, k));
+            }
+        }
+        if header.segments.is_empty() {
+            driven = driven_bands(&signals, rate * step_s)?;
         }
         Ok(Self {
             header: header.clone(),
             signals,
-            rate: speed / width,
-            step_s: 1.0 / header.sampling_hz,
+            driven,
+            rate,
+            step_s,
         })
     }
 
     /// Sampling step in dimensionless time.
     pub(crate) fn delta_s(&self) -> f64 {
         self.rate * self.step_s
-    }
-
-    /// Reduced frequencies of the segments; for other motions the band that holds their power.
-    fn tested(&self) -> Result<Vec<ReducedFrequencyRange>> {
-        let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
-        if self.header.segments.is_empty() {
-            let whole = |(low, high)| ReducedFrequencyRange::between(k(low), k(high));
-            return Ok(band(&self.signals)?.map(whole).into_iter().collect());
-        }
-        let of_hertz = |f: f64| ReducedFrequency::from_full_width(TAU * f / self.rate);
-        let tone = |s: &Segment| of_hertz(s.frequency_hz);
-        let tones = self.header.segments.iter().map(tone);
-        Ok(tones
-            .map(|k| ReducedFrequencyRange::between(k, k))
-            .collect())
     }
 
     /// Subtracts the mean of each force over the record; returns the means, dimensionless.
@@ -282,67 +291,6 @@ impl Signals {
     }
 }
 
-/// Samples of a periodogram: 41 s at 200 Hz, a resolution of 0.05 Hz.
-const PERIODOGRAM: usize = 8192;
-/// Part of the power that is left out at either end of the band.
-const LEFT_OUT: f64 = 0.01;
-
-/// Lower and upper end of the band that holds the power of all motions together, radians per sample, from averaged periodograms
-/// (Welch 1967); `None` for motions that never move.
-fn band(signals: &Signals) -> Result<Option<(f64, f64)>> {
-    let power = power(signals)?;
-    let total: f64 = power.iter().sum();
-    if !(total > 0.0 && total.is_finite()) {
-        return Ok(None);
-    }
-    let mut sum = 0.0;
-    let cumulative: Vec<f64> = power
-        .iter()
-        .map(|p| {
-            sum += p / total;
-            sum
-        })
-        .collect();
-    let at = |part: f64| {
-        let bin = cumulative.iter().position(|c| *c >= part);
-        TAU * bin.unwrap_or(PERIODOGRAM / 2 - 1).max(1) as f64 / PERIODOGRAM as f64
-    };
-    Ok(Some((at(LEFT_OUT), at(1.0 - LEFT_OUT))))
-}
-
-/// Sum of the periodograms of blocks that overlap by half, without their mean, under a Hann window; the last block is
-/// what no whole one has held with its full weight, padded with zeros.
-fn power(signals: &Signals) -> Result<Vec<f64>> {
-    let transform = Fourier::new(PERIODOGRAM);
-    let mut power = vec![0.0; PERIODOGRAM / 2];
-    let mut take = |samples: &[f64]| {
-        let mean = mean(samples);
-        let step = TAU / samples.len().max(1) as f64;
-        let windowed = samples
-            .iter()
-            .enumerate()
-            .map(|(k, x)| (x - mean) * (0.5 - 0.5 * (step * k as f64).cos()));
-        for (power, z) in power.iter_mut().zip(transform.spectrum(windowed)) {
-            *power += z.norm_sqr();
-        }
-    };
-    let mut waiting = vec![Vec::new(); signals.dofs()];
-    signals.for_each_block(|block| {
-        for (waiting, motion) in waiting.iter_mut().zip(&block.channels) {
-            waiting.extend_from_slice(motion);
-        }
-        while waiting[0].len() >= PERIODOGRAM {
-            for waiting in &mut waiting {
-                take(&waiting[..PERIODOGRAM]);
-                waiting.drain(..PERIODOGRAM / 2);
-            }
-        }
-        Ok(())
-    })?;
-    waiting.iter().for_each(|waiting| take(waiting));
-    Ok(power)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -358,10 +306,6 @@ mod tests {
         signals(motion).still_samples().unwrap()
     }
 
-    fn band_of(motion: Vec<f64>) -> Option<(f64, f64)> {
-        band(&signals(vec![motion])).unwrap()
-    }
-
     /// Noise of 0.2 % in both channels and an offset; the sine starts at sample 300 and passes 1 % of its amplitude there.
     #[test]
     fn noise_and_offsets_are_still() {
@@ -371,21 +315,5 @@ mod tests {
         assert_eq!(still(vec![(0..2000).map(moving).collect(), idle]), 301);
         assert_eq!(still(vec![vec![0.5; 100]]), 100);
         assert_eq!(still(vec![vec![0.0, 1.0, -1.0]]), 1);
-    }
-
-    /// Two sines of equal size are the ends of the band, to the resolution of the window (two bins); a mean does not count.
-    #[test]
-    fn the_ends_are_where_the_power_is() {
-        let (low, high) = (TAU * 0.3 / 200.0, TAU * 2.5 / 200.0);
-        let bin = TAU / PERIODOGRAM as f64;
-        for (samples, resolution) in [(40_000, 2.0), (3_000, 6.0)] {
-            let sines =
-                (0..samples).map(|k| 7.0 + (low * k as f64).sin() + (high * k as f64).sin());
-            let (a, b) = band_of(sines.collect()).unwrap();
-            assert!((a - low).abs() < resolution * bin, "{a} {low}");
-            assert!((b - high).abs() < resolution * bin, "{b} {high}");
-        }
-        assert_eq!(band_of(vec![0.0; 20_000]), None);
-        assert_eq!(band_of(Vec::new()), None);
     }
 }

@@ -1,7 +1,10 @@
 //! The wind along the span in a bridge file.
 
-use crate::error::{Error, Result, finite, non_negative};
+use crate::error::{Error, Result, ensure, finite, non_negative};
 use serde::{Deserialize, Serialize};
+
+/// Factor of the wind at most: the top of a tower or a ridge has less, per cent are more.
+const MOST_WIND: f64 = 3.0;
 
 /// Wind along the span.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -44,6 +47,14 @@ impl WindBlock {
             let place = format!("wind.profile[{i}]");
             finite(format!("{place}.along_m"), point.along_m)?;
             non_negative(format!("{place}.factor"), point.factor)?;
+            ensure(
+                point.factor <= MOST_WIND,
+                format_args!("{place}.factor"),
+                format_args!(
+                    "at most {MOST_WIND} times the wind speed of the bridge (a factor, not per cent)"
+                ),
+                point.factor,
+            )?;
             if i > 0 && points[i - 1].along_m >= point.along_m {
                 let expected = format!("a place beyond {} m", points[i - 1].along_m);
                 return Err(Error::input(place, expected, point.along_m.to_string()));
