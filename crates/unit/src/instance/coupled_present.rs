@@ -5,7 +5,7 @@ use super::memory::Memory;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::flutter::smallest_damping;
+use crate::flutter::{aliased_below, smallest_damping};
 use crate::resources::Resources;
 use crate::response::Outputs;
 use crate::section::Dof;
@@ -14,12 +14,20 @@ use crate::variables::{ComputedNumber, Known, Present, Response, Role};
 /// Relative step of a difference over the wind speed.
 const WIND_STEP: f64 = 1e-5;
 
-/// Derivative of the smallest damping ratio with respect to the wind speed, per m/s.
-fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
-    let step = WIND_STEP * wind.max(1.0);
-    let low = (wind - step).max(0.0);
-    let rise = smallest_damping(section, wind + step)? - smallest_damping(section, low)?;
-    Ok(rise / (wind + step - low))
+/// Wind speed, m/s, from which on damping is told: a motion without a spring has no period in still air, which a sample could miss.
+fn told_from(section: &CoupledSection) -> f64 {
+    aliased_below(section).unwrap_or(0.0)
+}
+
+/// Derivative of the smallest damping ratio with respect to the wind speed, per m/s; `None` where that is not known.
+fn damping_slope(section: &CoupledSection, wind: f64) -> Option<f64> {
+    let (step, lowest) = (WIND_STEP * wind.max(1.0), told_from(section));
+    let low = (wind - step).max(lowest);
+    let damping = |at: f64| smallest_damping(section, at).ok();
+    let rise = || Some(damping(wind + step)? - damping(low)?);
+    (wind >= lowest)
+        .then(rise)?
+        .map(|rise| rise / (wind + step - low))
 }
 
 /// How the present changes with what is asked for.
@@ -113,7 +121,8 @@ impl<S: CoupledKind> Coupled<S> {
         present.onset.follow_limit(by.limit);
         if by.wind != 0.0 && number.reads(Known::Damping) {
             let wind = self.indices.wind_speed(memory);
-            present.damping_ratio.slope = by.wind * damping_slope(self.section(), wind)?;
+            let slope = damping_slope(self.section(), wind);
+            present.damping_ratio.slope = by.wind * slope.unwrap_or(0.0);
         }
         Ok(number.evaluate(&present).slope)
     }
@@ -149,7 +158,9 @@ impl<S: CoupledKind> Coupled<S> {
             present.onset = S::searched(self, resources, memory).numbers;
         }
         if read(Known::Damping) {
-            present.damping_ratio = smallest_damping(self.section(), wind)?.into();
+            let told = wind >= told_from(self.section());
+            let damping = smallest_damping(self.section(), wind).ok();
+            present.damping_ratio = damping.filter(|_| told).unwrap_or(0.0).into();
         }
         let value = |unknown: &Role| match unknown {
             // flags have no derivative

@@ -61,4 +61,20 @@ fn a_sampled_model_tells_no_damping_in_slow_wind() {
         notices.contains("damping_now is not known") && notices.contains("half a period"),
         "{notices}"
     );
+    // nor does it change, and the run goes on
+    for speed in [0.01, 0.0] {
+        unit.set_reals(&[wind], &[speed]).unwrap();
+        let mut slope = [f64::NAN];
+        unit.directional_derivative(&[damping], &[wind], &[1.0], &mut slope)
+            .unwrap();
+        assert_eq!(slope, [0.0]);
+    }
+    let mut fresh = instance(Kind::Section("discrete_laguerre"), false).unwrap();
+    fresh.enter_initialization();
+    fresh.set_reals(&[wind], &[0.0]).unwrap();
+    let (mass, mut slope) = (index(&fresh, "mass"), [f64::NAN]);
+    fresh
+        .directional_derivative(&[damping], &[mass], &[1.0], &mut slope)
+        .unwrap();
+    assert_eq!(slope, [0.0]);
 }
