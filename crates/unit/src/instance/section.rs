@@ -311,10 +311,11 @@ impl OnsetCard {
         }
     }
 
-    /// An onset that could not be searched for is zero.
+    /// An onset that could not be searched for is zero, and nothing is stable below it.
     pub(super) fn onset_unknown(&mut self, why: &Error) {
         self.numbers.speed_m_s = 0.0.into();
         self.say_unknown("flutter onset", why);
+        self.numbers.stable_below = false;
     }
 
     /// So is divergence.

@@ -1,7 +1,9 @@
 //! What is not known reads as nothing that is safe.
 
 use super::{Kind, bridge_of, fixture, index, instance};
+use crate::error::Error;
 use crate::instance::Instance;
+use crate::instance::section::OnsetCard;
 use crate::onset_bounds::OnsetBounds;
 use crate::resources::{OptionFiles, Resources};
 use crate::trained_model::{Model, TrainedModel};
@@ -29,6 +31,18 @@ fn an_onset_that_is_not_there_is_the_limit() {
     let speeds = read(&mut unit, ["onset_speed", "divergence_speed"]);
     assert_eq!(speeds, [2.0, 2.0]);
     assert!(!flag(&mut unit, "onset_found") && flag(&mut unit, "stable_below_onset"));
+}
+
+/// Nothing is stable below an onset that is not known, whatever has been judged before its search.
+#[test]
+fn an_onset_that_is_not_known_is_no_stable_one() {
+    let mut card = OnsetCard::nothing_found(1.0, Vec::new());
+    card.numbers.stable_below = true;
+    card.onset_unknown(&Error::Numerical("no search".into()));
+    card.judge(None);
+    assert_eq!(card.numbers.speed_m_s.value, 0.0);
+    assert!(!card.numbers.stable_below);
+    assert!(card.warnings[0].contains("onset is not known"));
 }
 
 /// What runs away without oscillating is growth below the onset, and is said.
