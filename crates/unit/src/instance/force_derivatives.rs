@@ -136,8 +136,13 @@ impl ForceUnit {
     /// One number of the motion is one.
     fn set_unit(&self, still: &mut Memory, index: usize) {
         still.values[self.inputs[index]] = 1.0;
-        if (index - 1) % 3 == 1 {
-            still.system.values[index] = SET;
+        let order = (index - 1) % 3;
+        // what has been set has its strip go on no longer
+        for set in [index - order]
+            .into_iter()
+            .chain((order == 1).then_some(index))
+        {
+            still.system.values[set] = SET;
         }
     }
 }

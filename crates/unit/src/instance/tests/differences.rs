@@ -1,6 +1,6 @@
 //! Derivatives while initialising are what differences of the values say, with gusts among the inputs.
 
-use super::{Kind, driven};
+use super::{Kind, driven, start};
 use crate::instance::Instance;
 use crate::variables::{Causality, Initial, Role, StartValue, Variable};
 
@@ -73,6 +73,61 @@ fn derivatives_while_initialising_are_differences() {
                     table[*unknown as usize].name,
                     table[known as usize].name,
                     slope[0]
+                );
+            }
+        }
+    }
+}
+
+/// Motion that has not been set since the last step goes on; what sets it, and by how much, is the derivative.
+#[test]
+fn derivatives_of_forces_after_a_step_are_differences() {
+    for kind in [
+        Kind::Forces("rational"),
+        Kind::Forces("discrete_laguerre"),
+        Kind::Patched,
+    ] {
+        let mut unit = driven(kind, false);
+        start(&mut unit);
+        let table = unit.table().variables().to_vec();
+        let of = |wanted: fn(&Role) -> bool| -> Vec<u32> {
+            let all = (0..).zip(&table);
+            all.filter(|(_, v)| wanted(&v.role))
+                .map(|(i, _)| i)
+                .collect()
+        };
+        let motions = of(|role| matches!(role, Role::Motion(..)));
+        let forces = of(|role| matches!(role, Role::Force(..)));
+        for step in 0..4 {
+            let motion = |i: &u32| 1e-3 * f64::from(*i + 3 * step).sin();
+            let now: Vec<f64> = motions.iter().map(motion).collect();
+            unit.set_reals(&motions, &now).unwrap();
+            unit.do_step(0.01 * f64::from(step), 0.01).unwrap();
+        }
+        let stepped = unit.snapshot();
+        for known in motions {
+            let mut at = |change: f64| {
+                unit.restore(&stepped).unwrap();
+                let value = all(&mut unit, &[known])[0];
+                unit.set_reals(&[known], &[value + change]).unwrap();
+                all(&mut unit, &forces)
+            };
+            let (above, below) = (at(1e-3), at(-1e-3));
+            unit.restore(&stepped).unwrap();
+            let slope = |force: &u32| {
+                let mut slope = [f64::NAN];
+                unit.directional_derivative(&[*force], &[known], &[1.0], &mut slope)
+                    .unwrap();
+                slope[0]
+            };
+            let slopes: Vec<f64> = forces.iter().map(slope).collect();
+            for ((slope, a), b) in slopes.iter().zip(&above).zip(&below) {
+                let difference = (a - b) / 2e-3;
+                let size = slopes.iter().fold(1.0, |m: f64, s| m.max(s.abs()));
+                assert!(
+                    (slope - difference).abs() <= 1e-9 * size,
+                    "{kind:?}, {}: {slope}, {difference}",
+                    table[known as usize].name
                 );
             }
         }
