@@ -13,9 +13,12 @@ exported! {
         component.instance.enter(State::EventMode);
         Ok(())
     };
-    /// Looks for changes at an event: there are none.
-    fmi2NewDiscreteStates(eventInfo: *mut fmi2EventInfo) Call::NewDiscreteStates => |_| {
-        *target(eventInfo, "eventInfo")? = fmi2EventInfo::default();
+    /// Looks for changes at an event: states in units of a parameter that has been set.
+    fmi2NewDiscreteStates(eventInfo: *mut fmi2EventInfo) Call::NewDiscreteStates => |component| {
+        *target(eventInfo, "eventInfo")? = fmi2EventInfo {
+            valuesOfContinuousStatesChanged: component.instance.has_set_states().into(),
+            ..fmi2EventInfo::default()
+        };
         Ok(())
     };
     /// Begins the integration.

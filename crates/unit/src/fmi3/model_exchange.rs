@@ -13,21 +13,22 @@ as_in_fmi2! {
 }
 
 exported! {
-    /// Looks for changes at an event: there are none.
+    /// Looks for changes at an event: states in units of a parameter that has been set.
     fmi3UpdateDiscreteStates(
         discreteStatesNeedUpdate: *mut bool, terminateSimulation: *mut bool,
         nominalsOfContinuousStatesChanged: *mut bool, valuesOfContinuousStatesChanged: *mut bool,
         nextEventTimeDefined: *mut bool, nextEventTime: *mut f64
-    ) Call::NewDiscreteStates => |_| {
-        for flag in [
-            discreteStatesNeedUpdate,
-            terminateSimulation,
-            nominalsOfContinuousStatesChanged,
-            valuesOfContinuousStatesChanged,
-            nextEventTimeDefined,
+    ) Call::NewDiscreteStates => |component| {
+        let states_set = component.instance.has_set_states();
+        for (flag, value) in [
+            (discreteStatesNeedUpdate, false),
+            (terminateSimulation, false),
+            (nominalsOfContinuousStatesChanged, false),
+            (valuesOfContinuousStatesChanged, states_set),
+            (nextEventTimeDefined, false),
         ] {
             // what the importer has there need not be a truth value yet
-            *target(flag.cast::<u8>(), "flags")? = 0;
+            *target(flag.cast::<u8>(), "flags")? = value.into();
         }
         *target(nextEventTime, "nextEventTime")? = 0.0;
         Ok(())

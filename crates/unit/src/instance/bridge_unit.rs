@@ -32,6 +32,8 @@ pub(super) struct ModalBridge {
     slow_wind: Option<&'static str>,
     /// Root of the generalised mass of each mode.
     roots: Vec<f64>,
+    /// Indices of the masses of dampers.
+    masses: Vec<usize>,
     /// Onset of the bridge as it was exported, until something follows from it.
     start: Option<OnsetStart>,
     /// From which the onset of other parameters is followed.
@@ -53,12 +55,16 @@ impl BridgeUnit {
                 Role::NodeMotion(..) | Role::Mode(..) | Role::Damper(..)
             )
         });
-        let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
+        let roots = options.modes.iter().map(|m| m.generalised_mass.sqrt());
+        let masses = (0..).zip(table.variables()).filter(
+            |(_, v)| matches!(v.role, Role::DamperParameter(_) if v.quantity == Some("Mass")),
+        );
         let bridge = options.bridge()?;
         let tested = options.tested_range;
         let own = ModalBridge {
             responses: responses.map(|(index, v)| (index, v.role)).collect(),
-            roots: masses.collect(),
+            roots: roots.collect(),
+            masses: masses.map(|(index, _)| index).collect(),
             tested,
             slow_wind: tested.and_then(|tested| slow_wind(&bridge, tested)),
             // without a start the first onset is searched for
@@ -159,6 +165,20 @@ impl CoupledKind for ModalBridge {
 
     fn load_inputs(unit: &mut BridgeUnit, memory: &Memory) {
         unit.inputs_stay = false;
+    /// The mass of a damper counts by its root.
+    fn keep_motion(unit: &BridgeUnit, memory: &mut Memory, index: usize, before: f64) -> bool {
+        let Some(d) = unit.own.masses.iter().position(|mass| *mass == index) else {
+            return false;
+        };
+        let coordinate = unit.own.roots.len() + d;
+        let rate = unit.section().structure().dofs.len() + coordinate;
+        let factor = (memory.values[index] / before).sqrt();
+        for entry in [coordinate, rate] {
+            memory.system.values[entry] *= factor;
+        }
+        true
+    }
+
         unit.load_without_turbulence(memory);
         if let Some(index) = unit.indices.turbulence_factor {
             let (factor, own) = (memory.values[index], &unit.built.own);

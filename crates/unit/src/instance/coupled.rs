@@ -53,6 +53,12 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Parameters or the limit of the search have changed.
     fn parameters_changed(&mut self) {}
 
+    /// The parameter at `index` was `before`: the motion stays where it is one of the units in which the state counts it; returns whether it
+    /// is.
+    fn keep_motion(_: &Coupled<Self>, _: &mut Memory, _index: usize, _before: f64) -> bool {
+        false
+    }
+
     /// Nothing has been said yet.
     fn forget_warnings(&mut self) {}
 
@@ -132,7 +138,13 @@ pub(super) struct Coupled<S: CoupledKind> {
     stale: bool,
     /// While initialising: the state has to be made anew from the values at release.
     release_pending: bool,
-    /// Whether it has been said since the initialisation that the rotation is beyond linear theory.
+    /// Whether [`CoupledKind::keep_motion`] has changed the state.
+    states_set: bool,
+    /// Whether the wind was in the tested range after the last step.
+    pub wind_was_tested: bool,
+    /// Whether it has been said since the initialisation that it no longer is: a gust may cross a limit at every step.
+    pub wind_left: bool,
+    /// The same of the rotation, which is beyond linear theory.
     rotation_left: bool,
     pub calculated: CalculatedNumbers,
     pub inputs: Inputs,
@@ -159,15 +171,20 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         memory: &mut Memory,
         index: usize,
         source: Source,
-        changed: bool,
+        before: Option<f64>,
     ) -> bool {
         match source {
             Source::Input => {
                 self.inputs_stay &= !changed;
                 let initializing = memory.state == State::Initialization;
                 self.release_pending |= initializing && self.indices.gusts().contains(&index);
+        let changed = before.is_some();
             }
-            Source::Section if changed => self.parameters_changed(),
+            Source::Section if changed => {
+                self.parameters_changed();
+                let before = before.unwrap_or_default();
+                self.states_set |= S::keep_motion(self, memory, index, before);
+            }
             Source::Release if changed => self.release_pending = true,
             Source::Limit if changed => {
                 self.calculated.forget();
@@ -183,6 +200,10 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         self.rotation_left = false;
         self.release_pending = true;
     }
+    fn has_set_states(&mut self) -> bool {
+        std::mem::take(&mut self.states_set)
+    }
+
 
     fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
         self.inputs_stay = false;
@@ -302,6 +323,9 @@ impl<S: CoupledKind> Coupled<S> {
             outputs: Outputs::default(),
         })
     }
+            states_set: false,
+            wind_was_tested: false,
+            wind_left: false,
 
     /// Parameters have changed: all that follows from them.
     pub(super) fn parameters_changed(&mut self) {

@@ -265,7 +265,14 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn value_set(&mut self, memory: &mut Memory, index: usize, _: Source, changed: bool) -> bool {
+    fn value_set(
+        &mut self,
+        memory: &mut Memory,
+        index: usize,
+        _: Source,
+        before: Option<f64>,
+    ) -> bool {
+        let changed = before.is_some();
         self.steady_flow_pending |= changed;
         let input = self.input_at[index];
         if input > 0 && self.integrated {

@@ -1,4 +1,5 @@
-//! Model exchange: the importer integrates, `ż = f(t, z, inputs)`. Nothing happens at events but what the importer sets there.
+//! Model exchange: the importer integrates, `ż = f(t, z, inputs)`. Nothing happens at events but what the importer sets
+//! there.
 
 use super::Instance;
 use crate::lifecycle::{Interface, State};
@@ -35,6 +36,11 @@ impl Instance {
     /// Moves between events and integration.
     pub fn enter(&mut self, mode: State) {
         self.memory.state = mode;
+    }
+
+    /// Whether states have been set at an event since this was asked last: those of a parameter that counts them in other units.
+    pub(crate) fn has_set_states(&mut self) -> bool {
+        self.unit.has_set_states()
     }
 
     /// Sets the time, s.

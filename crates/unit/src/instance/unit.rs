@@ -19,15 +19,20 @@ pub(super) trait Unit: Debug + Send {
     /// The state of a new instance.
     fn at_rest(&self) -> SectionState;
 
-    /// The stored value at `index`, of this kind, has been set, whether it changed or not; returns whether outputs change all the
-    /// same where it has not.
+    /// The stored value at `index`, of this kind, has been set, and was `before` where it has changed; returns whether outputs change
+    /// all the same where it has not.
     fn value_set(
         &mut self,
         memory: &mut Memory,
         index: usize,
         source: Source,
-        changed: bool,
+        before: Option<f64>,
     ) -> bool;
+
+    /// Whether states have been set by the unit itself since this was asked last.
+    fn has_set_states(&mut self) -> bool {
+        false
+    }
 
     /// The importer will integrate it.
     fn will_be_integrated(&mut self) {}

@@ -138,7 +138,8 @@ impl Instance {
             let before = std::mem::replace(&mut self.memory.values[index], value);
             let changed = before.to_bits() != value.to_bits();
             let (source, memory) = (self.layout.access[index].source, &mut self.memory);
-            if self.unit.value_set(memory, index, source, changed) || changed {
+            let before = changed.then_some(before);
+            if self.unit.value_set(memory, index, source, before) || changed {
                 self.outputs_current = false;
             }
         }

@@ -159,3 +159,43 @@ fn the_onset_of_a_bridge_is_that_of_the_parameters() {
         assert!((found / expected - 1.0).abs() < 1e-8, "{found}, {expected}");
     }
 }
+
+/// The state counts a damper by the root of its mass; where it is, and how fast, is not changed by tuning that.
+#[test]
+fn a_damper_stays_where_it_is_when_its_mass_changes() {
+    for integrated in [false, true] {
+        let mut unit = instance(Kind::Damped, integrated).unwrap();
+        start(&mut unit);
+        if integrated {
+            let states: Vec<f64> = (0..unit.state_count()).map(|i| 1e-3 * i as f64).collect();
+            unit.set_continuous_states(&states).unwrap();
+        } else {
+            unit.do_step(0.0, 0.4).unwrap();
+        }
+        let motion = ["damper[1].stroke", "damper[1].stroke_rate"].map(|name| index(&unit, name));
+        let at = |unit: &mut Instance| motion.map(|reference| read(unit, reference));
+        let (before, kept) = (at(&mut unit), unit.snapshot());
+        let mass = index(&unit, "damper[1].mass");
+        let now = read(&mut unit, mass);
+        assert!(before.iter().all(|x| x.abs() > 1e-6) && !unit.has_set_states());
+        // twice without a look between, after a restored state and back
+        for factors in [&[2.0][..], &[0.3, 5.0], &[1.0]] {
+            for factor in factors {
+                unit.set_reals(&[mass], &[factor * now]).unwrap();
+            }
+            for (found, expected) in at(&mut unit).iter().zip(before) {
+                let off = (found / expected - 1.0).abs();
+                assert!(off < 1e-12, "{factors:?}: {found}, {expected}");
+            }
+            assert!(unit.has_set_states() && !unit.has_set_states());
+        }
+        unit.set_reals(&[mass], &[3.0 * now]).unwrap();
+        unit.restore(&kept).unwrap();
+        assert_eq!(at(&mut unit), before);
+    }
+    let mut released = instance(Kind::Damped, false).unwrap();
+    released.enter_initialization();
+    let [mass, stroke] = ["damper[1].mass", "damper[1].stroke"].map(|name| index(&released, name));
+    released.set_reals(&[mass], &[7.0]).unwrap();
+    assert!(read(&mut released, stroke).abs() < 1e-18);
+}
