@@ -2,12 +2,38 @@
 
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Result, finite, positive};
-use crate::flutter::Onset;
-use crate::flutter::smallest_damping;
+use crate::flutter::{FlutterSearch, Onset, OnsetSearch, find_onset, smallest_damping};
+use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
 /// Speeds below the onset, as parts of it, at which the damping of all modes is compared with that of the search.
 pub(super) const COMPARED_AT: [f64; 2] = [0.6, 0.85];
+
+/// The onset of what is simulated: that of [`find_onset`] in the `tested` range. A section that grows already where it enters that
+/// range does so from where the model itself says, tested or not.
+///
+/// # Errors
+/// As [`find_onset`].
+pub fn simulated_onset(
+    model: &str,
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<FlutterSearch> {
+    let found = find_onset(model, section, search, tested)?;
+    let FlutterSearch::UnstableAtOrBelow(start) = &found else {
+        return Ok(found);
+    };
+    let mut own = find_onset(model, section, search, None)?;
+    if let FlutterSearch::Onset(onset) = &mut own {
+        onset.in_tested_range = Some(false);
+        onset.warnings.push(format!(
+            "the onset of this model lies outside the tested range: {}",
+            start.explain()
+        ));
+    }
+    Ok(own)
+}
 
 /// A point next to the onset from which its search can start: wind speed, frequency, and the damping of all modes below it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -5,11 +5,11 @@ use super::answers::coupled;
 use crate::aerodynamics::RationalAdmittance;
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
-use crate::flutter::{BridgeMotion, FlutterSearch, divergence_with_forces, find_onset};
+use crate::flutter::{BridgeMotion, FlutterSearch, divergence_with_forces};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::onset_start::OnsetStart;
+use crate::fmu::onset_start::{OnsetStart, simulated_onset};
 use crate::fmu::package::BridgeExport;
 use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
@@ -37,6 +37,21 @@ pub struct BridgeExportOptions {
     pub turbulence: Option<FieldTable>,
 }
 
+/// Refuses a bridge that grows below its onset, tested there or not.
+fn check_growth(found: &FlutterSearch) -> Result<()> {
+    let below = found.onset().map(|o| o.spurious_speeds_m_s.as_slice());
+    let why = match (found, below) {
+        (_, Some([speed, ..])) => format!(
+            "grows at {speed:.3} m/s, where nothing was tested, below its {}",
+            found.explain()
+        ),
+        (FlutterSearch::UnstableAtOrBelow(_), _) => format!("is {}", found.explain()),
+        _ => return Ok(()),
+    };
+    let text = format!("the bridge is not exported: it {why}");
+    Err(Error::Unstable(text))
+}
+
 impl BridgeStudy {
     /// What goes into an FMU.
     ///
@@ -47,14 +62,11 @@ impl BridgeStudy {
         let named = self.named(&wanted.nodes)?;
         let gusts = self.gusts(wanted)?;
         let search = self.search();
-        // as the unit itself judges: whatever grows counts, tested or not
+        // as the unit itself judges
         let section = coupled(&self.by_model)?;
-        let found = find_onset("bridge", &section, &search, None)?;
-        if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, wanted.allow_unstable) {
-            return Err(Error::Unstable(format!(
-                "the bridge is not exported: it {}",
-                found.explain()
-            )));
+        let found = simulated_onset("bridge", &section, &search, self.tested_range())?;
+        if !wanted.allow_unstable {
+            check_growth(&found)?;
         }
         let bridge = &self.by_model;
         let divergence = divergence_with_forces(&bridge.structure(), &bridge.forces())?;

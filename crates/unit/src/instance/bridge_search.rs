@@ -6,8 +6,9 @@ use super::section::OnsetCard;
 use crate::bridge::Bridge;
 use crate::flutter::{
     FastMotion, FlutterSearch, FoundOnset, OnsetSearch, bridge_damps_fast_motion,
-    divergence_with_forces, find_onset,
+    divergence_with_forces,
 };
+use crate::onset_start::simulated_onset;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
 use crate::verdict::why_slow_wind_is_open;
 
@@ -35,26 +36,29 @@ impl OnsetCard {
         card
     }
 
-    /// With an onset up to `limit`, m/s, that was followed from one nearby.
+    /// With an onset up to `limit`, m/s, that was followed from one nearby; `None` outside the tested range, where a search has more
+    /// to say.
     pub(super) fn of_followed(
         built: &BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
         slow_wind: Option<&str>,
         limit: f64,
         onset: &FoundOnset,
-    ) -> Self {
-        let mut card = Self::with_divergence(built, limit);
+    ) -> Option<Self> {
         let (speed, hertz) = (onset.speed_m_s, onset.frequency_hz);
         let k = ReducedFrequency::from_hertz(hertz, built.own.bridge.width_m(), speed);
-        let inside = tested.is_some_and(|range| range.contains(k));
-        card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
+        if tested.is_some_and(|range| !range.contains(k)) {
+            return None;
+        }
+        let mut card = Self::with_divergence(built, limit);
+        card.set_onset(speed, hertz, ReducedVelocity::from(k), tested.is_some());
         card.numbers.stable_below = true;
         card.judge(slow_wind);
-        card
+        Some(card)
     }
 
-    /// Searches a bridge up to `limit`, m/s, as [`OnsetCard::search`] a section. The tested range is that of the girder at the
-    /// frequency of flutter. Beside it the onset from which others may be followed.
+    /// Searches a bridge up to `limit`, m/s, as [`OnsetCard::search`] a section. The tested range is that of the girder, in reduced
+    /// frequencies of the bridge. Beside it the onset from which others may be followed.
     pub(super) fn of_bridge(
         built: &BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
@@ -67,17 +71,14 @@ impl OnsetCard {
             speed_max_m_s: limit,
             speeds: SPEEDS,
         };
-        match find_onset("bridge", built.stepper.section(), &search, None) {
+        match simulated_onset("bridge", built.stepper.section(), &search, tested) {
             Ok(found) => {
-                let stable = !matches!(found, FlutterSearch::UnstableAtOrBelow(_));
-                let k = found.onset().map(|o| o.at.reduced_frequency);
-                let inside = k.zip(tested).is_some_and(|(k, range)| range.contains(k));
-                searched = found
-                    .onset()
-                    .and_then(|o| SearchedOnset::from_onset(built, o));
-                card.numbers.stable_below = stable;
+                let onset = found.onset();
+                searched = onset.and_then(|o| SearchedOnset::from_onset(built, o));
+                let grows = onset.is_some_and(|o| !o.spurious_speeds_m_s.is_empty())
+                    || matches!(found, FlutterSearch::UnstableAtOrBelow(_));
+                card.numbers.stable_below = !grows;
                 card.take(found, limit);
-                card.numbers.in_tested_range = inside;
             }
             Err(why) => card.onset_unknown(&why),
         }

@@ -155,6 +155,8 @@ fn product(matrix: &DMatrix<f64>, row: usize, numbers: &[f64]) -> f64 {
 impl CoupledKind for ModalBridge {
     type Own = TunedBridge;
 
+    const TESTED_AT: &'static str = "this bridge was tested at the frequency of its onset";
+
     fn build(&self, resources: &Resources, values: &[f64]) -> Result<BuiltBridge> {
         BuiltBridge::new(resources, values)
     }
@@ -163,8 +165,6 @@ impl CoupledKind for ModalBridge {
         unit.take_start();
     }
 
-    fn load_inputs(unit: &mut BridgeUnit, memory: &Memory) {
-        unit.inputs_stay = false;
     /// The mass of a damper counts by its root.
     fn keep_motion(unit: &BridgeUnit, memory: &mut Memory, index: usize, before: f64) -> bool {
         let Some(d) = unit.own.masses.iter().position(|mass| *mass == index) else {
@@ -179,6 +179,8 @@ impl CoupledKind for ModalBridge {
         true
     }
 
+    fn load_inputs(unit: &mut BridgeUnit, memory: &Memory) {
+        unit.inputs_stay = false;
         unit.load_without_turbulence(memory);
         if let Some(index) = unit.indices.turbulence_factor {
             let (factor, own) = (memory.values[index], &unit.built.own);
@@ -229,7 +231,17 @@ impl CoupledKind for ModalBridge {
         unit.at_row(unit.most_turned(modes), modes)
     }
 
-    /// At the frequency of flutter: the modes of a bridge have too many of their own.
+    /// At the frequency of flutter, as far as it is known: the modes of a bridge have too many of their own.
+    #[inline]
+    fn tested_winds(unit: &BridgeUnit) -> Option<[f64; 2]> {
+        let onset = unit.calculated.onset();
+        let start = unit.own.start.map(|start| start.frequency_hz);
+        let hertz = start.or(onset.found.then_some(onset.frequency_hz.value))?;
+        let (range, width) = (unit.own.tested?, unit.built.own.bridge.width_m());
+        let at_one = ReducedFrequency::from_hertz(hertz, width, 1.0).full_width();
+        Some([range.max, range.min].map(|k| at_one / k.full_width()))
+    }
+
     fn wind_is_tested(
         unit: &mut BridgeUnit,
         resources: &Resources,
@@ -255,15 +267,15 @@ impl CoupledKind for ModalBridge {
         let limit = unit.indices.limit(memory);
         let (own, built) = (&mut unit.own, &mut unit.built);
         let known = own.searched.as_ref();
-        match known.and_then(|known| known.followed(built, limit)) {
-            Some(onset) => OnsetCard::of_followed(built, own.tested, own.slow_wind, limit, &onset),
-            None => {
-                let (card, searched) =
-                    OnsetCard::of_bridge(built, own.tested, own.slow_wind, limit);
-                own.searched = searched;
-                card
-            }
-        }
+        let onset = known.and_then(|known| known.followed(built, limit));
+        let (tested, slow_wind) = (own.tested, own.slow_wind);
+        let card =
+            onset.and_then(|onset| OnsetCard::of_followed(built, tested, slow_wind, limit, &onset));
+        card.unwrap_or_else(|| {
+            let (card, searched) = OnsetCard::of_bridge(built, tested, slow_wind, limit);
+            own.searched = searched;
+            card
+        })
     }
 
     fn advance_in_turbulence(

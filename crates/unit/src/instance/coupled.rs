@@ -41,6 +41,9 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// What it has in [`Built`].
     type Own: Debug + Send;
 
+    /// Of what its [tested winds](Self::tested_winds) are those, in words.
+    const TESTED_AT: &'static str;
+
     /// What follows from the parameters in `values`.
     ///
     /// # Errors
@@ -50,17 +53,14 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// The parameters have changed, and what was built is replaced.
     fn replaces(_unit: &mut Coupled<Self>) {}
 
-    /// Parameters or the limit of the search have changed.
-    fn parameters_changed(&mut self) {}
-
     /// The parameter at `index` was `before`: the motion stays where it is one of the units in which the state counts it; returns whether it
     /// is.
     fn keep_motion(_: &Coupled<Self>, _: &mut Memory, _index: usize, _before: f64) -> bool {
         false
     }
 
-    /// Nothing has been said yet.
-    fn forget_warnings(&mut self) {}
+    /// Parameters or the limit of the search have changed.
+    fn parameters_changed(&mut self) {}
 
     /// Loads the inputs of a memory, not necessarily that of the unit.
     fn load_inputs(unit: &mut Coupled<Self>, memory: &Memory);
@@ -83,12 +83,17 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Greatest rotation, rad.
     fn rotation(unit: &Coupled<Self>, memory: &Memory) -> f64;
 
+    /// Wind speeds at which it was tested, m/s, without a search; `None` where there are none, or they are not known.
+    fn tested_winds(unit: &Coupled<Self>) -> Option<[f64; 2]>;
+
     fn wind_is_tested(
         unit: &mut Coupled<Self>,
-        resources: &Resources,
+        _resources: &Resources,
         memory: &mut Memory,
-        notices: &mut Vec<String>,
-    ) -> bool;
+        _notices: &mut Vec<String>,
+    ) -> bool {
+        unit.in_tested_winds(memory)
+    }
 
     /// Onset and divergence for the parameters that it has been built with, by a search.
     fn searched(unit: &Coupled<Self>, resources: &Resources, memory: &Memory) -> OnsetCard;
@@ -98,7 +103,7 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
         Self::searched(unit, resources, memory)
     }
 
-    /// See [`Unit::watch`]; of the rotation it is said for both.
+    /// See [`Unit::watch`]; of wind and rotation it is said for both.
     fn watch(
         _unit: &mut Coupled<Self>,
         _resources: &Resources,
@@ -173,12 +178,12 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         source: Source,
         before: Option<f64>,
     ) -> bool {
+        let changed = before.is_some();
         match source {
             Source::Input => {
                 self.inputs_stay &= !changed;
                 let initializing = memory.state == State::Initialization;
                 self.release_pending |= initializing && self.indices.gusts().contains(&index);
-        let changed = before.is_some();
             }
             Source::Section if changed => {
                 self.parameters_changed();
@@ -195,15 +200,14 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         false
     }
 
-    fn begin_initialization(&mut self) {
-        self.own.forget_warnings();
-        self.rotation_left = false;
-        self.release_pending = true;
-    }
     fn has_set_states(&mut self) -> bool {
         std::mem::take(&mut self.states_set)
     }
 
+    fn begin_initialization(&mut self) {
+        (self.wind_was_tested, self.wind_left, self.rotation_left) = (false, false, false);
+        self.release_pending = true;
+    }
 
     fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
         self.inputs_stay = false;
@@ -242,6 +246,9 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     }
 
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+        if self.in_tested_winds(memory) != self.wind_was_tested {
+            self.watch_wind(memory, notices);
+        }
         S::watch(self, resources, memory, notices);
         let rotation = S::rotation(self, memory);
         if rotation.abs() > LINEAR_ROTATION_RAD && !self.rotation_left {
@@ -316,6 +323,9 @@ impl<S: CoupledKind> Coupled<S> {
             built,
             stale: false,
             release_pending: true,
+            states_set: false,
+            wind_was_tested: false,
+            wind_left: false,
             rotation_left: false,
             calculated: CalculatedNumbers::new(table),
             inputs: Inputs::steady(0.0, coordinates),
@@ -323,9 +333,6 @@ impl<S: CoupledKind> Coupled<S> {
             outputs: Outputs::default(),
         })
     }
-            states_set: false,
-            wind_was_tested: false,
-            wind_left: false,
 
     /// Parameters have changed: all that follows from them.
     pub(super) fn parameters_changed(&mut self) {

@@ -5,9 +5,10 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FastMotion, FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
-    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, find_onset,
-    stands_at_samples, unwanted_growth,
+    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, stands_at_samples,
+    unwanted_growth,
 };
+use crate::onset_start::simulated_onset;
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -314,8 +315,8 @@ impl OnsetCard {
     /// An onset that could not be searched for is zero, and nothing is stable below it.
     pub(super) fn onset_unknown(&mut self, why: &Error) {
         self.numbers.speed_m_s = 0.0.into();
-        self.say_unknown("flutter onset", why);
         self.numbers.stable_below = false;
+        self.say_unknown("flutter onset", why);
     }
 
     /// So is divergence.
@@ -350,20 +351,10 @@ fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Resul
         speed_max_m_s: limit,
         ..OnsetSearch::default()
     };
-    let tested = Some(model.tested_range);
-    let name = model.model.kind();
-    let found = find_onset(name, section, &search, tested)?;
-    let FlutterSearch::UnstableAtOrBelow(start) = &found else {
-        return Ok(found);
-    };
-    // what is simulated grows from where the model itself says, tested or not
-    let mut own = find_onset(name, section, &search, None)?;
-    if let FlutterSearch::Onset(onset) = &mut own {
-        onset.in_tested_range = Some(false);
-        onset.warnings.push(format!(
-            "the onset of this model lies outside the tested range: {}",
-            start.explain()
-        ));
-    }
-    Ok(own)
+    simulated_onset(
+        model.model.kind(),
+        section,
+        &search,
+        Some(model.tested_range),
+    )
 }

@@ -34,10 +34,6 @@ pub(super) struct SuspendedSection {
     growth_known: bool,
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
-    /// Whether the wind was in the tested range after the last step.
-    wind_was_tested: bool,
-    /// Whether it has been said since the initialisation that it no longer is: a gust may cross a limit at every step.
-    wind_left: bool,
 }
 
 pub(super) type SectionUnit = Coupled<SuspendedSection>;
@@ -55,38 +51,12 @@ impl SectionUnit {
             slow_wind: section::slow_wind(&resources.model),
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
-            wind_was_tested: false,
-            wind_left: false,
         };
         let mut unit = Self::new(own, resources)?;
         let gusts = unit.indices.gusts().len();
         unit.inputs.gust_m_s = vec![0.0; gusts];
         unit.inputs.gust_rate_m_s2 = vec![0.0; gusts];
         Ok(unit)
-    }
-
-    #[inline]
-    fn in_tested_winds(&self, memory: &Memory) -> bool {
-        let wind = self.indices.wind_speed(memory);
-        self.built
-            .own
-            .is_some_and(|[low, high]| (low..=high).contains(&wind))
-    }
-
-    /// Says, once, when the wind leaves the tested range.
-    #[cold]
-    fn watch_wind(&mut self, memory: &Memory, notices: &mut Vec<String>) {
-        let inside = self.in_tested_winds(memory);
-        let leaves = self.own.wind_was_tested && !inside && !self.own.wind_left;
-        if let Some([low, high]) = self.built.own.filter(|_| leaves) {
-            self.own.wind_left = true;
-            let wind = self.indices.wind_speed(memory);
-            notices.push(format!(
-                "wind_speed = {wind} m/s leaves the speeds at which this section was tested, {low:.3} to {high:.3} m/s \
-                 at its frequencies in still air: the forces are extrapolated"
-            ));
-        }
-        self.own.wind_was_tested = inside;
     }
 
     /// Growth below the onset for the parameters in `values`.
@@ -137,6 +107,8 @@ impl CoupledKind for SuspendedSection {
     /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
     type Own = Option<[f64; 2]>;
 
+    const TESTED_AT: &'static str = "this section was tested at its frequencies in still air";
+
     fn build(&self, resources: &Resources, values: &[f64]) -> Result<Built<Self::Own>> {
         let (_, coupled) = self.coupled(resources, values)?;
         let stepper = Stepper::in_gusts(coupled, resources.gusts.as_ref());
@@ -149,10 +121,6 @@ impl CoupledKind for SuspendedSection {
 
     fn parameters_changed(&mut self) {
         self.growth_known = false;
-    }
-
-    fn forget_warnings(&mut self) {
-        (self.wind_was_tested, self.wind_left) = (false, false);
     }
 
     fn load_inputs(unit: &mut SectionUnit, memory: &Memory) {
@@ -199,13 +167,9 @@ impl CoupledKind for SuspendedSection {
         memory.system.values[unit.own.responses.len() - 1]
     }
 
-    fn wind_is_tested(
-        unit: &mut SectionUnit,
-        _: &Resources,
-        memory: &mut Memory,
-        _: &mut Vec<String>,
-    ) -> bool {
-        unit.in_tested_winds(memory)
+    #[inline]
+    fn tested_winds(unit: &SectionUnit) -> Option<[f64; 2]> {
+        unit.built.own
     }
 
     fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
@@ -226,9 +190,6 @@ impl CoupledKind for SuspendedSection {
         memory: &Memory,
         notices: &mut Vec<String>,
     ) {
-        if unit.in_tested_winds(memory) != unit.own.wind_was_tested {
-            unit.watch_wind(memory, notices);
-        }
         if !unit.own.growth_known && unit.own.growth_searches_left > 0 {
             unit.watch_growth(resources, memory, notices);
         }

@@ -7,6 +7,7 @@ mod damping;
 mod differences;
 mod followed;
 pub(crate) mod several_models;
+mod tested;
 mod unknown;
 
 use super::Instance;
