@@ -53,6 +53,7 @@ use force_unit::ForceUnit;
 use layout::VariableLayout;
 use memory::{Memory, RunTimes};
 use section_unit::SectionUnit;
+use trust::shown;
 use unit::Unit;
 
 /// One instance; instances share nothing.
@@ -127,14 +128,13 @@ impl Instance {
     /// Whether `call` is legal now.
     ///
     /// # Errors
-    /// A [`Refusal`] naming call and state.
+    /// A [`Refusal`] naming the state.
     pub(crate) fn admit(&self, call: Call) -> CallResult<()> {
-        let (_, name, legal) = LEGAL_CALLS[call as usize];
-        let legal = legal[self.interface as usize];
+        let legal = LEGAL_CALLS[call as usize].1[self.interface as usize];
         if legal.contains(self.memory.state) {
             return Ok(());
         }
-        Err(not_legal(name, legal, self.memory.state))
+        Err(not_legal(legal, self.memory.state))
     }
 
     /// Takes note that a call was refused: an error ends the run.
@@ -150,7 +150,7 @@ impl Instance {
     /// Times that are not finite, or a stop before the start.
     pub fn set_up_experiment(&mut self, start: f64, stop: Option<f64>) -> CallResult<()> {
         if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
-            let stop = stop.map_or_else(|| "none".into(), |s| s.to_string());
+            let [start, stop] = [Some(start), stop].map(|s| s.map_or("none".into(), shown));
             return Err(Refusal::error(format!(
                 "expected a finite start time and a stop time not before it, found start {start}, stop {stop}"
             )));
@@ -208,14 +208,14 @@ impl Instance {
 }
 
 #[cold]
-fn not_legal(call: &str, legal: StateSet, state: State) -> Refusal {
+fn not_legal(legal: StateSet, state: State) -> Refusal {
     if legal == StateSet::NONE {
-        return Refusal::call(format!(
-            "{call} belongs to model exchange, and this instance was made for co-simulation"
-        ));
+        return Refusal::call(
+            "it belongs to model exchange, and this instance was made for co-simulation",
+        );
     }
     Refusal::error(format!(
-        "{call} is not legal in the state `{}`, only {}",
+        "not legal in the state `{}`, only {}",
         state.name(),
         legal.names()
     ))

@@ -155,8 +155,7 @@ impl StateSet {
     }
 }
 
-/// Declares the calls and, in the same order, their names without the prefix of the standard's version and where each is legal;
-/// those of model exchange alone last.
+/// Declares the calls and, in the same order, where each is legal; those of model exchange alone last.
 macro_rules! calls {
     (both: { $($name:ident: $legal:expr;)* } model_exchange: { $($integrated:ident: $there:expr;)* }) => {
         /// What an importer may ask of an instance.
@@ -166,11 +165,11 @@ macro_rules! calls {
             $($name,)* $($integrated,)*
         }
 
-        /// Every [`Call`] with its name and where it is legal, by [`Interface`].
-        pub(crate) const LEGAL_CALLS: [(Call, &str, [StateSet; 2]);
+        /// Every [`Call`] with where it is legal, by [`Interface`].
+        pub(crate) const LEGAL_CALLS: [(Call, [StateSet; 2]);
             [$(Call::$name,)* $(Call::$integrated),*].len()] = [
-            $((Call::$name, stringify!($name), [$legal, $legal]),)*
-            $((Call::$integrated, stringify!($integrated), [StateSet::NONE, $there]),)*
+            $((Call::$name, [$legal, $legal]),)*
+            $((Call::$integrated, [StateSet::NONE, $there]),)*
         ];
     };
 }
@@ -259,9 +258,8 @@ mod tests {
 
     #[test]
     fn the_table_stands_in_the_order_of_the_calls() {
-        for (i, (call, name, _)) in LEGAL_CALLS.into_iter().enumerate() {
+        for (i, (call, _)) in LEGAL_CALLS.into_iter().enumerate() {
             assert_eq!(call as usize, i);
-            assert_eq!(format!("{call:?}"), name);
         }
     }
 
@@ -274,7 +272,7 @@ mod tests {
         }
         assert_eq!(State::from_code(3), None);
         assert_eq!(
-            LEGAL_CALLS[Call::DoStep as usize].2[0].names(),
+            LEGAL_CALLS[Call::DoStep as usize].1[0].names(),
             "in: step complete".to_owned()
         );
     }

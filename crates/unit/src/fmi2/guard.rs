@@ -55,7 +55,7 @@ impl Component {
             RefusalEffect::Discard => (fmi2Status::fmi2Discard, Category::Discard),
             RefusalEffect::Call | RefusalEffect::Error => (fmi2Status::fmi2Error, Category::Error),
         };
-        let message = format!("{}{function}: {refusal}", self.logger.prefix());
+        let message = format!("{}: {refusal}", self.logger.function(function));
         self.logger.log(status, category, &message);
         status
     }
@@ -64,8 +64,8 @@ impl Component {
     fn poison(&mut self, function: &str, panic: &(dyn Any + Send)) -> fmi2Status {
         self.poisoned = true;
         let message = format!(
-            "{}{function}: internal error ({}); this instance cannot be used any more",
-            self.logger.prefix(),
+            "{}: internal error ({}); this instance cannot be used any more",
+            self.logger.function(function),
             panic_text(panic)
         );
         let status = fmi2Status::fmi2Error;
@@ -155,8 +155,8 @@ pub(crate) use exported;
 #[cold]
 fn poisoned(component: &Component, function: &str) -> fmi2Status {
     let message = format!(
-        "{}{function}: an earlier internal error has made this instance unusable; free it",
-        component.logger.prefix()
+        "{}: an earlier internal error has made this instance unusable; free it",
+        component.logger.function(function)
     );
     let status = fmi2Status::fmi2Error;
     component.logger.log(status, Category::Fatal, &message);
@@ -170,7 +170,7 @@ fn poisoned(component: &Component, function: &str) -> fmi2Status {
 pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &str) -> fmi2Status {
     // SAFETY: by the contract of this function
     if let Some(component) = unsafe { handle.cast::<Component>().as_ref() } {
-        let message = format!("{}{function}: {why}", component.logger.prefix());
+        let message = format!("{}: {why}", component.logger.function(function));
         component
             .logger
             .log(fmi2Status::fmi2Error, Category::Error, &message);

@@ -97,11 +97,15 @@ impl Logger {
         logger
     }
 
-    /// What the functions of the interface begin with.
-    pub(crate) fn prefix(&self) -> &'static str {
-        match self.callback {
-            Callback::Printf(_) => "fmi2",
-            Callback::Plain(_) => "fmi3",
+    /// A function of the interface, of which `name` is that of FMI 2.0 without prefix where there is one.
+    pub(crate) fn function(&self, name: &str) -> String {
+        match (self.callback, name) {
+            (Callback::Printf(_), _) => format!("fmi2{name}"),
+            (Callback::Plain(_), "GetDerivatives") => "fmi3GetContinuousStateDerivatives".into(),
+            (Callback::Plain(_), _) => {
+                let name = name.replace("FMUstate", "FMUState");
+                format!("fmi3{}", name.replace("DeSerialize", "Deserialize"))
+            }
         }
     }
 

@@ -86,7 +86,7 @@ pub unsafe fn count_of_values(c: fmi2Component, references: &[fmi2ValueReference
 }
 
 /// Makes an instance that steps itself; NULL with a logged reason when anything is wrong. Event mode, early return and
-/// intermediate updates are not offered, as the description says.
+/// intermediate updates are not offered, as the description says; a wish for event mode is answered with a warning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     instanceName: fmi2String,
@@ -94,7 +94,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     resourcePath: fmi2String,
     _visible: Fmi3Boolean,
     loggingOn: Fmi3Boolean,
-    _eventModeUsed: Fmi3Boolean,
+    eventModeUsed: Fmi3Boolean,
     _earlyReturnAllowed: Fmi3Boolean,
     _requiredIntermediateVariables: *const fmi2ValueReference,
     _nRequiredIntermediateVariables: usize,
@@ -104,8 +104,21 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
 ) -> fmi2Component {
     let logger = logMessage.map(|log| Logger::plain(log, instanceEnvironment, loggingOn != 0));
     let texts = [instanceName, instantiationToken, resourcePath];
-    // SAFETY: by the contract of the interface
-    unsafe { made_of_texts("InstantiateCoSimulation", fmi2CoSimulation, texts, logger) }
+    // SAFETY: by the contract of the interface; the handle is new
+    unsafe {
+        let handle = made_of_texts("InstantiateCoSimulation", fmi2CoSimulation, texts, logger);
+        if let Some(component) = handle
+            .cast::<Component>()
+            .as_ref()
+            .filter(|_| eventModeUsed != 0)
+        {
+            let message = "fmi3InstantiateCoSimulation: eventModeUsed: expected false, as hasEventMode of the description, found \
+                           true: steps follow the initialisation at once";
+            let status = fmi2Status::fmi2Warning;
+            component.logger.log(status, Category::Warning, message);
+        }
+        handle
+    }
 }
 
 /// Makes an instance that the importer integrates; NULL with a logged reason when anything is wrong.

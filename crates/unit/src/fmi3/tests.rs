@@ -9,6 +9,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 
+mod messages;
 mod structure;
 mod unknown;
 
@@ -68,12 +69,13 @@ impl Unit {
             messages: Box::default(),
             handle: null_mut(),
         };
-        unit.handle = unit.instantiate(integrated);
+        unit.handle = unit.instantiate(integrated, 0);
         assert!(!unit.handle.is_null(), "{:?}", unit.messages);
         unit
     }
 
-    fn instantiate(&self, integrated: bool) -> fmi2Component {
+    /// Of co-simulation with all of the log.
+    fn instantiate(&self, integrated: bool, event_mode_used: u8) -> fmi2Component {
         let c = |text: String| CString::new(text).unwrap();
         let name = c("deck".into());
         let token = c(self.resources.guid.to_string());
@@ -91,8 +93,8 @@ impl Unit {
                     token,
                     path,
                     0,
-                    0,
-                    0,
+                    1,
+                    event_mode_used,
                     0,
                     null(),
                     0,
@@ -374,7 +376,7 @@ fn what_there_is_not_is_refused_and_the_run_goes_on() {
     // a resource path, a token and a kind that do not fit
     assert!(
         Unit::new("discrete_laguerre", Some(2), false)
-            .instantiate(true)
+            .instantiate(true, 0)
             .is_null()
     );
     let text: fmi2String = c"nothing".as_ptr();

@@ -2,6 +2,7 @@
 
 use super::Instance;
 use super::layout::{Access, DataType};
+use super::trust::shown;
 use crate::lifecycle::StateSet;
 use crate::refusal::{CallResult, Refusal};
 use crate::variables::{Causality, Variability, Variable, VariableTable};
@@ -87,10 +88,11 @@ fn wrong_value(v: &Variable, value: f64) -> Refusal {
             v.name
         ));
     }
-    let limit = |x: Option<f64>| x.map_or_else(|| "none".into(), |x| x.to_string());
+    let limit = |x: Option<f64>| x.map_or_else(|| "none".into(), shown);
     Refusal::discard(format!(
-        "`{}` = {value} lies outside its limits (minimum {}, maximum {})",
+        "`{}` = {} lies outside its limits (minimum {}, maximum {})",
         v.name,
+        shown(value),
         limit(v.min),
         limit(v.max)
     ))

@@ -1,7 +1,8 @@
 //! The smallest damping ratio at the present wind, which importers may read at every step.
 
+use super::trust::shown;
 use crate::aerodynamics::Realization;
-use crate::error::{Result, ensure};
+use crate::error::{Error, Result};
 use crate::flutter::{LeastDamping, NearbyOnset, aliased_below, smallest_damping};
 use crate::response::{Inputs, Stepper};
 use crate::state_space::{RepeatedEigenvalues, damping_ratio};
@@ -91,12 +92,16 @@ impl Sampled {
     /// By the rates `ln z/Δt`; what has died out after a sample (`z = 0`) has none. `None` where the eigenvalues are not found.
     /// Where a sample lasts longer than half a period, `ln z` is that of another motion.
     fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<Option<f64>> {
-        let enough = format_args!(
-            "{:.3} m/s or more, below which a sample lasts half a period",
-            self.lowest_m_s
-        );
-        let found = format_args!("{wind_m_s} m/s");
-        ensure(wind_m_s >= self.lowest_m_s, "wind speed", enough, found)?;
+        if wind_m_s < self.lowest_m_s {
+            return Err(Error::input(
+                "wind speed",
+                format!(
+                    "{:.3} m/s or more, below which a sample lasts half a period",
+                    self.lowest_m_s
+                ),
+                format!("{} m/s", shown(wind_m_s)),
+            ));
+        }
         self.steady.wind_speed_m_s = wind_m_s;
         let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;
         let found = self.eigenvalues.eigenvalues(&mut self.matrix);

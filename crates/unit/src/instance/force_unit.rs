@@ -6,7 +6,7 @@
 use super::force_parts::{StripsUnderModel, coordinate};
 use super::layout::{Source, index_of};
 use super::memory::Memory;
-use super::trust::beyond_linear;
+use super::trust::{beyond_linear, shown};
 use super::unit::{Differentiable, Prepared, Unit};
 use crate::error::Result;
 use crate::force_options::StripsOfModel;
@@ -338,7 +338,8 @@ impl Prepared for ForceUnit {
         let end = wind + memory.input_rates[0] * step;
         if wind_at_rest(end, wind) < 0.0 {
             return Err(Refusal::discard(format!(
-                "wind_speed: expected zero or a positive wind speed, found {end} m/s at the end of the step"
+                "wind_speed: expected zero or a positive wind speed, found {} m/s at the end of the step",
+                shown(end)
             )));
         }
         let mut before = std::mem::take(&mut self.work.before);

@@ -2,6 +2,7 @@
 
 use super::Instance;
 use super::memory::RunTimes;
+use super::trust::shown;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
 use crate::response::wind_at_rest;
@@ -94,20 +95,25 @@ impl Instance {
 #[cold]
 fn no_step(step: f64) -> Refusal {
     Refusal::error(format!(
-        "communication step: expected a positive number, found {step}"
+        "communication step: expected a positive number, found {}",
+        shown(step)
     ))
 }
 
 #[cold]
 fn elsewhere(point: f64, time: f64) -> Refusal {
     Refusal::error(format!(
-        "communication point: expected {time} s, where the last step ended, found {point}"
+        "communication point: expected {} s, where the last step ended, found {}",
+        shown(time),
+        shown(point)
     ))
 }
 
 #[cold]
 fn too_late(end: f64, stop: f64) -> Refusal {
     Refusal::error(format!(
-        "communication step: expected an end not after the stop time {stop} s, found {end}"
+        "communication step: expected an end not after the stop time {} s, found {}",
+        shown(stop),
+        shown(end)
     ))
 }

@@ -266,9 +266,10 @@ fn the_table_of_legal_calls_is_kept() {
     for interface in [Interface::CoSimulation, Interface::ModelExchange] {
         let states = State::ALL.into_iter();
         for state in states.filter(|s| s.interface().is_none_or(|of| of == interface)) {
-            for (call, name, legal) in LEGAL_CALLS {
+            for (call, legal) in LEGAL_CALLS {
+                let name = format!("{call:?}");
                 let unit = in_state_of(interface, state);
-                let status = unsafe { guarded(unit.handle, call, name, |_| Ok(())) };
+                let status = unsafe { guarded(unit.handle, call, &name, |_| Ok(())) };
                 let legal = legal[interface as usize];
                 let foreign = legal == StateSet::NONE;
                 let function = format!("fmi2{name}");
