@@ -168,6 +168,16 @@ impl Form {
         }
     }
 
+    /// A chain of poles with one of its free ones at another value.
+    pub(crate) fn with_pole(&self, chain: &[f64], index: usize, value: f64) -> Vec<f64> {
+        let mut moved = chain.to_vec();
+        match self {
+            Self::Laguerre { .. } => moved.fill(value),
+            _ => moved[index] = value,
+        }
+        moved
+    }
+
     /// The form in words.
     pub fn describe(&self) -> String {
         let feed = self.feed_through();

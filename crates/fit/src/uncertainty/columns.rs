@@ -62,19 +62,20 @@ impl Expansion {
         j: usize,
         searched: &[SearchedPole],
     ) -> Result<DMatrix<f64>> {
-        let all = self.jacobian(form, &form.collapse(chain), values)?;
+        let all = self.jacobian(form, chain, values)?;
         let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
         for (m, pole) in searched.iter().enumerate() {
-            if pole.entry.is_none_or(|entry| entry == (i, j)) {
+            if pole.is_of(i, j) {
                 slopes.column_mut(m).copy_from(&all.column(pole.index));
             }
         }
         Ok(slopes)
     }
 
-    /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles, E×m.
-    fn jacobian(&self, form: &Form, free: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
-        let pairs = (0..free.len()).map(|m| moved_pole(form, free, m));
+    /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles of its chain, E×m.
+    fn jacobian(&self, form: &Form, chain: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
+        let count = form.collapse(chain).len();
+        let pairs = (0..count).map(|m| moved_pole(form, chain, m));
         let pairs = pairs.collect::<Result<Vec<_>>>()?;
         let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
             let columns = basis.columns(p);
@@ -83,11 +84,11 @@ impl Expansion {
         let slopes = |p: Complex<f64>| {
             pairs
                 .iter()
-                .zip(free)
+                .zip(chain)
                 .map(|((up, down), pole)| (sum(up, p) - sum(down, p)) / (2.0 * STEP * pole))
                 .collect()
         };
-        self.express(&slopes, free.len())
+        self.express(&slopes, count)
     }
 
     /// Functions of the complex frequency in the columns of the longer chain, by least squares on the grid.
@@ -232,7 +233,7 @@ mod tests {
             let expansion = Expansion::new(&form, &chain, true).unwrap();
             let own = Basis::new(&form, &chain).unwrap();
             let values: Vec<f64> = (0..own.len()).map(|c| 1.0 - 0.3 * c as f64).collect();
-            let jacobian = expansion.jacobian(&form, &free, &values).unwrap();
+            let jacobian = expansion.jacobian(&form, &chain, &values).unwrap();
             for k in [0.037, 0.31, 1.9] {
                 let p = Complex::new(0.0, k);
                 let long = expansion.basis.columns(p);

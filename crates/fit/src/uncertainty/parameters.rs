@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::identification::affine::AffineSpace;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{NOTHING_HELD, SAME_DIRECTION};
-use crate::identification::{ActiveConstraint, FitReport, Form, PoleSearch};
+use crate::identification::{ActiveConstraint, FitReport, Form, OwnFilters, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -50,21 +50,30 @@ impl Parameter {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SearchedPole {
-    /// Row and column of its transfer function; `None` when all share it.
+    /// Row and column of its transfer function; `None` when all share it but those apart.
     pub entry: Option<(usize, usize)>,
+    /// Rows and columns of the transfer functions that have filters of their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub apart: Vec<(usize, usize)>,
     /// Place among the free poles.
     pub index: usize,
 }
 
 impl SearchedPole {
+    /// Whether the transfer function `(i, j)` has it.
+    pub(super) fn is_of(&self, i: usize, j: usize) -> bool {
+        match self.entry {
+            Some(entry) => entry == (i, j),
+            None => !self.apart.contains(&(i, j)),
+        }
+    }
+
     /// Gives it another value in the poles of every transfer function that has it.
     pub(super) fn move_to(&self, value: f64, form: &Form, chains: &mut [Vec<Vec<f64>>]) {
         for (i, row) in chains.iter_mut().enumerate() {
             for (j, chain) in row.iter_mut().enumerate() {
-                if self.entry.is_none_or(|entry| entry == (i, j)) {
-                    let mut free = form.collapse(chain);
-                    free[self.index] = value;
-                    *chain = form.expand(&free);
+                if self.is_of(i, j) {
+                    *chain = form.with_pole(chain, self.index, value);
                 }
             }
         }
@@ -123,8 +132,13 @@ pub(super) struct FreePoles {
     pub held: usize,
 }
 
-/// The poles that a search left free to follow the data.
-pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) -> FreePoles {
+/// The poles that a search left free to follow the data; transfer functions with `own` filters do not share those of the others.
+pub(super) fn free_poles(
+    form: &Form,
+    options: &PoleSearch,
+    own: &[OwnFilters],
+    report: &FitReport,
+) -> FreePoles {
     let mut poles = FreePoles {
         searched: Vec::new(),
         parameters: Vec::new(),
@@ -134,15 +148,15 @@ pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) 
     dofs.sort();
     dofs.dedup();
     let place = |dof: Dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
+    let apart: Vec<_> = own.iter().map(|o| (o.force, o.motion)).collect();
     for search in &report.search {
         // the poles in use: a search may end between the points it evaluated
         let used = report
             .entries
             .iter()
-            .find(|e| {
-                search
-                    .entry
-                    .is_none_or(|entry| entry == (e.force, e.motion))
+            .find(|e| match search.entry {
+                Some(entry) => entry == (e.force, e.motion),
+                None => !apart.contains(&(e.force, e.motion)),
             })
             .map(|e| form.collapse(&e.poles))
             .unwrap_or_default();
@@ -156,6 +170,7 @@ pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) 
             }
             poles.searched.push(SearchedPole {
                 entry: search.entry.map(|(f, m)| (place(f), place(m))),
+                apart: apart.iter().map(|(f, m)| (place(*f), place(*m))).collect(),
                 index,
             });
             let (force, motion) = search.entry.unzip();
@@ -184,13 +199,10 @@ impl FreePoles {
     }
 }
 
-/// The columns with one of the free poles a little larger, and a little smaller.
-pub(super) fn moved_pole(form: &Form, free: &[f64], index: usize) -> Result<(Basis, Basis)> {
-    let moved = |factor: f64| {
-        let mut poles = free.to_vec();
-        poles[index] *= factor;
-        Basis::new(form, &form.expand(&poles))
-    };
+/// The columns of a chain with one of its free poles a little larger, and a little smaller.
+pub(super) fn moved_pole(form: &Form, chain: &[f64], index: usize) -> Result<(Basis, Basis)> {
+    let moved =
+        |factor: f64| Basis::new(form, &form.with_pole(chain, index, factor * chain[index]));
     Ok((moved(1.0 + STEP)?, moved(1.0 - STEP)?))
 }
 
@@ -241,7 +253,6 @@ pub(super) fn tangent_of(
     for (e, entry) in report.entries.iter().enumerate() {
         let (i, j) = (e / n, e % n);
         let values = entry.values();
-        let free = form.collapse(&entry.poles);
         let basis = Basis::new(form, &entry.poles)?;
         let each = gradients.iter_mut().zip(&mut constrained_squares);
         for ((gradient, square), active) in each.zip(&constraints.active) {
@@ -250,11 +261,11 @@ pub(super) fn tangent_of(
             *square += norm_squared(&active.gradient(i, j, &basis));
         }
         for (m, pole) in poles.searched.iter().enumerate() {
-            if pole.entry.is_some_and(|entry| entry != (i, j)) {
+            if !pole.is_of(i, j) {
                 continue;
             }
-            let step = 2.0 * STEP * free[pole.index];
-            let (up, down) = moved_pole(form, &free, pole.index)?;
+            let step = 2.0 * STEP * entry.poles[pole.index];
+            let (up, down) = moved_pole(form, &entry.poles, pole.index)?;
             for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
                 let value = |b: &Basis| beyond_limit(active, i, j, b, &values);
                 let at = parameters - poles.searched.len() + m;

@@ -38,12 +38,9 @@ pub fn record_uncertainty(
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
     let records = Records::read(records, fit.static_term)?;
-    let together = report.search.iter().any(|s| s.entry.is_none());
-    if fit.static_term == StaticTerm::Estimated || (together && !fit.own.is_empty()) {
+    if fit.static_term == StaticTerm::Estimated {
         return Err(Error::Numerical(
-            "covariance: not known for a constant estimated along, nor where some transfer functions share a searched \
-             pole and others have their own"
-                .into(),
+            "covariance: not known for a constant estimated along".into(),
         ));
     }
     let task = RecordFit {
@@ -52,7 +49,7 @@ pub fn record_uncertainty(
         progress,
     };
     let form = report.form_fitted(&fit.form, &fit.own);
-    let poles = free_poles(&form, &fit.poles, report);
+    let poles = free_poles(&form, &fit.poles, &fit.own, report);
     let (parameters, first) = parameters_of(report, &poles);
     let entries = Entries::new(&form, first, parameters.len(), report, &poles)?;
     let rows = Rows {

@@ -43,7 +43,7 @@ pub fn table_uncertainty(
     }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
     let form = report.form_fitted(&fit.form, &fit.own);
-    let poles = free_poles(&form, &fit.poles, report);
+    let poles = free_poles(&form, &fit.poles, &fit.own, report);
     let (parameters, first) = parameters_of(report, &poles);
     let first_pole = parameters.len() - poles.searched.len();
     let mut runs: Vec<MotionSamples> = Vec::new();
@@ -52,7 +52,7 @@ pub fn table_uncertainty(
             .searched
             .iter()
             .enumerate()
-            .filter(|(_, pole)| pole.entry.is_none_or(|(i, j)| i * dofs.len() + j == e));
+            .filter(|(_, pole)| pole.is_of(e / dofs.len(), e % dofs.len()));
         let searched: Vec<(usize, usize)> =
             searched.map(|(m, p)| (first_pole + m, p.index)).collect();
         let report = &report.entries[e];
@@ -135,7 +135,6 @@ fn rows_of(
     rows: &mut [Vec<f64>],
 ) -> Result<(Vec<f64>, f64)> {
     let (basis, values) = (Basis::new(form, &report.poles)?, report.values());
-    let free = form.collapse(&report.poles);
     let total = entry.total();
     let scale = if total > 0.0 {
         total.sqrt().recip()
@@ -155,7 +154,7 @@ fn rows_of(
         }
     }
     for &(at, index) in searched {
-        let (up, down) = moved_pole(form, &free, index)?;
+        let (up, down) = moved_pole(form, &report.poles, index)?;
         for (line, row) in rows.iter_mut().zip(&entry.rows) {
             let change: f64 = seen(&up, row)
                 .iter()
@@ -163,7 +162,7 @@ fn rows_of(
                 .zip(&values)
                 .map(|((a, b), c)| (a - b) * c)
                 .sum();
-            line[at] = weighted(change / (2.0 * STEP * free[index]), row);
+            line[at] = weighted(change / (2.0 * STEP * report.poles[index]), row);
         }
     }
     let sum: f64 = residuals.iter().map(|r| r.powi(2)).sum();

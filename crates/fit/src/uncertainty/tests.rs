@@ -2,6 +2,7 @@
 
 mod between_speeds;
 mod growth_limit;
+mod own_filters;
 
 use super::onset::{ResamplingPlan, onset_error, onset_gradient, resample_onset};
 use super::*;
@@ -131,8 +132,8 @@ fn gradients_are_differences_of_onsets() {
     }
 }
 
-/// Repeated scattered tables: stated standard errors of onset and poles are the scatter of the estimates, poles known and
-/// poles searched. 120 repetitions tell a standard deviation to 6.5 %; three times that, and 5 % for the curvature of
+/// Repeated scattered tables: stated standard errors of onset and poles are the scatter of the estimates, poles known, poles searched and a
+/// transfer function that has its own. 120 repetitions tell a standard deviation to 6.5 %; three times that, and 5 % for the curvature of
 /// the poles, are allowed.
 #[test]
 fn stated_errors_are_the_scatter_of_repeated_tables() {
@@ -142,7 +143,11 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
     };
     for fit in [
         two_poles(PoleSearch::fixed(&[0.091, 0.6])),
-        two_poles(searched),
+        two_poles(searched.clone()),
+        FrequencyFit {
+            own: vec![own_filters::own(Dof::Torsion, Dof::Torsion, 2, None)],
+            ..two_poles(searched)
+        },
     ] {
         let (mut speeds, mut stated) = (Vec::new(), 0.0);
         let runs = 120;
