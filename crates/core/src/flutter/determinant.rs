@@ -9,7 +9,7 @@ use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::judged::{Exit, FastMotion, StableRange, TestedFrom, damps_at, entry_reason};
 use super::onset::Onset;
 use crate::aerodynamics::{Transfer, TransferMatrix};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{ValueAt, complex, first_order, root};
 use crate::units::{LowerEnd, ReducedFrequency, ReducedFrequencyRange};
@@ -90,7 +90,7 @@ pub fn determinant_onset(
         range.not_empty()?.min.full_width(),
     )?;
     let k_max = positive("range of reduced frequencies", range.max.full_width())?;
-    let problem = StructureInWind { structure, model };
+    let problem = StructureInWind::new(structure, model)?;
     let at = |i: usize| {
         // both ends exactly, so that a table is not asked beyond its last point
         match i {
@@ -166,10 +166,7 @@ pub fn table_tested_from(
     range: ReducedFrequencyRange,
 ) -> Result<Option<TestedFrom>> {
     let k = positive("range of reduced frequencies", range.max.full_width())?;
-    let problem = StructureInWind {
-        structure,
-        model: table,
-    };
+    let problem = StructureInWind::new(structure, table)?;
     let roots = problem.named_roots(k)?;
     let last = roots.iter().max_by(|a, b| a.0.re.total_cmp(&b.0.re));
     let damped = damps_at(table.dofs(), &table.transfer(range.max)?);
@@ -218,7 +215,15 @@ pub(super) struct StructureInWind<'a> {
     pub(super) model: &'a dyn Transfer,
 }
 
-impl StructureInWind<'_> {
+impl<'a> StructureInWind<'a> {
+    /// Refuses forces of other motions than those of the structure.
+    pub(super) fn new(structure: &'a Structure, model: &'a dyn Transfer) -> Result<Self> {
+        let expected = format_args!("those of {} motion", Dof::names(&structure.dofs));
+        let same = structure.dofs == model.dofs();
+        ensure(same, "forces", expected, Dof::names(model.dofs()))?;
+        Ok(Self { structure, model })
+    }
+
     /// Roots at the reduced frequency `k` with the rows whose modes they are: those of the structure without air, followed
     /// while the air comes to its density.
     fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, usize)>> {

@@ -43,7 +43,7 @@ pub fn pk_curves(
         )?;
         last = speed;
     }
-    let iteration = StructureInWind { structure, model };
+    let iteration = StructureInWind::new(structure, model)?;
     let mut branches = empty_branches(structure, speeds_m_s.len());
     iteration.march(speeds_m_s, &mut |_, at| {
         let asked = speeds_m_s.binary_search_by(|v| v.total_cmp(&at.speed));
@@ -85,7 +85,7 @@ pub fn quasi_pk_mode(
         .map(|i| speed_m_s * i as f64 / STEPS_TO_MODE as f64)
         .collect();
     let (mut found, mut last) = (None, None);
-    let iteration = StructureInWind { structure, model };
+    let iteration = StructureInWind::new(structure, model)?;
     iteration.march(&speeds, &mut |_, at| {
         let lambda = at.mode(dof).map(|m| m.lambda);
         found = lambda.filter(|_| at.speed == speed_m_s);
@@ -128,7 +128,7 @@ pub fn pk_onset(
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {
-    let iteration = StructureInWind { structure, model };
+    let iteration = StructureInWind::new(structure, model)?;
     let known = model.known_range();
     let watch = OnsetWatch {
         model: name,
@@ -164,4 +164,30 @@ pub fn pk_onset(
         found.starts.push(start);
     }
     Ok(choose(found, tested))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::FlatPlate;
+    use crate::flutter::determinant_onset;
+    use crate::section::{Dof, SectionModel};
+    use crate::units::ReducedFrequency;
+
+    #[test]
+    fn forces_of_other_motions_are_refused() {
+        let structure = SectionModel::iabse_1_1a().structure().unwrap();
+        let heave = structure.only(&[Dof::Vertical]);
+        let (plate, search) = (FlatPlate::default(), OnsetSearch::default());
+        let [low, high] = [0.02, 10.0].map(ReducedFrequency::from_full_width);
+        let range = ReducedFrequencyRange::between(low, high);
+        for found in [
+            pk_onset("", &heave, &plate, &search, None),
+            determinant_onset("", &heave, &plate, range, 100.0),
+        ] {
+            let message = found.unwrap_err().to_string();
+            let expected = "forces: expected those of vertical motion, found vertical, torsion";
+            assert_eq!(message, expected);
+        }
+    }
 }
