@@ -112,6 +112,21 @@ fn single_slips_are_recognised() {
     }
 }
 
+/// The drag derivatives of every deck with the other sign: sway that drag feeds.
+#[test]
+fn drag_of_the_wrong_sign_is_a_doubt() {
+    for deck in embedded::names().map(|n| embedded::deck(n).unwrap()) {
+        let turned = scaled(&deck, |d| match d.force() {
+            Dof::Lateral => -1.0,
+            _ => 1.0,
+        });
+        let found = of_table(&turned, &Convention::default());
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].severity, FindingSeverity::Doubt);
+        assert!(found[0].text.starts_with("P1* > 0 at "), "{found:?}");
+    }
+}
+
 /// PoliMi's numbers under Scanlan's names: the pattern of positive h1* and a2* is named.
 #[test]
 fn both_positive_is_said() {

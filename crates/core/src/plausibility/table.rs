@@ -55,6 +55,7 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let mut found: Vec<Finding> = beyond(&width, table.width_m, &DECK_WIDTH)
         .into_iter()
         .collect();
+    found.extend(of_sway(table));
     let own = Signature::new(&|d| table.points(d).to_vec());
     let score = own.score();
     if score < ODD {
@@ -89,6 +90,18 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
         }
     });
     found
+}
+
+/// Drag grows with the wind that a deck meets, and damps its sway: `P1* ≈ −2 C_D/K`, whatever the deck.
+fn of_sway(table: &DerivativeTable) -> Option<Finding> {
+    let points = table.points(Derivative::P1);
+    let feeding = points.iter().filter(|p| p.value > 0.0).count();
+    let text = format!("P1* > 0 at {feeding} of {} points", points.len());
+    let odd = Finding::doubt(FindingKind::Convention, &table.name, text).otherwise(
+        "drag damps sway, P1* is about \u{2212}2 C_D/K: check the signs of all P* (nothing was changed)".to_owned(),
+    );
+    // small numbers scatter: of one speed of an embedded deck three in eight
+    (4 * feeding > 3 * points.len()).then_some(odd)
 }
 
 /// The points of a derivative as they could have been meant.
