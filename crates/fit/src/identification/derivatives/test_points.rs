@@ -133,6 +133,7 @@ pub(super) fn collect(
         check(header, first)?;
         let signals = Arc::new(Signals::from_record(records[r])?);
         check_forces(header, &signals)?;
+        signals.check_clipping(&header.name, &header.dofs)?;
         numbered(header.segments.len(), &|_, _| (), |i| {
             stretch(header, &signals, i, options)
         })

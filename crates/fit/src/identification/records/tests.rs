@@ -3,7 +3,7 @@ use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::identification::form::PoleSearch;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
-use crate::identification::{FitProgress, TimeWeights};
+use crate::identification::{DerivativeOptions, FitProgress, TimeWeights, identify_derivatives};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
 
@@ -104,6 +104,25 @@ fn simultaneous_motions_are_told_apart() {
         message.contains("move one degree of freedom each"),
         "{message}"
     );
+}
+
+/// Forces that a converter held at 0.4 of their peak are no record, to a fit as to derivatives; a channel at rest is no clipping.
+#[test]
+fn clipped_records_are_refused() {
+    let mut all = records(&FlatPlate::default(), &[8.17], 0.01, 1);
+    let peak = all[1].force[0].iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    for force in &mut all[1].force[0] {
+        *force = force.clamp(-0.4 * peak, 0.4 * peak);
+    }
+    let fitted = fit_records(&sources(&all), &records_alone(), &quiet).unwrap_err();
+    let options = DerivativeOptions::default();
+    let derivatives = identify_derivatives(&sources(&all), &options).unwrap_err();
+    for message in [fitted.to_string(), derivatives.to_string()] {
+        assert!(
+            message.contains("vertical force, sample ") && message.contains("not clipped"),
+            "{message}"
+        );
+    }
 }
 
 /// The default model and that of three filters on clean records agree with the same fit to the transfer matrix, and the onset with the exact

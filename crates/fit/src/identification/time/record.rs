@@ -192,6 +192,7 @@ impl DimensionlessRecord {
         if header.segments.is_empty() {
             driven = driven_bands(&signals, rate * step_s)?;
         }
+        signals.check_clipping(&header.name, dofs)?;
         Ok(Self {
             header: header.clone(),
             signals,

@@ -2,7 +2,9 @@
 //! with them. Whatever its length, a record then takes the memory of one block for each thread that reads it.
 
 use crate::error::{Error, Result};
+use crate::section::Dof;
 use crate::wind_tunnel::RecordSource;
+use crate::wind_tunnel::processing::check::check_clipping;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -145,6 +147,24 @@ impl Signals {
             signals.extend(channels[0].len(), |c, k| channels[c][k])
         })?;
         signals.finish()
+    }
+
+    /// Refuses channels of a record, of these degrees of freedom, that stand at their limit for more than a short while.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming record, channel and sample; [`Error::Io`] for a file that cannot be read.
+    pub(crate) fn check_clipping(&self, record: &str, dofs: &[Dof]) -> Result<()> {
+        // as much at a time as may stand in memory
+        let part = IN_MEMORY * SIGNAL_ROWS;
+        for first in (0..self.rows).step_by(part) {
+            let channels = self.range(first..first + part)?;
+            for (c, samples) in channels.iter().enumerate() {
+                let what = if c < self.dofs { "motion" } else { "force" };
+                let name = dofs[c % self.dofs].name();
+                check_clipping(&format!("record {record}, {name} {what}"), first, samples)?;
+            }
+        }
+        Ok(())
     }
 
     /// Number of samples.

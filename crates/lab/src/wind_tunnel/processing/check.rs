@@ -162,25 +162,37 @@ fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<(
 fn clipped(place: &str, recording: &RawRecording, rig: &Rig) -> Result<Vec<ClippedStretch>> {
     let mut found = Vec::new();
     for (name, samples) in channels(recording, rig) {
-        let stretches = clipped_stretches(samples);
-        let Some((first, _)) = stretches.first() else {
-            continue;
-        };
-        let total: usize = stretches.iter().map(|s| s.1).sum();
-        ensure(
-            total as f64 <= CLIPPED_PART * samples.len() as f64,
-            format_args!("{place}, {name}, sample {first}"),
-            "a channel that is not clipped",
-            format_args!(
-                "{total} samples at its limit in {} stretches",
-                stretches.len()
-            ),
-        )?;
+        let channel = format!("{place}, {name}");
+        let stretches = check_clipping(&channel, 0, samples)?;
         found.extend(stretches.iter().map(|(first, samples)| ClippedStretch {
-            channel: format!("{place}, {name}"),
+            channel: channel.clone(),
             first: *first,
             samples: *samples,
         }));
     }
     Ok(found)
+}
+
+/// First sample and number of samples of every stretch in which a channel stands at its limit; `before` so many samples precede these.
+///
+/// # Errors
+/// [`Error::Input`] at the channel for more than a short while.
+pub fn check_clipping(
+    channel: &str,
+    before: usize,
+    samples: &[f64],
+) -> Result<Vec<(usize, usize)>> {
+    let stretches = clipped_stretches(samples);
+    let total: usize = stretches.iter().map(|s| s.1).sum();
+    let first = before + stretches.first().map_or(0, |s| s.0);
+    ensure(
+        total as f64 <= CLIPPED_PART * samples.len() as f64,
+        format_args!("{channel}, sample {first}"),
+        "a channel that is not clipped",
+        format_args!(
+            "{total} samples at its limit in {} stretches",
+            stretches.len()
+        ),
+    )?;
+    Ok(stretches)
 }
