@@ -119,7 +119,7 @@ pub fn list(place: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
             found.chars().take(80).collect(),
         )
     };
-    refuse_masked(place, value)?;
+    refuse_unreal(place, value)?;
     let array: PyArrayLike1<'_, f64, AllowTypeChange> = value.extract().map_err(|_| wrong())?;
     Ok(array.as_array().to_vec())
 }
@@ -129,15 +129,21 @@ pub fn table<'py>(
     place: &str,
     value: &Bound<'py, PyAny>,
 ) -> PyResult<PyArrayLike2<'py, f64, AllowTypeChange>> {
-    refuse_masked(place, value)?;
+    refuse_unreal(place, value)?;
     value.extract().map_err(|_| {
         let found = value.get_type().to_string();
         wrong(place, "numbers, in rows of one length", found)
     })
 }
 
-/// What a mask marks as bad is not used as a number.
-fn refuse_masked(place: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+/// What a mask marks as bad is not used as a number, nor is a real part alone.
+fn refuse_unreal(place: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    let kind = value
+        .getattr("dtype")
+        .and_then(|dtype| dtype.getattr("kind"));
+    if kind.is_ok_and(|kind| kind.eq("c").unwrap_or(false)) {
+        return Err(wrong(place, "real numbers", "complex ones".into()));
+    }
     let Ok(mask) = value.getattr("mask") else {
         return Ok(());
     };

@@ -68,7 +68,7 @@ impl Records {
     ///     Self-excited forces per metre of span: N/m, N/m, N·m/m.
     /// sampling_hz, mean_speed_m_s, width_m, air_density_kg_m3 : float
     /// dofs : sequence of str
-    ///     `("vertical", "torsion")` or with `"lateral"` between.
+    ///     `("vertical", "torsion")` or with `"lateral"`, in any order; the record has vertical, lateral, torsion.
     /// segments : sequence of (float, float, float), optional
     ///     Stretches of harmonic motion, ramps included: frequency (Hz), start and end (s).
     #[staticmethod]
@@ -94,9 +94,12 @@ impl Records {
             let expected = format!("two arrays of one shape (n, {})", dofs.len());
             return Err(wrong("motion, force", &expected, format!("{shapes:?}")));
         }
+        // the order of every matrix, as of files
+        let mut order: Vec<usize> = (0..dofs.len()).collect();
+        order.sort_by_key(|&i| dofs[i]);
         let columns = |a: &PyReadonlyArray2<'_, f64>| {
-            let column = |c: numpy::ndarray::ArrayView1<'_, f64>| c.to_vec();
-            a.as_array().columns().into_iter().map(column).collect()
+            let column = |&c: &usize| a.as_array().column(c).to_vec();
+            order.iter().map(column).collect::<Vec<Vec<f64>>>()
         };
         let segment = |(frequency_hz, start_s, end_s)| Segment {
             frequency_hz,
@@ -108,7 +111,7 @@ impl Records {
             force: columns(&force),
             header: RecordHeader {
                 name: name.to_owned(),
-                dofs,
+                dofs: order.iter().map(|&i| dofs[i]).collect(),
                 width_m,
                 air_density_kg_m3,
                 mean_speed_m_s,
@@ -118,6 +121,10 @@ impl Records {
                 licence: "as of the data".to_owned(),
             },
         };
+        let mut samples = record.motion.iter().chain(&record.force).flatten();
+        if let Some(bad) = samples.find(|x| !x.is_finite()) {
+            return Err(wrong("motion, force", "finite numbers", bad.to_string()));
+        }
         let checked = record.header.check_segments(&record.motion);
         checked.map_err(raised)?;
         Ok(Self(vec![record], Vec::new()))
@@ -151,7 +158,7 @@ impl Records {
             .map_err(raised)
     }
 
-    /// Write every record as `<name>.csv` into a folder, with `_` for characters that not every path can hold; returns the paths.
+    /// Write every record as `<name>.csv` into a folder, which is made, with `_` for characters that not every path can hold; returns the paths.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
         let name = |record: &Record| format!("{}.csv", file_name(&record.header.name));
         for (i, record) in self.0.iter().enumerate() {
@@ -165,6 +172,8 @@ impl Records {
             }
         }
         detached(py, || {
+            std::fs::create_dir_all(&folder)
+                .map_err(|e| raised(aerodeck::Error::io(&folder, e)))?;
             let one = |record: &Record| {
                 let path = folder.join(name(record));
                 let file = std::fs::File::create(&path);

@@ -231,6 +231,13 @@ def test_records_from_arrays_are_those_of_the_tunnel(table, section):
         rebuilt = one if rebuilt is None else rebuilt + one
     assert aerodeck.flutter(section, aerodeck.fit_laguerre(rebuilt)).speed_m_s == direct.speed_m_s
     assert direct.interval is not None
+    plain = dict(sampling_hz=100.0, mean_speed_m_s=8.0, width_m=0.5, air_density_kg_m3=1.2)
+    turned = aerodeck.Records.from_arrays(motion[:, ::-1], force[:, ::-1], dofs=["torsion", "vertical"], **plain)
+    assert turned.dofs == ["vertical", "torsion"]
+    np.testing.assert_array_equal(turned.to_numpy(0)[2], force)
+    for bad, expected in [(force + np.nan, "finite numbers"), (force + 1j, "real numbers")]:
+        with pytest.raises(aerodeck.InputError, match=expected):
+            aerodeck.Records.from_arrays(motion, bad, **plain)
 
 
 @pytest.mark.skipif("AERODECK_TRAINED" not in os.environ, reason="no model trained by the program")
@@ -245,7 +252,7 @@ def test_saved_models_and_records_come_back(tmp_path, table, section, model):
     assert again.section == section
     np.testing.assert_array_equal(again.transfer([0.1, 1.0]), model.transfer([0.1, 1.0]))
     records = aerodeck.Records.virtual_tunnel(table)
-    paths = records.write(tmp_path)
+    paths = records.write(tmp_path / "new" / "folder")
     np.testing.assert_array_equal(aerodeck.Records.read(*paths).to_numpy(0)[2], records.to_numpy(0)[2])
     table.write(tmp_path / "table.csv", "polimi")
     np.testing.assert_allclose(aerodeck.Derivatives.read(tmp_path / "table.csv").to_numpy()["A2"], table.to_numpy()["A2"], rtol=1e-12)

@@ -55,7 +55,10 @@ impl ModelOfData {
             let estimate = record_uncertainty(records, fit, &fitted.report, progress);
             Ok((fitted, estimate))
         };
-        let others = || FormEnsemble::of_records(records, dofs).map(Some);
+        // the order of every matrix, whatever that of the channels
+        let mut dofs = dofs.to_vec();
+        dofs.sort();
+        let others = || FormEnsemble::of_records(records, &dofs).map(Some);
         let (own, forms) = rayon::join(own, others);
         let (fitted, estimate) = own?;
         Ok(Self::new(fitted, estimate, forms, deck))
@@ -91,5 +94,43 @@ impl ModelOfData {
             estimate,
             forms,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::Transfer;
+    use crate::files::derivatives::embedded;
+    use crate::uncertainty::AdmissibleForm;
+    use crate::wind_tunnel::TunnelPlan;
+
+    /// Channels in another order are the same data: the forms that explain them are the same.
+    #[test]
+    fn the_order_of_channels_is_no_matter() {
+        let plan = TunnelPlan {
+            segment_s: 8.0,
+            sampling_hz: 50.0,
+            ..TunnelPlan::default()
+        };
+        let table = embedded::deck("LN21-5200").unwrap();
+        let mut records = plan.records_from_table(&table, &Dof::TWO).unwrap();
+        let mut forms = Vec::new();
+        for _ in 0..2 {
+            let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+            let dofs = sources[0].header().dofs.clone();
+            let fit = TimeFit::default();
+            let of = ModelOfData::of_records(&sources, &dofs, &fit, None, &|_| ()).unwrap();
+            let found = of.forms.unwrap().unwrap().fits;
+            let in_order = |f: &AdmissibleForm| f.model.dofs() == Dof::TWO;
+            assert!(found.iter().all(in_order));
+            forms.push(found.into_iter().map(|f| f.form).collect::<Vec<_>>());
+            for record in &mut records {
+                record.header.dofs.reverse();
+                record.motion.reverse();
+                record.force.reverse();
+            }
+        }
+        assert_eq!(forms[0], forms[1]);
     }
 }

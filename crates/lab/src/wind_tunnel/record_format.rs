@@ -161,7 +161,9 @@ fn record_header(head: &CommentHeader) -> Result<RecordHeader> {
 
 fn dofs(entry: &HeaderLine) -> Result<Vec<Dof>> {
     let one = |name: &str| Dof::THREE.into_iter().find(|d| d.name() == name.trim());
-    let dofs: Option<Vec<Dof>> = entry.value.split(',').map(one).collect();
+    let mut dofs: Option<Vec<Dof>> = entry.value.split(',').map(one).collect();
+    // columns go by their names: in every file the channels come in one order
+    dofs.iter_mut().for_each(|dofs| dofs.sort());
     let is_new = |dofs: &[Dof], i: usize| !dofs[..i].contains(&dofs[i]);
     dofs.filter(|dofs| (0..dofs.len()).all(|i| is_new(dofs, i)))
         .ok_or_else(|| {

@@ -57,6 +57,13 @@ fn write_and_read_give_the_same_bits() {
         all.map(|x| x.to_bits()).collect()
     };
     assert_eq!(bits(&again), bits(&record));
+    // channels in another order are put into that of all others
+    let mut turned = record.clone();
+    turned.header.dofs.reverse();
+    turned.motion.reverse();
+    turned.force.reverse();
+    let file = in_file(written(&turned).as_bytes());
+    assert_eq!(read(file.path()).unwrap(), record);
     // a file of Windows has other line ends, and a mark at its head
     let file = in_file(format!("\u{feff}{}", text.replace('\n', "\r\n")).as_bytes());
     assert_eq!(read(file.path()).unwrap(), record);
