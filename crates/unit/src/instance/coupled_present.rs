@@ -2,6 +2,7 @@
 
 use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
+use super::trust::shown;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -41,6 +42,29 @@ pub(super) struct PresentSlopes<'a> {
 }
 
 impl<S: CoupledKind> Coupled<S> {
+    #[inline]
+    pub(super) fn in_tested_winds(&self, memory: &Memory) -> bool {
+        let wind = self.indices.wind_speed(memory);
+        S::tested_winds(self).is_some_and(|[low, high]| (low..=high).contains(&wind))
+    }
+
+    /// Says, once, when the wind leaves the tested range.
+    #[cold]
+    pub(super) fn watch_wind(&mut self, memory: &Memory, notices: &mut Vec<String>) {
+        let inside = self.in_tested_winds(memory);
+        let leaves = self.wind_was_tested && !inside && !self.wind_left;
+        if let Some([low, high]) = S::tested_winds(self).filter(|_| leaves) {
+            self.wind_left = true;
+            let wind = shown(self.indices.wind_speed(memory));
+            notices.push(format!(
+                "wind_speed = {wind} m/s leaves the speeds at which {}, {low:.3} to {high:.3} m/s: the forces are \
+                 extrapolated",
+                S::TESTED_AT
+            ));
+        }
+        self.wind_was_tested = inside;
+    }
+
     /// What a number reads of the present.
     pub(super) fn read(
         &mut self,

@@ -1,7 +1,4 @@
-//! What is said of winds and rotations that no test or theory stands behind, and how numbers are shown.
-
-use super::coupled::{Coupled, CoupledKind};
-use super::memory::Memory;
+//! What is said of rotations, and how numbers are shown.
 
 /// A number in a message: of one that is very large or small no hundred digits.
 pub(super) fn shown(number: f64) -> String {
@@ -19,29 +16,4 @@ pub(super) fn beyond_linear(rotation: f64) -> String {
         many => format!("{many:.1e}"),
     };
     format!("the rotation, {degrees} degrees, is beyond linear theory (about 10 degrees)")
-}
-
-impl<S: CoupledKind> Coupled<S> {
-    #[inline]
-    pub(super) fn in_tested_winds(&self, memory: &Memory) -> bool {
-        let wind = self.indices.wind_speed(memory);
-        S::tested_winds(self).is_some_and(|[low, high]| (low..=high).contains(&wind))
-    }
-
-    /// Says, once, when the wind leaves the tested range.
-    #[cold]
-    pub(super) fn watch_wind(&mut self, memory: &Memory, notices: &mut Vec<String>) {
-        let inside = self.in_tested_winds(memory);
-        let leaves = self.wind_was_tested && !inside && !self.wind_left;
-        if let Some([low, high]) = S::tested_winds(self).filter(|_| leaves) {
-            self.wind_left = true;
-            let wind = shown(self.indices.wind_speed(memory));
-            notices.push(format!(
-                "wind_speed = {wind} m/s leaves the speeds at which {}, {low:.3} to {high:.3} m/s: the forces are \
-                 extrapolated",
-                S::TESTED_AT
-            ));
-        }
-        self.wind_was_tested = inside;
-    }
 }
