@@ -1,9 +1,10 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
+use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::form::PoleSearch;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
-use crate::identification::{DerivativeOptions, FitProgress, TimeWeights, identify_derivatives};
+use crate::identification::{FitProgress, TimeWeights};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
 
@@ -110,6 +111,10 @@ fn simultaneous_motions_are_told_apart() {
 #[test]
 fn clipped_records_are_refused() {
     let mut all = records(&FlatPlate::default(), &[8.17], 0.01, 1);
+    all[0].header.air_density_kg_m3 = 119.0;
+    let odd = fit_records(&sources(&all), &records_alone(), &quiet).unwrap();
+    let odd = odd.report.notes.iter().any(|n| n.contains("0.7 to 1.6"));
+    assert!(odd, "an odd density is a note");
     let peak = all[1].force[0].iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     for force in &mut all[1].force[0] {
         *force = force.clamp(-0.4 * peak, 0.4 * peak);
