@@ -56,7 +56,7 @@ pub(super) fn write(
         .iter()
         .map(RecordExcerpt::describe)
         .collect::<Vec<_>>();
-    let title = format!("Forces by {}", descriptions.join(", by "));
+    let title = format!("Forces by motion: {}", descriptions.join(", "));
     figures::write(FORCES, out, || {
         time_history_figure(&title, &panels, "Periods of the motion")
     })
@@ -101,10 +101,7 @@ impl RecordExcerpt {
     fn describe(&self) -> String {
         let speed = self.record.header.mean_speed_m_s;
         let name = self.motion.name();
-        format!(
-            "{name} motion of {:.2} Hz at {speed:.1} m/s",
-            self.frequency_hz
-        )
+        format!("{name} {:.2} Hz at {speed:.1} m/s", self.frequency_hz)
     }
 
     /// One panel per force.

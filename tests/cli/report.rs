@@ -74,6 +74,7 @@ fn the_report_of_the_demo_stands_alone() {
                 svg.contains("made from the deck") && !svg.contains("measured"),
                 "{svg}"
             );
+            assert!(svg.contains("Forces by motion: vertical "), "{svg}");
         }
         // some renderers do not know it and hide the text under its halo
         assert!(!svg.contains("paint-order"), "{figure}");
