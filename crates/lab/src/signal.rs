@@ -23,5 +23,7 @@ pub use resample::resampled;
 pub use rustfft::num_complex::Complex64;
 pub use samples::mean_and_deviation;
 pub use samples::random_stream;
-pub use samples::{clipped_stretches, extremes, largest_about_mean, mean, robust_deviation};
+pub use samples::{
+    check_clipping, clipped_stretches, extremes, largest_about_mean, mean, robust_deviation,
+};
 pub use samples::{median, rate};

@@ -4,7 +4,6 @@ use super::form::{PoleSearch, number_of_filters};
 use super::least_squares::BLOCK_ROWS;
 use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
-use super::records::odd_air;
 use super::report::{AlphaGuideline, FitReport, Fitted, MemoryReport};
 use super::time::fitted::FittedSystems;
 use super::time::pass::{Chunk, ColumnOrder, Columns, OnProgress, Pass, PassPlan, pass_over};
@@ -143,7 +142,7 @@ pub fn fit_discrete(
         memory: memory(&parameters, &records, delta_s)?,
         constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
-        notes: odd_air(&records),
+        notes: records.odd_air(),
     };
     Ok(Fitted {
         model: Model::DiscreteLaguerre(model),

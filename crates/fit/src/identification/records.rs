@@ -18,7 +18,6 @@ use super::time::search::{ChosenPoles, PASSES, choose_poles};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
-use crate::plausibility::unusual_air;
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 
@@ -87,21 +86,11 @@ pub fn fit_records(
             "noise of the forces is white before the low-pass, motions are exact, the poles count \
                                 as known"
                 .into(),
-        notes: odd_air(&records),
+        notes: records.odd_air(),
     };
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
     Ok(Fitted { model, report })
-}
-
-/// What is odd about the air of records, once for all that are odd.
-pub(super) fn odd_air(records: &Records) -> Vec<String> {
-    let odd = |r: &DimensionlessRecord| {
-        let key = format!("record {}: air_density_kg_m3", r.header.name);
-        unusual_air(&key, r.header.air_density_kg_m3)
-    };
-    let first = records.each.iter().find_map(odd);
-    first.iter().map(ToString::to_string).collect()
 }
 
 impl<'a> RecordFit<'a> {

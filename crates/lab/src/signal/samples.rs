@@ -1,5 +1,6 @@
 //! Plain statistics and rates of samples: median and robust scatter, clipping, central differences; streams of random numbers.
 
+use crate::error::{Result, ensure};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -105,6 +106,33 @@ pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
         *length >= CLIPPED_AT_LEAST || alike >= SHORT_ONES_AT_LEAST
     });
     found
+}
+
+/// Up to this part of a channel may be clipped and replaced; more is refused.
+const CLIPPED_PART: f64 = 0.005;
+
+/// First sample and number of samples of every stretch in which a channel stands at its limit; `before` so many samples precede these.
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) at the channel for more than a short while.
+pub fn check_clipping(
+    channel: &str,
+    before: usize,
+    samples: &[f64],
+) -> Result<Vec<(usize, usize)>> {
+    let stretches = clipped_stretches(samples);
+    let total: usize = stretches.iter().map(|s| s.1).sum();
+    let first = before + stretches.first().map_or(0, |s| s.0);
+    ensure(
+        total as f64 <= CLIPPED_PART * samples.len() as f64,
+        format_args!("{channel}, sample {first}"),
+        "a channel that is not clipped",
+        format_args!(
+            "{total} samples at its limit in {} stretches",
+            stretches.len()
+        ),
+    )?;
+    Ok(stretches)
 }
 
 /// Weights of the differences over two, four and six samples.

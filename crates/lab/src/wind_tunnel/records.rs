@@ -1,6 +1,7 @@
 //! Forced-vibration records: sampled motion and self-excited force of a section model.
 
 use crate::error::{Place, Result, ensure, positive};
+use crate::plausibility::unusual_air;
 use crate::section::Dof;
 use crate::signal::{fit_sine, largest_about_mean};
 use serde::{Deserialize, Serialize};
@@ -135,6 +136,12 @@ impl RecordHeader {
             "the frequency of the motion, to 5 %",
             format_args!("{} Hz, which no motion has there", segment.frequency_hz),
         )
+    }
+
+    /// What is odd about the density of the air.
+    pub fn odd_air(&self) -> Option<String> {
+        let key = format!("record {}: air_density_kg_m3", self.name);
+        unusual_air(&key, self.air_density_kg_m3).map(|odd| odd.to_string())
     }
 
     fn place(&self, segment: &Segment) -> String {

@@ -109,6 +109,12 @@ impl Records {
         2 * segments.sum::<usize>() / self.dofs.len().max(1)
     }
 
+    /// What is odd about the air of a record, once for all that are odd.
+    pub(crate) fn odd_air(&self) -> Vec<String> {
+        let odd = self.each.iter().find_map(|record| record.header.odd_air());
+        odd.into_iter().collect()
+    }
+
     /// The longest dimensionless step, to which the discrete model resamples all records.
     pub(crate) fn longest_step(&self) -> f64 {
         let steps = self.each.iter().map(DimensionlessRecord::delta_s);

@@ -3,8 +3,8 @@
 
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use crate::signal::check_clipping;
 use crate::wind_tunnel::RecordSource;
-use crate::wind_tunnel::processing::check::check_clipping;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};

@@ -2,12 +2,9 @@
 
 use crate::error::{Error, Result, ensure, positive};
 use crate::section::Dof;
-use crate::signal::clipped_stretches;
+use crate::signal::check_clipping;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, SAMPLES_AT_LEAST};
 use serde::{Deserialize, Serialize};
-
-/// Up to this part of a channel may be clipped and replaced; more is refused.
-const CLIPPED_PART: f64 = 0.005;
 
 /// Sampling frequencies that differ by less are the same, written with fewer digits.
 const SAME_RATE: f64 = 1e-6;
@@ -171,28 +168,4 @@ fn clipped(place: &str, recording: &RawRecording, rig: &Rig) -> Result<Vec<Clipp
         }));
     }
     Ok(found)
-}
-
-/// First sample and number of samples of every stretch in which a channel stands at its limit; `before` so many samples precede these.
-///
-/// # Errors
-/// [`Error::Input`] at the channel for more than a short while.
-pub fn check_clipping(
-    channel: &str,
-    before: usize,
-    samples: &[f64],
-) -> Result<Vec<(usize, usize)>> {
-    let stretches = clipped_stretches(samples);
-    let total: usize = stretches.iter().map(|s| s.1).sum();
-    let first = before + stretches.first().map_or(0, |s| s.0);
-    ensure(
-        total as f64 <= CLIPPED_PART * samples.len() as f64,
-        format_args!("{channel}, sample {first}"),
-        "a channel that is not clipped",
-        format_args!(
-            "{total} samples at its limit in {} stretches",
-            stretches.len()
-        ),
-    )?;
-    Ok(stretches)
 }
