@@ -239,7 +239,8 @@ fn an_exported_bridge_passes_the_check() {
     assert!(text.contains("8 modes") && text.contains("1156"), "{text}");
     // the page says what the command does
     let said = flowing(&text);
-    let (headline, _) = said.split_once(" wrote bridge.fmu").unwrap();
+    assert!(said.contains(" wrote bridge.fmu"), "{said}");
+    let (headline, _) = said.split_once(" Verdict ").unwrap();
     let verdict = headline.strip_prefix("Langenuen LN21-5200: ").unwrap();
     assert!(verdict.starts_with("flutter onset 7"), "{headline}");
     let page = fmu_page(&folder.path().join("bridge.fmu"));

@@ -4,6 +4,8 @@ use super::ReducedFrequency;
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
+/// Ratio of the `K` of tests that are meant to be one.
+const ONE_TEST: f64 = 1.05;
 /// Neighbouring tested `K` further apart than this ratio leave a gap. Smooth forces read across a gap of this ratio about
 /// the onset move it by a per cent at most: `tests/flutter/gaps.rs` measures it.
 const WIDEST_STEP: f64 = 2.0;
@@ -135,6 +137,21 @@ impl ReducedFrequencyRange {
             max: scaled(self.max),
             gaps: Gaps::new(gaps.collect()),
         }
+    }
+
+    /// The `K` that all of `parts` hold, where there are parts. Those of tests of one frequency differ a little: up to 5 % they hold
+    /// what lies between.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for parts that have none in common.
+    pub fn common(parts: impl IntoIterator<Item = Self>) -> Option<Result<Self>> {
+        let common = parts.into_iter().reduce(Self::intersection)?;
+        let (from, to) = (common.max, common.min);
+        let is_one_test = from < to && to.full_width() <= ONE_TEST * from.full_width();
+        Some(match is_one_test {
+            true => Ok(Self::between(from, to)),
+            false => common.not_empty(),
+        })
     }
 
     /// Itself, unless it holds no `K`, as the intersection of tests that have none in common.
@@ -336,6 +353,16 @@ mod tests {
         assert!(!common.contains(k(0.11)) && !common.contains(k(1.2)) && common.contains(k(0.4)));
         let apart = band.intersection(ReducedFrequencyRange::between(k(0.9), k(2.0)));
         assert!(common.not_empty().is_ok() && apart.not_empty().is_err());
+        let tests = |values: &[f64]| -> Vec<_> {
+            let ks = values.iter().map(|x| k(*x));
+            ks.map(|k| ReducedFrequencyRange::between(k, k)).collect()
+        };
+        let of = |values: &[f64]| ReducedFrequencyRange::common(tests(values)).unwrap();
+        assert_eq!(
+            of(&[0.4, 0.41]).unwrap(),
+            ReducedFrequencyRange::between(k(0.4), k(0.41))
+        );
+        assert!(of(&[0.4, 0.43]).is_err() && ReducedFrequencyRange::common(tests(&[])).is_none());
         let twice = common.scaled(2.0);
         assert!(!twice.contains(k(0.22)) && twice.contains(k(0.8)));
     }

@@ -110,8 +110,7 @@ fn tested_range(
     let ranges = tested
         .into_values()
         .filter_map(ReducedFrequencyRange::spanning);
-    let common = ranges.reduce(ReducedFrequencyRange::intersection);
-    common.unwrap_or(spanned).not_empty()
+    ReducedFrequencyRange::common(ranges).unwrap_or(Ok(spanned))
 }
 
 /// Every form whose entries are linear in their coefficients once the poles are known: each entry by itself, and all of

@@ -95,8 +95,7 @@ impl Records {
             driven.ok_or_else(|| Error::input("records", format!("a {name} motion"), "none"))
         };
         let all: Vec<_> = (0..self.dofs.len()).map(of).collect::<Result<_>>()?;
-        let common = all.into_iter().reduce(ReducedFrequencyRange::intersection);
-        common.map_or_else(|| self.spanned_range(), |range| range.not_empty())
+        ReducedFrequencyRange::common(all).unwrap_or_else(|| self.spanned_range())
     }
 
     /// Numbers of a transfer function that the tests determine: two for each frequency and speed at which one degree of freedom
