@@ -62,6 +62,9 @@ pub struct BridgeMode {
     pub shape: Vec<[f64; 3]>,
 }
 
+/// Wind somewhere over the wind speed of the bridge at most: the top of a tower or a ridge has less, per cent are more.
+pub const MOST_WIND_FACTOR: f64 = 3.0;
+
 /// Nodes of one section in one wind.
 #[derive(Clone)]
 pub struct StripGroup {
@@ -287,6 +290,12 @@ impl Bridge {
             let place = format!("section {}", group.name);
             positive(format!("{place}: width_m"), group.width_m)?;
             non_negative(format!("{place}: wind factor"), group.wind_factor)?;
+            ensure(
+                group.wind_factor <= MOST_WIND_FACTOR,
+                format_args!("{place}: wind factor"),
+                format_args!("at most {MOST_WIND_FACTOR}"),
+                group.wind_factor,
+            )?;
             for &node in &group.nodes {
                 let claimed = owner.get_mut(node).ok_or_else(|| {
                     Error::input(&place, "nodes of the bridge", format!("node {node}"))

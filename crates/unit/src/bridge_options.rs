@@ -3,6 +3,7 @@
 use super::bridge_gusts::BridgeGusts;
 use super::onset_bounds::OnsetBounds;
 use super::onset_start::OnsetStart;
+use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::{Bridge, BridgeMode, Dampers, GustChannels, Node, StripGroup};
 use crate::error::{Error, Result, positive};
@@ -86,8 +87,11 @@ impl BridgeOptions {
     /// # Errors
     /// [`Error::Input`] for numbers that make no bridge.
     pub fn bridge(&self) -> Result<Bridge> {
+        // one for all groups of a section
+        let shared = |m: &Model| -> Arc<dyn Transfer> { Arc::new(m.clone()) };
+        let forces: Vec<_> = self.forces.iter().map(shared).collect();
         let group = |g: &GroupOptions| {
-            let model = self.forces.get(g.forces).ok_or_else(|| {
+            let forces = forces.get(g.forces).ok_or_else(|| {
                 let expected = format!("a force model below {}", self.forces.len());
                 Error::input(format!("group {}", g.name), expected, g.forces.to_string())
             })?;
@@ -96,7 +100,7 @@ impl BridgeOptions {
                 width_m: g.width_m,
                 wind_factor: g.wind_factor,
                 nodes: g.nodes.clone(),
-                forces: Arc::new(model.clone()),
+                forces: Arc::clone(forces),
             })
         };
         let groups = self.groups.iter().map(group).collect::<Result<_>>()?;

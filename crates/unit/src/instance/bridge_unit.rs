@@ -21,6 +21,7 @@ use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::variables::{ModeOutput, Response, Role};
 use nalgebra::DMatrix;
+use std::sync::OnceLock;
 
 /// A bridge in its modes: its variables, and what has been said of the parameters as they are.
 #[derive(Debug)]
@@ -28,8 +29,8 @@ pub(super) struct ModalBridge {
     /// Motions and modes: indices, and what they stand for.
     responses: Vec<(usize, Role)>,
     tested: Option<ReducedFrequencyRange>,
-    /// Why damping is not known in wind slower than every test.
-    slow_wind: Option<&'static str>,
+    /// Why damping is not known in wind slower than every test, once it has been asked.
+    slow_wind: OnceLock<Option<&'static str>>,
     /// Root of the generalised mass of each mode.
     roots: Vec<f64>,
     /// Indices of the masses of dampers.
@@ -41,6 +42,14 @@ pub(super) struct ModalBridge {
 }
 
 pub(super) type BridgeUnit = Coupled<ModalBridge>;
+
+impl ModalBridge {
+    /// See [`slow_wind`].
+    fn slow_wind(&self, built: &BuiltBridge) -> Option<&'static str> {
+        let ask = || slow_wind(&built.own.bridge, self.tested?);
+        *self.slow_wind.get_or_init(ask)
+    }
+}
 
 impl BridgeUnit {
     /// The bridge of an export.
@@ -59,14 +68,12 @@ impl BridgeUnit {
         let masses = (0..).zip(table.variables()).filter(
             |(_, v)| matches!(v.role, Role::DamperParameter(_) if v.quantity == Some("Mass")),
         );
-        let bridge = options.bridge()?;
-        let tested = options.tested_range;
         let own = ModalBridge {
             responses: responses.map(|(index, v)| (index, v.role)).collect(),
             roots: roots.collect(),
             masses: masses.map(|(index, _)| index).collect(),
-            tested,
-            slow_wind: tested.and_then(|tested| slow_wind(&bridge, tested)),
+            tested: options.tested_range,
+            slow_wind: OnceLock::new(),
             // without a start the first onset is searched for
             start: options.onset,
             searched: None,
@@ -257,8 +264,9 @@ impl CoupledKind for ModalBridge {
     }
 
     fn searched(unit: &BridgeUnit, _: &Resources, memory: &Memory) -> OnsetCard {
-        let (own, limit) = (&unit.own, unit.indices.limit(memory));
-        OnsetCard::of_bridge(&unit.built, own.tested, own.slow_wind, limit).0
+        let (own, built) = (&unit.own, &unit.built);
+        let limit = unit.indices.limit(memory);
+        OnsetCard::of_bridge(built, own.tested, own.slow_wind(built), limit).0
     }
 
     /// Followed, where it can be.
@@ -268,7 +276,7 @@ impl CoupledKind for ModalBridge {
         let (own, built) = (&mut unit.own, &mut unit.built);
         let known = own.searched.as_ref();
         let onset = known.and_then(|known| known.followed(built, limit));
-        let (tested, slow_wind) = (own.tested, own.slow_wind);
+        let (tested, slow_wind) = (own.tested, own.slow_wind(built));
         let card =
             onset.and_then(|onset| OnsetCard::of_followed(built, tested, slow_wind, limit, &onset));
         card.unwrap_or_else(|| {

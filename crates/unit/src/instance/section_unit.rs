@@ -15,6 +15,7 @@ use crate::resources::Resources;
 use crate::response::{Outputs, SectionState, Stepper};
 use crate::section::{Dof, SectionModel};
 use crate::variables::{Response, Role, VariableTable};
+use std::sync::OnceLock;
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.
@@ -28,8 +29,8 @@ type ResponseIndices = Vec<[usize; 4]>;
 pub(super) struct SuspendedSection {
     responses: ResponseIndices,
     aerodynamics: Realization,
-    /// Why damping is not known in wind slower than every test.
-    slow_wind: Option<&'static str>,
+    /// Why damping is not known in wind slower than every test, once it has been asked.
+    slow_wind: OnceLock<Option<&'static str>>,
     /// Whether growth below the onset has been looked for with the current parameters.
     growth_known: bool,
     /// Searches for growth that this instance may still do.
@@ -48,7 +49,7 @@ impl SectionUnit {
         let own = SuspendedSection {
             responses,
             aerodynamics: resources.model.model.realize(),
-            slow_wind: section::slow_wind(&resources.model),
+            slow_wind: OnceLock::new(),
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
         };
@@ -177,7 +178,9 @@ impl CoupledKind for SuspendedSection {
         match unit.own.coupled(resources, &memory.values) {
             Ok((section, coupled)) => {
                 let plain = section::plain_onset(model, &section, &coupled, limit);
-                OnsetCard::search(model, &coupled, limit, plain, unit.own.slow_wind)
+                let slow_wind = || section::slow_wind(model);
+                let slow_wind = *unit.own.slow_wind.get_or_init(slow_wind);
+                OnsetCard::search(model, &coupled, limit, plain, slow_wind)
             }
             Err(why) => OnsetCard::unknown(&why),
         }

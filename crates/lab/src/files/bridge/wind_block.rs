@@ -1,10 +1,8 @@
 //! The wind along the span in a bridge file.
 
+use crate::bridge::MOST_WIND_FACTOR;
 use crate::error::{Error, Result, ensure, finite, non_negative};
 use serde::{Deserialize, Serialize};
-
-/// Factor of the wind at most: the top of a tower or a ridge has less, per cent are more.
-const MOST_WIND: f64 = 3.0;
 
 /// Wind along the span.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -48,10 +46,10 @@ impl WindBlock {
             finite(format!("{place}.along_m"), point.along_m)?;
             non_negative(format!("{place}.factor"), point.factor)?;
             ensure(
-                point.factor <= MOST_WIND,
+                point.factor <= MOST_WIND_FACTOR,
                 format_args!("{place}.factor"),
                 format_args!(
-                    "at most {MOST_WIND} times the wind speed of the bridge (a factor, not per cent)"
+                    "at most {MOST_WIND_FACTOR} times the wind speed of the bridge (a factor, not per cent)"
                 ),
                 point.factor,
             )?;

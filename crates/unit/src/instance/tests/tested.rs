@@ -108,3 +108,17 @@ fn a_wind_that_leaves_the_tests_is_said() {
         }
     }
 }
+
+/// Per cent are no factor: they made a search that did not end.
+#[test]
+fn a_wind_factor_has_a_limit() {
+    let json = fixture("rational");
+    let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
+    let mut options = bridge_of(&model);
+    options.groups[0].wind_factor = 90.0;
+    let message = options.bridge().unwrap_err().to_string();
+    assert!(
+        message.contains("wind factor: expected at most 3, found 90"),
+        "{message}"
+    );
+}
