@@ -1,13 +1,15 @@
 //! The cells of a selection: fit, error on unseen data, onset, verdict.
 
-use super::folds::{CrossValidation, Folds};
+use super::folds::{CrossValidation, Folds, HeldOut, combine, unpredicted};
 use super::guards::judge;
 use crate::error::Result;
 use crate::flutter::OnsetSearch;
 use crate::identification::Grid;
 use crate::numbered::numbered;
-use crate::section::Structure;
+use crate::section::{Dof, Structure};
+use crate::signal::extremes;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// What a selection needs besides the grid.
 #[derive(Debug, Clone)]
@@ -50,6 +52,8 @@ pub struct Selection {
     pub cells: Vec<Cell>,
     /// For each number of filters the cell that fits best, as a free search of the parameter would find it: indices.
     pub free: Vec<Option<usize>>,
+    /// Transfer functions that no cell predicts better than a force of zero: they are not in the errors on data left out.
+    pub unpredicted: Vec<String>,
     /// The recommended model; `None` when every cell is refused.
     pub recommended: Option<Recommendation>,
     /// The choice in words.
@@ -71,7 +75,13 @@ pub fn select(
     let cells = numbered(grid.values().len(), &|all, _| done(all), |value| {
         Ok(cells_of(grid, plan, &folds, value))
     })?;
-    let cells = cells.concat();
+    let (mut cells, held_out): (Vec<Cell>, Vec<Option<HeldOut>>) =
+        cells.into_iter().flatten().unzip();
+    let left_out = unpredicted(held_out.iter().flatten());
+    for (cell, held_out) in cells.iter_mut().zip(&held_out) {
+        let errors = held_out.as_ref();
+        cell.cross_validation = errors.and_then(|errors| combine(errors, &left_out));
+    }
     let filters_max = grid.filters_max;
     let free = (0..filters_max)
         .map(|l| {
@@ -88,6 +98,7 @@ pub fn select(
         filters_max,
         cells,
         free,
+        unpredicted: in_words(&left_out, &grid.dofs),
         recommended: None,
         reason: String::new(),
     };
@@ -95,18 +106,35 @@ pub fn select(
     Ok(selection)
 }
 
-fn cells_of(grid: &Grid, plan: &SelectionPlan, folds: &Folds, value: usize) -> Vec<Cell> {
+/// Transfer functions across speeds and across frequencies in words.
+fn in_words(left_out: &[BTreeSet<(usize, usize)>; 2], dofs: &[Dof]) -> Vec<String> {
+    let parts = left_out.iter().zip(["speeds", "frequencies"]);
+    let each = parts.flat_map(|(entries, what)| entries.iter().map(move |entry| (entry, what)));
+    each.map(|((i, j), what)| {
+        let (force, motion) = (dofs[*i].name(), dofs[*j].name());
+        format!("the {force} force by {motion} motion from the records of other {what}")
+    })
+    .collect()
+}
+
+/// All numbers of filters of one value; errors on data left out stand beside each, for what no cell predicts is not known yet.
+fn cells_of(
+    grid: &Grid,
+    plan: &SelectionPlan,
+    folds: &Folds,
+    value: usize,
+) -> Vec<(Cell, Option<HeldOut>)> {
     let fits = grid.fits(value, &|_| true);
     let validations = folds.validate(grid, value);
     fits.into_iter()
         .zip(validations)
         .enumerate()
-        .map(|(l, (fit, cross_validation))| {
+        .map(|(l, (fit, held_out))| {
             let mut cell = Cell {
                 filters: l + 1,
                 value: grid.values()[value],
                 residual: None,
-                cross_validation,
+                cross_validation: None,
                 cancellation: None,
                 onset_m_s: None,
                 rejected: Vec::new(),
@@ -118,7 +146,7 @@ fn cells_of(grid: &Grid, plan: &SelectionPlan, folds: &Folds, value: usize) -> V
                     let verdict = judge(&fit, &plan.structure, &plan.search, grid.tested);
                     cell.onset_m_s = verdict.onset_m_s;
                     cell.rejected = verdict.rejected;
-                    if cross_validation.is_none() {
+                    if held_out.is_none() {
                         cell.rejected.push(
                             "the records without one speed or frequency do not determine it".into(),
                         );
@@ -126,7 +154,7 @@ fn cells_of(grid: &Grid, plan: &SelectionPlan, folds: &Folds, value: usize) -> V
                 }
                 Err(error) => cell.rejected.push(format!("it cannot be fitted ({error})")),
             }
-            cell
+            (cell, held_out)
         })
         .collect()
 }
@@ -144,6 +172,8 @@ pub struct Recommendation {
     pub score: f64,
     /// Its onset, m/s.
     pub onset_m_s: Option<f64>,
+    /// Least and greatest onset of the models within one standard error of the least error, m/s; `None` where none of them flutters.
+    pub onsets_within_m_s: Option<[f64; 2]>,
 }
 
 /// A cell that may be used.
@@ -177,7 +207,7 @@ fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
         })
         .collect();
     let least = usable.iter().min_by(|a, b| a.score().total_cmp(&b.score()));
-    let Some(best) = least else {
+    let Some(best) = least.copied() else {
         let most = most_common_reason(selection);
         let reason = format!(
             "No model can be recommended: every cell is refused, most often because {most}."
@@ -185,25 +215,55 @@ fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
         return (None, reason);
     };
     let limit = best.score() * best.score() + best.validation.standard_error_of_square;
-    let chosen = usable
-        .iter()
-        .filter(|u| u.score() * u.score() <= limit)
-        .min_by(|a, b| {
-            let filters = a.cell.filters.cmp(&b.cell.filters);
-            filters.then(a.score().total_cmp(&b.score()))
-        })
-        .unwrap_or(best);
+    let within = usable
+        .into_iter()
+        .filter(|u| u.score() * u.score() <= limit);
+    let within: Vec<Usable<'_>> = within.collect();
+    let chosen = within.iter().min_by(|a, b| {
+        let filters = a.cell.filters.cmp(&b.cell.filters);
+        filters.then(a.score().total_cmp(&b.score()))
+    });
+    let chosen = *chosen.unwrap_or(&best);
+    let onsets = within.iter().filter_map(|u| u.cell.onset_m_s);
+    let (low, high) = extremes(onsets);
     let recommended = Recommendation {
         cell: chosen.at,
         filters: chosen.cell.filters,
         value: chosen.cell.value,
         score: chosen.score(),
         onset_m_s: chosen.cell.onset_m_s,
+        onsets_within_m_s: (low <= high).then_some([low, high]),
     };
-    (Some(recommended), explain(selection, chosen, best))
+    let mut reason = explain(selection, &chosen, &best);
+    reason.push_str(&onsets_in_words(&within));
+    for name in &selection.unpredicted {
+        reason.push_str(&format!(
+            " No model predicts {name} better than a force of zero: it does not count in the errors."
+        ));
+    }
+    reason.push_str(&why_not_others(selection, &chosen));
+    (Some(recommended), reason)
 }
 
-/// Why `chosen` and not `best`, what speaks for a wider grid, and what fits better but is refused.
+/// How far the choice among models that are as good moves the onset; nothing for a single one.
+fn onsets_in_words(within: &[Usable<'_>]) -> String {
+    let onsets = within.iter().filter_map(|u| u.cell.onset_m_s);
+    let (low, high) = extremes(onsets.clone());
+    let none = match within.len() - onsets.count() {
+        0 => String::new(),
+        all if all == within.len() => return String::new(),
+        some => format!(", {some} of them none"),
+    };
+    if within.len() < 2 {
+        return String::new();
+    }
+    let all = within.len();
+    format!(
+        " The {all} models within one standard error have onsets from {low:.3} to {high:.3} m/s{none}."
+    )
+}
+
+/// Why `chosen` and not `best`.
 fn explain(selection: &Selection, chosen: &Usable<'_>, best: &Usable<'_>) -> String {
     let symbol = &selection.symbol;
     let (own, error) = (name(chosen.cell, symbol), percent(chosen.score()));
@@ -223,6 +283,13 @@ fn explain(selection: &Selection, chosen: &Usable<'_>, best: &Usable<'_>) -> Str
         reason.push_str(&format!("; onset {onset:.3} m/s"));
     }
     reason.push('.');
+    reason
+}
+
+/// What speaks for a wider grid, and what fits better but is refused.
+fn why_not_others(selection: &Selection, chosen: &Usable<'_>) -> String {
+    let symbol = &selection.symbol;
+    let mut reason = String::new();
     let (along, values) = (chosen.at / selection.filters_max, selection.values.len());
     if values > 1 && (along == 0 || along + 1 == values) {
         reason.push_str(&format!(

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::identification::{CellFit, Grid, StretchLabel};
 use crate::signal::mean;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Mean speeds or frequencies less than this ratio apart are one.
 const SAME: f64 = 1.05;
@@ -22,6 +22,12 @@ pub struct CrossValidation {
     pub standard_error_of_square: f64,
 }
 
+/// Squared relative errors of transfer functions, by the places of force and motion among the degrees of freedom.
+type Errors = BTreeMap<(usize, usize), f64>;
+
+/// Errors of a cell fold by fold: across speeds, across frequencies; none where there was nothing to leave out.
+pub(super) type HeldOut = [Vec<Errors>; 2];
+
 /// Stretches that are left out together.
 pub(super) struct Folds {
     speeds: Vec<Vec<usize>>,
@@ -36,16 +42,12 @@ impl Folds {
         }
     }
 
-    /// All numbers of filters of one value of the axis; `None` where a fit without a fold fails or nothing can be left
-    /// out.
-    pub(crate) fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<CrossValidation>> {
-        // none of a fit that failed, of those that did not perhaps nothing to leave out
-        let errors = |folds: &[Vec<usize>]| -> Vec<Option<Option<Vec<f64>>>> {
+    /// Errors of all numbers of filters of one value of the axis across speeds and across frequencies, fold by fold; `None` where a
+    /// fit without a fold fails or nothing can be left out.
+    pub(crate) fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<HeldOut>> {
+        let errors = |folds: &[Vec<usize>]| {
             let mut of_filters = vec![Some(Vec::new()); grid.filters_max];
-            if folds.len() < 2 {
-                return vec![Some(None); of_filters.len()];
-            }
-            for fold in folds {
+            for fold in folds.iter().filter(|_| folds.len() > 1) {
                 let fits = grid.fits(value, &|s| !fold.contains(&s));
                 for (errors, fit) in of_filters.iter_mut().zip(fits) {
                     match (errors.as_mut(), held_out(grid, value, fold, &fit)) {
@@ -54,17 +56,19 @@ impl Folds {
                     }
                 }
             }
-            of_filters.into_iter().map(|e| e.map(Some)).collect()
+            of_filters
         };
         let pairs = errors(&self.speeds)
             .into_iter()
             .zip(errors(&self.frequencies));
-        pairs.map(|(s, f)| combine(s?, f?)).collect()
+        pairs
+            .map(|(s, f)| Some([s?, f?]).filter(|parts| parts.iter().any(|p| !p.is_empty())))
+            .collect()
     }
 }
 
-/// Mean squared relative error over the transfer functions in the stretches left out.
-fn held_out(grid: &Grid, value: usize, fold: &[usize], fit: &Result<CellFit>) -> Option<f64> {
+/// Mean squared relative error of each transfer function, by force and motion, in the stretches left out.
+fn held_out(grid: &Grid, value: usize, fold: &[usize], fit: &Result<CellFit>) -> Option<Errors> {
     let fit = fit.as_ref().ok()?;
     let mut sums: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
     for &stretch in fold {
@@ -77,31 +81,65 @@ fn held_out(grid: &Grid, value: usize, fold: &[usize], fit: &Result<CellFit>) ->
             *sum = (sum.0 + residual, sum.1 + total);
         }
     }
-    let ratios: Vec<f64> = sums
-        .values()
-        .filter(|(_, total)| *total > 0.0)
-        .map(|(residual, total)| residual / total)
-        .collect();
-    (!ratios.is_empty()).then(|| mean(&ratios))
+    sums.retain(|_, (_, total)| *total > 0.0);
+    let ratio = |(entry, (residual, total))| (entry, residual / total);
+    (!sums.is_empty()).then(|| sums.into_iter().map(ratio).collect())
 }
 
-fn combine(speeds: Option<Vec<f64>>, frequencies: Option<Vec<f64>>) -> Option<CrossValidation> {
-    let parts: Vec<&Vec<f64>> = speeds.iter().chain(&frequencies).collect();
-    if parts.is_empty() {
-        return None;
+/// Transfer functions that no cell predicts better than a force of zero would, across speeds and across frequencies.
+pub(super) fn unpredicted<'a>(
+    cells: impl Iterator<Item = &'a HeldOut>,
+) -> [BTreeSet<(usize, usize)>; 2] {
+    let mut least = [Errors::new(), Errors::new()];
+    for cell in cells {
+        for (least, folds) in least.iter_mut().zip(cell) {
+            let entries: BTreeSet<_> = folds.iter().flat_map(Errors::keys).copied().collect();
+            for entry in entries {
+                let all: Vec<f64> = folds
+                    .iter()
+                    .filter_map(|e| e.get(&entry))
+                    .copied()
+                    .collect();
+                let least = least.entry(entry).or_insert(f64::INFINITY);
+                *least = least.min(mean(&all));
+            }
+        }
     }
-    let count = parts.len() as f64;
-    let square = parts.iter().map(|e| mean(e)).sum::<f64>() / count;
-    let variance: f64 = parts
-        .iter()
+    least.map(|mut least| {
+        least.retain(|_, error| *error >= 1.0);
+        least.into_keys().collect()
+    })
+}
+
+/// Errors of a cell over the transfer functions that are not left out.
+pub(super) fn combine(
+    cell: &HeldOut,
+    left_out: &[BTreeSet<(usize, usize)>; 2],
+) -> Option<CrossValidation> {
+    let of_fold = |errors: &Errors, left_out: &BTreeSet<(usize, usize)>| {
+        let kept = errors.iter().filter(|(entry, _)| !left_out.contains(entry));
+        let kept: Vec<f64> = kept.map(|(_, error)| *error).collect();
+        // of a fold with nothing else all
+        let all = || errors.values().copied().collect::<Vec<_>>();
+        mean(&if kept.is_empty() { all() } else { kept })
+    };
+    let parts: [Vec<f64>; 2] = std::array::from_fn(|p| {
+        let folds = cell[p].iter();
+        folds.map(|errors| of_fold(errors, &left_out[p])).collect()
+    });
+    let used = || parts.iter().filter(|part| !part.is_empty());
+    let count = used().count() as f64;
+    let square = used().map(|e| mean(e)).sum::<f64>() / count;
+    let variance: f64 = used()
         .map(|e| {
             let (m, n) = (mean(e), e.len() as f64);
             e.iter().map(|x| (x - m).powi(2)).sum::<f64>() / (n - 1.0) / n
         })
         .sum();
-    Some(CrossValidation {
-        across_speeds: speeds.as_ref().map(|e| mean(e).sqrt()),
-        across_frequencies: frequencies.as_ref().map(|e| mean(e).sqrt()),
+    let root = |part: &Vec<f64>| (!part.is_empty()).then(|| mean(part).sqrt());
+    (count > 0.0).then(|| CrossValidation {
+        across_speeds: root(&parts[0]),
+        across_frequencies: root(&parts[1]),
         score: square.sqrt(),
         standard_error_of_square: variance.sqrt() / count,
     })
@@ -148,11 +186,28 @@ mod tests {
 
     #[test]
     fn scores_are_means_of_squares() {
-        let both = combine(Some(vec![0.01, 0.03]), Some(vec![0.04, 0.04])).unwrap();
+        let of = |error: f64| Errors::from([((0, 0), error)]);
+        let part = |errors: [f64; 2]| errors.map(of).to_vec();
+        let none = [BTreeSet::new(), BTreeSet::new()];
+        let both = combine(&[part([0.01, 0.03]), part([0.04, 0.04])], &none).unwrap();
         assert!((both.across_speeds.unwrap() - 0.02_f64.sqrt()).abs() < 1e-15);
         assert!((both.score - 0.03_f64.sqrt()).abs() < 1e-15);
         // 0.01 is the standard error of 0.01 and 0.03; the other part has none; half of both
         assert!((both.standard_error_of_square - 0.005).abs() < 1e-15);
-        assert!(combine(None, None).is_none());
+        assert!(combine(&[Vec::new(), Vec::new()], &none).is_none());
+    }
+
+    /// What is worse than nothing in every cell across speeds is left out there, and there alone; a fold of it alone keeps it.
+    #[test]
+    fn what_no_cell_predicts_decides_nothing() {
+        let of = |good: f64, bad: f64| Errors::from([((0, 0), good), ((1, 1), bad)]);
+        let alone = Errors::from([((1, 1), 3.0)]);
+        let cell = |bad| [vec![of(0.01, bad), alone.clone()], vec![of(0.01, 0.5)]];
+        let cells = [cell(1.5), cell(7.0)];
+        let left_out = unpredicted(cells.iter());
+        assert_eq!(left_out, [BTreeSet::from([(1, 1)]), BTreeSet::new()]);
+        let errors = combine(&cells[0], &left_out).unwrap();
+        assert!((errors.across_speeds.unwrap() - 1.505_f64.sqrt()).abs() < 1e-15);
+        assert!((errors.across_frequencies.unwrap() - 0.255_f64.sqrt()).abs() < 1e-15);
     }
 }

@@ -5,7 +5,7 @@ use crate::aerodynamics::RationalModel;
 use crate::files::derivatives::embedded;
 use crate::flutter::OnsetSearch;
 use crate::identification::{Constraints, Grid, GridAxis, TimeFit, TimeWeights};
-use crate::section::{Dof, SectionModel};
+use crate::section::{Dof, SectionModel, Translation};
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
 
 fn logarithmic(low: f64, high: f64, count: usize) -> Vec<f64> {
@@ -20,9 +20,18 @@ fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
 }
 
 fn selected(records: &[Record], axis: GridAxis, filters: usize) -> Selection {
+    selected_with(&SectionModel::table_4_1(), records, axis, filters)
+}
+
+fn selected_with(
+    section: &SectionModel,
+    records: &[Record],
+    axis: GridAxis,
+    filters: usize,
+) -> Selection {
     let grid = Grid::new(&sources(records), axis, filters, &|_| ()).unwrap();
     let plan = SelectionPlan {
-        structure: SectionModel::table_4_1().structure().unwrap(),
+        structure: section.structure().unwrap(),
         search: OnsetSearch {
             speed_max_m_s: 60.0,
             speeds: 120,
@@ -73,6 +82,42 @@ fn the_over_fit_of_ln21_5500_is_refused() {
     assert!(cell.rejected.is_empty() && recommended.filters < 4);
     let onset = recommended.onset_m_s.unwrap();
     assert!((36.0..39.0).contains(&onset), "{onset}");
+}
+
+/// The drag of LN21-5800 by sway at one speed says nothing of that at others. Left in, it decides for one filter, 36.6 m/s; what is
+/// predicted decides as with two motions, whose recommendation flutters at 35.1 m/s.
+#[test]
+fn a_force_that_nobody_predicts_does_not_decide() {
+    let deck = embedded::deck("LN21-5800").unwrap();
+    let plan = TunnelPlan::default();
+    let recommended = |dofs: &[Dof]| {
+        let records = plan.records_from_table(&deck, dofs).unwrap();
+        let axis = GridAxis::Continuous(logarithmic(0.4, 2.2, 5), Box::default());
+        let mut section = SectionModel::table_4_1();
+        section.lateral = dofs.contains(&Dof::Lateral).then_some(Translation {
+            mass_kg_m: 15.0,
+            frequency_hz: Some(1.5),
+            stiffness_n_m2: None,
+            damping_ratio: 0.003,
+        });
+        selected_with(&section, &records, axis, 3)
+    };
+    let (two, three) = (recommended(&Dof::TWO), recommended(&Dof::THREE));
+    assert!(two.unpredicted.is_empty());
+    let [drag] = &three.unpredicted[..] else {
+        panic!("{:?}", three.unpredicted);
+    };
+    assert!(drag.starts_with("the lateral force by lateral motion") && drag.ends_with("speeds"));
+    assert!(three.reason.contains(drag), "{}", three.reason);
+    let [two, three] = [two, three].map(|s| s.recommended.unwrap());
+    assert_eq!((two.filters, three.filters), (2, 2));
+    let [low, high] = three.onsets_within_m_s.unwrap();
+    let onset = three.onset_m_s.unwrap();
+    assert!(
+        low <= onset && onset <= high && high - low < 2.5,
+        "{low} {onset} {high}"
+    );
+    assert!((onset - two.onset_m_s.unwrap()).abs() < 0.5, "{onset}");
 }
 
 /// Thesis filters: eight with α = 0.6 on the flat plate leave no stable speed, and the discrete grid refuses them.
