@@ -231,7 +231,7 @@ pub fn of_model(
 }
 
 /// The onset of a trained model.
-pub fn without_interval(
+fn without_interval(
     section: &SectionModel,
     model: &Model,
     search: &OnsetSearch,

@@ -2,10 +2,10 @@
 
 use crate::convert::{Reduced, dof_names, reduced, restored, shown, to_python};
 use crate::error::{raised, wrong};
-use crate::flutter::without_interval;
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
-use aerodeck::flutter::divergence_with_forces;
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::flutter::{divergence_with_forces, find_onset};
 use aerodeck::identification::FitReport;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
@@ -207,9 +207,11 @@ impl Model {
         let mut trained = self.trained(section)?;
         if self.stored.is_none() {
             let range = crate::section::usual_range(&trained.section);
-            let found = without_interval(&trained.section, self, &range.search(), "eigenvalues")?;
             let limit = range.speed_max_m_s;
             let structure = trained.section.structure().map_err(raised)?;
+            let coupled = CoupledSection::with_model(&structure, &self.model).map_err(raised)?;
+            let found = find_onset(&self.name, &coupled, &range.search(), Some(self.tested));
+            let found = found.map_err(raised)?;
             let divergence = divergence_with_forces(&structure, &self.model);
             let first = found.first_limit_m_s(divergence.map_err(raised)?, limit);
             trained.experiment = ExportBlock::default().experiment(first, limit);
