@@ -6,7 +6,7 @@ use crate::convert::{
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
 use crate::work::detached;
-use aerodeck::error::without_control_characters;
+use aerodeck::error::{positive, without_control_characters};
 use aerodeck::files::text::file_name;
 use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
@@ -87,6 +87,14 @@ impl Records {
         name: &str,
     ) -> PyResult<Self> {
         without_control_characters("name", name).map_err(raised)?;
+        for (key, value) in [
+            ("sampling_hz", sampling_hz),
+            ("mean_speed_m_s", mean_speed_m_s),
+            ("width_m", width_m),
+            ("air_density_kg_m3", air_density_kg_m3),
+        ] {
+            positive(key, value).map_err(raised)?;
+        }
         let dofs = self::dofs(&dofs)?;
         let (motion, force) = (table("motion", motion)?, table("force", force)?);
         let shapes = [motion.shape(), force.shape()];

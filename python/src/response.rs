@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::section::Section;
 use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::error::{finite, non_negative};
 use aerodeck::response::{self, Inputs, Outputs, SectionState};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -316,6 +317,13 @@ impl Stepper {
             let found = format!("one of {}", values.len());
             let expected = format!("one of {expected} states and {n} motions");
             return Err(wrong("snapshot", &expected, found));
+        }
+        let numbers = values.iter().chain(outputs.iter().flatten());
+        for number in numbers.chain([&time_s]) {
+            finite("snapshot", *number).map_err(raised)?;
+        }
+        if let Some(wind) = last_wind_m_s {
+            non_negative("snapshot: wind speed", wind).map_err(raised)?;
         }
         own.time_s = time_s;
         own.state = SectionState {

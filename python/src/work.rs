@@ -106,7 +106,7 @@ fn in_this_process<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Does it on so many threads; left out, on one for each core.
+/// Does it on so many threads, on no more than there are cores; left out, on one for each.
 ///
 /// # Errors
 /// [`aerodeck::Error::Numerical`] when the system gives no thread.
@@ -117,6 +117,8 @@ pub fn on_threads<T: Send>(
     let Some(threads) = threads else {
         return Ok(work());
     };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.min(cores);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| aerodeck::Error::Numerical(e.to_string()))?;
     Ok(pool.install(work))

@@ -175,6 +175,9 @@ def test_motion_grows_above_the_onset_and_the_stepper_gives_the_same_bits(sectio
     for name in ["time_s", "displacement", "rate", "acceleration", "force"]:
         np.testing.assert_array_equal(getattr(copied, name), getattr(stepper, name))
     stepper.restore(early)
+    for bad in [(float("nan"), *early[1:]), (*early[:3], -1.0, early[4])]:
+        with pytest.raises(aerodeck.InputError, match="snapshot"):
+            stepper.restore(bad)
     np.testing.assert_array_equal([stepper.step(0.01, factor * onset) for _ in range(50)], first)
 
 
@@ -238,6 +241,28 @@ def test_records_from_arrays_are_those_of_the_tunnel(table, section):
     for bad, expected in [(force + np.nan, "finite numbers"), (force + 1j, "real numbers")]:
         with pytest.raises(aerodeck.InputError, match=expected):
             aerodeck.Records.from_arrays(motion, bad, **plain)
+    for key, bad in [("sampling_hz", -1.0), ("mean_speed_m_s", np.nan), ("width_m", -5.0), ("air_density_kg_m3", 0.0)]:
+        with pytest.raises(aerodeck.InputError, match=key):
+            aerodeck.Records.from_arrays(motion, force, **{**plain, key: bad})
+
+
+def test_records_in_another_unit_are_doubted(table, section):
+    records = aerodeck.Records.virtual_tunnel(table)
+
+    def verdict(factor, **other):
+        scaled = None
+        for i in range(len(records)):
+            _, motion, force = records.to_numpy(i)
+            head = {k: v for k, v in records.header(i).items() if k not in ("segments", "source", "licence")}
+            segments = [(s["frequency_hz"], s["start_s"], s["end_s"]) for s in records.header(i)["segments"]]
+            one = aerodeck.Records.from_arrays(motion, force * factor, segments=segments, **{**head, **other})
+            scaled = one if scaled is None else scaled + one
+        return aerodeck.flutter(section, aerodeck.fit_laguerre(scaled), required_speed_m_s=45.0).verdict
+
+    assert verdict(1.0)["outcome"]["state"] == "not_met"
+    for wrong in [verdict(1e-3), verdict(0.5), verdict(1.0, air_density_kg_m3=1250.0)]:
+        assert wrong["outcome"]["state"] == "cannot_be_judged"
+        assert any(d["kind"] == "implausible_input" for d in wrong["doubts"]), wrong["doubts"]
 
 
 @pytest.mark.skipif("AERODECK_TRAINED" not in os.environ, reason="no model trained by the program")

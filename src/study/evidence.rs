@@ -10,7 +10,7 @@ use crate::flutter::{
     FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, QuasiSteadyOnset,
     StableRange, find_onset, judged_speeds, table_tested_from,
 };
-use crate::plausibility::of_section;
+use crate::plausibility::{self, of_section};
 use crate::section::{SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
@@ -42,6 +42,11 @@ pub(crate) fn section_evidence(
     failed: &[StageFailure],
 ) -> Evidence {
     let name = own.model.map(|m| m.name.as_str());
+    let mut implausible = [deck.findings(), &study_findings(study)[..]].concat();
+    let odd = own
+        .model
+        .map(|m| plausibility::of_model(&m.name, &m.model, m.tested_range, deck.findings()));
+    implausible.extend(odd.into_iter().flatten());
     let mut evidence = Evidence {
         required: study.flutter.required(),
         flutter: own
@@ -57,7 +62,7 @@ pub(crate) fn section_evidence(
         failures: failures(study, failed, name),
         constraints: own.moved,
         test_speeds: own.uncertainty.and_then(one_test_speed),
-        implausible: [deck.findings(), &study_findings(study)[..]].concat(),
+        implausible,
         tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
         remarks: deck.notes(),
         ..Evidence::default()
@@ -124,7 +129,11 @@ pub(crate) fn saved_evidence(
     Ok(Evidence {
         constraints,
         test_speeds: one_test_speed(&known),
-        implausible: of_section(section),
+        implausible: [
+            of_section(section),
+            plausibility::of_model(&model.name, &model.model, tested, &[]),
+        ]
+        .concat(),
         ..Evidence::of_section(
             &forces(&model.name, ""),
             &coupled,

@@ -2,12 +2,14 @@
 
 use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::bridge::{Bridge, BridgeMode, Node};
+use aerodeck::bridge::{DampedPoint, Dampers, MassDamper, ViscousLink};
 use aerodeck::bridge::{StripGroup, tributary_lengths};
 use aerodeck::files::bridge::{BridgeModes, embedded};
 use aerodeck::plausibility::{
     Finding, FindingKind, FindingSeverity, Girder, of_bridge, of_modes, of_modes_left_out,
     of_profile, sentences,
 };
+use aerodeck::section::Dof;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -335,4 +337,67 @@ fn a_wind_profile_beyond_the_girder_is_doubted() {
             "{text}"
         );
     }
+}
+
+/// Dampers as they are built have no finding; masses, ratios, arms and coefficients that are not, and what nothing moves, have one each.
+#[test]
+fn dampers_are_compared_with_the_modes() {
+    let plain = bridge(langenuen(), 31.0, 1.25);
+    let middle = plain.nodes.len() / 2;
+    let torsion = plain
+        .modes
+        .iter()
+        .max_by(|a, b| {
+            a.shape[middle][2]
+                .abs()
+                .total_cmp(&b.shape[middle][2].abs())
+        })
+        .unwrap()
+        .frequency_hz;
+    let point = |offset_m| DampedPoint {
+        node: middle,
+        motion: Dof::Vertical,
+        offset_m,
+    };
+    let good = MassDamper {
+        name: "damper 1".into(),
+        at: point(12.0),
+        mass_kg: 1e4,
+        frequency_hz: torsion,
+        damping_ratio: 0.1,
+    };
+    let link = |to, coefficient| ViscousLink {
+        name: "link 1".into(),
+        at: point(0.0),
+        to,
+        coefficient,
+    };
+    let said = |masses: &[MassDamper], links: &[ViscousLink]| {
+        let (masses, links) = (masses.to_vec(), links.to_vec());
+        let dampers = Dampers { masses, links };
+        sentences(&of_bridge(&plain.clone().with_dampers(dampers).unwrap()))
+    };
+    assert_eq!(said(&[good.clone()], &[link(None, 1e5)]), [""; 0]);
+    let changed = |change: fn(&mut MassDamper)| {
+        let mut damper = good.clone();
+        change(&mut damper);
+        damper
+    };
+    for (damper, words) in [
+        (changed(|d| d.mass_kg = 1e7), "damper 1: mass_kg"),
+        (
+            changed(|d| d.damping_ratio = 10.0),
+            "in per cent it would be 0.1",
+        ),
+        (
+            changed(|d| d.at.offset_m = 12_000.0),
+            "in millimetres it would be 12 m",
+        ),
+        (changed(|d| d.frequency_hz *= 100.0), "tuned to no mode"),
+    ] {
+        let said = said(&[damper], &[]);
+        assert!(said.iter().any(|s| s.contains(words)), "{words}: {said:?}");
+    }
+    assert!(said(&[], &[link(Some(point(0.0)), 1e5)])[0].contains("damps nothing"));
+    assert!(said(&[], &[link(None, 1e12)])[0].starts_with("link 1: coefficient"));
 }

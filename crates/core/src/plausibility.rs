@@ -18,7 +18,7 @@ pub use limits::{
 };
 pub use section::WIDEST_MODEL_M;
 pub use section::{of_required_speed, of_section, unusual_air};
-pub use table::of_table;
+pub use table::{of_model, of_table};
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -3,9 +3,12 @@
 use super::BridgeStudy;
 use super::answers::coupled;
 use crate::aerodynamics::RationalAdmittance;
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
-use crate::flutter::{BridgeMotion, FlutterSearch, divergence_with_forces};
+use crate::flutter::{
+    BridgeMotion, FlutterSearch, OnsetSearch, divergence_with_forces, unwanted_growth_below,
+};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -13,6 +16,7 @@ use crate::fmu::onset_start::{OnsetStart, simulated_onset};
 use crate::fmu::package::BridgeExport;
 use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
+use crate::units::ReducedFrequencyRange;
 
 /// Amplitude of the default release where the girder moves most, of half the width.
 const RELEASE: f64 = 0.01;
@@ -37,16 +41,18 @@ pub struct BridgeExportOptions {
     pub turbulence: Option<FieldTable>,
 }
 
-/// Refuses a bridge that grows below its onset, tested there or not.
-fn check_growth(found: &FlutterSearch) -> Result<()> {
-    let below = found.onset().map(|o| o.spurious_speeds_m_s.as_slice());
-    let why = match (found, below) {
-        (_, Some([speed, ..])) => format!(
-            "grows at {speed:.3} m/s, where nothing was tested, below its {}",
-            found.explain()
-        ),
-        (FlutterSearch::UnstableAtOrBelow(_), _) => format!("is {}", found.explain()),
-        _ => return Ok(()),
+/// Refuses a bridge that grows below its onset, tested there or not, or only where nothing was tested.
+fn check_growth(
+    found: &FlutterSearch,
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<()> {
+    let growth = unwanted_growth_below(Some(found), section, search, tested)?;
+    let why = match found {
+        FlutterSearch::UnstableAtOrBelow(_) => format!("is {}", found.explain()),
+        _ if growth.is_none() => return Ok(()),
+        _ => growth.explain(),
     };
     let text = format!("the bridge is not exported: it {why}");
     Err(Error::Unstable(text))
@@ -64,9 +70,10 @@ impl BridgeStudy {
         let search = self.search();
         // as the unit itself judges
         let section = coupled(&self.by_model)?;
-        let found = simulated_onset("bridge", &section, &search, self.tested_range())?;
+        let tested = self.tested_range();
+        let found = simulated_onset("bridge", &section, &search, tested)?;
         if !wanted.allow_unstable {
-            check_growth(&found)?;
+            check_growth(&found, &section, &search, tested)?;
         }
         let bridge = &self.by_model;
         let divergence = divergence_with_forces(&bridge.structure(), &bridge.forces())?;

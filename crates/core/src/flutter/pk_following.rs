@@ -152,20 +152,48 @@ impl StructureInWind<'_> {
         range: ReducedFrequencyRange,
         still: &Modes,
     ) -> Result<Vec<StartingMode>> {
-        let entry = |mode: &Mode| -> Result<Option<StartingMode>> {
-            let mut thin = self.structure.clone();
-            let mut at = Some((0.0, mode.clone()));
-            for i in 1..=AIR_STEPS {
-                thin.air_density_kg_m3 =
-                    self.structure.air_density_kg_m3 * i as f64 / AIR_STEPS as f64;
-                at = match at {
-                    Some((_, mode)) => pk_mode_at(&thin, self.model, range.max, &mode)?,
-                    None => None,
-                };
+        let mut thin = self.structure.clone();
+        let mut at: Vec<(f64, Mode)> = still.all.iter().map(|m| (0.0, m.clone())).collect();
+        for i in 1..=AIR_STEPS {
+            thin.air_density_kg_m3 = self.structure.air_density_kg_m3 * i as f64 / AIR_STEPS as f64;
+            let before: Vec<Mode> = at.into_iter().map(|(_, mode)| mode).collect();
+            let solved = |mode: &Mode| pk_mode_at(&thin, self.model, range.max, mode);
+            at = self.of_each(&before, solved)?;
+            for i in 0..at.len() {
+                let double = (0..i).find(|&j| same_root(&at[i].1, &at[j].1));
+                let start = double.and_then(|j| self.drawn_apart(&before, &at[i].1, &at[j].1));
+                let own = start.map(|start| solved(&start)).transpose()?.flatten();
+                let is_new = |own: &(f64, Mode)| at.iter().all(|(_, m)| !same_root(&own.1, m));
+                if let Some(own) = own.filter(is_new) {
+                    at[i] = own;
+                }
             }
-            Ok(at.map(|(speed, mode)| StartingMode { speed, mode }))
+        }
+        let entry = |(speed, mode)| StartingMode { speed, mode };
+        Ok(at.into_iter().map(entry).collect())
+    }
+
+    /// Where a mode that came on the root of another can start anew: the first breath of wind mixes the shapes of modes of like
+    /// frequencies, and what the `other` has not taken of them is left for it. Nothing for a section, whose roots are all computed.
+    fn drawn_apart(&self, before: &[Mode], double: &Mode, other: &Mode) -> Option<Mode> {
+        let of = |branch: usize| before.iter().find(|m| m.branch == branch);
+        let (own, taken) = (of(double.branch)?, other.shape.normalize());
+        let rest = |m: &Mode| {
+            let shape = m.shape.normalize();
+            let along = taken.dotc(&shape);
+            shape - &taken * along
         };
-        self.of_each(&still.all, entry)
+        let (of_own, of_other) = (rest(own), rest(of(other.branch)?));
+        let shape = if of_own.norm() > of_other.norm() {
+            of_own
+        } else {
+            of_other
+        };
+        let is_left = self.structure.is_modal() && shape.norm() > SEPARATION;
+        is_left.then(|| Mode {
+            shape,
+            ..own.clone()
+        })
     }
 
     /// What is found of each mode, on all cores where there are many.

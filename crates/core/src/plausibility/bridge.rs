@@ -1,5 +1,6 @@
 //! Bridges: the line of the nodes, modes against each other, masses and frequencies against what a span and a width suggest.
 
+mod dampers;
 mod line;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
@@ -7,6 +8,7 @@ use super::section::{USUAL_DAMPING, fast_plate, unusual_air, unusual_damping, un
 use super::{Finding, FindingKind};
 use crate::bridge::{Bridge, BridgeMode, Node, StripGroup};
 use crate::section::{Dof, Rotation, SectionModel, Translation};
+use dampers::of_dampers;
 pub use line::of_profile;
 use line::{LENGTH, length_m, of_line};
 use std::f64::consts::{PI, TAU};
@@ -89,6 +91,9 @@ pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
     }
     let length = length_m(&bridge.nodes);
     let scale_is_usual = found.is_empty() && beyond("", length, &LENGTH).is_none();
+    if scale_is_usual {
+        found.extend(of_dampers(bridge));
+    }
     if scale_is_usual && bridge.nodes.len() > 2 {
         let of_frequencies = frequencies(bridge, length);
         found.extend(masses(bridge, of_frequencies.is_empty()));

@@ -236,13 +236,16 @@ fn quick_length(least: usize) -> usize {
     long_enough.unwrap_or(16 * unit)
 }
 
+/// Finer levels than this tell nothing more, and memory and time grow with them.
+const MOST_LEVELS: usize = 100_000;
+
 fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
     let p = parameters;
     ensure(
-        p.level_count != 0,
+        (1..=MOST_LEVELS).contains(&p.level_count),
         "number of wavelet levels",
-        "at least 1",
-        "0",
+        format_args!("1 to {MOST_LEVELS}"),
+        p.level_count,
     )?;
     positive("lowest wavelet frequency, Hz", p.frequency_min_hz)?;
     positive("central frequency of the wavelet", p.central_frequency)?;

@@ -23,6 +23,8 @@ use deck::{SEARCHED, SyntheticDeck};
 use serde::Serialize;
 
 /// Required speeds over the true onset with which a deck is asked whether it meets them.
+/// Decks of a family at most: more are days.
+const MOST_DECKS: usize = 1_000_000;
 const REQUIRED: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.02, 1.1, 1.25, 1.5];
 
 /// What the program says of one deck.
@@ -93,7 +95,12 @@ pub struct FamilyReport {
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) for a family without decks; [`Error::Numerical`](crate::error::Error::Numerical) when no deck that flutters can be drawn.
 pub fn family_coverage(plan: &FamilyPlan, progress: OnDone<'_>) -> Result<FamilyReport> {
-    ensure(plan.decks != 0, "decks", "at least 1", "0")?;
+    ensure(
+        (1..=MOST_DECKS).contains(&plan.decks),
+        "decks",
+        format_args!("1 to {MOST_DECKS}"),
+        plan.decks,
+    )?;
     let decks = numbered(plan.decks, progress, |number| {
         Ok(judged(number, &SyntheticDeck::draw(plan, number)?))
     })?;

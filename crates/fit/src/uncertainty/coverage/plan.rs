@@ -55,14 +55,19 @@ impl Default for CoveragePlan {
     }
 }
 
+/// More are hours, and their results no longer fit into memory.
+const MOST_REPETITIONS: usize = 1_000_000;
+
 impl CoveragePlan {
     pub(super) fn validate(&self) -> Result<()> {
         ensure(
-            self.repetitions >= 2,
+            (2..=MOST_REPETITIONS).contains(&self.repetitions),
             "repetitions",
-            "at least 2",
+            format_args!("2 to {MOST_REPETITIONS}"),
             self.repetitions,
         )?;
+        // without any the repetitions are one, and their scatter is rounding
+        positive("tunnel.noise_fraction", self.tunnel.noise_fraction)?;
         self.poles
             .iter()
             .try_for_each(|p| positive("poles", *p).map(drop))?;
