@@ -86,11 +86,13 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let made: Vec<Record>;
     let measured: RecordSet;
+    let mut note = None;
     let records: Vec<&dyn RecordSource> = if study.deck.records.is_empty() {
         made = deck.virtual_records(&study)?;
         made.iter().map(|r| r as _).collect()
     } else {
         measured = RecordSet::measured(&study)?;
+        note = measured.note.as_ref().map(|n| format!("note: {n}\n"));
         measured.select(study.deck.speed_groups.as_deref())?
     };
     let (grid, selection) = judge(&args.choice, &study, &records, progress)?;
@@ -102,7 +104,8 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         super::figures::write(stem, &mut out, || Ok(figure))?;
     }
     let mut written = out.commit()?;
-    let head = format!("{}\n{}\n\n", study.name, deck.description());
+    let note = note.unwrap_or_default();
+    let head = format!("{}\n{}\n{note}\n", study.name, deck.description());
     let mut text = head + &text(&selection);
     if let Some(name) = &args.write {
         match recommended(&args.choice, &study, &selection) {

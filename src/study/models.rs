@@ -36,6 +36,9 @@ pub fn train_one(
         estimate,
         forms,
     } = fit(study, block, deck, records, progress)?;
+    if block.table.is_none() {
+        report.notes.extend(records.note.clone());
+    }
     let onset = |model: &Model, tested| onset_of(study, &block.name, model, tested);
     // a search that fails takes no trained model with it
     let search = onset(&model, report.tested_range).unwrap_or_else(|e| {

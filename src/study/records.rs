@@ -4,6 +4,7 @@ use super::Study;
 use super::deck::{Deck, FLAT_PLATE, chosen};
 use crate::error::{Error, Result, ensure};
 use crate::identification::KeptRecord;
+use crate::section::Dof;
 use crate::units::{SAME_SPEED, group_of, near_groups};
 use crate::wind_tunnel::{Record, RecordFile, RecordSource};
 use std::path::{Path, PathBuf};
@@ -14,11 +15,30 @@ fn same_bytes(a: &Path, b: &Path) -> bool {
     read(a).is_some_and(|bytes| Some(bytes) == read(b))
 }
 
+/// Refuses widths that differ, and a record that is there twice.
+fn check_together(files: &[RecordFile], paths: &[PathBuf]) -> Result<()> {
+    let width_m = files.first().map_or(0.0, |r| r.header().width_m);
+    for (i, (file, path)) in files.iter().zip(paths).enumerate() {
+        let same_as = format_args!("in {}", paths[0].display());
+        let same = file.header().check_width(width_m, "width_m", same_as);
+        same.map_err(|e| e.in_file(path))?;
+        let same = (0..i).find(|j| files[*j].header() == file.header());
+        if let Some(first) = same.filter(|j| same_bytes(&paths[*j], path)) {
+            let expected = "each record once: what stands twice looks better known than it is";
+            let found = format!("the same as in {}", paths[first].display());
+            return Err(Error::input("", expected, found).in_file(path));
+        }
+    }
+    Ok(())
+}
+
 /// Records, in groups of one mean speed.
 pub struct RecordSet {
     records: Vec<Box<dyn RecordSource>>,
     /// Mean speeds of the groups, m/s, rising.
     groups_m_s: Vec<Vec<f64>>,
+    /// What of the files is not used, for the report of a fit.
+    pub(crate) note: Option<String>,
 }
 
 impl RecordSet {
@@ -26,17 +46,7 @@ impl RecordSet {
     pub(crate) fn measured(study: &Study) -> Result<Self> {
         let paths = study.deck.records.iter().map(|p| study.directory.join(p));
         let paths: Vec<PathBuf> = paths.collect();
-        let all = Self::open(paths.clone())?;
-        for (i, record) in all.records.iter().enumerate() {
-            let same = (0..i).find(|j| all.records[*j].header() == record.header());
-            let Some(first) = same.filter(|j| same_bytes(&paths[*j], &paths[i])) else {
-                continue;
-            };
-            let expected = "each record once: what stands twice looks better known than it is";
-            let found = format!("the same as in {}", paths[first].display());
-            return Err(Error::input("", expected, found).in_file(&paths[i]));
-        }
-        Ok(all)
+        Self::open(&paths, &study.section.dofs())
     }
 
     /// Records in memory.
@@ -66,9 +76,9 @@ impl RecordSet {
             .in_file(folder));
         }
         paths.sort();
-        let found = Self::open(paths.clone())?;
         let own = deck.table_name().unwrap_or(FLAT_PLATE);
-        for (record, path) in found.records.iter().zip(&paths) {
+        for path in &paths {
+            let record = RecordFile::open(path)?;
             let header = record.header();
             let is_own =
                 header.name.starts_with(own) || !header.source.starts_with("virtual tunnel");
@@ -77,7 +87,7 @@ impl RecordSet {
             );
             ensure(is_own, "name", expected, &header.name).map_err(|e| e.in_file(path))?;
         }
-        Ok(found)
+        Self::open(&paths, &study.section.dofs())
     }
 
     /// No records at all: enough for models that are fitted to tables.
@@ -85,19 +95,43 @@ impl RecordSet {
         Self {
             records: Vec::new(),
             groups_m_s: Vec::new(),
+            note: None,
         }
     }
 
-    fn open(paths: Vec<PathBuf>) -> Result<Self> {
-        let open = |path| Ok(Box::new(KeptRecord::new(RecordFile::open(path)?)) as _);
-        let records: Vec<Box<dyn RecordSource>> = paths.iter().map(open).collect::<Result<_>>()?;
-        let width_m = records.first().map_or(0.0, |r| r.header().width_m);
-        for (record, path) in records.iter().zip(&paths) {
-            let same_as = format_args!("in {}", paths[0].display());
-            let same = record.header().check_width(width_m, "width_m", same_as);
-            same.map_err(|e| e.in_file(path))?;
+    /// As tables are cut to the motions of a section: channels of other motions are left out, and records in which those are driven.
+    fn open(paths: &[PathBuf], dofs: &[Dof]) -> Result<Self> {
+        let files: Vec<_> = paths.iter().map(RecordFile::open).collect::<Result<_>>()?;
+        check_together(&files, paths)?;
+        let mut others: Vec<Dof> = files.iter().flat_map(|f| f.header().dofs.clone()).collect();
+        others.retain(|dof| !dofs.contains(dof));
+        others.sort();
+        others.dedup();
+        let (mut records, mut left_out) = (Vec::new(), Vec::new());
+        for file in files {
+            let record = KeptRecord::new(file, dofs);
+            match record.drives_another()? {
+                true => left_out.push(record.header().name.clone()),
+                false => records.push(Box::new(record) as _),
+            }
         }
-        Ok(Self::new(records))
+        let others = Dof::names(&others);
+        let expected =
+            format_args!("a record in which no {others} is driven, for the section has none");
+        let any = !records.is_empty() || left_out.is_empty();
+        ensure(any, "deck.records", expected, left_out.join(", "))?;
+        let mut read = Self::new(records);
+        read.note = (!others.is_empty()).then(|| {
+            let records = match left_out.is_empty() {
+                true => String::new(),
+                false => format!(
+                    ", and records in which it is driven: {}",
+                    left_out.join(", ")
+                ),
+            };
+            format!("the section has no {others} motion; its channels are not used{records}")
+        });
+        Ok(read)
     }
 
     fn new(records: Vec<Box<dyn RecordSource>>) -> Self {
@@ -106,6 +140,7 @@ impl RecordSet {
         Self {
             records,
             groups_m_s,
+            note: None,
         }
     }
 

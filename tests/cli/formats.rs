@@ -1,6 +1,6 @@
 //! Files of results in JSON say what they are.
 
-use crate::command::{refused, succeeds};
+use crate::command::{flowing, refused, succeeds};
 use std::fs;
 use tempfile::TempDir;
 
@@ -76,6 +76,52 @@ fn records_that_stand_twice_or_are_of_another_width_are_refused() {
 fn records_of_an_earlier_table_go() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
+/// Records of a section with sway train one without: their channels of sway are left out, and the records in which it is driven.
+#[test]
+fn records_are_cut_to_the_motions_of_the_section() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new"]);
+    let study = fs::read_to_string(at.join("study.toml")).unwrap();
+    let sway =
+        "[section]\nlateral = { mass_kg_m = 15.0, frequency_hz = 1.5, damping_ratio = 0.003 }\n";
+    let with = study.replacen("[section]\n", sway, 1);
+    fs::write(at.join("three.toml"), with).unwrap();
+    succeeds(
+        at,
+        &["tunnel", "three.toml", "--set", "tunnel.speeds_m_s=[8.18]"],
+    );
+    let files =
+        ["vertical", "lateral", "torsion"].map(|d| format!("records/LN21-5200-{d}-8.18.csv"));
+    let of = |files: &[String]| {
+        let key = format!("[deck]\nrecords = {files:?}\n");
+        fs::write(at.join("two.toml"), study.replacen("[deck]\n", &key, 1)).unwrap();
+    };
+    of(&files);
+    let note = "the section has no lateral motion; its channels are not used, and records in which it is driven: \
+                LN21-5200-lateral-8.18";
+    let said = flowing(&succeeds(at, &["train", "two.toml", "--out", "all"]));
+    assert!(said.contains(note), "{said}");
+    let few = ["select", "two.toml", "--filters", "1", "--values", "2"];
+    let said = flowing(&succeeds(at, &few));
+    assert!(said.contains(note), "{said}");
+    let model = |folder: &str| {
+        let text = fs::read_to_string(at.join(folder).join("models/laguerre.json")).unwrap();
+        let model: serde_json::Value = serde_json::from_str(&text).unwrap();
+        model["model"].clone()
+    };
+    of(&[files[0].clone(), files[2].clone()]);
+    succeeds(at, &["train", "two.toml", "--out", "some"]);
+    assert_eq!(model("all"), model("some"));
+    of(&[files[1].clone()]);
+    let line = ["train", "two.toml", "--out", "none"];
+    refused(
+        at,
+        &line,
+        &["deck.records: expected a record in which no lateral is driven"],
+    );
+}
+
     succeeds(at, &["new", "--deck", "LN21-5200"]);
     succeeds(at, &["tunnel", "study.toml"]);
     let names = || {

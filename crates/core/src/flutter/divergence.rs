@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::{FlatPlate, Transfer, TransferMatrix};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{ValueAt, balance, eigenvalues, root};
 use crate::units::ReducedFrequency;
@@ -42,11 +42,17 @@ pub fn divergence_with_forces(structure: &Structure, forces: &dyn Transfer) -> R
 /// ```
 ///
 /// # Errors
-/// [`Error::Numerical`] when a degree of freedom has no stiffness or the numbers are not finite.
+/// [`Error::Input`] for forces of another number of motions; [`Error::Numerical`] when a degree of freedom has no stiffness or
+/// the numbers are not finite.
 pub fn divergence_speed(
     structure: &Structure,
     static_transfer: &TransferMatrix,
 ) -> Result<Option<f64>> {
+    // a matrix has no names of its motions, only their number
+    let (n, size) = (structure.dofs.len(), static_transfer.shape());
+    let expected = format_args!("{n} by {n}, of {} motion", Dof::names(&structure.dofs));
+    let found = format_args!("{} by {}", size.0, size.1);
+    ensure(size == (n, n), "forces", expected, found)?;
     let per_pressure = structure.to_physical(&static_transfer.map(|z| z.re));
     let flexibility = structure.stiffness.clone().try_inverse().ok_or_else(|| {
         Error::Numerical("divergence: a degree of freedom has no stiffness".into())

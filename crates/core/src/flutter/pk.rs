@@ -170,7 +170,7 @@ pub fn pk_onset(
 mod tests {
     use super::*;
     use crate::aerodynamics::FlatPlate;
-    use crate::flutter::determinant_onset;
+    use crate::flutter::{determinant_onset, divergence_with_forces};
     use crate::section::{Dof, SectionModel};
     use crate::units::ReducedFrequency;
 
@@ -189,5 +189,10 @@ mod tests {
             let expected = "forces: expected those of vertical motion, found vertical, torsion";
             assert_eq!(message, expected);
         }
+        let message = divergence_with_forces(&heave, &plate)
+            .unwrap_err()
+            .to_string();
+        let expected = "forces: expected 1 by 1, of vertical motion, found 2 by 2";
+        assert_eq!(message, expected);
     }
 }

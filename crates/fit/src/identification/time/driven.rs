@@ -14,7 +14,7 @@ const PERIODOGRAM: usize = 8192;
 const LEFT_OUT: f64 = 0.01;
 
 /// Of motions over the same time those that are driven: the others follow.
-pub(super) fn driven_motions(motions: &[Vec<f64>]) -> Vec<usize> {
+pub(crate) fn driven_motions(motions: &[Vec<f64>]) -> Vec<usize> {
     above(
         motions
             .iter()
