@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::{headline, result_files, routes, stages, text};
+use super::{headline, result_files, routes, select, stages, text};
 use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{
@@ -32,7 +32,7 @@ pub(crate) struct FlutterArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
-    let study = args.study.read()?;
+    let study = select::with_saved(args.study.read()?);
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let mut failed = Vec::new();

@@ -159,6 +159,24 @@ pub(crate) fn with_selected(
     Ok(in_front(study, block))
 }
 
+/// The study with the model that `train` has selected, where it asks for one, among those to be read.
+pub(crate) fn with_saved(study: Study) -> Study {
+    match study.select {
+        true => in_front(&study, selected_block()),
+        false => study,
+    }
+}
+
+fn selected_block() -> ModelBlock {
+    ModelBlock {
+        name: SELECTED.to_owned(),
+        speed_groups: None,
+        records: None,
+        table: None,
+        discrete: None,
+    }
+}
+
 fn in_front(study: &Study, block: ModelBlock) -> Study {
     let mut study = study.clone();
     study.select = false;
@@ -177,13 +195,7 @@ fn recommended(
         .recommended
         .as_ref()
         .ok_or_else(|| selection.reason.clone())?;
-    let mut block = ModelBlock {
-        name: SELECTED.to_owned(),
-        speed_groups: None,
-        records: None,
-        table: None,
-        discrete: None,
-    };
+    let mut block = selected_block();
     if choice.kind == ModelKind::Discrete {
         let given = study.models.iter().find_map(|m| m.discrete.clone());
         block.discrete = Some(DiscreteFit {

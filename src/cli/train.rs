@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::{stages, text};
+use super::{select, stages, text};
 use crate::error::Result;
 use crate::fmu::package::growth_of;
 use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
@@ -21,7 +21,7 @@ pub(crate) struct TrainArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
-    let study = args.study.read()?;
+    let mut study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let records = if study.deck.records.is_empty() {
@@ -31,6 +31,10 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
     };
     let mut out = OutputDir::new(&directory)?;
     let mut failed = Vec::new();
+    if study.select {
+        let selected = select::with_selected(&study, &records, progress);
+        study = attempt(&mut failed, "selection", selected)?.unwrap_or(study);
+    }
     let trained = stages::train(
         &study,
         &deck,

@@ -56,7 +56,7 @@ impl RecordSet {
 
     /// All records of a folder, as `tunnel` writes them of the deck; none when no model of the study needs any.
     pub(crate) fn in_folder(study: &Study, deck: &Deck, folder: &Path) -> Result<Self> {
-        let needed = study.models.iter().any(|m| m.table.is_none());
+        let needed = study.select || study.models.iter().any(|m| m.table.is_none());
         let mut paths = Vec::new();
         if folder.is_dir() {
             let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;

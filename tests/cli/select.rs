@@ -69,6 +69,28 @@ fn a_study_chooses_its_own_model() {
     let onset = onset_of(&summary, "selected", "eigenvalues");
     let speed = onset["speed_m_s"].as_f64().unwrap();
     assert!((36.0..37.7).contains(&speed), "{speed}");
+    // the stages one by one give the same
+    let at = folder.path();
+    let stage = |name| {
+        [
+            name,
+            "study.toml",
+            "--no-figures",
+            "--out",
+            "stages",
+            "--json",
+        ]
+    };
+    succeeds(at, &stage("tunnel"));
+    let missing = aerodeck(at, &stage("flutter")).2;
+    assert!(
+        missing.contains("models/selected.json: expected a trained model"),
+        "{missing}"
+    );
+    succeeds(at, &stage("train"));
+    let staged = self::onset(at, &stage("flutter"));
+    // numbers of a file are read to the last digit or one beside it
+    assert!((staged / speed - 1.0).abs() < 1e-9, "{staged} {speed}");
     // what is packed is the model that was chosen
     let model = fs::read_to_string(folder.path().join("model.json")).unwrap();
     assert!(model.contains("\"selected\""));
