@@ -141,15 +141,22 @@ pub fn verdict(
     Ok(against(evidence, required_speed_m_s, section, &findings))
 }
 
-/// What a trained model says of a section and a speed, which the search reaches.
-pub fn verdict_at(section: &SectionModel, model: &Model, speed_m_s: f64) -> PyResult<Verdict> {
+/// What a trained model says of a section and a speed, which the search reaches, with what is odd about samples of them.
+pub fn verdict_at(
+    section: &SectionModel,
+    model: &Model,
+    speed_m_s: f64,
+    of_samples: &[Finding],
+) -> PyResult<Verdict> {
     let block = FlutterBlock {
         required_speed_m_s: Some(speed_m_s),
         ..FlutterBlock::default()
     };
     let search = block.range(section).search();
     let found = of_model(section, model, &search, "eigenvalues")?;
-    verdict(section, model, &search, found, Some(speed_m_s))
+    let evidence = model_evidence(section, model, &search, found)?;
+    let findings = [&model.findings[..], of_samples].concat();
+    Ok(against(evidence, Some(speed_m_s), section, &findings))
 }
 
 /// Evidence for the verdict on a section in the forces of a trained model.

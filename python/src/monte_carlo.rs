@@ -1,7 +1,7 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
 use crate::convert::{Reduced, from_python, reduced, restored, set_default, shown, to_python};
-use crate::error::{raised, warn, wrong};
+use crate::error::{raised, warn, warned, wrong};
 use crate::flutter::verdict_at;
 use crate::model::Model;
 use crate::section::Section;
@@ -200,7 +200,9 @@ fn judged(
 ) -> PyResult<MonteCarlo> {
     let (section, model) = (&section.get().0, model.get());
     let speed = result.design.as_ref().map(|d| d.speed_m_s);
-    let judge = |speed| detached(py, || verdict_at(section, model, speed));
+    let odd = &result.findings;
+    warned(py, odd)?;
+    let judge = |speed| detached(py, || verdict_at(section, model, speed, odd));
     result.verdict = speed.map(judge).transpose()?;
     if result.failed + result.not_judged > 0 {
         warn(

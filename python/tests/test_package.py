@@ -206,6 +206,11 @@ def test_monte_carlo_is_seeded_and_the_design_speed_counts(section, model):
     with pytest.warns(aerodeck.AerodeckWarning, match="failed"):
         some = aerodeck.monte_carlo(section, model, negative, samples=200, design_speed_m_s=20)
     assert some.probability[0] == some.counts["failed"] / 200 > 0.1
+    # as is a mean that is not of the order of the section
+    other = {"torsion.damping_ratio": {"kind": "normal", "mean": 0.3, "coefficient_of_variation": 0.05}}
+    with pytest.warns(aerodeck.AerodeckWarning, match="where the model has"):
+        odd = aerodeck.monte_carlo(section, model, other, samples=50, design_speed_m_s=20)
+    assert any("where the model has" in doubt["text"] for doubt in odd.verdict["doubts"])
     for keywords, place in [
         ({"aerodynamic_scatter": 0.05, "aerodynamics": {"relative_scatter": 0.1}}, "aerodynamic_scatter"),
         ({"parameter": []}, "parameter"),

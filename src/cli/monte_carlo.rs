@@ -8,11 +8,12 @@ use super::{figures, stages};
 use crate::error::{Result, counted};
 use crate::files::text::read_text;
 use crate::flutter::OnsetSearch;
+use crate::plausibility::Finding;
 use crate::report::onset_distribution_figure;
 use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
-use crate::verdict::{Evidence, RequiredSpeed, Verdict};
+use crate::verdict::{RequiredSpeed, Verdict};
 use std::path::{Path, PathBuf};
 
 /// Distribution of the flutter onset when section and forces are random, and its probability below a design speed
@@ -50,7 +51,7 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
     drop(stage);
     let mut result =
         result.map_err(|e| MonteCarloPlan::locate(&plan_text, e).in_file(&args.plan))?;
-    result.verdict = verdict(&plan, &model)?;
+    result.verdict = verdict(&plan, &model, &result.findings)?;
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.plan)))?;
     if result.onsets > 1 {
         figures::write("monte_carlo", &mut out, || {
@@ -60,7 +61,9 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
     out.write_json("monte_carlo.json", "monte-carlo-results", &result)?;
     let refused = result.verdict.iter().filter(|v| v.refuses());
     let of_model = refused.map(|v| format!("warning: of the model itself: {}", v.explanation));
+    let odd = result.findings.iter().map(|f| format!("warning: {f}"));
     let parts = [
+        odd.collect(),
         onsets(&result),
         design(&result),
         of_model.collect(),
@@ -73,18 +76,22 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
     out.answer(text, value)
 }
 
-/// What the model itself, of which the samples are made, can say of the design speed.
-fn verdict(plan: &MonteCarloPlan, model: &TrainedModel) -> Result<Option<Verdict>> {
+/// What the model itself, of which the samples are made, can say of the design speed, with what is odd about their means.
+fn verdict(
+    plan: &MonteCarloPlan,
+    model: &TrainedModel,
+    of_means: &[Finding],
+) -> Result<Option<Verdict>> {
     let file = plan.directory.join(&plan.model);
     let judge = |speed_m_s: f64| {
         let search = OnsetSearch {
             speed_max_m_s: speed_m_s.max(model.experiment.onset_search_limit_m_s),
             ..OnsetSearch::default()
         };
-        Ok(Verdict::judge(&Evidence {
-            required: Some(RequiredSpeed { speed_m_s }),
-            ..saved_evidence(&file, model, &model.section, &search)?
-        }))
+        let mut evidence = saved_evidence(&file, model, &model.section, &search)?;
+        evidence.required = Some(RequiredSpeed { speed_m_s });
+        evidence.implausible.extend_from_slice(of_means);
+        Ok(Verdict::judge(&evidence))
     };
     plan.design_speed_m_s.map(judge).transpose()
 }

@@ -215,6 +215,20 @@ fn tests_that_end_before_the_required_speed_cannot_judge_it() {
     let words =
         "warning: of the model itself: Cannot be judged: The onset lies outside the tested range";
     assert!(said.contains(words), "{said}");
+    // as it does where a mean is in another unit
+    let mass = "[[parameter]]\nname = \"vertical.mass_kg_m\"\ndistribution = { kind = \"normal\", mean = 15000.0, coefficient_of_variation = 0.03 }\n";
+    fs::write(at.join("scatter.toml"), format!("{plan}{mass}")).unwrap();
+    let said = flowing(&succeeds(at, &["monte-carlo", "scatter.toml"]));
+    let words =
+        "warning: vertical.mass_kg_m = 15000: the mean of its distribution, where the model has ";
+    assert!(said.contains(words), "{said}");
+    let text = fs::read_to_string(at.join("monte_carlo.json")).unwrap();
+    let written: Value = serde_json::from_str(&text).unwrap();
+    let doubts = written["verdict"]["doubts"].as_array().unwrap();
+    assert!(
+        doubts.iter().any(|d| d.to_string().contains("15000")),
+        "{doubts:?}"
+    );
 }
 
 #[test]

@@ -3,8 +3,8 @@
 #![deny(unsafe_code)]
 
 use aerodeck_core::{
-    aerodynamics, aeroelastic, error, flutter, json, section, state_space, trained_model, units,
-    verdict,
+    aerodynamics, aeroelastic, error, flutter, json, plausibility, section, state_space,
+    trained_model, units, verdict,
 };
 use aerodeck_lab::{files, signal, wind_tunnel};
 use error::Error;

@@ -67,6 +67,18 @@ pub(super) struct Ends {
 }
 
 impl Distribution {
+    /// The mean, of a truncated one no further out than its ends; `nominal` is the value of the model.
+    pub(super) fn mean(&self, nominal: f64) -> f64 {
+        match self {
+            Self::Uniform { lower, upper } => 0.5 * (lower + upper),
+            Self::Normal(given) | Self::Lognormal(given) => {
+                let mean = given.mean.unwrap_or(nominal);
+                let mean = given.lower.map_or(mean, |end| mean.max(end));
+                given.upper.map_or(mean, |end| mean.min(end))
+            }
+        }
+    }
+
     /// Works out the numbers; `nominal` is the value of the model, `place` the entry of the file.
     ///
     /// # Errors

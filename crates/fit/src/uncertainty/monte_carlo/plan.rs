@@ -3,6 +3,7 @@
 use super::distribution::Distribution;
 use crate::error::{Error, Result, ensure, of_schema, positive};
 use crate::files::toml_lines;
+use crate::plausibility::{Finding, FindingKind, of_section};
 use crate::section::{SectionModel, Translation};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -147,6 +148,30 @@ impl MonteCarloPlan {
             ),
             speed,
         )
+    }
+
+    /// What is odd about the section of all means where the section of the model is not, and every mean below half or above twice
+    /// the model's own number: mostly one in another unit. Offsets may be any.
+    pub(super) fn findings(&self, section: &SectionModel) -> Result<Vec<Finding>> {
+        let (mut means, mut found) = (section.clone(), Vec::new());
+        for random in &self.parameters {
+            let key = random.name.name();
+            let own = random.name.nominal(&key, section)?;
+            let mean = random.distribution.mean(own);
+            if let Some(place) = random.name.place(&mut means) {
+                *place = mean;
+            }
+            let offset = [SectionProperty::AxisOffset, SectionProperty::MassOffset];
+            if own > 0.0 && !(0.5..=2.0).contains(&(mean / own)) && !offset.contains(&random.name) {
+                let text = format!("the mean of its distribution, where the model has {own}");
+                let doubt = Finding::doubt(FindingKind::Contradiction, key, text);
+                let value = Some(mean);
+                found.push(Finding { value, ..doubt });
+            }
+        }
+        let own = of_section(section);
+        found.extend(of_section(&means).into_iter().filter(|f| !own.contains(f)));
+        Ok(found)
     }
 
     fn validate_parameters(&self) -> Result<()> {

@@ -2,6 +2,7 @@
 
 use super::plan::MonteCarloPlan;
 use crate::flutter::{SweepOutcome, SweptOnset};
+use crate::plausibility::Finding;
 use crate::signal::mean_and_deviation;
 use crate::uncertainty::statistics::{clopper_pearson, sample_quantile};
 use crate::verdict::Verdict;
@@ -62,6 +63,9 @@ pub struct MonteCarloResult {
     pub histogram: Histogram,
     /// Probability of an onset below the design speed.
     pub design: Option<DesignCheck>,
+    /// What is odd about the distributions: their means as a section, and against that of the model.
+    #[serde(default)]
+    pub findings: Vec<Finding>,
     /// What the model itself can say of that speed; of whoever holds it with its fit, and so none as [`summarise`](super::summarise) leaves it.
     pub verdict: Option<Verdict>,
 }
@@ -262,6 +266,7 @@ impl Tally {
                 })
                 .collect(),
             histogram: histogram(&self.onsets),
+            findings: Vec::new(),
             verdict: None,
             design: plan
                 .design_speed_m_s

@@ -107,7 +107,8 @@ pub fn summarise(
         format_args!("answers of {} samples", plan.samples),
         total.len(),
     )?;
-    let found = total.summarise(plan, limit, &model.name, nominal);
+    let mut found = total.summarise(plan, limit, &model.name, nominal);
+    found.findings = plan.findings(&model.section)?;
     // nothing answers for what no sample had an answer for
     let answered = plan.samples > found.failed;
     let first = found.failures.first().map_or("", |f| f.reason.as_str());

@@ -91,6 +91,35 @@ fn the_design_check_counts() {
     assert_eq!(design.probability, design.below as f64 / 4000.0);
 }
 
+/// A mean in another unit is odd against the model and by itself; one of the model's order is neither.
+#[test]
+fn means_of_another_order_are_found() {
+    let found = |name: &str, distribution: &str| {
+        let text =
+            format!("[[parameter]]\nname = \"{name}\"\ndistribution = {{ {distribution} }}\n");
+        run(&plan(&text)).findings
+    };
+    let mass = "vertical.mass_kg_m";
+    let light = "kind = \"normal\", mean = 23.0, coefficient_of_variation = 0.05";
+    let of_mass = &found(mass, light)[0];
+    assert_eq!((of_mass.place.as_str(), of_mass.value), (mass, Some(23.0)));
+    assert!(
+        of_mass.text.ends_with("where the model has 22740"),
+        "{of_mass}"
+    );
+    let damping = found(
+        "torsion.damping_ratio",
+        "kind = \"uniform\", lower = 0.2, upper = 0.4",
+    );
+    let places: Vec<_> = damping.iter().map(|f| f.place.as_str()).collect();
+    assert_eq!(
+        places,
+        ["torsion.damping_ratio", "section.torsion.damping_ratio"]
+    );
+    let heavier = "kind = \"lognormal\", mean = 25000.0, coefficient_of_variation = 0.05";
+    assert_eq!(found(mass, heavier), []);
+}
+
 const EVERYTHING: &str = "seed = 11\n\
     [aerodynamics]\nrelative_scatter = 0.03\n\
     [[parameter]]\nname = \"torsion.damping_ratio\"\n\
