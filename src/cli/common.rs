@@ -67,7 +67,8 @@ pub(crate) fn motion_columns<'a>(
 pub(crate) struct StudyArgs {
     /// The study file; `-` reads standard input.
     pub study: PathBuf,
-    /// Another value for a key of the study, such as `section.torsion.frequency_hz=4.5`; may be given several times.
+    /// Another value for a key of the study, such as `section.torsion.frequency_hz=4.5`; of several `[[model]]` the first one's. May be
+    /// given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Folder of the results; by default the folder of the study file.
@@ -166,8 +167,9 @@ fn with_values(text: String, set: &[String]) -> Result<String> {
         let value = value.trim();
         let parsed = toml::from_str::<toml::Table>(&format!("x = {value}"));
         let value = match parsed.ok().and_then(|mut t| t.remove("x")) {
-            Some(value) => value,
-            None => toml::Value::String(value.to_owned()),
+            // no key is a date but as text, of which shells take the quotes
+            Some(value) if !value.is_datetime() => value,
+            _ => toml::Value::String(value.to_owned()),
         };
         let mut parts: Vec<&str> = key.trim().split('.').collect();
         let last = parts.pop().unwrap_or_default();
@@ -203,6 +205,7 @@ mod tests {
             "name=other deck",
             "flutter.speeds=7",
             "model.name=n",
+            "report.date=2026-11-26",
         ];
         let changed = with_values(text.clone(), &set.map(str::to_owned)).unwrap();
         let table: toml::Table = toml::from_str(&changed).unwrap();
@@ -210,6 +213,7 @@ mod tests {
         assert_eq!(table["name"].as_str(), Some("other deck"));
         assert_eq!(table["flutter"]["speeds"].as_integer(), Some(7));
         assert_eq!(table["model"][0]["name"].as_str(), Some("n"));
+        assert_eq!(table["report"]["date"].as_str(), Some("2026-11-26"));
         for wrong in ["nonsense", "name.x=1"] {
             assert!(with_values(text.clone(), &[wrong.to_owned()]).is_err());
         }

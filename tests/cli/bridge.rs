@@ -261,7 +261,11 @@ fn an_exported_bridge_passes_the_check() {
     for kind in ["<Boolean", "<Integer", "<String", "<Enumeration"] {
         assert!(!description.contains(kind), "{kind}");
     }
-    refused(folder.path(), &export, &["expected no file there yet"]);
+    refused(
+        folder.path(),
+        &export,
+        &["expected no file there yet (or --force)"],
+    );
     refused(
         folder.path(),
         &[
@@ -273,7 +277,7 @@ fn an_exported_bridge_passes_the_check() {
             "7",
             "--force",
         ],
-        &["nodes: expected nodes of the bridge, 1001 to 1311, found `7`"],
+        &["bridge.toml: nodes: expected nodes of the bridge, 1001 to 1311, found `7`"],
     );
 }
 

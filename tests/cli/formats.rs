@@ -23,12 +23,17 @@ fn files_say_what_they_are() {
         assert!(text.starts_with(&start), "{file}");
     }
     let line = ["simulate", "a/fits/laguerre.json", "--wind-speed", "9"];
-    refused(at, &line, &["found JSON of the format `aerodeck/fit 1`"]);
-    // a file of before is read as it is
+    let said = "found JSON of the format `aerodeck/fit 1`, not `aerodeck/model 1`";
+    refused(at, &line, &[said]);
+    // a file of before is read as it is, also with the mark that editors leave
     let model = fs::read_to_string(at.join("a/model.json")).unwrap();
     let before = model.replacen("  \"format\": \"aerodeck/model 1\",\n", "", 1);
     assert_ne!(before, model);
-    fs::write(at.join("a/before.json"), before).unwrap();
+    let later = model.replacen("aerodeck/model 1", "aerodeck/model 2", 1);
+    fs::write(at.join("later.json"), later).unwrap();
+    let line = ["simulate", "later.json", "--wind-speed", "9"];
+    refused(at, &line, &["found JSON of the format `aerodeck/model 2`"]);
+    fs::write(at.join("a/before.json"), format!("\u{feff}{before}")).unwrap();
     let simulated = ["a/model.json", "a/before.json"].map(|file| {
         let line = ["simulate", file, "--wind-speed", "9", "--stop-time", "1"];
         succeeds(at, &line);
@@ -71,11 +76,6 @@ fn records_that_stand_twice_or_are_of_another_width_are_refused() {
     }
 }
 
-/// Records that the virtual tunnel made of an earlier table are not those of the next; what a laboratory put there stays.
-#[test]
-fn records_of_an_earlier_table_go() {
-    let folder = TempDir::new().unwrap();
-    let at = folder.path();
 /// Records of a section with sway train one without: their channels of sway are left out, and the records in which it is driven.
 #[test]
 fn records_are_cut_to_the_motions_of_the_section() {
@@ -122,6 +122,11 @@ fn records_are_cut_to_the_motions_of_the_section() {
     );
 }
 
+/// Records that the virtual tunnel made of an earlier table are not those of the next; what a laboratory put there stays.
+#[test]
+fn records_of_an_earlier_table_go() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
     succeeds(at, &["new", "--deck", "LN21-5200"]);
     succeeds(at, &["tunnel", "study.toml"]);
     let names = || {

@@ -43,22 +43,26 @@ pub fn write(kind: &str, value: &impl Serialize) -> Result<String> {
         .map_err(|e| Error::Numerical(e.to_string()))
 }
 
-/// Reads an object of a kind; one that does not say what it is is taken for it.
+/// Reads an object of a kind, also after a byte-order mark; one that does not say what it is is taken for it.
 ///
 /// ```
 /// use std::collections::BTreeMap;
 /// let read = |text| aerodeck_core::json::read::<BTreeMap<String, f64>>("pair", text);
 /// assert_eq!(read("{ \"format\": \"aerodeck/pair 1\", \"a\": 2.5 }").unwrap(), read("{ \"a\": 2.5 }").unwrap());
 /// let refused = read("{ \"format\": \"aerodeck/model 1\" }").unwrap_err().to_string();
-/// assert_eq!(refused, "JSON of the format `aerodeck/model 1` at line 1 column 32");
+/// assert_eq!(refused, "JSON of the format `aerodeck/model 1`, not `aerodeck/pair 1` at line 1 column 32");
+/// assert!(read("{ \"format\": \"aerodeck/pair 2\", \"a\": 2.5 }").is_err());
+/// assert!(read("\u{feff}{ \"a\": 2.5 }").is_ok());
 /// ```
 ///
 /// # Errors
-/// Those of [`serde_json::from_str`], and one for another kind.
+/// Those of [`serde_json::from_str`], and one for another kind or version.
 pub fn read<T: for<'de> Deserialize<'de>>(
     kind: &str,
     text: &str,
 ) -> std::result::Result<T, serde_json::Error> {
+    // editors may leave a byte-order mark
+    let text = text.trim_start_matches('\u{feff}');
     let mut source = serde_json::Deserializer::from_str(text);
     let read = OfKind(kind, PhantomData).deserialize(&mut source)?;
     source.end().map(|()| read)
@@ -105,8 +109,10 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for OtherKeys<'_, A> {
                 return seed.deserialize(key.into_deserializer()).map(Some);
             }
             let found: String = self.keys.next_value()?;
-            if found.split(' ').next() != Some(&format!("aerodeck/{}", self.kind)) {
-                return Err(A::Error::custom(format!("JSON of the format `{found}`")));
+            let own = format(self.kind);
+            if found != own {
+                let what = format!("JSON of the format `{found}`, not `{own}`");
+                return Err(A::Error::custom(what));
             }
         }
         Ok(None)

@@ -119,18 +119,20 @@ impl Resources {
         check_sampling(&model)?;
         let force = options
             .force
-            .map(|options| ForceOptions::from_json(text(options)?).map_err(|e| e.at(FORCE_FILE)))
+            .map(|options| {
+                ForceOptions::from_json(text(options)?).map_err(|e| e.within(FORCE_FILE))
+            })
             .transpose()?;
         let gusts = options
             .gusts
-            .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.at(GUST_FILE)))
+            .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.within(GUST_FILE)))
             .transpose()?;
         for further in force.iter().flat_map(|f| &f.further) {
-            check_further(further, gusts.is_some()).map_err(|e| e.at(FORCE_FILE))?;
+            check_further(further, gusts.is_some()).map_err(|e| e.within(FORCE_FILE))?;
         }
         let bounds = options
             .bounds
-            .map(|bounds| OnsetBounds::from_json(text(bounds)?).map_err(|e| e.at(BOUNDS_FILE)))
+            .map(|bounds| OnsetBounds::from_json(text(bounds)?).map_err(|e| e.within(BOUNDS_FILE)))
             .transpose()?;
         let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref(), bounds)?;
         let of_options = [options.force, options.gusts, options.bounds];
@@ -279,6 +281,27 @@ fn text(bytes: &[u8]) -> Result<&str> {
 mod tests {
     use super::*;
     use crate::location::location_of;
+
+    /// Of a file that was changed by hand the key is named.
+    #[test]
+    fn wrong_options_of_forces_are_named() {
+        let model = format!(
+            "{}/../../tests/data/models/rational.json",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let model = std::fs::read(model).unwrap();
+        let options = ForceOptions::single(31.0).to_json().unwrap();
+        let options = options.replacen("31.0", "-1.0", 1);
+        let files = OptionFiles {
+            force: Some(options.as_bytes()),
+            ..OptionFiles::default()
+        };
+        let said = Resources::from_bytes(&model, files)
+            .err()
+            .map(|e| e.to_string());
+        let expected = "force.json, strip 1: width: expected a positive number, found -1";
+        assert_eq!(said.as_deref(), Some(expected));
+    }
 
     /// `%20` may be coded, or part of the folder's name.
     #[test]

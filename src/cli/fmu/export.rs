@@ -4,7 +4,7 @@ mod bridge;
 
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::answer::Answer;
-use crate::cli::common::spelt;
+use crate::cli::common::{in_input, spelt};
 use crate::cli::progress::Progress;
 use crate::cli::text;
 use crate::cli::{headline, stages};
@@ -13,14 +13,16 @@ use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{Export, FmiVersion, Label, Overwrite, Runtime, growth_of, write_fmu};
+use crate::fmu::package::{
+    Export, FmiVersion, Label, Overwrite, Runtime, growth_of, package, write_archive,
+};
 use crate::fmu::variables::Listing;
 use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
 ///
@@ -177,8 +179,16 @@ impl FmuExportArgs {
 }
 
 impl FmuExportArgs {
-    fn overwrite(&self) -> Overwrite {
-        Overwrite::replacing(self.force)
+    /// Writes the archive, in place of another only with --force.
+    fn write(&self, path: &Path, bytes: &[u8]) -> Result<()> {
+        let overwrite = Overwrite::replacing(self.force);
+        write_archive(path, bytes, overwrite).map_err(|e| match e {
+            Error::Input(mut input) => {
+                input.expected.push_str(" (or --force)");
+                Error::Input(input)
+            }
+            other => other,
+        })
     }
 
     fn listing(&self) -> Listing {
@@ -192,7 +202,8 @@ impl FmuExportArgs {
 /// Runs the command.
 pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     if args.bridge {
-        return args.of_bridge(progress);
+        let of_bridge = args.of_bridge(progress);
+        return of_bridge.map_err(|e| in_input(&args.model, &[], e));
     }
     if args.kind == ExportKind::Structure {
         let expected =
@@ -235,13 +246,8 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let strips = export.force.as_ref().map(|f| f.strips.len());
     let runtimes = args.runtimes()?;
     let stage = progress.stage("packing the FMU");
-    write_fmu(&path, &model, &runtimes, args.overwrite(), export).map_err(|e| match e {
-        Error::Input(mut input) if !args.force && path.exists() => {
-            input.expected.push_str(" (or --force)");
-            Error::Input(input)
-        }
-        other => stages::or_allow_unstable(other),
-    })?;
+    let bytes = package(&model, &runtimes, export).map_err(stages::or_allow_unstable)?;
+    args.write(&path, &bytes)?;
     drop(stage);
     let growth = growth_of(&model)?;
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform.to_string()).collect();

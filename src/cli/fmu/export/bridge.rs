@@ -7,7 +7,7 @@ use crate::cli::progress::Progress;
 use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
-use crate::fmu::package::{BridgeExport, package, package_bridge, write_archive};
+use crate::fmu::package::{BridgeExport, package, package_bridge};
 use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart};
 use crate::verdict::Verdict;
 use std::path::PathBuf;
@@ -117,7 +117,7 @@ impl FmuExportArgs {
         export.verdict = Some(verdict.clone());
         let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let path = self.place(file);
-        write_archive(&path, &bytes, self.overwrite())?;
+        self.write(&path, &bytes)?;
         let bridge = &export.bridge;
         let named: Vec<String> = (0..bridge.named.len())
             .map(|n| bridge.node_name(n))
@@ -162,7 +162,7 @@ impl FmuExportArgs {
         export.reference_runs = !self.no_reference;
         let bytes = package(&forces.model, &self.runtimes()?, export)?;
         let path = self.place("bridge_force.fmu");
-        write_archive(&path, &bytes, self.overwrite())?;
+        self.write(&path, &bytes)?;
         let nodes = &forces.options.nodes;
         let text = headline::text(&study.file.name, verdict, &[]);
         let text = format!(
