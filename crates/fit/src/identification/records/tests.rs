@@ -327,6 +327,18 @@ fn bad_records_are_refused_with_their_place() {
         ..records_alone()
     };
     assert!(message(&good, &cutoff).starts_with("low_pass_hz: expected less than half"));
+    let low_pass_hz = Some(0.1);
+    let cutoff = TimeFit {
+        low_pass_hz,
+        ..records_alone()
+    };
+    let said = message(&good, &cutoff);
+    let expected =
+        "low_pass_hz: expected more than the frequencies of motion of record test-vertical-8.17";
+    assert!(
+        said.starts_with(expected) && said.ends_with("found 0.1"),
+        "{said}"
+    );
     let mut other = good.clone();
     other[1].header.mean_speed_m_s = 0.0;
     assert!(message(&other, &default).contains("record test-torsion-8.17: mean_speed_m_s"));

@@ -4,7 +4,7 @@ use super::filters::ContinuousColumns;
 use super::low_pass::NOISE_BANDWIDTH;
 use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass_over};
 use super::record::{DimensionlessRecord, Records};
-use crate::error::Result;
+use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
@@ -88,8 +88,22 @@ impl RecordFit<'_> {
             number: (number, passes),
         };
         pass_over(&self.records.each, &plan, self.progress, |record| {
+            self.check_low_pass(record)?;
             ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)
         })
+    }
+
+    /// A cut-off that is stated leaves all frequencies of motion.
+    fn check_low_pass(&self, record: &DimensionlessRecord) -> Result<()> {
+        let header = &record.header;
+        let tested = header.segments.iter().map(|s| s.frequency_hz);
+        let highest = tested.fold(0.0, f64::max);
+        let stated = self.fit.low_pass_hz.unwrap_or(f64::INFINITY);
+        let expected = format_args!(
+            "more than the frequencies of motion of record {}, up to {highest} Hz",
+            header.name
+        );
+        ensure(stated > highest, "low_pass_hz", expected, stated)
     }
 
     /// Cut-off of the low-pass, Hz.
