@@ -1,15 +1,19 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
 use super::answer::Answer;
-use super::common::{folder_of, motion_columns};
+use super::common::{folder_of, motion_columns, warn};
 use super::output::{OutputDir, list};
 use super::{figures, stages};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Error, Result, counted, ensure, positive};
+use crate::plausibility::{of_section, sentences};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
-use crate::trained_model::TrainedModel;
+use crate::state_space::Damping;
+use crate::trained_model::{Experiment, TrainedModel};
+use crate::units::ReducedFrequency;
+use nalgebra::Complex;
 use serde::Serialize;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -49,42 +53,94 @@ struct ModeSummary {
     growth_rate_per_s: f64,
     /// Of critical damping.
     damping_ratio: f64,
+    /// Whether tests tell of its reduced frequency.
+    in_tested_range: bool,
 }
 
-/// The modes that vibrate, the least damped first.
-fn modes(section: &CoupledSection, speed: f64) -> Result<Vec<ModeSummary>> {
-    let mut modes: Vec<ModeSummary> = section
-        .at(speed)?
-        .damp()?
-        .into_iter()
-        .filter(|mode| mode.pole.im > 0.0)
-        .map(|mode| ModeSummary {
-            frequency_hz: mode.pole.im / std::f64::consts::TAU,
+/// Growth of a real pole below this part of the fastest one is rounding.
+const STATIC_GROWTH: f64 = 1e-9;
+
+/// The modes that vibrate, and static divergence as one of frequency 0; the least damped first.
+fn modes(model: &TrainedModel, speed: f64) -> Result<Vec<ModeSummary>> {
+    let section = section_of(model)?;
+    let all = section.at(speed)?.damp()?;
+    let fastest = all.iter().map(|m| m.natural_frequency).fold(0.0, f64::max);
+    let counts =
+        |pole: Complex<f64>| pole.im > 0.0 || pole.im == 0.0 && pole.re > STATIC_GROWTH * fastest;
+    let summary = |mode: Damping| {
+        let frequency_hz = mode.pole.im / std::f64::consts::TAU;
+        let k = ReducedFrequency::from_hertz(frequency_hz, model.section.width_m, speed);
+        ModeSummary {
+            frequency_hz,
             growth_rate_per_s: mode.pole.re,
             damping_ratio: mode.damping_ratio,
-        })
-        .collect();
+            in_tested_range: model.tested_range.contains(k),
+        }
+    };
+    let all = all.into_iter().filter(|mode| counts(mode.pole));
+    let mut modes: Vec<ModeSummary> = all.map(summary).collect();
     modes.sort_by(|a, b| a.damping_ratio.total_cmp(&b.damping_ratio));
     modes.truncate(section.structure().dofs.len());
     Ok(modes)
 }
 
-/// What the motion comes to.
-fn verdict(modes: &[ModeSummary]) -> String {
+/// What the motion comes to, and which modes no test looked at.
+fn verdict(model: &TrainedModel, speed: f64, modes: &[ModeSummary]) -> String {
     let Some(m) = modes.first() else {
         return "  no mode vibrates at this wind speed\n".to_owned();
     };
-    let says = if m.growth_rate_per_s > 0.0 {
-        "the motion GROWS"
-    } else {
-        "the motion dies down"
+    let growth = m.growth_rate_per_s;
+    let (hertz, percent) = (m.frequency_hz, 100.0 * m.damping_ratio);
+    let damped = format!(
+        "least damped mode {hertz:.4} Hz, growth {growth:+.4} 1/s, damping ratio {percent:+.3} %"
+    );
+    let mut text = match (hertz > 0.0, growth > 0.0) {
+        (false, _) => format!(
+            "  the motion GROWS without oscillating (static divergence): growth {growth:+.4} 1/s\n"
+        ),
+        (true, true) => format!("  the motion GROWS: {damped}\n"),
+        (true, false) => format!("  the motion dies down: {damped}\n"),
     };
-    format!(
-        "  {says}: least damped mode {:.4} Hz, growth {:+.4} 1/s, damping ratio {:+.3} %\n",
-        m.frequency_hz,
-        m.growth_rate_per_s,
-        100.0 * m.damping_ratio
-    )
+    let tested = &model.tested_range;
+    for mode in modes.iter().filter(|mode| !mode.in_tested_range) {
+        let k = ReducedFrequency::from_hertz(mode.frequency_hz, model.section.width_m, speed);
+        let _ = writeln!(
+            text,
+            "  OUTSIDE the tested range, K = ωB/V {:.3} to {:.3}: the mode at {:.4} Hz, K {:.3}{}",
+            tested.min.full_width(),
+            tested.max.full_width(),
+            mode.frequency_hz,
+            k.full_width(),
+            tested.gap_at(k).map_or("", |_| ", in a gap between tests")
+        );
+    }
+    text
+}
+
+impl SimulateArgs {
+    /// Length of the run and step, s.
+    fn stop_and_step(&self, e: &Experiment) -> Result<(f64, f64)> {
+        let stop = positive("--stop-time", self.stop_time.unwrap_or(e.stop_time_s))?;
+        let step = positive("--step", self.step.unwrap_or(e.step_size_s))?;
+        if step > stop {
+            let expected = format!("a step within the stop time of {stop} s");
+            let found = format!("{step} s");
+            return Err(match (self.step, self.stop_time) {
+                (Some(_), _) => Error::input("--step", expected, found),
+                (None, Some(_)) => Error::input("--stop-time", expected, found),
+                (None, None) => {
+                    Error::input("experiment.step_size_s", expected, found).in_file(&self.model)
+                }
+            });
+        }
+        ensure(
+            stop / step <= MAX_STEPS,
+            "--step",
+            format_args!("at most {MAX_STEPS:.0e} steps"),
+            format_args!("{:.1e}", stop / step),
+        )?;
+        Ok((stop, step))
+    }
 }
 
 /// Runs the command.
@@ -92,17 +148,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let e = &model.experiment;
     let speed = positive("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
-    let stop = positive("--stop-time", args.stop_time.unwrap_or(e.stop_time_s))?;
-    let step = positive("--step", args.step.unwrap_or(e.step_size_s))?;
-    if stop / step > MAX_STEPS {
-        return Err(Error::input(
-            "--step",
-            format!("at most {MAX_STEPS:.0e} steps"),
-            format!("{:.1e}", stop / step),
-        ));
-    }
+    let (stop, step) = args.stop_and_step(e)?;
+    let findings = of_section(&model.section);
+    warn(&args.model, &sentences(&findings));
     let rows = simulated(&model, speed, stop, step)?;
-    let modes = modes(&section_of(&model)?, speed)?;
+    let modes = modes(&model, speed)?;
     let columns = columns(&model.section.dofs());
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
     out.write("simulation.csv", csv(&model, speed, &columns, &rows))?;
@@ -116,12 +166,12 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let text = format!(
         "{title}: {} of {step} s\n{}{}",
         counted(rows.len() - 1, "step"),
-        verdict(&modes),
+        verdict(&model, speed, &modes),
         list(&written)
     );
     Answer::new(
         text,
-        &json!({ "columns": columns, "rows": rows, "modes": modes }),
+        &json!({ "columns": columns, "rows": rows, "modes": modes, "findings": findings }),
     )
 }
 
@@ -149,7 +199,13 @@ pub(super) fn simulated(
     let mut rows = Vec::with_capacity(steps + 1);
     for i in 0..=steps {
         if i > 0 {
-            stepper.advance(&mut state, &inputs, step)?;
+            let advanced = stepper.advance(&mut state, &inputs, step);
+            advanced.map_err(|e| match e {
+                Error::Numerical(why) => {
+                    Error::Numerical(format!("{why} at {:.6} s", i as f64 * step))
+                }
+                other => other,
+            })?;
         }
         stepper.outputs(&state, &inputs, &mut outputs)?;
         let mut row = vec![i as f64 * step];

@@ -30,6 +30,7 @@ mod report;
 mod required_speeds;
 mod schemas;
 mod select;
+mod simulate;
 mod templates;
 mod turbulence;
 mod verdicts;

@@ -357,21 +357,3 @@ fn any_table_of_results_can_be_drawn() {
         &["sway_m", "heave_m"],
     );
 }
-
-#[test]
-fn a_simulation_says_whether_the_motion_grows() {
-    let folder = TempDir::new().unwrap();
-    let at = folder.path();
-    succeeds(at, &["demo", "--out", "d", "--no-figures"]);
-    for (speed, says) in [("30", "dies down"), ("42", "GROWS")] {
-        let run = [
-            "simulate",
-            "d/model.json",
-            "--wind-speed",
-            speed,
-            "--no-figures",
-        ];
-        let said = flowing(&succeeds(at, &run));
-        assert!(said.contains(says) && said.contains("Hz, growth"), "{said}");
-    }
-}

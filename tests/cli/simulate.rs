@@ -1,0 +1,68 @@
+//! The released section of a model: what its motion comes to, and what is refused.
+
+use crate::command::{aerodeck, flowing, succeeds};
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
+
+/// What grows is said to, also without oscillating; what no test looked at, and what looks odd in the section.
+#[test]
+fn a_simulation_says_whether_the_motion_grows() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["demo", "--out", "d", "--no-figures"]);
+    let changed = |name: &str, key: &str, value: f64| {
+        let text = fs::read_to_string(at.join("d/model.json")).unwrap();
+        let mut model: Value = serde_json::from_str(&text).unwrap();
+        *model.pointer_mut(key).unwrap() = value.into();
+        fs::write(at.join(name), model.to_string()).unwrap();
+    };
+    changed("soft.json", "/section/torsion/frequency_hz", 2.0);
+    changed("wide.json", "/section/width_m", 500.0);
+    changed("coarse.json", "/experiment/step_size_s", 100.0);
+    let run = |model: &str, more: &[&str]| {
+        let line = ["simulate", model, "--no-figures", "--wind-speed"];
+        aerodeck(at, &[&line[..], more].concat())
+    };
+    for (model, speed, says, tested) in [
+        ("d/model.json", "30", "dies down: least damped mode", true),
+        ("d/model.json", "42", "GROWS: least damped mode", true),
+        ("d/model.json", "2", "dies down: least damped mode", false),
+        (
+            "soft.json",
+            "30",
+            "GROWS without oscillating (static divergence): growth +",
+            false,
+        ),
+    ] {
+        let (code, said, error) = run(model, &[speed]);
+        let said = flowing(&said);
+        assert!(code == 0 && said.contains(says), "{said}{error}");
+        let outside = said.contains("OUTSIDE the tested range, K = ωB/V 0.");
+        assert_eq!(outside, !tested, "{said}");
+    }
+    let (_, said, error) = run("wide.json", &["30", "--json"]);
+    assert!(error.contains("section.width_m = 500: "), "{error}");
+    let said: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(said["findings"][0]["place"], "section.width_m");
+    for (model, more, says) in [
+        (
+            "d/model.json",
+            &["30", "--step", "20", "--stop-time", "10"][..],
+            "--step: expected a step within the stop time of 10 s, found 20 s",
+        ),
+        (
+            "coarse.json",
+            &["30"],
+            "coarse.json: experiment.step_size_s: ",
+        ),
+        (
+            "soft.json",
+            &["60", "--stop-time", "1000"],
+            "the motion has overflowed at ",
+        ),
+    ] {
+        let (code, _, error) = run(model, more);
+        assert!(code != 0 && flowing(&error).contains(says), "{error}");
+    }
+}
