@@ -17,6 +17,7 @@ use super::result_files::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use super::summary::{FitSummary, Summary};
 use crate::error::{Error, Result};
+use crate::files::text::read_text;
 use crate::flutter::{Onset, OnsetMethod};
 use crate::fmu::package::with_report;
 use crate::identification::EntryReport;
@@ -43,7 +44,7 @@ pub(crate) struct ReportArgs {
 
 /// Runs the command.
 pub(super) fn run(args: &ReportArgs) -> Result<Answer> {
-    let page = page(&args.folder, &args.folder, PagePlace::Folder)?;
+    let page = page_of(&args.folder)?;
     let mut out = OutputDir::new(&args.folder)?;
     if args.pdf {
         let at = out.stage(REPORT)?;
@@ -61,16 +62,15 @@ pub(super) fn run(args: &ReportArgs) -> Result<Answer> {
 /// # Errors
 /// Those of reading and writing the results.
 pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
-    let folder = out.target("");
     for name in [FMU_FILE, BRIDGE_FMU] {
         let fmu = out.staging().join(name);
         if fmu.is_file() {
-            let page = page(out.staging(), &folder, PagePlace::Archive)?;
+            let page = page(out.staging(), PagePlace::Archive)?;
             let bytes = std::fs::read(&fmu).map_err(|e| Error::io(&fmu, e))?;
             out.write(name, with_report(&bytes, &page)?)?;
         }
     }
-    let page = page(out.staging(), &folder, PagePlace::Folder)?;
+    let page = page(out.staging(), PagePlace::Folder)?;
     out.write(REPORT, page)
 }
 
@@ -79,29 +79,23 @@ pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
 /// # Errors
 /// Those of reading them.
 pub(super) fn page_of(folder: &Path) -> Result<String> {
-    page(folder, folder, PagePlace::Folder)
+    page(folder, PagePlace::Folder)
 }
 
-/// The page of the results in `folder`; the study stands there or else in `study_folder`.
+/// The page of the results in `folder`.
 ///
 /// # Errors
-/// [`Error::Io`] and [`Error::Input`] for a folder without results of `study`.
-fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> {
+/// [`Error::Io`] and [`Error::Input`] for a folder without results of `study`, and for a study or a model that was changed since.
+fn page(folder: &Path, place: PagePlace) -> Result<String> {
     let path = folder.join(SUMMARY);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
     if is_of_a_bridge(&parsed(&path, &text)?) {
         return bridge::page(folder, &text, place);
     }
     let summary: Summary = parsed(&path, &text)?;
-    let staged = folder.join(&summary.study_file);
-    let study_path = if staged.exists() {
-        staged
-    } else {
-        study_folder.join(&summary.study_file)
-    };
-    let study_text = std::fs::read_to_string(&study_path).map_err(|e| Error::io(&study_path, e))?;
-    let study =
-        Study::from_toml(&study_text, folder.to_path_buf()).map_err(|e| e.in_file(&study_path))?;
+    let study_text = study_of(folder, &summary)?;
+    let study = Study::from_toml(&study_text, folder.to_path_buf())
+        .map_err(|e| e.in_file(folder.join(&summary.study_file)))?;
     let read = |name: &str| std::fs::read(folder.join(name)).ok();
     let mut page = of_summary(&summary, &study);
     page.figures = figures(&|name| std::fs::read_to_string(folder.join(name)).ok());
@@ -130,6 +124,41 @@ fn page(folder: &Path, study_folder: &Path, place: PagePlace) -> Result<String> 
     }
     page.text = study_text;
     study_page(&page)
+}
+
+/// The text of the study, as it stands in the folder where it does: at the edges of the page people may state something else, but
+/// what was computed is of the study and the model of the run.
+fn study_of(folder: &Path, summary: &Summary) -> Result<String> {
+    let refused = |name: &str, run: &str, now: &str| {
+        let expected =
+            format!("the file of the run (SHA-1 {run}), or `study` again for what it holds now");
+        let found = format!("changed since the run (SHA-1 {now})");
+        Error::input(folder.join(name).display().to_string(), expected, found)
+    };
+    if let (Some(run), Ok(model)) = (&summary.model_sha1, std::fs::read(folder.join(MODEL_FILE)))
+        && digest(&model) != *run
+    {
+        return Err(refused(MODEL_FILE, run, &digest(&model)));
+    }
+    let (name, ran) = (&summary.study_file, &summary.study_text);
+    let Ok(text) = read_text(&folder.join(name)) else {
+        return Ok(ran.clone());
+    };
+    match computed_from(&text) == computed_from(ran) {
+        true => Ok(text),
+        false => Err(refused(
+            name,
+            &digest(ran.as_bytes()),
+            &digest(text.as_bytes()),
+        )),
+    }
+}
+
+/// The keys of a study but for those of the edges of its page.
+fn computed_from(text: &str) -> Option<toml::Table> {
+    let mut keys: toml::Table = text.parse().ok()?;
+    keys.remove("report");
+    Some(keys)
 }
 
 fn of_summary(summary: &Summary, study: &Study) -> StudyPage {

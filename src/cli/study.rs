@@ -5,7 +5,7 @@ use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::report;
-use super::report::folder::{REPORT, SUMMARY, today};
+use super::report::folder::{REPORT, SUMMARY, digest, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
 use super::{buffeting, figures, headline, measured_forces, result_files, select, stages, text};
@@ -64,7 +64,7 @@ pub(crate) fn run_chain(
     progress: &Progress,
 ) -> Result<Answer> {
     let deck = Deck::load(ran.study)?;
-    let study_file = study_run::leave(ran, &mut out)?;
+    let (study_file, study_text) = study_run::leave(ran, &mut out)?;
     let mut chain = StudyStages {
         study: ran.study.clone(),
         deck,
@@ -84,7 +84,11 @@ pub(crate) fn run_chain(
     let verdict = chain.verdict(own, &results);
     chain.draw(&trained, &results, &verdict)?;
     chain.draw_exported(own, &results, records.as_ref())?;
-    let mut summary = chain.summary(study_file, trained, results, stepped)?;
+    let mut summary = Summary {
+        study_file,
+        study_text,
+        ..chain.summary(trained, results, stepped)?
+    };
     chain.buffeting(&mut summary)?;
     chain.finish(summary)
 }
@@ -261,10 +265,9 @@ impl StudyStages<'_> {
         Ok(())
     }
 
-    /// What `summary.json` holds, but for the files.
+    /// What `summary.json` holds, but for the files and the study's own.
     fn summary(
         &mut self,
-        study_file: String,
         trained: Vec<TrainedWithReport>,
         results: FlutterStudy,
         stepped: Option<SteppedOnset>,
@@ -279,7 +282,9 @@ impl StudyStages<'_> {
             model: name.clone(),
             verdict,
             comparisons: headline::comparisons(&results, stepped.as_ref(), name),
-            study_file,
+            study_file: String::new(),
+            study_text: String::new(),
+            model_sha1: None,
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             date: Some(today()?),
             study: study.name.clone(),
@@ -326,6 +331,8 @@ impl StudyStages<'_> {
         self.out.stage(SUMMARY)?;
         summary.files = self.out.targets();
         summary.files.sort();
+        let model = std::fs::read(self.out.staging().join(stages::MODEL_FILE));
+        summary.model_sha1 = model.ok().map(|bytes| digest(&bytes));
         self.out.write_json(SUMMARY, "summary", &summary)?;
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;

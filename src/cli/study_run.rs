@@ -23,8 +23,8 @@ pub(crate) struct StudyRun<'a> {
     pub(crate) file: Option<&'a Path>,
 }
 
-/// Leaves the study in the folder of results, with the files that it names; the name under which it stands there.
-pub(crate) fn leave(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
+/// Leaves the study in the folder of results, with the files that it names; the name under which it stands there, and its text.
+pub(crate) fn leave(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<(String, String)> {
     let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => false,
@@ -32,15 +32,15 @@ pub(crate) fn leave(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
     if let Some(name) = ran.file.and_then(Path::file_name)
         && ran.file.is_some_and(|file| same(file, &out.target(name)))
     {
-        return Ok(name.to_string_lossy().into_owned());
+        return Ok((name.to_string_lossy().into_owned(), ran.text.to_owned()));
     }
     let text = self_contained(ran, out)?;
     out.write(STUDY, &text)?;
     if out.keep_edited(STUDY, false)? {
         out.write(BESIDE, &text)?;
-        return Ok(BESIDE.to_owned());
+        return Ok((BESIDE.to_owned(), text));
     }
-    Ok(STUDY.to_owned())
+    Ok((STUDY.to_owned(), text))
 }
 
 /// The text, with copies of what it reads; as it is where it reads nothing.

@@ -24,6 +24,10 @@ pub(crate) struct Summary {
     pub study: String,
     /// File of the study in this folder.
     pub study_file: String,
+    /// Its text as it was run.
+    pub study_text: String,
+    /// SHA-1 of the exported model; `None` where it was not trained.
+    pub model_sha1: Option<String>,
     /// The model that the verdict is about.
     pub model: String,
     /// What it amounts to.

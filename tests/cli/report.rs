@@ -357,3 +357,31 @@ fn any_table_of_results_can_be_drawn() {
         &["sway_m", "heave_m"],
     );
 }
+
+/// Numbers of one study stand beside no other: what was computed from is that of the run, but its edges may be stated later.
+#[test]
+fn a_study_that_was_changed_since_the_run_has_no_report() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["demo", "--out", "d", "--no-figures"]);
+    let study = fs::read_to_string(at.join("d/study.toml")).unwrap();
+    let edges = "\n[report]\nproject = \"Strait crossing\"\n";
+    fs::write(at.join("d/study.toml"), study.clone() + edges).unwrap();
+    succeeds(at, &["report", "d"]);
+    let page = fs::read_to_string(at.join("d/report.html")).unwrap();
+    assert!(page.contains("Strait crossing"));
+    let wider = study.replace("width_m = 0.5", "width_m = 5.0");
+    assert_ne!(wider, study);
+    fs::write(at.join("d/study.toml"), wider).unwrap();
+    let says = [
+        "study.toml",
+        "`study` again",
+        "changed since the run (SHA-1",
+    ];
+    refused(at, &["report", "d"], &says);
+    fs::remove_file(at.join("d/study.toml")).unwrap();
+    succeeds(at, &["report", "d"]);
+    let model = fs::read_to_string(at.join("d/model.json")).unwrap();
+    fs::write(at.join("d/model.json"), model + " ").unwrap();
+    refused(at, &["report", "d"], &["model.json", says[2]]);
+}
