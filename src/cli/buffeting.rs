@@ -9,6 +9,7 @@ use super::{buffeting_page, figures, headline};
 use crate::error::{Error, Result};
 use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_page};
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
+use crate::verdict::Verdict;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -32,10 +33,10 @@ pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.wind.open()?;
     let speeds = study.speed_range()?.curve_speeds_m_s();
     let results = response(&study, &speeds, progress)?;
-    write(&study.name, "", &results, &mut out)?;
     // a requirement is judged where it is stated, also beside a response to turbulence
     let required = study.speeds.required();
     let verdict = required.map(|_| study.verdict()).transpose()?;
+    write(&study.name, "", &results, verdict.as_ref(), &mut out)?;
     let text = headline::stated(&study.name, verdict.as_ref()) + &text(&study, &results);
     let value = serde_json::json!({ "verdict": verdict, "buffeting": results, "findings": study.findings() });
     let answer = out.answer(text, value)?;
@@ -55,6 +56,7 @@ pub(super) fn of_study(
     study: &Study,
     block: &SectionBuffetingBlock,
     model: &Path,
+    verdict: &Verdict,
     out: &mut OutputDir,
     progress: &Progress,
 ) -> Result<String> {
@@ -81,12 +83,18 @@ pub(super) fn of_study(
     let further = further.chain(tested.lines().map(str::to_owned));
     let line = std::iter::once(line).chain(further);
     let line = line.collect::<Vec<_>>().join("; ");
-    write(&study.name, OF_STUDY, &results, out)?;
+    write(&study.name, OF_STUDY, &results, Some(verdict), out)?;
     Ok(line)
 }
 
 /// The results, their figures and their page.
-fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -> Result<()> {
+fn write(
+    name: &str,
+    key: &str,
+    results: &BuffetingStudy,
+    verdict: Option<&Verdict>,
+    out: &mut OutputDir,
+) -> Result<()> {
     out.write_json("buffeting.json", "buffeting-results", results)?;
     if !results.responses.is_empty() {
         figures::write("buffeting", out, || buffeting_rms_figure(name, results))?;
@@ -98,7 +106,7 @@ fn write(name: &str, key: &str, results: &BuffetingStudy, out: &mut OutputDir) -
             buffeting_spectra_figure(&title, &results.dofs, &[], spectra)
         })?;
     }
-    let page = buffeting_page::page(name, key, results)?;
+    let page = buffeting_page::page(name, key, results, verdict)?;
     out.write(PAGE, sections_page(&page)?)
 }
 

@@ -6,13 +6,19 @@ use crate::error::{Result, counted};
 use crate::files::report_block::ReportBlock;
 use crate::report::{PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure};
 use crate::study::BuffetingStudy;
+use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
 /// Length of record for which peaks are expected, s.
 const DURATION_S: f64 = 600.0;
 
 /// Root mean squares, peaks and accelerations over the wind speed, with the figures; another page takes them up by the `key`.
-pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<SectionsPage> {
+pub(super) fn page(
+    name: &str,
+    key: &str,
+    results: &BuffetingStudy,
+    verdict: Option<&Verdict>,
+) -> Result<SectionsPage> {
     let mut rows = Vec::new();
     for r in results.shown() {
         let mut equilibria = results.mean.iter();
@@ -70,6 +76,7 @@ pub(super) fn page(name: &str, key: &str, results: &BuffetingStudy) -> Result<Se
     Ok(SectionsPage {
         title: name.to_owned(),
         subtitle: "Response of a section to turbulence".to_owned(),
+        verdict: verdict.map(Into::into).unwrap_or_default(),
         answer: match results.left_out.len() {
             0 => format!("Response at {} wind speeds", results.responses.len()),
             none => format!(

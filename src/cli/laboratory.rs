@@ -2,7 +2,6 @@
 
 use super::output::OutputDir;
 use crate::error::counted;
-use crate::files::report_block::ReportBlock;
 use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
@@ -42,8 +41,6 @@ pub(super) fn laboratory_page(
             counted(estimates.len(), "value"),
             counted(notes.len(), "remark")
         ),
-        of: ReportBlock::default(),
-        key: String::new(),
         sections: vec![
             PageSection {
                 text: notes.to_vec(),
@@ -82,6 +79,7 @@ pub(super) fn laboratory_page(
                 ..section("Every derivative at every test point")
             },
         ],
+        ..SectionsPage::default()
     }
 }
 

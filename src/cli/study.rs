@@ -318,7 +318,8 @@ impl StudyStages<'_> {
         }
         let model = self.out.stage(stages::MODEL_FILE)?;
         let (study, out) = (&self.study, &mut self.out);
-        match buffeting::of_study(study, block, &model, out, self.progress) {
+        let verdict = &summary.verdict;
+        match buffeting::of_study(study, block, &model, verdict, out, self.progress) {
             Ok(line) => summary.buffeting = Some(line),
             Err(e) => summary.failed.push(StageFailure::new("buffeting", e)),
         }

@@ -8,7 +8,6 @@ use super::result_files::{RESPONSE, ROOTS};
 use super::select::parameter_maps;
 use super::stages::FIGURE;
 use crate::error::Result;
-use crate::files::report_block::ReportBlock;
 use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{FirstOrderExample, LaguerreFunctions};
 use crate::report::{
@@ -52,9 +51,8 @@ pub(super) fn thesis_page(
             "Investigation of Laguerre expansion basis for modelling of bridge aeroelastic forces"
                 .to_owned(),
         answer: format!("Onset of the coupled section: printed {printed_m_s} m/s, here {own}"),
-        of: ReportBlock::default(),
-        key: String::new(),
         sections,
+        ..SectionsPage::default()
     })
 }
 

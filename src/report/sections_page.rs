@@ -1,6 +1,7 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
 use super::page_head::{at_edges, stated, with_contents};
+use super::study_page::PageVerdict;
 use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
 use askama::Template;
@@ -20,6 +21,8 @@ pub(crate) fn sections_of(page: &str, key: &str) -> Option<String> {
 pub(crate) struct SectionsPage {
     pub(crate) title: String,
     pub(crate) subtitle: String,
+    /// What is required and whether it is met; empty where nothing is judged.
+    pub(crate) verdict: PageVerdict,
     /// The answer, in one line.
     pub(crate) answer: String,
     pub(crate) of: ReportBlock,
@@ -42,7 +45,7 @@ pub(crate) struct PageSection {
 #[derive(Template)]
 #[template(path = "sections.html")]
 struct SectionsTemplate<'a> {
-    page: &'a SectionsPage,
+    of: &'a SectionsPage,
     generator: &'static str,
     edges: String,
     stated: Vec<(&'static str, &'a str)>,
@@ -54,7 +57,7 @@ pub(crate) fn sections_page(page: &SectionsPage) -> Result<String> {
     let template = SectionsTemplate {
         edges: at_edges(&page.of, &page.title, generator),
         stated: stated(&page.of),
-        page,
+        of: page,
         generator,
     };
     let text = template.render();

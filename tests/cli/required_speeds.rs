@@ -126,6 +126,17 @@ fn a_requirement_is_judged_beside_the_response_of_a_bridge() {
         );
         assert_eq!(code, 3);
     }
+    let page = fs::read_to_string(folder.path().join("buffeting.html")).unwrap();
+    for part in [
+        "<section class=\"card not-met\">",
+        "✗ NOT MET, required 90 m/s",
+        "With any of these nothing is met",
+        "variance inside the tested range of K: ",
+        "their RMS differs from that of the tables by up to",
+        "time domain: 2 records of 20 s, every 0.1 s, seed 3",
+    ] {
+        assert!(page.contains(part), "`{part}` is not on the page");
+    }
 }
 
 /// Nodes that no section takes have no forces, and that is said.

@@ -110,6 +110,8 @@ fn a_required_speed_is_judged_beside_buffeting() {
         let (code, said, error) =
             aerodeck(folder.path(), &["buffeting", "wind.toml", "--no-figures"]);
         assert_eq!(code, 3, "{said}{error}");
+        let page = fs::read_to_string(folder.path().join("buffeting.html")).unwrap();
+        assert!(page.contains("required 60 m/s"), "no verdict on the page");
         flowing(&said)
     };
     let said = judged(true);

@@ -15,6 +15,7 @@ use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
 use crate::report::sections_page;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
+use crate::verdict::Verdict;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -81,15 +82,22 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
         out.write("turbulence.csv", field_csv(&field))?;
     }
     let file = args.bridge.text()?;
-    let page = buffeting_page::page(&study, &file, &all, &unstable)?;
+    let verdict = verdict(&study)?;
+    let page = buffeting_page::page(&study, &file, &all, &unstable, verdict.as_ref())?;
     out.write(BUFFETING_PAGE, sections_page(&page)?)?;
     let folder = out.target("");
-    let answer = judged(&study, &text, &results, |text, mut json| {
-        if !unstable.is_empty() {
-            json["unstable"] = serde_json::json!(unstable);
-        }
-        out.answer(text, json)
-    })?;
+    let answer = judged(
+        &study,
+        verdict.as_ref(),
+        &text,
+        &results,
+        |text, mut json| {
+            if !unstable.is_empty() {
+                json["unstable"] = serde_json::json!(unstable);
+            }
+            out.answer(text, json)
+        },
+    )?;
     page::renew(&folder, &file)?;
     Ok(answer.passed_if(unstable.is_empty()))
 }
@@ -142,20 +150,25 @@ impl BridgeBuffetingArgs {
     }
 }
 
-/// The answer with the verdict on what the file requires: judged where it is stated, also beside a response to turbulence.
+/// The verdict on what the file requires: judged where it is stated, also beside a response to turbulence.
+fn verdict(study: &BridgeStudy) -> Result<Option<Verdict>> {
+    let required = study.file.flutter.required_speed_m_s;
+    required.map(|_| study.verdict()).transpose()
+}
+
+/// The answer with the verdict.
 fn judged(
     study: &BridgeStudy,
+    verdict: Option<&Verdict>,
     text: &str,
     results: &impl Serialize,
     answer: impl FnOnce(String, serde_json::Value) -> Result<Answer>,
 ) -> Result<Answer> {
-    let required = study.file.flutter.required_speed_m_s;
-    let verdict = required.map(|_| study.verdict()).transpose()?;
     let json = serde_json::json!({
         "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
     });
-    let text = headline::stated(&study.file.name, verdict.as_ref()) + text;
-    Ok(answer(text, json)?.with_outcome_of(verdict.as_ref()))
+    let text = headline::stated(&study.file.name, verdict) + text;
+    Ok(answer(text, json)?.with_outcome_of(verdict))
 }
 
 /// The response to the turbulence of a file.
@@ -185,7 +198,10 @@ fn by_file(
         study.file.name,
         path.display()
     );
-    judged(study, &text, &found, |text, json| Answer::new(text, &json))
+    let verdict = verdict(study)?;
+    judged(study, verdict.as_ref(), &text, &found, |text, json| {
+        Answer::new(text, &json)
+    })
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
@@ -235,8 +251,8 @@ fn table(results: &BridgeBuffeting) -> String {
     })
 }
 
-/// Which forces each domain takes, and how far that of the time domain leaves the answer.
-fn forces(results: &BridgeBuffeting) -> String {
+/// Which forces each domain takes, how far those of the time domain leave the answer, its records, and what was tested.
+pub(super) fn forces(results: &BridgeBuffeting) -> String {
     let mut text = String::new();
     if let Some(models) = &results.models {
         text.push_str(

@@ -1,10 +1,12 @@
 //! The page of a response to turbulence; the report of the bridge takes it up.
 
+use super::buffeting::forces;
 use crate::cli::report::folder::{digest, today};
 use crate::error::Result;
 use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
 use crate::section::Dof;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
+use crate::verdict::Verdict;
 
 /// Motions with their unit and the factor to it.
 const MOTIONS: [(&str, f64); 3] = [
@@ -19,6 +21,7 @@ pub(super) fn page(
     text: &str,
     all: &[BridgeBuffeting],
     unstable: &[String],
+    verdict: Option<&Verdict>,
 ) -> Result<SectionsPage> {
     let speeds: Vec<String> = all
         .iter()
@@ -28,6 +31,7 @@ pub(super) fn page(
     Ok(SectionsPage {
         title: study.file.name.clone(),
         subtitle: "Response of the whole bridge to turbulence".to_owned(),
+        verdict: verdict.map(Into::into).unwrap_or_default(),
         answer: std::iter::once(format!(
             "Response to turbulence at {} m/s",
             speeds.join(", ")
@@ -82,7 +86,7 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
         ),
         ("Spectra of the displacements times the frequency.", spectra),
     ];
-    let forces = of.envelope.section_forces.iter().map(|f| {
+    let of_sections = of.envelope.section_forces.iter().map(|f| {
         let peak = f.peak_factor * f.rms;
         format!(
             "{} of {}: RMS {:.4e}, expected peak ±{peak:.4e} about its mean",
@@ -94,7 +98,8 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
          column is the RMS of the acceleration, per s²."
             .to_owned(),
     ];
-    text.extend(forces);
+    text.extend(forces(of).lines().map(|line| line.trim().to_owned()));
+    text.extend(of_sections);
     Ok(PageSection {
         title: format!("Buffeting at {speed} m/s"),
         text,
