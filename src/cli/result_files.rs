@@ -4,7 +4,7 @@
 use super::figures;
 use super::output::OutputDir;
 use super::simulate::{motion_panels, simulated};
-use super::stages::MAX_CURVES;
+use super::stages::{MAX_CURVES, title_of_first};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
@@ -78,6 +78,7 @@ pub(super) fn write_curves(
     }
     let drawn = &curves[..curves.len().min(MAX_CURVES)];
     let title = format!("{}: eigenvalues as the wind rises", study.name);
+    let title = title_of_first(&title, curves.len());
     figures::write(ROOTS, out, || root_locus_figure(drawn, &title))
 }
 
@@ -170,8 +171,9 @@ pub(super) fn write_derivatives(
     let exported = &study.exported()?.name;
     let known = trained.iter().find(|t| t.model.name == *exported);
     let known = known.and_then(|t| t.uncertainty.as_ref().ok());
+    let title = format!("{}: measured derivatives and models", study.name);
     let shown = DerivativesShown {
-        title: format!("{}: measured derivatives and models", study.name),
+        title: title_of_first(&title, trained.len()),
         table: deck.table(),
         dofs: &study.section.dofs(),
         fitted,

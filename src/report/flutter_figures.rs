@@ -39,6 +39,7 @@ pub fn vf_vg_figure(
     if let Some((required, outcome)) = verdict.and_then(|v| v.against.zip(v.outcome.as_ref())) {
         diagram.draw_required(required.speed_m_s, outcome);
     }
+    diagram.spread_bars();
     diagram.explain_kinds(onsets);
     diagram.into_drawing(title).draw()
 }
@@ -137,7 +138,7 @@ impl VfVg {
         self.stated.push(Entry::new(statement(onset), ink));
     }
 
-    /// The bar of the interval below the zero line; the onset of the FMU has that of its model, which is drawn already.
+    /// The bar of the interval; the onset of the FMU has that of its model, which is drawn already.
     fn draw_interval(&mut self, onset: &Onset, colour: &'static str) {
         let Some((low_m_s, high_m_s)) = onset.interval.ends() else {
             return;
@@ -145,13 +146,23 @@ impl VfVg {
         if onset.at.method == OnsetMethod::FmuStepping {
             return;
         }
-        let bars = self.close.series.iter().filter(|s| s.name == BAR).count();
-        let level = -(FIRST_BAR_PERCENT + BAR_STEP_PERCENT * bars as f64).min(-NEAR_ZERO_PERCENT.0);
         self.close.add(
             BAR,
-            vec![(low_m_s, level), (high_m_s, level)],
+            vec![(low_m_s, 0.0), (high_m_s, 0.0)],
             Ink::stroke(colour, None, BAR_WIDTH),
         );
+    }
+
+    /// Puts the bars below the zero line, one under the other, the closer the more there are.
+    fn spread_bars(&mut self) {
+        let all = self.close.series.iter_mut().filter(|s| s.name == BAR);
+        let bars: Vec<_> = all.collect();
+        let gaps = bars.len().saturating_sub(1).max(1) as f64;
+        let step = BAR_STEP_PERCENT.min((LAST_BAR_PERCENT - FIRST_BAR_PERCENT) / gaps);
+        for (i, bar) in bars.into_iter().enumerate() {
+            let level = -(FIRST_BAR_PERCENT + step * i as f64);
+            bar.points.iter_mut().for_each(|point| point.1 = level);
+        }
     }
 
     /// Frequency and speed beside the markers; the same number of the same model by another route says nothing new.
@@ -234,6 +245,7 @@ const NEAR_ZERO_PERCENT: (f64, f64) = (-1.0, 1.0);
 /// Name of the bars of intervals, and where they are drawn: below the zero line, one under the other.
 const BAR: &str = "interval of the onset";
 const FIRST_BAR_PERCENT: f64 = 0.25;
+const LAST_BAR_PERCENT: f64 = 0.9;
 const BAR_STEP_PERCENT: f64 = 0.15;
 const BAR_WIDTH: f64 = 3.5;
 

@@ -7,6 +7,7 @@ use aerodeck::files::bridge::BridgeFile;
 use aerodeck::study::bridge::BridgeStudy;
 use assert_cmd::Command;
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use tempfile::TempDir;
@@ -103,6 +104,41 @@ fn an_account_is_short() {
             "{all}"
         );
     }
+}
+
+/// More models than can be told apart are said in the figures of the first ones, whose bars of intervals lie apart.
+#[test]
+fn figures_of_many_models_have_the_first_ones() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--deck", "LN21-5200", "--out", "s.toml"]);
+    let text = fs::read_to_string(at.join("s.toml")).unwrap();
+    let first = text.find("[[model]]").unwrap();
+    let (before, rest) = text.split_at(first);
+    let after = &rest[rest.find("# Where to look").unwrap()..];
+    let model = |i: usize| {
+        format!(
+            "[[model]]\nname = \"m{i}\"\ntable = {{ form = {{ kind = \"rational\", lags = 2 }} }}\n\n"
+        )
+    };
+    let models: String = (1..=8).map(model).collect();
+    fs::write(at.join("s.toml"), format!("{before}{models}{after}")).unwrap();
+    succeeds(at, &["study", "s.toml", "--out", "r"]);
+    let drawn = |stem: &str| fs::read_to_string(at.join(format!("r/{stem}.svg"))).unwrap();
+    for stem in ["flutter", "roots", "derivatives"] {
+        let svg = drawn(stem);
+        assert!(svg.contains("(the first 7 of 8 models)"), "{stem}");
+        assert!(svg.contains("m7") && !svg.contains("m8"), "{stem}");
+    }
+    let svg = drawn("flutter");
+    let bars = svg.lines().filter(|l| l.contains("stroke-width=\"3.5\""));
+    let height = |line: &'_ str| {
+        let from = line.split(['M', 'L']).nth(1).unwrap();
+        from.split(' ').nth(1).unwrap().to_owned()
+    };
+    // those of seven models and of the table, and that in the legend
+    let heights: BTreeSet<String> = bars.map(height).collect();
+    assert_eq!(heights.len(), 9, "{heights:?}");
 }
 
 /// Several winds in one call; the report of the same bridge takes them up; section forces and the envelope follow from the modes.
