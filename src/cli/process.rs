@@ -406,7 +406,7 @@ fn text(
         };
         let _ = writeln!(
             text,
-            "  {} derivatives at {} test points, median standard error {:.2} %",
+            "  {} derivatives, {} numbers in all, median standard error {:.2} %",
             Derivative::ALL
                 .iter()
                 .filter(|d| found.each(**d).next().is_some())

@@ -1,7 +1,7 @@
 //! Modes of a bridge, their frequencies and damping over wind speed, and the motion at flutter.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
@@ -63,7 +63,7 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     }
     Drawing {
         name: "modes of the bridge",
-        title: Some(title.to_owned()),
+        title: titled(title),
         panels,
         columns,
         axes: (300.0, 110.0),
@@ -196,7 +196,7 @@ pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result
     }
     Drawing {
         name: "V-f and V-ζ diagram of the bridge",
-        title: Some(title.to_owned()),
+        title: titled(title),
         panels,
         columns: 1,
         axes: (640.0, 220.0),
@@ -266,7 +266,7 @@ pub(crate) fn flutter_motion_figure(
     });
     Drawing {
         name: "motion at flutter",
-        title: Some(title.to_owned()),
+        title: titled(title),
         panels: panels.collect(),
         columns: 1,
         axes: (640.0, 150.0),

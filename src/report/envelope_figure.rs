@@ -1,7 +1,7 @@
 //! Response of a bridge to turbulence along the span.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
@@ -42,7 +42,7 @@ pub(crate) fn envelope_figure(of: &BridgeBuffeting, title: &str) -> Result<Figur
     };
     Drawing {
         name: "envelope along the span",
-        title: Some(title.to_owned()),
+        title: titled(title),
         panels: MOTIONS.into_iter().enumerate().map(panel).collect(),
         columns: 1,
         axes: (640.0, 130.0),

@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::geometry::{Area, Px};
+use super::legend::shortened;
 use super::scene::{Anchor, Scene};
 use super::style::{BLACK, GREY, Stroke};
 use crate::error::{Error, Result};
@@ -78,7 +79,7 @@ pub(crate) fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> 
     let wide = columns.min(maps.len()) as f64 * panel_width;
     let foot = 26.0;
     let mut scene = Scene::new(wide, 34.0 + row_heights.iter().sum::<f64>() + foot);
-    scene.text(Px::new(LEFT, 22.0), title, TITLE, BLACK);
+    scene.text(Px::new(LEFT, 22.0), &shortened(title), TITLE, BLACK);
     let mut top = 34.0;
     for (row, tall) in maps.chunks(columns).zip(&row_heights) {
         for (c, map) in row.iter().enumerate() {
@@ -281,7 +282,8 @@ mod tests {
 
     #[test]
     fn lowest_and_highest_have_the_ends_of_the_scale() {
-        let figure = heat_map_figure("two", &[map(), map()], 2).unwrap();
+        let figure = heat_map_figure(&"two ".repeat(40), &[map(), map()], 2).unwrap();
+        assert!(figure.svg().contains("two … two"));
         for colour in ["#440154", "#fde725"] {
             assert!(figure.svg().contains(colour), "{colour}");
         }

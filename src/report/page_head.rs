@@ -29,7 +29,7 @@ pub(super) fn at_edges(of: &ReportBlock, title: &str, generator: &str) -> String
     let named = |name: &str, of: &Option<String>| of.as_ref().map(|of| format!("{name} {of}"));
     let project = of.project.clone().filter(|p| p != title);
     format!(
-        "@page {{ @top-left {{ content: {}; }} @top-right {{ content: {}; }} @bottom-left {{ content: {}; }} }}",
+        "@page {{ @top-left {{ content: {}; }} @top-right {{ content: {}; white-space: nowrap; }} @bottom-left {{ content: {}; }} }}",
         text(&[project, Some(title.to_owned())]),
         text(&[named("revision", &of.revision), of.date.clone()]),
         text(&[of.author.clone(), Some(generator.to_owned())]),

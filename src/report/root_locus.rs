@@ -2,7 +2,7 @@
 //! grow.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::flutter_figures::branch_names;
 use super::legend::Entry;
@@ -38,7 +38,7 @@ impl RootLocus {
     pub(super) fn draw(self, title: &str, legend: Vec<Vec<Entry>>) -> Result<Figure> {
         Drawing {
             name: PLACE,
-            title: Some(title.to_owned()),
+            title: titled(title),
             panels: vec![self.0],
             columns: 1,
             axes: (640.0, 260.0),

@@ -42,9 +42,9 @@ fn a_report_says_whose_it_is() {
     let page = fs::read_to_string(at.join("r/report.html")).unwrap();
     for part in [
         r#"@top-left { content: "Strait \22 crossing\22  · Langenuen LN21-5200"; }"#,
-        r#"@top-right { content: "revision B · 2023-11-14"; }"#,
+        r#"@top-right { content: "revision B · 2023-11-14"; white-space: nowrap; }"#,
         r#"@bottom-left { content: "A. \3c Engineer\3e  · aerodeck "#,
-        "counter(pages)",
+        "counter(pages); white-space: nowrap;",
         "<strong>A. &#60;Engineer&#62;</strong>",
         "<nav>",
     ] {
@@ -54,7 +54,7 @@ fn a_report_says_whose_it_is() {
     fs::write(at.join("s.toml"), dated).unwrap();
     succeeds(at, &["study", "s.toml", "--out", "d", "--no-figures"]);
     let page = fs::read_to_string(at.join("d/report.html")).unwrap();
-    assert!(page.contains(r#"@top-right { content: "1 May"; }"#));
+    assert!(page.contains(r#"@top-right { content: "1 May"; white-space: nowrap; }"#));
     // a page of its own is printed where a browser is, and said how else where none is
     if browser::document(&at.join("d/report.html"), "1280,1000").is_some() {
         succeeds(at, &["report", "d", "--pdf"]);

@@ -42,9 +42,8 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
     let text = flowing(&succeeds(at, &with_section));
     for word in [
         "lag of the force channels",
-        "test points",
         "replaced: spike",
-        "8 derivatives",
+        "8 derivatives, 128 numbers in all",
     ] {
         assert!(text.contains(word), "`{word}` is not in:\n{text}");
     }

@@ -207,7 +207,7 @@ impl Run {
             periods *= 2.0;
         }
         Err(Error::Numerical(format!(
-            "growth at {speed} m/s: no steady rate after {:.0} s; last estimate {}",
+            "growth at {speed:.3} m/s: no steady rate after {:.0} s; last estimate {}",
             samples.len() as f64 / self.references.len() as f64 * self.step,
             last.map_or("none".to_owned(), |g| format!("{:.6} 1/s", g.rate_per_s))
         )))

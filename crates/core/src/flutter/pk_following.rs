@@ -323,7 +323,7 @@ impl Follower for StructureInWind<'_> {
     }
 
     fn lost(speed: f64) -> Error {
-        Error::Numerical(format!("p-k: the mode is lost at {speed} m/s"))
+        Error::Numerical(format!("p-k: the mode is lost at {speed:.3} m/s"))
     }
 
     fn complete(&self, mut onset: Onset, _low: &Modes, mode: &Mode) -> Result<Option<Onset>> {

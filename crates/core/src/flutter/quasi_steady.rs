@@ -125,7 +125,7 @@ fn at_equilibrium(
     let path = static_equilibria(structure, theory, &[speed_m_s])?;
     let point = path.points.first().ok_or_else(|| {
         Error::Numerical(format!(
-            "quasi-steady onset: no equilibrium at {speed_m_s} m/s"
+            "quasi-steady onset: no equilibrium at {speed_m_s:.3} m/s"
         ))
     })?;
     theory.linearised(point.rotation_rad)
@@ -160,7 +160,7 @@ fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<Mode> {
         .max_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re))
         .ok_or_else(|| {
             Error::Numerical(format!(
-                "quasi-steady onset: no mode oscillates at {speed_m_s} m/s"
+                "quasi-steady onset: no mode oscillates at {speed_m_s:.3} m/s"
             ))
         })
 }

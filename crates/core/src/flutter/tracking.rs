@@ -88,7 +88,7 @@ impl<'a> Tracker<'a> {
         let speed = start_speed(self.section, &all);
         self.matched(&Modes { speed, all }, speed)?.ok_or_else(|| {
             Error::NotDistinct(format!(
-                "mode tracking: the structural modes are not distinct at {speed} m/s"
+                "mode tracking: the structural modes are not distinct at {speed:.3} m/s"
             ))
         })
     }
@@ -175,7 +175,7 @@ impl Follower for Tracker<'_> {
     }
 
     fn lost(speed: f64) -> Error {
-        Error::Numerical(format!("onset: the mode does not oscillate at {speed} m/s"))
+        Error::Numerical(format!("onset: no mode oscillates at {speed:.3} m/s"))
     }
 
     fn complete(&self, mut onset: Onset, low: &Modes, mode: &Mode) -> Result<Option<Onset>> {
