@@ -1,7 +1,6 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
-use super::page_head::{at_edges, stated, with_contents};
-use super::study_page::PageVerdict;
+use super::page_head::{PageVerdict, at_edges, stated, with_contents};
 use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
 use askama::Template;

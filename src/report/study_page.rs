@@ -1,11 +1,10 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
-use super::page_head::{at_edges, stated, with_contents};
+use super::page_head::{PageVerdict, at_edges, stated, with_contents};
 use super::sections_page::PageSection;
-use super::style::{COLOURS, branch_width, dash, outcome_colour};
+use super::style::{COLOURS, branch_width, dash};
 use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
-use crate::verdict::{Outcome, Severity, Verdict};
 use askama::Template;
 use serde_json::{Value, json};
 
@@ -47,57 +46,6 @@ pub(crate) struct PageCurve {
     pub(crate) frequency: Vec<Option<f64>>,
     /// Per cent.
     pub(crate) damping: Vec<Option<f64>>,
-}
-
-/// A verdict on the page: its words, its sign and its colour follow the outcome.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct PageVerdict {
-    /// Class of the card: `met`, `not-met`, `open`, or nothing where nothing is required.
-    pub(crate) class: &'static str,
-    /// Of the line that marks the required speed.
-    pub(crate) colour: &'static str,
-    pub(crate) headline: String,
-    pub(crate) explanation: String,
-    /// With which nothing is met, and what would settle it.
-    pub(crate) severe: Vec<(String, Option<String>)>,
-    /// To be known.
-    pub(crate) minor: Vec<String>,
-    pub(crate) required_m_s: Option<f64>,
-}
-
-impl From<&Verdict> for PageVerdict {
-    fn from(verdict: &Verdict) -> Self {
-        let of = |severity| {
-            verdict
-                .doubts
-                .iter()
-                .filter(move |d| d.severity == severity)
-        };
-        let outcome = verdict.outcome.as_ref();
-        Self {
-            class: match outcome {
-                Some(Outcome::Met) => "met",
-                Some(Outcome::NotMet { .. }) => "not-met",
-                Some(Outcome::CannotBeJudged { .. }) => "open",
-                None => "",
-            },
-            colour: outcome.map_or("#000", outcome_colour),
-            headline: capital(&verdict.headline),
-            explanation: verdict.explanation.clone(),
-            severe: of(Severity::Severe)
-                .map(|d| (d.text.clone(), d.settled_by.clone()))
-                .collect(),
-            minor: of(Severity::Minor).map(|d| d.text.clone()).collect(),
-            required_m_s: verdict.against.map(|r| r.speed_m_s),
-        }
-    }
-}
-
-/// `text` with a capital first letter.
-fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    let first = characters.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + characters.as_str()
 }
 
 /// Everything on the page, in words.

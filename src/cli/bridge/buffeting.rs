@@ -5,12 +5,12 @@ use super::super::headline;
 use super::super::progress::Progress;
 use super::super::text_table::TextTable;
 use super::args::BridgeArgs;
-use super::buffeting_page::{self, of_motion};
+use super::buffeting_page::{self, forces, of_motion};
 use super::files::BUFFETING_PAGE;
 use super::page;
 use crate::buffeting::TurbulenceField;
 use crate::cli::common::warn;
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Result};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
 use crate::report::sections_page;
@@ -249,51 +249,6 @@ fn table(results: &BridgeBuffeting) -> String {
         cells.push(format!("{acceleration:.4e}"));
         cells
     })
-}
-
-/// Which forces each domain takes, how far those of the time domain leave the answer, its records, and what was tested.
-pub(super) fn forces(results: &BridgeBuffeting) -> String {
-    let mut text = String::new();
-    if let Some(models) = &results.models {
-        text.push_str(
-            "frequency domain: tables between their points (or the flat plate, exactly)\n",
-        );
-        let fits = models.fits.join("; ");
-        let _ = writeln!(text, "time domain: models ({fits})");
-        if let Some((n, i, change)) = models.largest() {
-            let _ = writeln!(
-                text,
-                "  in the frequency domain their RMS differs from that of the tables by up to {:+.1} % ({} at node {})",
-                100.0 * change,
-                MOTIONS[i].split(' ').next().unwrap_or_default(),
-                results.nodes[n]
-            );
-        }
-    }
-    if let Some(time) = &results.time {
-        let plan = &time.plan;
-        let _ = writeln!(
-            text,
-            "time domain: {} of {} s, every {} s, seed {}",
-            counted(plan.records, "record"),
-            plan.duration_s,
-            plan.step_s,
-            plan.seed
-        );
-    }
-    if let Some(why) = &results.no_time {
-        let _ = writeln!(text, "no time domain: {why}");
-    }
-    let parts = results.frequency.part_in_tested_range.iter().flatten();
-    let least = parts.flatten().copied().reduce(f64::min);
-    if let Some(least) = least {
-        let _ = writeln!(
-            text,
-            "variance inside the tested range of K: {:.0} % at least; the rest is extrapolation",
-            100.0 * least
-        );
-    }
-    text
 }
 
 fn spectra_csv(results: &BridgeBuffeting) -> String {

@@ -1,12 +1,12 @@
 //! The page of a response to turbulence; the report of the bridge takes it up.
 
-use super::buffeting::forces;
 use crate::cli::report::folder::{digest, today};
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
 use crate::section::Dof;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
 use crate::verdict::Verdict;
+use std::fmt::Write as _;
 
 /// Motions with their unit and the factor to it.
 const MOTIONS: [(&str, f64); 3] = [
@@ -48,6 +48,51 @@ pub(super) fn page(
 /// A figure of a motion, of which there is none where nothing moves.
 pub(super) fn of_motion(rms: f64, figure: String) -> String {
     if rms > 0.0 { figure } else { "–".to_owned() }
+}
+
+/// Which forces each domain takes, how far those of the time domain leave the answer, its records, and what was tested.
+pub(super) fn forces(results: &BridgeBuffeting) -> String {
+    let mut text = String::new();
+    if let Some(models) = &results.models {
+        text.push_str(
+            "frequency domain: tables between their points (or the flat plate, exactly)\n",
+        );
+        let fits = models.fits.join("; ");
+        let _ = writeln!(text, "time domain: models ({fits})");
+        if let Some((n, i, change)) = models.largest() {
+            let _ = writeln!(
+                text,
+                "  in the frequency domain their RMS differs from that of the tables by up to {:+.1} % ({} at node {})",
+                100.0 * change,
+                MOTIONS[i].0.split(',').next().unwrap_or_default(),
+                results.nodes[n]
+            );
+        }
+    }
+    if let Some(time) = &results.time {
+        let plan = &time.plan;
+        let _ = writeln!(
+            text,
+            "time domain: {} of {} s, every {} s, seed {}",
+            counted(plan.records, "record"),
+            plan.duration_s,
+            plan.step_s,
+            plan.seed
+        );
+    }
+    if let Some(why) = &results.no_time {
+        let _ = writeln!(text, "no time domain: {why}");
+    }
+    let parts = results.frequency.part_in_tested_range.iter().flatten();
+    let least = parts.flatten().copied().reduce(f64::min);
+    if let Some(least) = least {
+        let _ = writeln!(
+            text,
+            "variance inside the tested range of K: {:.0} % at least; the rest is extrapolation",
+            100.0 * least
+        );
+    }
+    text
 }
 
 fn section(of: &BridgeBuffeting) -> Result<PageSection> {
