@@ -234,6 +234,7 @@ impl Study {
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         require_section(text)?;
+        toml_lines::only_blocks(text)?;
         toml_lines::parse("a study file", text, |study: &mut Self| {
             study.directory = directory;
             study.validate()

@@ -134,6 +134,10 @@ pub fn simulate(
             format!("{stop_time_s} s in steps of {step_s} s"),
         ));
     }
+    if stop_time_s > 0.0 && step_s > stop_time_s {
+        let expected = format!("a step within stop_time_s, {stop_time_s} s");
+        return Err(wrong("step_s", &expected, format!("{step_s} s")));
+    }
     let mut stepper = section_stepper(section, model)?;
     let dofs = section.get().0.dofs();
     let n = dofs.len();

@@ -177,6 +177,7 @@ impl WindStudy {
 
     /// Reads and checks the text of a wind file; paths in it are read against `directory`.
     pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        toml_lines::only_blocks(text)?;
         toml_lines::parse("a wind file", text, |study: &mut Self| {
             study.directory = directory;
             study.validate()

@@ -81,8 +81,10 @@ fn bridges(at: &Path) {
     fs::write(at.join("bridge.toml"), few).unwrap();
 }
 
-/// A schema of which all these values are valid.
-fn schema(values: &[&Value]) -> Value {
+/// A schema of which all these values are valid. Outputs of other inputs have the same keys, but not all, and null where there is
+/// nothing to say: below the `top` no key is required, what is no list and no yes or no may be null, and of what was never anything
+/// but null nothing is known.
+fn schema(values: &[&Value], top: bool) -> Value {
     let mut types = BTreeSet::new();
     let (mut objects, mut items) = (Vec::new(), Vec::new());
     for value in values {
@@ -102,15 +104,15 @@ fn schema(values: &[&Value]) -> Value {
         });
     }
     let mut made = Map::new();
+    if !top && types.iter().any(|t| !matches!(*t, "array" | "boolean")) {
+        types.insert("null");
+    }
     let types: Vec<&str> = types.into_iter().collect();
-    made.insert(
-        "type".into(),
-        if let [one] = types[..] {
-            json!(one)
-        } else {
-            json!(types)
-        },
-    );
+    match types[..] {
+        ["null"] => (),
+        [one] => drop(made.insert("type".into(), json!(one))),
+        _ => drop(made.insert("type".into(), json!(types))),
+    }
     if !objects.is_empty() {
         let keys: BTreeSet<&String> = objects.iter().flat_map(|map| map.keys()).collect();
         let of = |key: &String| {
@@ -119,15 +121,19 @@ fn schema(values: &[&Value]) -> Value {
                 .filter_map(|map| map.get(key))
                 .collect::<Vec<_>>()
         };
-        let properties = keys.iter().map(|key| ((*key).clone(), schema(&of(key))));
+        let properties = keys
+            .iter()
+            .map(|key| ((*key).clone(), schema(&of(key), false)));
         let required = keys
             .iter()
             .filter(|key| objects.iter().all(|map| map.contains_key(**key)));
         made.insert("properties".into(), Value::Object(properties.collect()));
-        made.insert("required".into(), json!(required.collect::<Vec<_>>()));
+        if top {
+            made.insert("required".into(), json!(required.collect::<Vec<_>>()));
+        }
     }
     if !items.is_empty() {
-        made.insert("items".into(), schema(&items));
+        made.insert("items".into(), schema(&items, false));
     }
     Value::Object(made)
 }
@@ -143,7 +149,8 @@ fn wrong(schema: &Value, value: &Value, path: &str, found: &mut Vec<String>) {
         Value::Object(_) => "object",
     };
     let types = &schema["type"];
-    if types != kind
+    if !types.is_null()
+        && types != kind
         && !types
             .as_array()
             .is_some_and(|all| all.iter().any(|t| t == kind))
@@ -188,7 +195,7 @@ fn outputs_are_those_of_the_schemas() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(&file);
         let kind = aerodeck::json::format(&command.replace(' ', "-"));
         if update {
-            let Value::Object(body) = schema(&values.iter().collect::<Vec<_>>()) else {
+            let Value::Object(body) = schema(&values.iter().collect::<Vec<_>>(), true) else {
                 unreachable!("an object")
             };
             let mut made = Map::new();

@@ -35,6 +35,29 @@ pub fn parse<T: DeserializeOwned>(
     Ok(value)
 }
 
+/// Refuses a list where a block is meant, which would be read by the places of its items; files that have lists at their top level do
+/// not ask.
+///
+/// # Errors
+/// [`Error::Input`] with line and key.
+pub fn only_blocks(text: &str) -> Result<()> {
+    // what is no file in TOML is said by whoever reads it
+    let Ok(root) = toml::from_str::<toml::Table>(text) else {
+        return Ok(());
+    };
+    let is_list = |value: &toml::Value| {
+        let list = value.as_array();
+        list.is_some_and(|all| all.is_empty() || !all.iter().all(toml::Value::is_table))
+    };
+    match root.iter().find(|(_, value)| is_list(value)) {
+        None => Ok(()),
+        Some((key, _)) => {
+            let expected = format!("a block [{key}]");
+            Err(with_line(text, Error::input(key, expected, "a list")))
+        }
+    }
+}
+
 /// Refuses texts with control characters: they end up in names of files, descriptions of FMUs and on terminals. Lines that are
 /// broken, and tabs, are texts.
 fn without_control_characters(text: &str) -> Result<()> {
@@ -147,6 +170,18 @@ mod control_tests {
             assert_eq!(
                 read(&text).unwrap_err().to_string(),
                 "line 3, export.authors[1]: expected a text without control characters, found one with them"
+            );
+        }
+    }
+
+    #[test]
+    fn a_list_is_no_block() {
+        assert!(only_blocks("a = 1\n[b]\nc = [1]\n[[d]]\ne = 2\n").is_ok());
+        for list in ["[45.0]", "[]"] {
+            let said = only_blocks(&format!("a = 1\nflutter = {list}\n")).unwrap_err();
+            assert_eq!(
+                said.to_string(),
+                "line 2, flutter: expected a block [flutter], found a list"
             );
         }
     }

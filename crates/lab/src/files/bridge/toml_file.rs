@@ -271,6 +271,7 @@ impl BridgeFile {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        toml_lines::only_blocks(text)?;
         toml_lines::parse("a bridge file", text, |file: &mut Self| {
             file.directory = directory;
             text.clone_into(&mut file.text);
