@@ -11,6 +11,7 @@ mod dampers;
 mod files;
 mod gusts;
 mod identities;
+mod like_modes;
 mod plausibility;
 mod published;
 mod refused;

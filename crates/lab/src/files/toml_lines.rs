@@ -158,7 +158,7 @@ fn line_of_key(text: &str, place: &[PlaceStep]) -> Option<usize> {
 }
 
 #[cfg(test)]
-mod control_tests {
+mod tests {
     use super::*;
 
     #[test]
