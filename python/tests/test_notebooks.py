@@ -1,5 +1,6 @@
 """The notebooks in examples/ run from the first cell to the last, in an empty folder, and print what is stored with them."""
 
+import ast
 import contextlib
 import io
 import json
@@ -26,10 +27,15 @@ def test_notebook(path, tmp_path, monkeypatch):
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
     for cell in cells:
         printed = io.StringIO()
+        body = ast.parse("".join(cell["source"]), path.name)
+        results = [o["data"]["text/plain"] for o in cell["outputs"] if o["output_type"] == "execute_result"]
+        last = body.body.pop() if results else None
         with contextlib.redirect_stdout(printed):
-            exec(compile("".join(cell["source"]), path.name, "exec"), names)
+            exec(compile(body, path.name, "exec"), names)
+            shown = last and eval(compile(ast.Expression(last.value), path.name, "eval"), names)
         stored = "".join("".join(o["text"]) for o in cell["outputs"] if o["output_type"] == "stream")
         # of fewer runs here, or of a generator that promises no bits from one version to the next
         if "varies" not in cell["metadata"].get("tags", []):
             assert printed.getvalue() == stored, "stored otherwise: python examples/run_notebooks.py"
+            assert all(repr(shown) == "".join(text) for text in results), "stored otherwise: python examples/run_notebooks.py"
     assert any(cell["outputs"] for cell in cells), "no outputs: python examples/run_notebooks.py"
