@@ -377,7 +377,10 @@ fn dampers_are_compared_with_the_modes() {
         let dampers = Dampers { masses, links };
         sentences(&of_bridge(&plain.clone().with_dampers(dampers).unwrap()))
     };
-    assert_eq!(said(&[good.clone()], &[link(None, 1e5)]), [""; 0]);
+    assert_eq!(
+        said(std::slice::from_ref(&good), &[link(None, 1e5)]),
+        [""; 0]
+    );
     let changed = |change: fn(&mut MassDamper)| {
         let mut damper = good.clone();
         change(&mut damper);
