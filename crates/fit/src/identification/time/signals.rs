@@ -203,7 +203,9 @@ impl Signals {
     /// # Errors
     /// [`Error::Io`] for a file that cannot be read.
     pub(crate) fn range(&self, samples: Range<usize>) -> Result<Vec<Vec<f64>>> {
-        let mut channels = vec![Vec::with_capacity(samples.len()); 2 * self.dofs];
+        // a clone of an empty list has no capacity
+        let empty = || Vec::with_capacity(samples.len().min(self.rows));
+        let mut channels: Vec<Vec<f64>> = (0..2 * self.dofs).map(|_| empty()).collect();
         let mut take = |block: &SignalBlock| {
             let end = block.first + block.rows();
             let part = samples.start.max(block.first)..samples.end.min(end);
