@@ -56,6 +56,32 @@ fn intervals_hold_a_truth_within_the_class() {
     }
 }
 
+/// What would not end, or judge rounding, is refused before it begins.
+#[test]
+fn impossible_plans_are_refused() {
+    let plan = |repetitions, noise_fraction| {
+        let mut plan = CoveragePlan {
+            repetitions,
+            ..CoveragePlan::default()
+        };
+        plan.tunnel.noise_fraction = noise_fraction;
+        coverage(&plan, &|_, _| ()).unwrap_err().to_string()
+    };
+    for count in [1, 10_000_000_000] {
+        let expected = format!("repetitions: expected 2 to 1000000, found {count}");
+        assert_eq!(plan(count, 0.05), expected);
+    }
+    assert!(plan(20, 0.0).starts_with("tunnel.noise_fraction: expected a positive number"));
+    for decks in [0, 10_000_000_000] {
+        let plan = FamilyPlan {
+            decks,
+            ..FamilyPlan::default()
+        };
+        let said = family_coverage(&plan, &|_, _| ()).unwrap_err().to_string();
+        assert_eq!(said, format!("decks: expected 1 to 1000000, found {decks}"));
+    }
+}
+
 fn scattered(speed_scatter: f64, run_scatter: f64) -> CoverageReport {
     let plan = CoveragePlan {
         speed_scatter,

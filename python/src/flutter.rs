@@ -13,7 +13,7 @@ use aerodeck::flutter::{
     FlutterSearch, MovedOnset, OnsetInterval, OnsetMethod, OnsetSearch, determinant_onset,
     find_onset, pk_onset,
 };
-use aerodeck::plausibility::{self, Finding, of_section};
+use aerodeck::plausibility::{Finding, of_section};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::study::FlutterBlock;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -135,10 +135,7 @@ pub fn verdict(
     required_speed_m_s: Option<f64>,
 ) -> PyResult<Verdict> {
     let evidence = model_evidence(section, model, search, found)?;
-    let mut findings = model.findings.clone();
-    let odd = plausibility::of_model(&model.name, &model.model, model.tested, &findings);
-    findings.extend(odd);
-    Ok(against(evidence, required_speed_m_s, section, &findings))
+    Ok(against(evidence, required_speed_m_s, section, &model.odd()))
 }
 
 /// What a trained model says of a section and a speed, which the search reaches, with what is odd about samples of them.
@@ -155,7 +152,7 @@ pub fn verdict_at(
     let search = block.range(section).search();
     let found = of_model(section, model, &search, "eigenvalues")?;
     let evidence = model_evidence(section, model, &search, found)?;
-    let findings = [&model.findings[..], of_samples].concat();
+    let findings = [&model.odd()[..], of_samples].concat();
     Ok(against(evidence, Some(speed_m_s), section, &findings))
 }
 

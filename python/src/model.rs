@@ -7,7 +7,7 @@ use aerodeck::aerodynamics::{Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{divergence_with_forces, find_onset};
 use aerodeck::identification::FitReport;
-use aerodeck::plausibility::Finding;
+use aerodeck::plausibility::{Finding, of_model};
 use aerodeck::section::SectionModel;
 use aerodeck::study::{ExportBlock, uncertainty_beside};
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
@@ -202,6 +202,12 @@ impl Model {
 }
 
 impl Model {
+    /// What is odd about its data and its forces.
+    pub fn odd(&self) -> Vec<Finding> {
+        let of_forces = of_model(&self.name, &self.model, self.tested, &self.findings);
+        [&self.findings[..], &of_forces].concat()
+    }
+
     /// What is saved and exported, for `section` or that of the file: its experiment begins below the onset.
     pub fn exported(&self, section: Option<&Section>) -> PyResult<TrainedModel> {
         let mut trained = self.trained(section)?;

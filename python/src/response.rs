@@ -126,17 +126,11 @@ pub fn simulate(
     displacement: Option<Vec<f64>>,
 ) -> PyResult<Motion> {
     let steps = (stop_time_s / step_s).round();
-    if !(step_s > 0.0 && (0.0..=MAX_STEPS).contains(&steps)) {
-        let expected = "a positive step and at most 1e7 of them";
-        return Err(wrong(
-            "step_s",
-            expected,
-            format!("{stop_time_s} s in steps of {step_s} s"),
-        ));
-    }
-    if stop_time_s > 0.0 && step_s > stop_time_s {
-        let expected = format!("a step within stop_time_s, {stop_time_s} s");
-        return Err(wrong("step_s", &expected, format!("{step_s} s")));
+    let within = step_s <= stop_time_s || stop_time_s == 0.0;
+    if !(step_s > 0.0 && within && (0.0..=MAX_STEPS).contains(&steps)) {
+        let expected = "a positive step within stop_time_s and at most 1e7 of them";
+        let found = format!("{stop_time_s} s in steps of {step_s} s");
+        return Err(wrong("step_s", expected, found));
     }
     let mut stepper = section_stepper(section, model)?;
     let dofs = section.get().0.dofs();

@@ -71,6 +71,9 @@ def test_lists_are_arrays(section, model):
     lists = aerodeck.onsets(section, model, given)
     arrays = aerodeck.onsets(section, model, {name: np.array(v, float) for name, v in given.items()}, threads=1)
     np.testing.assert_array_equal(lists.speed_m_s, arrays.speed_m_s)
+    # no more threads than cores are made: a hundred thousand did not come to an end
+    many = aerodeck.onsets(section, model, given, threads=100_000)
+    np.testing.assert_array_equal(lists.speed_m_s, many.speed_m_s)
     with pytest.raises(aerodeck.InputError, match="vertical.mass_kg_m: expected numbers"):
         aerodeck.onsets(section, model, {"vertical.mass_kg_m": ["heavy"]})
     with pytest.raises(aerodeck.InputError, match="motion: expected numbers"):

@@ -174,6 +174,9 @@ def test_motion_grows_above_the_onset_and_the_stepper_gives_the_same_bits(sectio
     copied = pickle.loads(pickle.dumps(stepper))
     for name in ["time_s", "displacement", "rate", "acceleration", "force"]:
         np.testing.assert_array_equal(getattr(copied, name), getattr(stepper, name))
+    for length, step in [(10, 100.0), (10, -0.01), (10, float("nan"))]:
+        with pytest.raises(aerodeck.InputError, match="step_s"):
+            aerodeck.simulate(section, model, onset, stop_time_s=length, step_s=step)
     stepper.restore(early)
     for bad in [(float("nan"), *early[1:]), (*early[:3], -1.0, early[4])]:
         with pytest.raises(aerodeck.InputError, match="snapshot"):
@@ -254,7 +257,7 @@ def test_records_from_arrays_are_those_of_the_tunnel(table, section):
 def test_records_in_another_unit_are_doubted(table, section):
     records = aerodeck.Records.virtual_tunnel(table)
 
-    def verdict(factor, **other):
+    def fitted(factor, **other):
         scaled = None
         for i in range(len(records)):
             _, motion, force = records.to_numpy(i)
@@ -262,12 +265,19 @@ def test_records_in_another_unit_are_doubted(table, section):
             segments = [(s["frequency_hz"], s["start_s"], s["end_s"]) for s in records.header(i)["segments"]]
             one = aerodeck.Records.from_arrays(motion, force * factor, segments=segments, **{**head, **other})
             scaled = one if scaled is None else scaled + one
-        return aerodeck.flutter(section, aerodeck.fit_laguerre(scaled), required_speed_m_s=45.0).verdict
+        return aerodeck.fit_laguerre(scaled)
 
-    assert verdict(1.0)["outcome"]["state"] == "not_met"
-    for wrong in [verdict(1e-3), verdict(0.5), verdict(1.0, air_density_kg_m3=1250.0)]:
-        assert wrong["outcome"]["state"] == "cannot_be_judged"
-        assert any(d["kind"] == "implausible_input" for d in wrong["doubts"]), wrong["doubts"]
+    def is_doubted(verdict):
+        assert verdict["outcome"]["state"] == "cannot_be_judged"
+        return any(d["kind"] == "implausible_input" for d in verdict["doubts"])
+
+    assert aerodeck.flutter(section, fitted(1.0), required_speed_m_s=45.0).verdict["outcome"]["state"] == "not_met"
+    in_kn = fitted(1e-3)
+    for wrong in [in_kn, fitted(0.5), fitted(1.0, air_density_kg_m3=1250.0)]:
+        assert is_doubted(aerodeck.flutter(section, wrong, required_speed_m_s=45.0).verdict)
+    some = {"torsion.damping_ratio": {"kind": "lognormal", "coefficient_of_variation": 0.2}}
+    scatter = aerodeck.monte_carlo(section, in_kn, some, samples=20, design_speed_m_s=45.0)
+    assert is_doubted(scatter.verdict)
 
 
 @pytest.mark.skipif("AERODECK_TRAINED" not in os.environ, reason="no model trained by the program")

@@ -2,9 +2,9 @@
 //! and above the onset.
 
 use super::figures;
+use super::model_figures::{MAX_CURVES, title_of_first};
 use super::output::OutputDir;
 use super::simulate::{motion_panels, simulated};
-use super::stages::{MAX_CURVES, title_of_first};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;

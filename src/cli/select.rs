@@ -167,6 +167,11 @@ pub(crate) fn with_saved(study: Study) -> Study {
     }
 }
 
+/// Where `train` leaves it, in the folder of results.
+pub(crate) fn saved_model() -> PathBuf {
+    Path::new(super::stages::MODELS).join(format!("{}.json", selected_block().slug()))
+}
+
 fn selected_block() -> ModelBlock {
     ModelBlock {
         name: SELECTED.to_owned(),

@@ -6,7 +6,7 @@ use super::output::{OutputDir, list};
 use super::{figures, stages};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted, ensure, positive};
-use crate::plausibility::{of_section, sentences};
+use crate::plausibility::{of_trained, sentences};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
@@ -149,7 +149,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let e = &model.experiment;
     let speed = positive("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
     let (stop, step) = args.stop_and_step(e)?;
-    let findings = of_section(&model.section);
+    let findings = of_trained(&model.section, &model);
     warn(&args.model, &sentences(&findings));
     let rows = simulated(&model, speed, stop, step)?;
     let modes = modes(&model, speed)?;

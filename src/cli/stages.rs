@@ -9,11 +9,10 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::write_csv;
 use crate::files::text::file_name;
-use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
+use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
 use crate::identification;
-use crate::report::{Figure, vf_vg_figure};
 use crate::study::{
     Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, Study, TrainedWithReport,
     UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty, state_intervals,
@@ -35,10 +34,6 @@ const TABLE: &str = "table.sha1";
 pub(crate) const MODEL_FILE: &str = "model.json";
 /// The FMU.
 pub(crate) const FMU_FILE: &str = "deck_section.fmu";
-/// Force models that can be told apart in one figure.
-pub(crate) const MAX_CURVES: usize = 7;
-/// Stem of the figure of frequencies and damping ratios.
-pub(crate) const FIGURE: &str = "flutter";
 
 /// The records of the virtual tunnel, written as well.
 pub(crate) fn tunnel(
@@ -290,57 +285,6 @@ pub(crate) fn flutter_of(
     let mut results = flutter(study, deck, &models, &known, progress)?;
     failed.append(&mut results.failed);
     Ok(results)
-}
-
-/// The title of a figure of models, which says how many of them are drawn where these are not all.
-pub(crate) fn title_of_first(title: &str, models: usize) -> String {
-    match models > MAX_CURVES {
-        true => format!("{title} (the first {MAX_CURVES} of {models} models)"),
-        false => title.to_owned(),
-    }
-}
-
-/// The V-f and V-g figure as SVG and PNG.
-pub(crate) fn flutter_figure(
-    study: &Study,
-    results: &FlutterStudy,
-    verdict: Option<&Verdict>,
-    out: &mut OutputDir,
-) -> Result<()> {
-    let (curves, onsets) = (&results.curves, &results.onsets);
-    if curves.is_empty() {
-        return Err(Error::Numerical("no modes to draw".into()));
-    }
-    figures::write(FIGURE, out, || {
-        of_first_models(curves, onsets, &study.name, verdict)
-    })
-}
-
-/// The same figure for all routes.
-pub(crate) fn routes_figure(
-    study: &Study,
-    curves: &[FlutterCurves],
-    onsets: &[Onset],
-    out: &mut OutputDir,
-) -> Result<()> {
-    let title = format!("{}: all routes", study.name);
-    figures::write("routes", out, || {
-        of_first_models(curves, onsets, &title, None)
-    })
-}
-
-/// The figure of the models that can be told apart in it.
-fn of_first_models(
-    curves: &[FlutterCurves],
-    onsets: &[Onset],
-    title: &str,
-    verdict: Option<&Verdict>,
-) -> Result<Figure> {
-    let title = title_of_first(title, curves.len());
-    let (curves, others) = curves.split_at(curves.len().min(MAX_CURVES));
-    let drawn = |o: &&Onset| others.iter().all(|c| c.model != o.at.model);
-    let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
-    vf_vg_figure(curves, &onsets, &title, verdict)
 }
 
 /// Packs a model of a study with all runtimes that are there.

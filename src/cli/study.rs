@@ -8,7 +8,10 @@ use super::report;
 use super::report::folder::{REPORT, SUMMARY, digest, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
-use super::{buffeting, figures, headline, measured_forces, result_files, select, stages, text};
+use super::{
+    buffeting, figures, headline, measured_forces, model_figures, result_files, select, stages,
+    text,
+};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
@@ -224,7 +227,7 @@ impl StudyStages<'_> {
         verdict: &Verdict,
     ) -> Result<()> {
         let (study, out) = (&self.study, &mut self.out);
-        let figure = stages::flutter_figure(study, results, Some(verdict), out);
+        let figure = model_figures::flutter_figure(study, results, Some(verdict), out);
         let derivatives = result_files::write_derivatives(study, &self.deck, trained, out);
         let curves = result_files::write_curves(study, &results.curves, out);
         self.attempt("figure", figure)?;

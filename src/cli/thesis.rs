@@ -5,7 +5,7 @@ use super::interrupt::Temporary;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::thesis_page::thesis_page;
-use super::{headline, result_files, stages, text};
+use super::{headline, model_figures, result_files, stages, text};
 use crate::error::{Error, Result};
 use crate::report::sections_page;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&text::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
     if let Some(folder) = &args.out {
-        stages::flutter_figure(&study, &results, None, &mut out)?;
+        model_figures::flutter_figure(&study, &results, None, &mut out)?;
         result_files::write_curves(&study, &results.curves, &mut out)?;
         if let Some(own) = trained.first()
             && let Some(onset) = headline::own_onset(&results, &own.model.name)

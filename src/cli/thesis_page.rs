@@ -2,11 +2,11 @@
 
 use super::compare::thesis_comparisons;
 use super::laboratory::svg;
+use super::model_figures::FIGURE;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::result_files::{RESPONSE, ROOTS};
 use super::select::parameter_maps;
-use super::stages::FIGURE;
 use crate::error::Result;
 use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{FirstOrderExample, LaguerreFunctions};

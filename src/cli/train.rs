@@ -33,7 +33,11 @@ pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
     let mut failed = Vec::new();
     if study.select {
         let selected = select::with_selected(&study, &records, progress);
-        study = attempt(&mut failed, "selection", selected)?.unwrap_or(study);
+        match attempt(&mut failed, "selection", selected)? {
+            Some(selected) => study = selected,
+            // that of an earlier run is not of these records
+            None => out.outdated(select::saved_model()),
+        }
     }
     let trained = stages::train(
         &study,

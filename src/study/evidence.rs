@@ -10,7 +10,7 @@ use crate::flutter::{
     FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, QuasiSteadyOnset,
     StableRange, find_onset, judged_speeds, table_tested_from,
 };
-use crate::plausibility::{self, of_section};
+use crate::plausibility::{self, of_trained};
 use crate::section::{SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
@@ -129,11 +129,7 @@ pub(crate) fn saved_evidence(
     Ok(Evidence {
         constraints,
         test_speeds: one_test_speed(&known),
-        implausible: [
-            of_section(section),
-            plausibility::of_model(&model.name, &model.model, tested, &[]),
-        ]
-        .concat(),
+        implausible: of_trained(section, model),
         ..Evidence::of_section(
             &forces(&model.name, ""),
             &coupled,

@@ -35,7 +35,11 @@ pub const ARROWS: &[Row] = &[
     row("bridge", &["aerodynamics+"]),
     row("aeroelastic", &["aerodynamics+"]),
     row("flutter", &["aeroelastic+", "bridge", "threads"]),
-    row("plausibility", &["aerodynamics+", "bridge"]),
+    row("trained_model", &["units", "section", "aerodynamics"]),
+    row(
+        "plausibility",
+        &["aerodynamics+", "bridge", "trained_model"],
+    ),
     row("files", &["aerodynamics+", "bridge", "plausibility"]),
     row(
         "wind_tunnel",
@@ -48,7 +52,6 @@ pub const ARROWS: &[Row] = &[
             "plausibility",
         ],
     ),
-    row("trained_model", &["units", "section", "aerodynamics"]),
     row(
         "identification",
         &[

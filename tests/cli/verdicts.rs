@@ -30,8 +30,9 @@ fn verdict_of(folder: &Path, text: &str) -> (i32, Value) {
     (code, value["verdict"].clone())
 }
 
+/// A verdict without doubts has no list of them.
 fn doubt<'a>(verdict: &'a Value, kind: &str) -> Option<&'a Value> {
-    let doubts = verdict["doubts"].as_array().unwrap();
+    let doubts = verdict["doubts"].as_array()?;
     doubts.iter().find(|d| d["kind"] == kind)
 }
 
@@ -197,6 +198,7 @@ fn a_model_and_a_table_that_contradict_each_other_cannot_be_judged() {
     );
     assert_eq!((code, &said["severity"]), (3, &"severe".into()));
     assert_eq!(other["outcome"]["state"], "cannot_be_judged");
+    a_model_alone_is_doubted(at, &bridge("LN21-5200", TWO, 60.0));
     // a study whose deck was changed takes neither the models nor the records of the deck before
     let study = fs::read_to_string(at.join("s.toml")).unwrap();
     let other = study.replace("source = \"LN21-5200\"", "source = \"LN21-6100\"");
@@ -213,6 +215,55 @@ fn a_model_and_a_table_that_contradict_each_other_cannot_be_judged() {
     );
     succeeds(at, &["tunnel", "s.toml"]);
     succeeds(at, &["train", "s.toml"]);
+}
+
+/// Without a table beside it a model answers for itself: one whose onset lies above its tests is not packed, one of forces in kN is not
+/// relied on.
+fn a_model_alone_is_doubted(at: &Path, text: &str) {
+    let text = text.replace("derivatives = \"LN21-5200\"", "model = \"changed.json\"");
+    let model = fs::read_to_string(at.join("model.json")).unwrap();
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut model: Value = serde_json::from_str(&model).unwrap();
+        change(&mut model);
+        fs::write(at.join("changed.json"), model.to_string()).unwrap();
+        verdict_of(at, &text)
+    };
+    let (code, right) = changed(&|_| ());
+    assert_eq!(code, 0, "{right:#}");
+    assert!(doubt(&right, "implausible_input").is_none(), "{right:#}");
+    changed(&|model| model["tested_range"]["max"] = 0.3.into());
+    let export = ["fmu", "export", "--bridge", "bridge.toml", "--out", "b.fmu"];
+    let (code, _, error) = aerodeck(at, &export);
+    assert_eq!(code, 1, "{error}");
+    let error = flowing(&error);
+    assert!(
+        error.contains("the bridge is not exported: it grows"),
+        "{error}"
+    );
+    assert!(!at.join("b.fmu").exists());
+    let (code, odd) = changed(&|model| model["model"] = in_kn(&model["model"]));
+    let said = doubt(&odd, "implausible_input").unwrap_or_else(|| panic!("{odd:#}"));
+    assert!(
+        said["text"].as_str().unwrap().contains("section "),
+        "{said}"
+    );
+    assert_eq!((code, &said["severity"]), (3, &"severe".into()));
+}
+
+/// Forces a thousandth as large; poles and numbers of rows are as they were.
+fn in_kn(model: &Value) -> Value {
+    match model {
+        Value::Object(all) => {
+            let scaled = |(key, value): (&String, &Value)| {
+                let kept = key.contains("pole");
+                (key.clone(), if kept { value.clone() } else { in_kn(value) })
+            };
+            Value::Object(all.iter().map(scaled).collect())
+        }
+        Value::Array(all) => all.iter().map(in_kn).collect(),
+        Value::Number(x) if x.is_f64() => x.as_f64().map(|x| 1e-3 * x).into(),
+        other => other.clone(),
+    }
 }
 
 /// Constraints on the fits of sections move the onset of a bridge as that of a section.

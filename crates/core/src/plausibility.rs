@@ -7,6 +7,7 @@
 mod bridge;
 mod coefficients;
 mod limits;
+mod model;
 mod section;
 mod table;
 
@@ -16,9 +17,10 @@ pub use limits::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
     ratio_hint,
 };
+pub use model::{of_model, of_trained};
 pub use section::WIDEST_MODEL_M;
 pub use section::{of_required_speed, of_section, unusual_air};
-pub use table::{of_model, of_table};
+pub use table::of_table;
 
 use serde::{Deserialize, Serialize};
 use std::fmt;

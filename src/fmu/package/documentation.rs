@@ -11,7 +11,7 @@ use crate::fmu::standard::FmiVersion;
 use crate::fmu::variables::{
     Causality, Listing, Role, SectionParameter, StartValue, Variability, Variable,
 };
-use crate::plausibility::{of_model, of_section};
+use crate::plausibility::of_trained;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -253,9 +253,8 @@ fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<Stri
             let tested = model.tested_range;
             let evidence =
                 Evidence::of_section("the model", &section, &at_rest, tested, &search, found);
-            let odd = of_model(&model.name, &model.model, tested, &[]);
             own = Verdict::judge(&Evidence {
-                implausible: [of_section(&model.section), odd].concat(),
+                implausible: of_trained(&model.section, model),
                 ..evidence
             });
             &own

@@ -48,11 +48,14 @@ fn check_growth(
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<()> {
-    let growth = unwanted_growth_below(Some(found), section, search, tested)?;
-    let why = match found {
-        FlutterSearch::UnstableAtOrBelow(_) => format!("is {}", found.explain()),
-        _ if growth.is_none() => return Ok(()),
-        _ => growth.explain(),
+    let why = if let FlutterSearch::UnstableAtOrBelow(_) = found {
+        format!("is {}", found.explain())
+    } else {
+        let growth = unwanted_growth_below(Some(found), section, search, tested)?;
+        if growth.is_none() {
+            return Ok(());
+        }
+        growth.explain()
     };
     let text = format!("the bridge is not exported: it {why}");
     Err(Error::Unstable(text))

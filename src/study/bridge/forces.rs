@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
 use crate::files::derivatives::TableWords;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
-use crate::plausibility::{Finding, of_table};
+use crate::plausibility::{Finding, of_model, of_table};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
@@ -82,6 +82,10 @@ impl SectionForceModels {
         let plate = |name: &&String| name.eq_ignore_ascii_case(FLAT_PLATE);
         if block.derivatives.as_ref().filter(plate).is_some() && trained.is_none() {
             return Self::flat_plate(block);
+        }
+        if let (Some((model, _)), None) = (&trained, &block.derivatives) {
+            let odd = of_model(&model.name, &model.model, model.tested_range, &[]);
+            findings.extend(odd.into_iter().map(|f| of_block(block, f)));
         }
         let of_table = block
             .derivatives
@@ -232,6 +236,14 @@ pub(crate) fn block_table(
     words.read(&format!("section {}: convention", block.name))
 }
 
+/// A finding with the section that it is of.
+fn of_block(block: &BridgeSectionBlock, found: Finding) -> Finding {
+    Finding {
+        place: format!("section {}: {}", block.name, found.place),
+        ..found
+    }
+}
+
 /// A table between its points, with what it says of its tests.
 struct Tabulated {
     between: InterpolatedTable,
@@ -251,10 +263,7 @@ fn by_table(
     table.header.state_angle(&key, block.angle_deg)?;
     let convention = block.convention.or_usual();
     let odd = of_table(&table, &convention).into_iter();
-    findings.extend(odd.map(|f| Finding {
-        place: format!("section {}: {}", block.name, f.place),
-        ..f
-    }));
+    findings.extend(odd.map(|f| of_block(block, f)));
     let between = InterpolatedTable::by(
         block.interpolation,
         &table,

@@ -16,8 +16,6 @@ use crate::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Not
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::section::Dof;
-use crate::units::ReducedFrequencyRange;
-use std::f64::consts::TAU;
 
 /// Derivative, its usual size over the flat plate's, and how much that varies, as a standard deviation of the logarithm.
 const USUAL: [(Derivative, f64, f64); 5] = [
@@ -92,33 +90,6 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
         }
     });
     found
-}
-
-/// Reduced frequencies of a model that are looked at.
-const OF_MODEL: usize = 8;
-
-/// What looks wrong in the forces of a model over the range in which they were `tested`, as in a table of them: data in another unit or
-/// of another sign leave a model that fits them well. Empty where the data themselves are `known` to be odd in this way, and where the
-/// model does not answer.
-pub fn of_model(
-    name: &str,
-    model: &dyn Transfer,
-    tested: ReducedFrequencyRange,
-    known: &[Finding],
-) -> Vec<Finding> {
-    if known.iter().any(|odd| odd.kind == FindingKind::Convention) {
-        return Vec::new();
-    }
-    let (low, high) = (tested.min.full_width(), tested.max.full_width());
-    let at = |i: usize| low * (high / low).powf(i as f64 / (OF_MODEL - 1) as f64) / TAU;
-    let frequencies: Vec<f64> = (0..OF_MODEL).map(at).collect();
-    // derivatives have no dimension: any width and speed do
-    let table = DerivativeTable::sampled(name, model, 1.0, &[1.0], &frequencies);
-    let found = table.map_or_else(|_| Vec::new(), |t| of_table(&t, &Convention::default()));
-    let data = "unit and sign of forces and motion, width, wind speed and air density of the data that it was fitted to are to be \
-         checked (nothing was changed)";
-    let of_data = |odd: Finding| odd.otherwise(data.to_owned());
-    found.into_iter().map(of_data).collect()
 }
 
 /// Drag grows with the wind that a deck meets, and damps its sway: `P1* ≈ −2 C_D/K`, whatever the deck.

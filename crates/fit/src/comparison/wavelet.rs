@@ -194,6 +194,21 @@ mod tests {
     }
 
     #[test]
+    fn the_number_of_levels_has_limits() {
+        let x = harmonic(1.0, 2.0, 0.0);
+        let pair = SignalPair::new(&x, &x, 0.01).unwrap();
+        for level_count in [0, 1_000_000_000] {
+            let parameters = WaveletParameters {
+                level_count,
+                ..parameters()
+            };
+            let said = wavelet(&pair, &parameters).unwrap_err().to_string();
+            let expected = "number of wavelet levels: expected 1 to 100000, found";
+            assert!(said.starts_with(expected), "{said}");
+        }
+    }
+
+    #[test]
     fn scaling_leaves_the_normalised_metric_at_one() {
         let x1 = harmonic(1.0, 2.0, 0.0);
         let x2: Vec<f64> = x1.iter().map(|x| -3.0 * x).collect();

@@ -1,9 +1,10 @@
 //! A record whose text is read once, however often its numbers are asked for, with the motions that are asked for.
 
-use super::time::driven::driven_motions;
+use super::time::driven::driven;
 use super::time::signals::Signals;
 use crate::error::Result;
 use crate::section::Dof;
+use crate::signal::extremes;
 use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -38,14 +39,18 @@ impl<S: RecordSource> KeptRecord<S> {
         if self.header.dofs == *all {
             return Ok(false);
         }
-        let signals = self.signals()?;
-        let mut motions = signals.range(0..signals.len())?;
-        motions.truncate(all.len());
-        for (motion, dof) in motions.iter_mut().zip(all) {
-            let scale = dof.motion_scale(self.header.width_m);
-            motion.iter_mut().for_each(|x| *x *= scale);
-        }
-        let driven = driven_motions(&motions);
+        let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); all.len()];
+        self.signals()?.for_each_block(|block| {
+            for ((low, high), motion) in ends.iter_mut().zip(&block.channels) {
+                let (least, greatest) = extremes(motion.iter().copied());
+                (*low, *high) = (low.min(least), high.max(greatest));
+            }
+            Ok(())
+        })?;
+        let half = |((low, high), dof): (&(f64, f64), &Dof)| {
+            0.5 * (high - low) * dof.motion_scale(self.header.width_m)
+        };
+        let driven = driven(ends.iter().zip(all).map(half).collect());
         Ok(driven.iter().any(|i| !self.header.dofs.contains(&all[*i])))
     }
 

@@ -90,13 +90,14 @@ fn strong_link(bridge: &Bridge) -> Option<Finding> {
 
 /// The heaviest damper where all together are too heavy for a mode.
 fn heavy(bridge: &Bridge) -> Option<Finding> {
-    let masses = &bridge.dampers.masses;
-    let ratio = |d: &MassDamper, mode: usize| d.mass_kg * bridge.motion_of(&d.at)[mode].powi(2);
-    let total = |mode: usize| masses.iter().map(|d| ratio(d, mode)).sum::<f64>();
+    let masses = bridge.dampers.masses.iter();
+    // of each damper over the mass of every mode where it hangs
+    let ratios = |d: &MassDamper| bridge.motion_of(&d.at).map(|v| d.mass_kg * v * v);
+    let each: Vec<(&MassDamper, DVector<f64>)> = masses.map(|d| (d, ratios(d))).collect();
+    let total = |mode: usize| each.iter().map(|(_, of)| of[mode]).sum::<f64>();
     let modes = (0..bridge.modes.len()).map(|mode| (mode, total(mode)));
     let (mode, sum) = modes.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let each = masses.iter().map(|d| (d, ratio(d, mode)));
-    let (damper, _) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (damper, _) = each.iter().max_by(|a, b| a.1[mode].total_cmp(&b.1[mode]))?;
     (sum > MOST_MASS_RATIO).then(|| {
         let number = bridge.modes[mode].number;
         let text = format!(

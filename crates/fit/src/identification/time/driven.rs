@@ -14,8 +14,8 @@ const PERIODOGRAM: usize = 8192;
 const LEFT_OUT: f64 = 0.01;
 
 /// Of motions over the same time those that are driven: the others follow.
-pub(crate) fn driven_motions(motions: &[Vec<f64>]) -> Vec<usize> {
-    above(
+pub(super) fn driven_motions(motions: &[Vec<f64>]) -> Vec<usize> {
+    driven(
         motions
             .iter()
             .map(|motion| largest_about_mean(motion))
@@ -23,8 +23,8 @@ pub(crate) fn driven_motions(motions: &[Vec<f64>]) -> Vec<usize> {
     )
 }
 
-/// Places of what is not below [`DRIVEN_TOO`] of the greatest, and of no zeros.
-fn above(sizes: Vec<f64>) -> Vec<usize> {
+/// Of motions of these sizes those that are driven: not below [`DRIVEN_TOO`] of the greatest, and not zero.
+pub(crate) fn driven(sizes: Vec<f64>) -> Vec<usize> {
     let least = DRIVEN_TOO * sizes.iter().copied().fold(0.0, f64::max);
     let all = sizes.into_iter().enumerate();
     let driven = all.filter(|(_, size)| *size > 0.0 && *size >= least);
@@ -39,7 +39,7 @@ pub(super) fn driven_bands(
 ) -> Result<Vec<Vec<ReducedFrequencyRange>>> {
     let power = powers(signals)?;
     let size = |power: &Vec<f64>| power.iter().sum::<f64>().sqrt();
-    let driven = above(power.iter().map(size).collect());
+    let driven = driven(power.iter().map(size).collect());
     let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / delta_s);
     let whole = |(low, high)| ReducedFrequencyRange::between(k(low), k(high));
     let of = |(motion, power): (usize, &Vec<f64>)| {
