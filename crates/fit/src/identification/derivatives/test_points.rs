@@ -176,10 +176,14 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
 
 /// Refuses a record of no force at all: derivatives of zero look like results.
 fn check_forces(header: &RecordHeader, signals: &Signals) -> Result<()> {
-    let channels = signals.range(0..signals.len())?;
-    let mut forces = channels[header.dofs.len()..].iter().flatten();
+    let mut acts = false;
+    signals.for_each_block(|block| {
+        let mut forces = block.channels[header.dofs.len()..].iter().flatten();
+        acts = acts || forces.any(|f| *f != 0.0);
+        Ok(())
+    })?;
     ensure(
-        forces.any(|f| *f != 0.0),
+        acts,
         format_args!("record {}", header.name),
         "a force",
         "none: all channels are zero throughout",
