@@ -31,7 +31,7 @@ const PLATE_K: (f64, f64) = (0.02, 20.0);
 /// model : Model, Derivatives or "flat plate"
 ///     A trained model, a measured table (searched inside its test points) or Theodorsen's flat plate.
 /// speed_max_m_s : float, optional
-///     Highest wind speed searched, m/s; left out, well beyond the flat plate's onset.
+///     Highest wind speed searched, m/s; left out, and at least where a speed is required, well beyond the flat plate's onset.
 /// required_speed_m_s : float, optional
 ///     Nothing critical may begin below this wind speed, m/s; the search always reaches it. `Onset.outcome` says whether that is met.
 /// method : {"eigenvalues", "determinant", "pk"}, optional
@@ -107,7 +107,8 @@ pub fn flutter(
             found,
         ));
     };
-    let (found, evidence) = found?;
+    let (found, mut evidence) = found?;
+    evidence.searched_to_m_s = Some(search.speed_max_m_s);
     let of_deck = model.cast::<Derivatives>().ok();
     let of_deck = of_deck.map_or(&[][..], |table| &table.get().1);
     let verdict = against(evidence, required_speed_m_s, section, of_deck);

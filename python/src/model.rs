@@ -213,7 +213,7 @@ impl Model {
         let mut trained = self.trained(section)?;
         if self.stored.is_none() {
             let range = crate::section::usual_range(&trained.section);
-            let limit = range.speed_max_m_s;
+            let limit = range.searched_to_m_s;
             let structure = trained.section.structure().map_err(raised)?;
             let coupled = CoupledSection::with_model(&structure, &self.model).map_err(raised)?;
             let found = find_onset(&self.name, &coupled, &range.search(), Some(self.tested));

@@ -121,7 +121,7 @@ fn all_routes(
     let _ = writeln!(text, "{}", deck.description());
     text.push_str(&text::deck_warnings(deck));
     text.push('\n');
-    text.push_str(&routes::text(&table, study.speeds().speed_max_m_s));
+    text.push_str(&routes::text(&table, study.speeds().searched_to_m_s));
     text.push_str(&text::failures(failed));
     let value = serde_json::json!({
         "verdict": verdict, "routes": table, "failed": failed, "warnings": deck.warnings()

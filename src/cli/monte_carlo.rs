@@ -84,12 +84,14 @@ fn verdict(
 ) -> Result<Option<Verdict>> {
     let file = plan.directory.join(&plan.model);
     let judge = |speed_m_s: f64| {
+        let required = RequiredSpeed { speed_m_s };
+        let limit = model.experiment.onset_search_limit_m_s;
         let search = OnsetSearch {
-            speed_max_m_s: speed_m_s.max(model.experiment.onset_search_limit_m_s),
+            speed_max_m_s: required.searched_to_m_s().max(limit),
             ..OnsetSearch::default()
         };
         let mut evidence = saved_evidence(&file, model, &model.section, &search)?;
-        evidence.required = Some(RequiredSpeed { speed_m_s });
+        evidence.required = Some(required);
         evidence.implausible.extend_from_slice(of_means);
         Ok(Verdict::judge(&evidence))
     };

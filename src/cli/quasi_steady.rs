@@ -177,6 +177,9 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         counted(run.substeps, "Runge-Kutta step"),
         run.step_error
     );
+    if run.gusts_m_s.iter().any(|gust| *gust != (0.0, 0.0)) {
+        text += "  gusts act in full, without the admittance that `buffeting` gives them\n";
+    }
     let spread = |rows: &[Vec<f64>], i: usize| {
         let mean = rows.iter().map(|r| r[i]).sum::<f64>() / rows.len() as f64;
         let square = rows.iter().map(|r| (r[i] - mean).powi(2)).sum::<f64>() / rows.len() as f64;

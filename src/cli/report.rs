@@ -27,6 +27,8 @@ use crate::study::Study;
 use curves::curves_of;
 use folder::{PagePlace, REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use variables::variables_of;
 
@@ -127,8 +129,25 @@ fn page(folder: &Path, place: PagePlace) -> Result<String> {
     study_page(&page)
 }
 
+/// SHA-1 of those files in a folder of results that its page takes up, by name. The FMU is none of them: it is closed with the page in it.
+///
+/// # Errors
+/// [`Error::Io`] for a folder or a file that cannot be read.
+pub(super) fn digests(folder: &Path) -> Result<BTreeMap<String, String>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))? {
+        let path = entry.map_err(|e| Error::io(folder, e))?.path();
+        let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+        if name.ends_with(".svg") || [MODEL_FILE, CURVES, buffeting::PAGE].contains(&name) {
+            let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, e))?;
+            found.insert(name.to_owned(), digest(&bytes));
+        }
+    }
+    Ok(found)
+}
+
 /// The text of the study, as it stands in the folder where it does: at the edges of the page people may state something else, but
-/// what was computed is of the study and the model of the run.
+/// what was computed is of the study, and the other files are those of the run.
 fn study_of(folder: &Path, summary: &Summary) -> Result<String> {
     let refused = |name: &str, run: &str, now: &str| {
         let expected =
@@ -136,10 +155,10 @@ fn study_of(folder: &Path, summary: &Summary) -> Result<String> {
         let found = format!("changed since the run (SHA-1 {now})");
         Error::input(folder.join(name).display().to_string(), expected, found)
     };
-    if let (Some(run), Ok(model)) = (&summary.model_sha1, std::fs::read(folder.join(MODEL_FILE)))
-        && digest(&model) != *run
-    {
-        return Err(refused(MODEL_FILE, run, &digest(&model)));
+    for (name, now) in digests(folder)? {
+        if let Some(run) = summary.sha1.get(&name).filter(|run| **run != now) {
+            return Err(refused(&name, run, &now));
+        }
     }
     let (name, ran) = (&summary.study_file, &summary.study_text);
     let Ok(text) = read_text(&folder.join(name)) else {

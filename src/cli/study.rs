@@ -5,7 +5,7 @@ use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::report;
-use super::report::folder::{REPORT, SUMMARY, digest, today};
+use super::report::folder::{REPORT, SUMMARY, today};
 use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
 use super::{
@@ -21,6 +21,7 @@ use crate::study::{
     attempt, interval_of, section_evidence, stepped_onset, study_findings,
 };
 use crate::verdict::Verdict;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Run the whole chain of a study file: records, training, flutter, FMU, onset by stepping the FMU
@@ -185,7 +186,7 @@ impl StudyStages<'_> {
         };
         let (model, known) = (&own.model, &own.uncertainty);
         let stage = self.progress.stage(STEPPING);
-        let found = stepped_onset(model, &path, self.study.speeds().speed_max_m_s);
+        let found = stepped_onset(model, &path, self.study.speeds().searched_to_m_s);
         drop(stage);
         let Some(answer) = self.attempt(STEPPING, found)? else {
             return Ok(None);
@@ -287,7 +288,7 @@ impl StudyStages<'_> {
             comparisons: headline::comparisons(&results, stepped.as_ref(), name),
             study_file: String::new(),
             study_text: String::new(),
-            model_sha1: None,
+            sha1: BTreeMap::new(),
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             date: Some(today()?),
             study: study.name.clone(),
@@ -335,8 +336,7 @@ impl StudyStages<'_> {
         self.out.stage(SUMMARY)?;
         summary.files = self.out.targets();
         summary.files.sort();
-        let model = std::fs::read(self.out.staging().join(stages::MODEL_FILE));
-        summary.model_sha1 = model.ok().map(|bytes| digest(&bytes));
+        summary.sha1 = report::digests(self.out.staging())?;
         self.out.write_json(SUMMARY, "summary", &summary)?;
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;

@@ -10,6 +10,7 @@ use crate::study::{
 };
 use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// What `summary.json` holds.
@@ -26,8 +27,8 @@ pub(crate) struct Summary {
     pub study_file: String,
     /// Its text as it was run.
     pub study_text: String,
-    /// SHA-1 of the exported model; `None` where it was not trained.
-    pub model_sha1: Option<String>,
+    /// SHA-1 of the files that its page takes up, by name.
+    pub sha1: BTreeMap<String, String>,
     /// The model that the verdict is about.
     pub model: String,
     /// What it amounts to.

@@ -38,6 +38,7 @@ use crate::plausibility::{
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
+use crate::verdict::RequiredSpeed;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -160,13 +161,16 @@ impl BridgeStudy {
         [self.notes.clone(), sentences(&self.findings)].concat()
     }
 
+    /// What is required.
+    fn required(&self) -> Option<RequiredSpeed> {
+        let speed = self.file.flutter.required_speed_m_s;
+        speed.map(|speed_m_s| RequiredSpeed { speed_m_s })
+    }
+
     /// Where an onset is searched.
     pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
-            speed_max_m_s: reaching(
-                self.file.flutter.speed_max_m_s,
-                self.file.flutter.required_speed_m_s,
-            ),
+            speed_max_m_s: reaching(self.file.flutter.speed_max_m_s, self.required()),
             speeds: self.file.flutter.speeds.max(SEARCHED_AT_LEAST),
         }
     }

@@ -54,6 +54,7 @@ pub(crate) fn section_evidence(
             .into_iter()
             .filter_map(|m| of_model(study, results, m))
             .collect(),
+        searched_to_m_s: Some(study.speeds().searched_to_m_s),
         growth: results
             .growth
             .iter()

@@ -61,7 +61,7 @@ pub fn train_one(
         .and_then(|known| with_forms(study, known, forms, &mut report))
         .map(Box::new)
         .map_err(|e| e.to_string());
-    let limit_m_s = study.speeds().speed_max_m_s;
+    let limit_m_s = study.speeds().searched_to_m_s;
     // where it cannot be computed, the stages that follow say why
     let divergence = divergence_with_forces(&study.section.structure()?, &model);
     let first_m_s = search.first_limit_m_s(divergence.ok().flatten(), limit_m_s);

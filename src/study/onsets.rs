@@ -113,7 +113,7 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
         failed: Vec::new(),
     };
     let name = deck.own_model_name();
-    let own = deck.own_onset(&structure, study.speeds().speed_max_m_s);
+    let own = deck.own_onset(&structure, study.speeds().searched_to_m_s);
     let own = attempt(&mut results.failed, format!("onset of the {name}"), own)?;
     let reference = own.as_ref().and_then(FlutterSearch::onset);
     for model in trained {
@@ -250,7 +250,7 @@ fn deviation(
             structure,
             &model.model,
             model.tested_range,
-            study.speeds().speed_max_m_s,
+            study.speeds().searched_to_m_s,
         )?;
         from_fit = unheld.onset().map(|o| percent(o.at.speed_m_s));
     }

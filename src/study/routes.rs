@@ -217,7 +217,7 @@ impl RouteTable {
         };
         let found = find_onset(&model.name, &section, &search, forces.tested);
         if let Some(mut route) = self.answered(study, &forces, OnsetMethod::Eigenvalues, found) {
-            let highest = study.speeds().speed_max_m_s.max(beyond(&forces));
+            let highest = study.speeds().searched_to_m_s.max(beyond(&forces));
             route.divergence_m_s = divergence_by_eigenvalues(&section, highest)?;
             self.routes.push(route);
         }
@@ -230,7 +230,7 @@ impl RouteTable {
 
     /// Determinant and p-k iteration on one `G(K)`.
     fn add_transfer_routes(&mut self, study: &Study, forces: &Forces<'_>, sampled: bool) {
-        let speed_max = study.speeds().speed_max_m_s;
+        let speed_max = study.speeds().searched_to_m_s;
         let (name, s, model) = (&forces.name, forces.structure, forces.model);
         let inside = determinant_onset(name, s, model, forces.range(), speed_max);
         let search = study.speeds().search();
@@ -275,7 +275,9 @@ impl RouteTable {
         };
         let from = self.routes.len();
         self.add_transfer_routes(study, &forces, false);
-        let own = deck.own_onset(structure, study.speeds().speed_max_m_s).ok();
+        let own = deck
+            .own_onset(structure, study.speeds().searched_to_m_s)
+            .ok();
         for route in &mut self.routes[from..] {
             if let (FlutterSearch::Onset(onset), Some(own)) = (
                 &mut route.search,
@@ -349,7 +351,7 @@ impl Forces<'_> {
             _ => {}
         }
         let onset = search.onset();
-        let speed_max = study.speeds().speed_max_m_s;
+        let speed_max = study.speeds().searched_to_m_s;
         let mode = onset
             .map(|o| classify(self.structure, self.model, o, self.range(), speed_max))
             .transpose()?;

@@ -18,9 +18,6 @@ const SELBERG: f64 = 3.72;
 const LEAST_REDUCED_VELOCITY: f64 = 10.0;
 /// The search reaches this much beyond the flat plate.
 const BEYOND_THE_PLATE: f64 = 1.75;
-/// The search reaches this much beyond the speed that is required: an onset above it may have an interval that reaches below, up to
-/// half of itself where it counts as determined.
-const BEYOND_THE_REQUIRED: f64 = 2.0;
 /// Lowest wind speed of the curves as a part of the highest.
 const LOWEST_PART: f64 = 1.0 / 12.0;
 /// A section without springs has no frequency to go by, m/s.
@@ -33,7 +30,7 @@ pub(super) const SEARCHED_AT_LEAST: usize = 50;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FlutterBlock {
-    /// Highest wind speed of curves and search, m/s.
+    /// Highest wind speed of curves and search, m/s. Where a speed is required, the search goes at least as far as without this one.
     pub speed_max_m_s: Option<f64>,
     /// Lowest wind speed of the curves, m/s.
     pub speed_min_m_s: Option<f64>,
@@ -59,8 +56,10 @@ impl Default for FlutterBlock {
 pub struct SpeedRange {
     /// Lowest wind speed of the curves, m/s.
     pub speed_min_m_s: f64,
-    /// Highest wind speed of curves and search, m/s.
+    /// Highest wind speed of the curves, m/s.
     pub speed_max_m_s: f64,
+    /// Highest wind speed of the search, m/s.
+    pub searched_to_m_s: f64,
     /// Number of wind speeds.
     pub speeds: usize,
     /// Whether the highest speed follows from the section and was not stated.
@@ -70,14 +69,15 @@ pub struct SpeedRange {
 impl FlutterBlock {
     /// The range for a section.
     pub fn range(&self, section: &SectionModel) -> SpeedRange {
-        let speed_max_m_s = self.speed_max_m_s.unwrap_or_else(|| {
-            let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
-            rounded_up(usual).min(HIGHEST_SPEED_M_S)
-        });
-        let speed_max_m_s = reaching(speed_max_m_s, self.required_speed_m_s);
+        let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
+        let usual = rounded_up(usual).min(HIGHEST_SPEED_M_S);
+        let required = self.required();
+        let speed_max_m_s = reaching(self.speed_max_m_s.unwrap_or(usual), required);
         SpeedRange {
             speed_min_m_s: self.speed_min_m_s.unwrap_or(LOWEST_PART * speed_max_m_s),
             speed_max_m_s,
+            // whether something is met does not depend on what is drawn
+            searched_to_m_s: required.map_or(speed_max_m_s, |_| speed_max_m_s.max(usual)),
             speeds: self.speeds,
             from_section: self.speed_max_m_s.is_none(),
         }
@@ -127,10 +127,10 @@ impl FlutterBlock {
 }
 
 impl SpeedRange {
-    /// The same as a search range, in which crossings are seen whatever is drawn.
+    /// The search, in which crossings are seen whatever is drawn.
     pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
-            speed_max_m_s: self.speed_max_m_s,
+            speed_max_m_s: self.searched_to_m_s,
             speeds: self.speeds.max(SEARCHED_AT_LEAST),
         }
     }
@@ -157,9 +157,10 @@ impl SpeedRange {
 }
 
 /// The highest speed of a search that does not end below the required one, m/s.
-pub(super) fn reaching(speed_max_m_s: f64, required_m_s: Option<f64>) -> f64 {
-    let required = required_m_s.map(|v| rounded_up(BEYOND_THE_REQUIRED * v));
-    required.map_or(speed_max_m_s, |v| speed_max_m_s.max(v))
+pub(super) fn reaching(speed_max_m_s: f64, required: Option<RequiredSpeed>) -> f64 {
+    required.map_or(speed_max_m_s, |r| {
+        speed_max_m_s.max(rounded_up(r.searched_to_m_s()))
+    })
 }
 
 /// Well beyond the onset of a flat plate with this structure, m/s.

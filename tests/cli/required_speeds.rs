@@ -18,6 +18,32 @@ fn verdict_after(change: impl Fn(String) -> String) -> (Option<i32>, Value) {
     (Some(code), value["verdict"].clone())
 }
 
+/// Whether something is met depends on what is required, and not on the range in which it was to be looked for.
+#[test]
+fn a_search_that_ends_early_is_no_answer() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--deck", "LN21-6100", "--out", "s.toml"]);
+    let judged = |keys: &[String]| {
+        let mut line = vec!["study", "s.toml", "--no-figures", "--json", "--force"];
+        line.extend(keys.iter().flat_map(|key| ["--set", key]));
+        let (code, said, error) = aerodeck(at, &line);
+        let value: Value = serde_json::from_str(&said).expect(&error);
+        (code, value["verdict"].clone())
+    };
+    let searched_to = |v: f64| format!("flutter.speed_max_m_s={v:?}");
+    let required = |v: f64| format!("flutter.required_speed_m_s={v:?}");
+    let (_, early) = judged(&[searched_to(24.0)]);
+    assert_eq!(early["suggested_m_s"], 12.0, "{early:#}");
+    // an interval of 15.2 to 36.8 m/s, seen or not
+    let wide = judged(&[required(12.9), searched_to(74.0)]);
+    assert_eq!(wide.0, 0, "{:#}", wide.1);
+    assert_eq!(judged(&[required(12.9), searched_to(12.9)]), wide);
+    // just above the onset of 26.0
+    let (_, just) = judged(&[searched_to(26.1)]);
+    assert!(just["suggested_m_s"].as_f64().unwrap() > 15.0, "{just:#}");
+}
+
 /// A bridge without flutter that diverges meets no requirement above that; the search reaches the requirement.
 #[test]
 fn divergence_of_a_bridge_without_flutter_is_not_met() {

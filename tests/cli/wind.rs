@@ -24,6 +24,10 @@ fn quasi_steady_runs_the_example() {
     let folder = TempDir::new().unwrap();
     let text = succeeds(folder.path(), &["quasi-steady"]);
     assert!(
+        text.contains("gusts act in full, without the admittance"),
+        "{text}"
+    );
+    assert!(
         text.contains("Static equilibrium") && text.contains("Nonlinear run"),
         "{text}"
     );

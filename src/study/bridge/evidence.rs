@@ -7,7 +7,7 @@ use crate::flutter::{FastMotion, bridge_damps_fast_motion, judged_speeds};
 use crate::units::ReducedFrequencyRange;
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, Reach, RequiredSpeed, Verdict,
+    MeanRotation, Reach, Verdict,
 };
 
 /// Whose forces the two routes take, in the order of the answers.
@@ -19,7 +19,6 @@ const BESIDE: [&str; 5] = ["figures", "fewer modes", "constraints", "scatter", "
 impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
     pub fn evidence(&self, results: &BridgeFlutter, failed: &[String]) -> Evidence {
-        let required = self.file.flutter.required_speed_m_s;
         let mut flutter = self.readings(results);
         // the table is the answer where it is inside its range, the models where it ends before they flutter
         if let [tables, models] = &flutter[..]
@@ -40,8 +39,9 @@ impl BridgeStudy {
         let ended = results.curves.ended.iter();
         remarks.extend(ended.map(|why| format!("The curves end early: {why}")));
         Evidence {
-            required: required.map(|speed_m_s| RequiredSpeed { speed_m_s }),
+            required: self.required(),
             flutter,
+            searched_to_m_s: Some(self.search().speed_max_m_s),
             divergence,
             growth: results.growth.clone(),
             constraints: results.constraints,

@@ -67,8 +67,10 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
         })
         .collect::<Result<_>>()?;
     let onset = quasi_steady_onset(&name, &structure, &theory, &range.search())?;
+    let mut known = evidence(study, &onset);
+    known.searched_to_m_s = Some(range.searched_to_m_s);
     Ok(QuasiSteadyStudy {
-        verdict: Verdict::judge(&evidence(study, &onset)),
+        verdict: Verdict::judge(&known),
         coefficients: table.name().to_owned(),
         dofs: structure.dofs.clone(),
         curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,

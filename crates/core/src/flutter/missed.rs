@@ -82,7 +82,8 @@ impl Scan<'_> {
             .map(|before| (damping_ratio(lambda) - damping_ratio(before)) / (speed * SLOPE_STEP));
         if force_model {
             onset.warnings.push(
-                "an eigenvalue of the force model itself becomes unstable: a defect of the fit"
+                "an eigenvalue of the forces, which is no mode of still air, becomes unstable: a defect of the fit, unless static \
+                 divergence is near"
                     .to_owned(),
             );
         }

@@ -304,18 +304,26 @@ impl Signature {
 
     /// What is odd about the numbers.
     fn words(&self) -> String {
-        let odd = self.known().filter_map(|(ratio, (d, usual, spread))| {
-            if ratio == 0.0 {
-                return Some(format!("{d}* is zero"));
-            }
-            if ratio < 0.0 {
-                return Some(format!("{d}* has the sign opposite to a flat plate's"));
-            }
-            let far = (ratio / usual).ln().abs() > 2.0 * spread;
-            far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
-        });
+        let beyond = |deviations: f64| -> Vec<String> {
+            let odd = self.known().filter_map(|(ratio, (d, usual, spread))| {
+                if ratio == 0.0 {
+                    return Some(format!("{d}* is zero"));
+                }
+                if ratio < 0.0 {
+                    return Some(format!("{d}* has the sign opposite to a flat plate's"));
+                }
+                let far = (ratio / usual).ln().abs() > deviations * spread;
+                far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
+            });
+            odd.collect()
+        };
         let [low, high] = self.contradictions();
-        let odd: Vec<String> = odd.chain(low).collect();
+        let odd = [beyond(2.0), low].concat();
+        // none by itself, but all together
+        let odd = match odd.is_empty() && high.is_empty() {
+            true => beyond(0.0),
+            false => odd,
+        };
         let wrong = |i: usize| self.0[0][i].is_some_and(|ratio| ratio <= 0.0);
         let both = if wrong(0) && wrong(3) {
             " (H1* and A2* both positive: a section that gallops and flutters at once, or PoliMi's h1*, a2*)"
@@ -356,6 +364,19 @@ mod tests {
         let half = [Some(0.85), None, None, None, Some(0.9)];
         let part = Signature([half, half]);
         assert!(part.score() < 1e-9);
+    }
+
+    /// Sizes that are odd together, none by itself.
+    #[test]
+    fn what_is_odd_is_named() {
+        let half = USUAL.map(|(_, usual, spread)| Some(usual * (1.9 * spread).exp()));
+        let odd = Signature([half, half]);
+        assert!(odd.score() > ODD);
+        assert!(
+            odd.words().contains("times a flat plate's"),
+            "{}",
+            odd.words()
+        );
     }
 
     #[test]

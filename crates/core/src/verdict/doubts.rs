@@ -4,7 +4,7 @@ use super::below::not_judged_below;
 use super::contradiction::{contradiction, of_divergence};
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Evidence, FlutterReading, ForceBasis};
+use super::evidence::{Evidence, FlutterReading, ForceBasis, RequiredSpeed};
 use super::moved::constraints;
 use super::untested::{left_out, untested};
 use super::words::{k_range, speed};
@@ -218,8 +218,10 @@ impl Weighed<'_> {
                     reason: reason.clone(),
                 };
                 let text = format!("No interval of the onset: {reason}");
+                // no search for what is required has to look further
+                let far = RequiredSpeed::of_search(onset.at.speed_m_s);
                 found.push(
-                    Doubt::new(Severity::Severe, kind, text)
+                    Doubt::new(Severity::severe_if(!self.clears(far)), kind, text)
                         .settled_by("tests whose scatter is known"),
                 );
             }

@@ -22,6 +22,22 @@ pub struct RequiredSpeed {
     pub speed_m_s: f64,
 }
 
+impl RequiredSpeed {
+    /// A search reaches this much beyond what is required: an onset above it may have an interval that reaches below, up to half of
+    /// itself where it counts as determined.
+    const BEYOND: f64 = 2.0;
+
+    /// The wind speed that a search has to reach, m/s.
+    pub fn searched_to_m_s(self) -> f64 {
+        Self::BEYOND * self.speed_m_s
+    }
+
+    /// The highest speed that a search to this one, m/s, can show to be met where it finds nothing.
+    pub(super) fn of_search(searched_to_m_s: f64) -> f64 {
+        searched_to_m_s / Self::BEYOND
+    }
+}
+
 /// What the searches, fits and checks of one structure have found.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Evidence {
@@ -29,6 +45,8 @@ pub struct Evidence {
     pub required: Option<RequiredSpeed>,
     /// The searches for flutter. The first gives the answer, the others read the same data in other ways.
     pub flutter: Vec<FlutterReading>,
+    /// Where the first of these searches ended, m/s; `None` where it went as far as its data.
+    pub searched_to_m_s: Option<f64>,
     /// Static divergence, by each of the forces.
     pub divergence: Vec<DivergenceReading>,
     /// Galloping by quasi-steady theory, where static coefficients are given and it was found.

@@ -1,9 +1,9 @@
 //! What evidence amounts to, before it is put in words.
 
-use super::critical::{Critical, CriticalSpeed};
+use super::critical::Critical;
 use super::doubt::Doubt;
 use super::doubts;
-use super::evidence::{Evidence, RequiredSpeed};
+use super::evidence::{Evidence, FlutterReading, RequiredSpeed};
 use super::outcome::Outcome;
 
 /// A verdict without its sentences.
@@ -34,20 +34,28 @@ impl Judgement {
     }
 }
 
-/// The highest requirement, to a tenth of a metre per second, that this evidence meets.
+/// The highest requirement, to a tenth of a metre per second, that this evidence meets, and would meet after a search for it.
 fn suggestion(evidence: &Evidence, critical: &Critical) -> Option<f64> {
+    let found = evidence.flutter.first().and_then(FlutterReading::best_m_s);
+    let searched = evidence.searched_to_m_s.filter(|_| found.is_none());
     let least = critical
-        .governs
-        .as_ref()
-        .map_or(f64::INFINITY, CriticalSpeed::least_m_s);
-    let speed_m_s = (10.0 * least.min(critical.judged_to_m_s)).floor() / 10.0;
-    if !(speed_m_s.is_finite() && speed_m_s > 0.0) {
-        return None;
-    }
-    let required = Evidence {
-        required: Some(RequiredSpeed { speed_m_s }),
-        ..evidence.clone()
+        .least_m_s()
+        .into_iter()
+        .chain(searched.map(RequiredSpeed::of_search))
+        .fold(critical.judged_to_m_s, f64::min);
+    let met = |speed_m_s: &f64| {
+        let required = Evidence {
+            required: Some(RequiredSpeed {
+                speed_m_s: *speed_m_s,
+            }),
+            ..evidence.clone()
+        };
+        let is_speed = speed_m_s.is_finite() && *speed_m_s > 0.0;
+        is_speed && Judgement::new(&required).outcome == Some(Outcome::Met)
     };
-    let met = Judgement::new(&required).outcome == Some(Outcome::Met);
-    met.then_some(speed_m_s)
+    // half of an onset whose interval is not known
+    [least, RequiredSpeed::of_search(least)]
+        .map(|speed_m_s| (10.0 * speed_m_s).floor() / 10.0)
+        .into_iter()
+        .find(met)
 }

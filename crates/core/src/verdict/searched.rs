@@ -23,7 +23,10 @@ impl Evidence {
         search: &OnsetSearch,
         found: FlutterSearch,
     ) -> Self {
-        let mut evidence = Self::default();
+        let mut evidence = Self {
+            searched_to_m_s: Some(search.speed_max_m_s),
+            ..Self::default()
+        };
         let structure = section.structure();
         let reach = judged_speeds(section, search, Some(tested)).and_then(|judged| {
             let curves = trace_modes(forces, section, &search.speeds_m_s()?)?;

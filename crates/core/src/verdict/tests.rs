@@ -218,6 +218,24 @@ fn what_begins_first_governs_also_without_a_requirement() {
 }
 
 /// Required 62 and searched to 54 was "NOT met"; tests that end at 4.5 m/s were "no flutter up to 40 m/s".
+/// What is required is searched for to twice itself, and so is what is said to be met.
+#[test]
+fn a_search_answers_for_half_of_its_range() {
+    let of_search = |searched_to_m_s, reading| {
+        let known = Evidence {
+            required: None,
+            searched_to_m_s,
+            ..scanned(1.0, vec![reading])
+        };
+        Verdict::judge(&known).suggested_m_s
+    };
+    let model = "the model";
+    assert_eq!(of_search(Some(40.0), stable(model, 40.0)), Some(20.0));
+    assert_eq!(of_search(Some(40.0), stable(model, 15.0)), Some(15.0));
+    assert_eq!(of_search(None, stable(model, 40.0)), Some(40.0));
+    assert_eq!(of_search(Some(40.0), found(model, 38.0, 1.0)), Some(37.0));
+}
+
 #[test]
 fn what_was_not_looked_at_cannot_be_judged() {
     let evidence = scanned(62.0, vec![stable("the model", 54.0)]);

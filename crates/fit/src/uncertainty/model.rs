@@ -118,7 +118,13 @@ impl ModelUncertainty {
         structure: &Structure,
         search: &OnsetSearch,
     ) -> Result<Self> {
-        self.form_spread = Some(forms.spread(structure, search)?);
+        let onset = self.onset.as_ref().map_or(0.0, |o| REACH * o.speed_m_s);
+        // a search that ends just above its onset has none of the others
+        let search = OnsetSearch {
+            speed_max_m_s: search.speed_max_m_s.max(onset),
+            ..*search
+        };
+        self.form_spread = Some(forms.spread(structure, &search)?);
         self.forms = Some(forms);
         Ok(self)
     }

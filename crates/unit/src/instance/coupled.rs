@@ -17,6 +17,7 @@ use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
 use crate::variables::{LINEAR_ROTATION_RAD, Response, Role};
+use std::cmp::Ordering;
 use std::fmt::Debug;
 
 /// Gusts have blown as they do now until the release: `gusts` for every group of lags.
@@ -92,7 +93,7 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
         memory: &mut Memory,
         _notices: &mut Vec<String>,
     ) -> bool {
-        unit.in_tested_winds(memory)
+        unit.beside_tests(memory) == Some(Ordering::Equal)
     }
 
     /// Onset and divergence for the parameters that it has been built with, by a search.
@@ -145,9 +146,9 @@ pub(super) struct Coupled<S: CoupledKind> {
     release_pending: bool,
     /// Whether [`CoupledKind::keep_motion`] has changed the state.
     states_set: bool,
-    /// Whether the wind was in the tested range after the last step.
-    pub wind_was_tested: bool,
-    /// Whether it has been said since the initialisation that it no longer is: a gust may cross a limit at every step.
+    /// Where the wind was beside the tested range after the last step.
+    pub wind_was: Option<Ordering>,
+    /// Whether it has been said since the initialisation that it is outside: a gust may cross a limit at every step.
     pub wind_left: bool,
     /// The same of the rotation, which is beyond linear theory.
     rotation_left: bool,
@@ -205,7 +206,7 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     }
 
     fn begin_initialization(&mut self) {
-        (self.wind_was_tested, self.wind_left, self.rotation_left) = (false, false, false);
+        (self.wind_was, self.wind_left, self.rotation_left) = (None, false, false);
         self.release_pending = true;
     }
 
@@ -246,7 +247,7 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     }
 
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        if self.in_tested_winds(memory) != self.wind_was_tested {
+        if self.beside_tests(memory) != self.wind_was {
             self.watch_wind(memory, notices);
         }
         S::watch(self, resources, memory, notices);
@@ -324,7 +325,7 @@ impl<S: CoupledKind> Coupled<S> {
             stale: false,
             release_pending: true,
             states_set: false,
-            wind_was_tested: false,
+            wind_was: None,
             wind_left: false,
             rotation_left: false,
             calculated: CalculatedNumbers::new(table),

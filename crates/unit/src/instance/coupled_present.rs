@@ -11,6 +11,7 @@ use crate::resources::Resources;
 use crate::response::Outputs;
 use crate::section::Dof;
 use crate::variables::{ComputedNumber, Known, Present, Response, Role};
+use std::cmp::Ordering;
 
 /// Relative step of a difference over the wind speed.
 const WIND_STEP: f64 = 1e-5;
@@ -42,27 +43,36 @@ pub(super) struct PresentSlopes<'a> {
 }
 
 impl<S: CoupledKind> Coupled<S> {
+    /// Whether the wind is below, in or above the tested range; `None` where that is not known.
     #[inline]
-    pub(super) fn in_tested_winds(&self, memory: &Memory) -> bool {
+    pub(super) fn beside_tests(&self, memory: &Memory) -> Option<Ordering> {
         let wind = self.indices.wind_speed(memory);
-        S::tested_winds(self).is_some_and(|[low, high]| (low..=high).contains(&wind))
+        S::tested_winds(self).map(|[low, high]| match wind {
+            _ if wind < low => Ordering::Less,
+            _ if wind > high => Ordering::Greater,
+            _ => Ordering::Equal,
+        })
     }
 
-    /// Says, once, when the wind leaves the tested range.
+    /// Says, once, when the wind leaves the tested range, or comes to be above it; below it every ramp begins.
     #[cold]
     pub(super) fn watch_wind(&mut self, memory: &Memory, notices: &mut Vec<String>) {
-        let inside = self.in_tested_winds(memory);
-        let leaves = self.wind_was_tested && !inside && !self.wind_left;
-        if let Some([low, high]) = S::tested_winds(self).filter(|_| leaves) {
+        let now = self.beside_tests(memory);
+        let outside = match now {
+            Some(Ordering::Less) => self.wind_was == Some(Ordering::Equal),
+            Some(Ordering::Greater) => true,
+            Some(Ordering::Equal) | None => false,
+        };
+        if let Some([low, high]) = S::tested_winds(self).filter(|_| outside && !self.wind_left) {
             self.wind_left = true;
             let wind = shown(self.indices.wind_speed(memory));
             notices.push(format!(
-                "wind_speed = {wind} m/s leaves the speeds at which {}, {low:.3} to {high:.3} m/s: the forces are \
+                "wind_speed = {wind} m/s is outside the speeds at which {}, {low:.3} to {high:.3} m/s: the forces are \
                  extrapolated",
                 S::TESTED_AT
             ));
         }
-        self.wind_was_tested = inside;
+        self.wind_was = now;
     }
 
     /// What a number reads of the present.

@@ -27,6 +27,7 @@ impl WindStudy {
         };
         let mut evidence = Evidence {
             required: self.speeds.required(),
+            searched_to_m_s: Some(search.speed_max_m_s),
             implausible: [self.findings(), setting.findings.clone()].concat(),
             ..evidence
         };

@@ -58,6 +58,12 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
         severe(&evidence)[..],
         [DoubtKind::IntervalUnknown { .. }]
     ));
+    // no search for half of it reaches it
+    let mut half = evidence.clone();
+    half.required = Some(RequiredSpeed { speed_m_s: 18.4 });
+    assert_eq!(words(&half), "MET");
+    half.required = None;
+    assert_eq!(Verdict::judge(&half).suggested_m_s, Some(18.4));
     let mut exact = evidence.clone();
     exact.flutter[0].basis = ForceBasis::Exact;
     assert_eq!(words(&exact), "MET");

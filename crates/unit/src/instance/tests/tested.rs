@@ -106,6 +106,19 @@ fn a_wind_that_leaves_the_tests_is_said() {
             let notices = unit.take_notices().join("\n");
             assert_eq!(notices.contains(words), i == 1, "{kind:?}, {i}: {notices}");
         }
+        // from the beginning above them, or from below past all of them
+        for first in [4.0 * onset, 0.1] {
+            unit.reset();
+            unit.set_reals(&[wind], &[first]).unwrap();
+            start(&mut unit);
+            for (i, speed) in [first, 4.0 * onset].into_iter().enumerate() {
+                unit.set_reals(&[wind], &[speed]).unwrap();
+                assert!(!flag(&mut unit, "wind_in_tested_range"));
+                unit.do_step(i as f64, 1.0).unwrap();
+                let said = unit.take_notices().join("\n").contains(words);
+                assert_eq!(said, (i == 0) == (first > onset), "{kind:?}, {first}, {i}");
+            }
+        }
     }
 }
 
