@@ -4,7 +4,7 @@ use crate::error::{raised, wrong};
 use aerodeck::section::Dof;
 use numpy::{AllowTypeChange, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyList, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -50,18 +50,18 @@ pub fn parts<'py, T: pyo3::PyClass>(slf: &Bound<'py, T>, names: &[&str]) -> PyRe
 
 /// Keys and values as a value of the library, with the words of a study file; `place` is named when they do not fit.
 pub fn from_python<T: DeserializeOwned>(place: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
+    refuse_not_finite(place, value)?;
     let (py, how) = (value.py(), PyDict::new(value.py()));
     // numbers and arrays of NumPy
     how.set_item(
         "default",
         py.eval(c"lambda of_numpy: of_numpy.tolist()", None, None)?,
     )?;
-    how.set_item("allow_nan", false)?;
     let json = py.import("json")?;
     let text = json
         .call_method("dumps", (value,), Some(&how))
         .map_err(|e| {
-            let expected = "finite numbers, texts, lists and dicts";
+            let expected = "numbers, texts, lists and dicts";
             wrong(place, expected, e.value(py).to_string())
         })?;
     let text: String = text.extract()?;
@@ -75,6 +75,26 @@ pub fn from_python<T: DeserializeOwned>(place: &str, value: &Bound<'_, PyAny>) -
             found.to_owned(),
         )
     })
+}
+
+/// JSON has no NaN and no infinity; keys lead to the one that stands in `value`.
+pub fn refuse_not_finite(place: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    if let Ok(dict) = value.cast::<PyDict>() {
+        let mut of_keys = dict.iter();
+        return of_keys.try_for_each(|(key, of)| refuse_not_finite(&format!("{place}.{key}"), &of));
+    }
+    let value = &value.call_method0("tolist").unwrap_or(value.clone());
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        return value
+            .try_iter()?
+            .try_for_each(|of| refuse_not_finite(place, &of?));
+    }
+    match value.extract::<f64>() {
+        Ok(number) if !number.is_finite() => {
+            Err(wrong(place, "a finite number", number.to_string()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Adds `key` unless the caller has stated it.

@@ -14,7 +14,7 @@ use aerodeck::section::Dof;
 use aerodeck::trained_model::Provenance;
 use aerodeck::uncertainty::{FormEnsemble, ModelOfData, ModelUncertainty};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use serde_json::{Value, json};
 
 /// Fit continuous Laguerre filters with feed-through to derivatives (frequency domain) or records (time domain).
@@ -87,7 +87,8 @@ fn fit(
     let options = options.map_or_else(|| Ok(PyDict::new(py)), |o| o.copy())?;
     set_default(&options, "form", form)?;
     if let Some(poles) = poles {
-        set_default(&options, "poles", json!({ "fixed": poles }))?;
+        // of Python: JSON would lose which are not finite
+        options.set_item("poles", [("fixed", poles)].into_py_dict(py)?)?;
     }
     let work = Work::new(progress);
     if let Ok(table) = data.cast::<Derivatives>() {

@@ -1,6 +1,8 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
-use crate::convert::{Reduced, from_python, reduced, restored, set_default, shown, to_python};
+use crate::convert::{
+    Reduced, from_python, reduced, refuse_not_finite, restored, set_default, shown, to_python,
+};
 use crate::error::{raised, warn, warned, wrong};
 use crate::flutter::verdict_at;
 use crate::model::Model;
@@ -219,6 +221,7 @@ fn plan_of(
     keywords: &Bound<'_, PyDict>,
 ) -> PyResult<MonteCarloPlan> {
     let py = parameters.py();
+    refuse_not_finite("parameters", parameters.as_any())?;
     let plan = keywords.copy()?;
     if plan.contains("parameter")? {
         return Err(wrong(

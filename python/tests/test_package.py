@@ -339,6 +339,13 @@ def test_errors_say_file_place_expected_and_found(tmp_path, table, section, mode
         ("parameters: .*unknown field `sampels`.*`samples`", lambda: aerodeck.monte_carlo(
             section, model, {"torsion.frequency_hz": {"kind": "lognormal", "coefficient_of_variation": 0.05}}, sampels=10)),
     ]
+    nan, scattered = np.array([2.0, np.nan]), {"torsion.frequency_hz": {"kind": "normal", "standard_deviation": np.inf}}
+    slips += [
+        ("options.poles.fixed: expected a finite number, found NaN", lambda: aerodeck.fit_rational(table, poles=nan)),
+        ("options.weights.by: expected a finite", lambda: aerodeck.fit_laguerre(table, weights={"by": [[1.0], nan]})),
+        ("tunnel.speeds_m_s: expected a finite", lambda: aerodeck.Records.virtual_tunnel(table, speeds_m_s=nan)),
+        ("parameters.torsion.frequency_hz.standard_deviation: .*inf", lambda: aerodeck.monte_carlo(section, model, scattered)),
+    ]
     for message, slip in slips:
         with pytest.raises(aerodeck.InputError, match=message) as caught:
             slip()
