@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ._aerodeck import Model, _command
-from ._errors import AerodeckWarning, InputError
+from ._errors import AerodeckError, AerodeckWarning, InputError
 
 
 class Study:
@@ -70,6 +70,9 @@ class Study:
             file.write(self._text)
         try:
             yield Path(file.name)
+        except AerodeckError as error:
+            kind, said = error.__reduce__()[:2]
+            raise kind(*(part and part.replace(file.name, "text") for part in said)) from None
         finally:
             Path(file.name).unlink(missing_ok=True)
 
