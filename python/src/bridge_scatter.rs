@@ -1,5 +1,6 @@
 //! `BridgeScatter`: the onset of a bridge whose modes and forces scatter.
 
+use crate::convert::{Parts, parts};
 use crate::error::wrong;
 use aerodeck::study::bridge::{DerivativeScatter, ScatteredOnset};
 use numpy::PyArray1;
@@ -29,22 +30,17 @@ impl Derivatives {
 }
 
 /// Onsets of a bridge whose frequencies, damping and self-excited forces scatter.
-#[pyclass(frozen, module = "aerodeck")]
+#[pyclass(frozen, module = "aerodeck", get_all)]
 pub struct BridgeScatter {
     /// Onset of each sample that has one, m/s, rising; shape (k,).
-    #[pyo3(get)]
     speeds_m_s: Py<PyArray1<f64>>,
     /// Mean, m/s.
-    #[pyo3(get)]
     mean_m_s: f64,
     /// Standard deviation, m/s.
-    #[pyo3(get)]
     standard_deviation_m_s: f64,
     /// 95 % of the samples lie between these, m/s.
-    #[pyo3(get)]
     interval_m_s: (f64, f64),
     /// Samples without an onset up to the highest wind speed; they are not in the numbers above.
-    #[pyo3(get)]
     without_onset: usize,
 }
 
@@ -63,6 +59,34 @@ impl BridgeScatter {
 
 #[pymethods]
 impl BridgeScatter {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        let names = [
+            "speeds_m_s",
+            "mean_m_s",
+            "standard_deviation_m_s",
+            "interval_m_s",
+            "without_onset",
+        ];
+        parts(slf, &names)
+    }
+
+    #[staticmethod]
+    fn _from_parts(
+        speeds_m_s: Py<PyArray1<f64>>,
+        mean_m_s: f64,
+        standard_deviation_m_s: f64,
+        interval_m_s: (f64, f64),
+        without_onset: usize,
+    ) -> Self {
+        Self {
+            speeds_m_s,
+            mean_m_s,
+            standard_deviation_m_s,
+            interval_m_s,
+            without_onset,
+        }
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "BridgeScatter({:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s, {} without onset)",

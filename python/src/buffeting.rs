@@ -1,6 +1,6 @@
 //! `Buffeting`: response of a whole bridge to turbulence.
 
-use crate::convert::{rows, shown, to_python};
+use crate::convert::{Parts, parts, rows, shown, to_python};
 use aerodeck::study::bridge::BridgeBuffeting;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -36,6 +36,7 @@ pub struct Buffeting {
     /// The same by records; shape (n, 3).
     #[pyo3(get)]
     peak_factor: Option<Py<PyArray2<f64>>>,
+    #[pyo3(get, name = "_all")]
     all: Py<PyAny>,
 }
 
@@ -62,6 +63,50 @@ impl Buffeting {
 
 #[pymethods]
 impl Buffeting {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
+        let names = [
+            "speed_m_s",
+            "nodes",
+            "rms",
+            "rms_of_records",
+            "standard_error",
+            "model_change",
+            "crossing_frequency_hz",
+            "expected_peak_factor",
+            "peak_factor",
+            "_all",
+        ];
+        parts(slf, &names)
+    }
+
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)] // attributes, in the order of `__reduce__`
+    fn _from_parts(
+        speed_m_s: f64,
+        nodes: Vec<String>,
+        rms: Py<PyArray2<f64>>,
+        rms_of_records: Option<Py<PyArray2<f64>>>,
+        standard_error: Option<Py<PyArray2<f64>>>,
+        model_change: Option<Py<PyArray2<f64>>>,
+        crossing_frequency_hz: Py<PyArray2<f64>>,
+        expected_peak_factor: Py<PyArray2<f64>>,
+        peak_factor: Option<Py<PyArray2<f64>>>,
+        all: Py<PyAny>,
+    ) -> Self {
+        Self {
+            speed_m_s,
+            nodes,
+            rms,
+            rms_of_records,
+            standard_error,
+            model_change,
+            crossing_frequency_hz,
+            expected_peak_factor,
+            peak_factor,
+            all,
+        }
+    }
+
     /// Everything, as `bridge_buffeting.json` of the command line holds it.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("copy")?

@@ -91,6 +91,7 @@ def test_onsets_scatter_with_what_scatters(bridge, onset):
     assert abs(np.std(found.speeds_m_s, ddof=1) / found.standard_deviation_m_s - 1) < 1e-12
     low, high = found.interval_m_s
     assert low < found.mean_m_s < high and f"{low:.3f} and {high:.3f}" in repr(found)
+    assert repr(pickle.loads(pickle.dumps(found))) == repr(found)
     fixed = bridge.scatter(2, frequency=0, damping=0, derivatives=0.0)
     assert abs(fixed.mean_m_s / onset.speed_m_s - 1) < 1e-8
     with pytest.raises(aerodeck.InputError, match="derivatives: expected a standard deviation over the mean, or measured"):
@@ -102,6 +103,8 @@ def test_buffeting_by_spectra_and_by_records(bridge):
     found = bridge.buffeting(30.0, progress=lambda *at: told.append(at))
     assert found.rms.shape == (len(found.nodes), 3) == (3, 3) and told[-1] == (2, 2)
     assert np.all(np.abs(found.rms_of_records - found.rms) < 5 * found.standard_error + 0.2 * found.rms)
+    other = pickle.loads(pickle.dumps(found))
+    assert other.to_dict() == found.to_dict() and np.array_equal(other.rms_of_records, found.rms_of_records)
     assert found.to_dict()["nodes"] == found.nodes and found._repr_html_().count("<tr>") == 3
 
 
