@@ -81,8 +81,12 @@ fn line(r: &CaseResult) -> String {
         .deviation
         .map_or(String::new(), |d| format!(" ({d:+.1e})"));
     let source = r.source.words();
+    let reason = match &r.reason[..] {
+        "" => String::new(),
+        reason => format!(": {reason}"),
+    };
     format!(
-        "{verdict} {}: expected {:.decimals$} {}, found {found}{deviation}, allowed ±{:.1e}: {}; {source}",
-        r.quantity, r.expected, r.unit, r.tolerance, r.reason
+        "{verdict} {}: expected {:.decimals$} {}, found {found}{deviation}, allowed ±{:.1e}{reason}; {source}",
+        r.quantity, r.expected, r.unit, r.tolerance
     )
 }

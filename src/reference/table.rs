@@ -46,7 +46,7 @@ fn with_unit(value: f64, decimals: usize, unit: &str) -> String {
 fn allowed(result: &CaseResult) -> String {
     // one digit more than the reference shows half of its last digit
     let text = format!("{:.*}", result.decimals + 1, result.tolerance);
-    text.trim_end_matches('0').to_owned()
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A bar would end the cell.

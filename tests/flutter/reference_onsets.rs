@@ -139,6 +139,7 @@ fn validate_runs_cases_of_users() {
         "{text}"
     );
     assert!(text.contains("12 figures, 0 outside"), "{text}");
+    assert!(!text.contains(": ;"), "no reason is stated for all: {text}");
     fs::write(at.join("wrong.toml"), example.replace("90.466", "91.0")).unwrap();
     let (code, stdout, _) = aerodeck(at, &["validate", "--case", "wrong.toml", "--json"]);
     let json: Value = serde_json::from_str(&stdout).unwrap();
