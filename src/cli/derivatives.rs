@@ -107,7 +107,7 @@ impl TableArgs {
             };
             return read_table_with(named_sheet(&self.table, self.sheet.as_deref()), &options);
         }
-        let table = embedded::deck(&self.table)?;
+        let table = embedded::deck_where_files_are_taken(&self.table)?;
         let convention = stated.with_file(Convention::default().into())?;
         Ok(TableInConvention { table, convention })
     }

@@ -102,7 +102,9 @@ impl Deck {
                 .state_angle("deck.angle_deg", study.deck.angle_deg)?;
             DeckData::Table(table)
         } else {
-            DeckData::Table(embedded::deck(name).map_err(|e| e.at("deck.source"))?)
+            DeckData::Table(
+                embedded::deck_where_files_are_taken(name).map_err(|e| e.at("deck.source"))?,
+            )
         };
         if !is_file && !study.deck.convention.is_empty() {
             return Err(Error::input(

@@ -61,8 +61,8 @@ fn decks_are_compared_with_the_model_of_one() {
     assert!(listing(folder.path()).contains(&"d/decks_lateral.svg".to_owned()));
     refused(
         folder.path(),
-        &["compare", "decks", "--decks", "LN99"],
-        &["LN20-5500", "LN99"],
+        &["compare", "decks", "--decks", "my.csv"],
+        &["LN21-6100, found `my.csv`"],
     );
     refused(
         folder.path(),

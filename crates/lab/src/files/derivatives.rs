@@ -68,7 +68,7 @@ pub fn named_table(name: &str, directory: &Path) -> Result<DerivativeTable> {
     if is_table_file(name) {
         read_table(directory.join(name))
     } else {
-        embedded::deck(name)
+        embedded::deck_where_files_are_taken(name)
     }
 }
 
@@ -102,7 +102,7 @@ impl TableWords<'_> {
             "a table in a file (.csv, .xlsx, .xls, .ods)",
             format_args!("`{}`, whose convention is known", self.name),
         )?;
-        embedded::deck(self.name)
+        embedded::deck_where_files_are_taken(self.name)
     }
 }
 

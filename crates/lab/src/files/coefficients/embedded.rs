@@ -34,7 +34,10 @@ pub fn coefficients(name: &str) -> Result<StaticCoefficients> {
         .find(|(n, _)| n.eq_ignore_ascii_case(name.trim()))
         .ok_or_else(|| {
             let all: Vec<_> = names().collect();
-            let expected = format!("one of the embedded tables {}", all.join(", "));
+            let expected = format!(
+                "one of the embedded tables {}, or a table (.csv)",
+                all.join(", ")
+            );
             Error::input("static coefficients", expected, format!("`{name}`"))
         })?;
     parse_coefficients(text)

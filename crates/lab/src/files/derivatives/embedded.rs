@@ -49,23 +49,31 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// [`Error::Input`] listing the names when there is no such deck.
 pub fn deck(name: &str) -> Result<DerivativeTable> {
     let wanted = name.trim().replace('_', "-");
-    let (_, text) = DECKS
-        .iter()
-        .find(|(n, _)| n.eq_ignore_ascii_case(&wanted))
-        .ok_or_else(|| {
-            let ending = std::path::Path::new(name.trim()).extension();
-            if ending.is_some_and(|e| OTHER_TABLES.iter().any(|o| e.eq_ignore_ascii_case(o))) {
-                let expected = "a table of derivatives as .csv or .xlsx (save it as one of these)";
-                return Error::input("deck", expected, format!("the file `{name}`"));
-            }
-            let all: Vec<_> = names().collect();
-            let expected = format!(
-                "one of the embedded decks {}, or a table (.csv, .xlsx, .xls, .ods)",
-                all.join(", ")
-            );
-            Error::input("deck", expected, format!("`{name}`"))
-        })?;
+    let named = |(n, _): &&(&str, &str)| n.eq_ignore_ascii_case(&wanted);
+    let (_, text) = DECKS.iter().find(named).ok_or_else(|| {
+        let all: Vec<_> = names().collect();
+        let expected = format!("one of the embedded decks {}", all.join(", "));
+        Error::input("deck", expected, format!("`{name}`"))
+    })?;
     parse_csv(text)
+}
+
+/// The same where the path of a table could stand as well, which its ending would show.
+///
+/// # Errors
+/// [`Error::Input`] listing the names and the endings when there is no such deck.
+pub fn deck_where_files_are_taken(name: &str) -> Result<DerivativeTable> {
+    deck(name).map_err(|mut unknown| {
+        let ending = std::path::Path::new(name.trim()).extension();
+        if ending.is_some_and(|e| OTHER_TABLES.iter().any(|o| e.eq_ignore_ascii_case(o))) {
+            let expected = "a table of derivatives as .csv or .xlsx (save it as one of these)";
+            return Error::input("deck", expected, format!("the file `{name}`"));
+        }
+        if let Error::Input(error) = &mut unknown {
+            error.expected += ", or a table (.csv, .xlsx, .xls, .ods)";
+        }
+        unknown
+    })
 }
 
 #[cfg(test)]
@@ -77,7 +85,7 @@ mod tests {
     #[test]
     fn files_of_other_programs_are_no_unknown_decks() {
         for name in ["table.xls", "a/b.ODS", "table.txt"] {
-            let said = deck(name).unwrap_err().to_string();
+            let said = deck_where_files_are_taken(name).unwrap_err().to_string();
             assert!(said.contains("as .csv or .xlsx"), "{said}");
         }
     }
@@ -143,7 +151,7 @@ mod tests {
     #[test]
     fn an_unknown_deck_lists_the_known_ones() {
         assert_eq!(
-            deck("LN22").unwrap_err().to_string(),
+            deck_where_files_are_taken("LN22").unwrap_err().to_string(),
             "deck: expected one of the embedded decks LN20-5500, LN21-5200, LN21-5500, LN21-5800, LN21-6100, or a table (.csv, .xlsx, .xls, .ods), found `LN22`"
         );
     }
