@@ -30,7 +30,7 @@ pub(crate) struct CoverageArgs {
     #[arg(long, default_value = "jones", value_parser = spelt::<Truth>(["jones", "theodorsen"]))]
     truth: Truth,
     /// Poles of the fitted filters; by default those of Jones's function, which they span exactly.
-    #[arg(long, value_delimiter = ',', default_values_t = [0.091, 0.6])]
+    #[arg(long, value_delimiter = ',', default_value = "0.091,0.6")]
     poles: Vec<f64>,
     /// Search the poles, from those given.
     #[arg(long)]
@@ -42,7 +42,7 @@ pub(crate) struct CoverageArgs {
     #[arg(long, default_value_t = 0.0)]
     noise_correlation: f64,
     /// Mean speeds, m/s.
-    #[arg(long, value_delimiter = ',', default_values_t = [8.17, 4.0])]
+    #[arg(long, value_delimiter = ',', default_value = "8.17,4")]
     speeds: Vec<f64>,
     /// Standard deviation of every transfer function from one mean speed to the other, relative, in size and in phase.
     #[arg(long, default_value_t = 0.0)]

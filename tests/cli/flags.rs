@@ -92,6 +92,11 @@ fn flags_mean_the_same_in_every_command() {
         if let Some(meaning) = force {
             assert!(meaning.starts_with("Replace a "), "{name}: {meaning}");
         }
+        let defaults = help.lines().map(str::trim);
+        for value in defaults.filter_map(|l| l.strip_prefix("[default: ")) {
+            let typed = value.contains('"') || !value.contains(' ');
+            assert!(typed, "{name}: {value} is no value as it is typed");
+        }
         for (short, long) in [("-o", "--out"), ("-f", "--force")] {
             assert!(
                 said(help, short).is_none(),

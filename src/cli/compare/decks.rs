@@ -19,7 +19,11 @@ use std::fmt::Write as _;
 #[command(verbatim_doc_comment)]
 pub(crate) struct CompareDecksArgs {
     /// Embedded decks to compare.
-    #[arg(long, value_delimiter = ',', default_values_t = THESIS_DECKS.map(str::to_owned))]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_value = "LN21-5200,LN21-5500,LN21-5800,LN21-6100"
+    )]
     decks: Vec<String>,
     /// Train on this deck only and predict the forces of all.
     #[arg(long)]
