@@ -29,7 +29,8 @@ pub fn parse<T: DeserializeOwned>(
     text: &str,
     check: impl FnOnce(&mut T) -> Result<()>,
 ) -> Result<T> {
-    let mut value = toml::from_str(text).map_err(|e| syntax_error(what, text, &e))?;
+    let mut value = toml::from_str(text)
+        .map_err(|e| other_kind(what, text).unwrap_or_else(|| syntax_error(what, text, &e)))?;
     without_control_characters(text)?;
     check(&mut value).map_err(|e| with_line(text, e))?;
     Ok(value)
@@ -99,6 +100,24 @@ fn refused_text(value: &toml::Value) -> Option<String> {
     }
 }
 
+/// Files with a command of their own: what they are, a key that no other of them has, and the command.
+const KINDS: [(&str, &str, &str); 4] = [
+    ("a study file", "deck", "study"),
+    ("a bridge file", "modes", "bridge flutter"),
+    ("a campaign file", "channels", "process"),
+    ("a Monte Carlo file", "parameter", "monte-carlo"),
+];
+
+/// That a file is not `what` was meant but of another kind, if it is.
+fn other_kind(what: &str, text: &str) -> Option<Error> {
+    let root: toml::Table = toml::from_str(text).ok()?;
+    let (_, own, _) = KINDS.iter().find(|(kind, ..)| *kind == what)?;
+    let mut others = KINDS.iter().filter(|_| !root.contains_key(*own));
+    let (found, _, command) = others.find(|(_, key, _)| root.contains_key(*key))?;
+    let found = format!("{found}, which `aerodeck {command}` takes");
+    Some(Error::input("", what, found))
+}
+
 /// A reading error of the TOML library as one of ours.
 fn syntax_error(what: &str, text: &str, error: &toml::de::Error) -> Error {
     let (place, found) = match error.span() {
@@ -160,6 +179,26 @@ fn line_of_key(text: &str, place: &[PlaceStep]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_of_another_kind_is_named_with_its_command() {
+        let read = |what: &str, text: &str| {
+            let read = parse::<std::collections::BTreeMap<String, i32>>(what, text, |_| Ok(()));
+            read.unwrap_err().to_string()
+        };
+        let text = "schema = 1\n[modes]\n";
+        assert_eq!(
+            read("a study file", text),
+            "expected a study file, found a bridge file, which `aerodeck bridge flutter` takes"
+        );
+        // a mistake in what it is, and what has no command of its own
+        for (what, text) in [
+            ("a study file", "deck = {}\n[modes]\n"),
+            ("a case file", text),
+        ] {
+            assert!(read(what, text).contains("line"), "{what}");
+        }
+    }
 
     #[test]
     fn names_with_control_characters_are_refused_with_line_and_key() {
