@@ -22,6 +22,12 @@ pub(crate) fn folder() -> TempDir {
 #[test]
 fn flutter_prints_its_card_and_writes_its_figures() {
     let folder = folder();
+    let impossible = ["bridge", "flutter", "bridge.toml", "--samples", "0"];
+    refused(
+        folder.path(),
+        &impossible,
+        &["error: --samples: expected 2"],
+    );
     let text = succeeds(
         folder.path(),
         &[

@@ -125,6 +125,14 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
     // the same shape of the distribution; both stationary; nothing coupled
     assert!(value("M_pdf") > 0.95);
     assert_eq!((value("M_s"), value("M_b")), (1.0, 1.0));
+    for (option, wrong) in [("--levels", "0"), ("--to-hz", "0.1"), ("--from-hz", "0")] {
+        let mut impossible = arguments("predicted");
+        match impossible.iter_mut().skip_while(|a| **a != option).nth(1) {
+            Some(value) => *value = wrong,
+            None => impossible.extend([option, wrong]),
+        }
+        refused(folder.path(), &impossible, &[option, "found"]);
+    }
     refused(
         folder.path(),
         &arguments("forecast"),

@@ -61,15 +61,14 @@ pub(crate) struct BridgeFlutterArgs {
 
 /// Runs the command.
 pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answer> {
+    let scatter = args.scatter()?;
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
-    let scattered = args
-        .scattered(&study, &results, progress)
-        .unwrap_or_else(|e| {
-            failed.push(format!("scatter: {e}"));
-            None
-        });
+    let scattered = scattered(scatter, &study, &results, progress).unwrap_or_else(|e| {
+        failed.push(format!("scatter: {e}"));
+        None
+    });
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text::text(&study, &results, &verdict, progress.verbose());
     let mut comparisons = Vec::new();
@@ -122,14 +121,9 @@ impl BridgeFlutterArgs {
         )
     }
 
-    fn scattered(
-        &self,
-        study: &BridgeStudy,
-        results: &BridgeFlutter,
-        progress: &Progress,
-    ) -> Result<Option<ScatteredOnset>> {
-        let onset = results.answers.last().and_then(|a| a.search.onset());
-        let (Some(samples), Some(onset)) = (self.samples, onset) else {
+    /// What scatters, where samples are asked for.
+    fn scatter(&self) -> Result<Option<Scatter>> {
+        let Some(samples) = self.samples else {
             return Ok(None);
         };
         let scatter = Scatter {
@@ -139,13 +133,32 @@ impl BridgeFlutterArgs {
             samples,
             seed: self.seed,
         };
-        let stage = progress.steps("samples of the bridge");
-        let found = study.scattered_onset(onset, &scatter, &|done, all| {
-            stage.at(done as u64, all as u64);
-        });
-        drop(stage);
-        found.map(Some)
+        scatter.check([
+            "--scatter-frequency",
+            "--scatter-damping",
+            "--scatter-derivatives",
+            "--samples",
+        ])?;
+        Ok(Some(scatter))
     }
+}
+
+fn scattered(
+    scatter: Option<Scatter>,
+    study: &BridgeStudy,
+    results: &BridgeFlutter,
+    progress: &Progress,
+) -> Result<Option<ScatteredOnset>> {
+    let onset = results.answers.last().and_then(|a| a.search.onset());
+    let (Some(scatter), Some(onset)) = (scatter, onset) else {
+        return Ok(None);
+    };
+    let stage = progress.steps("samples of the bridge");
+    let found = study.scattered_onset(onset, &scatter, &|done, all| {
+        stage.at(done as u64, all as u64);
+    });
+    drop(stage);
+    found.map(Some)
 }
 
 fn scatter_line(of: &ScatteredOnset) -> String {

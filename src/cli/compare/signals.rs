@@ -8,7 +8,7 @@ use crate::comparison::{
     magnitude_warped, peak, phase, probability_density, rms, stationarity, wavelet,
     wavelet_normalised,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::files::lab::ChannelSet;
 use crate::wind_tunnel::campaign::{SAME_RATE, sampling_by_time};
 use serde::Serialize;
@@ -52,6 +52,16 @@ pub(crate) struct CompareSignalsArgs {
     seed: u64,
 }
 
+impl CompareSignalsArgs {
+    fn check(&self) -> Result<()> {
+        positive("--levels", self.levels as f64)?;
+        positive("--significant-delay", self.significant_delay)?;
+        let from = positive("--from-hz", self.from_hz)?;
+        let expected = format_args!("a number from the {from} of --from-hz on");
+        ensure(self.to_hz >= from, "--to-hz", expected, self.to_hz)
+    }
+}
+
 /// One metric, or why there is none.
 #[derive(Serialize)]
 struct Line {
@@ -88,6 +98,7 @@ impl Line {
 
 /// Runs the command.
 pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answer> {
+    args.check()?;
     let set = ChannelSet::read(&args.file, args.group.as_deref())?;
     let channel = |name: &str| {
         let found = set.channel(name);

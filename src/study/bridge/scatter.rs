@@ -5,7 +5,7 @@ use super::scaled_forces::Scaled;
 use super::{BridgeStudy, SectionForceModels};
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, ensure, non_negative};
 use crate::files::bridge::BridgeSectionBlock;
 use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
 use crate::numbered::{OnDone, numbered};
@@ -35,6 +35,23 @@ pub struct Scatter {
     pub samples: usize,
     /// Seed.
     pub seed: u64,
+}
+
+impl Scatter {
+    /// Refuses what no bridge can have; the names are those of the first four numbers where they were stated.
+    ///
+    /// # Errors
+    /// [`Error::Input`].
+    pub fn check(&self, [frequency, damping, derivatives, samples]: [&str; 4]) -> Result<()> {
+        non_negative(frequency, self.frequency)?;
+        non_negative(damping, self.damping)?;
+        if let DerivativeScatter::Relative(part) = self.derivatives {
+            non_negative(derivatives, part)?;
+        }
+        let expected = format_args!("2 to {MOST_SAMPLES}");
+        let holds = (2..=MOST_SAMPLES).contains(&self.samples);
+        ensure(holds, samples, expected, self.samples)
+    }
 }
 
 /// How the self-excited forces scatter.
@@ -95,18 +112,7 @@ impl BridgeStudy {
         scatter: &Scatter,
         progress: OnDone<'_>,
     ) -> Result<ScatteredOnset> {
-        non_negative("scatter of the frequencies", scatter.frequency)?;
-        non_negative("scatter of the damping", scatter.damping)?;
-        if let DerivativeScatter::Relative(part) = scatter.derivatives {
-            non_negative("scatter of the derivatives", part)?;
-        }
-        if !(2..=MOST_SAMPLES).contains(&scatter.samples) {
-            return Err(Error::input(
-                "samples",
-                format!("2 to {MOST_SAMPLES}"),
-                scatter.samples.to_string(),
-            ));
-        }
+        scatter.check(["frequency", "damping", "derivatives", "samples"])?;
         let sampler = OnsetSampler {
             study: self,
             scatter,
