@@ -68,6 +68,10 @@ fn a_compact_file_has_each_node_and_mode_once() {
     let mode = compact.replace("\nnode,", "\n# mode: 1, 0.2 Hz, 10 kg\nnode,");
     let expected = "line 8 (mode): expected each mode once, found `1, 0.2 Hz, 10 kg`";
     refused(with(mode), file, &["one.csv", expected]);
+    let more = compact.replace("rotation_1\n", "rotation_1,vertical_2\n");
+    let more = more.replace("0.1\n", "0.1,0\n");
+    let expected = "expected a line `# mode: …` for the column `vertical_2`, found none";
+    refused(with(more), file, &["one.csv", expected]);
 }
 
 #[test]

@@ -18,7 +18,7 @@
 use super::modal_data::{BridgeModes, check_order};
 use super::table::{Table, TableRow};
 use crate::bridge::{BridgeMode, Node};
-use crate::error::{Result, ensure, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::files::header_csv::CommentHeader;
 use crate::files::text::{csv_cell, of_csv_cell, read_text};
 use std::collections::HashSet;
@@ -29,6 +29,8 @@ const FORMAT: &str = "aerodeck bridge modes 1";
 const AXES: &str = "vertical up, lateral downwind, rotation nose-up";
 const UNITS: &str = "along_m and length_m in m; vertical, lateral in m and rotation in rad per unit of the modal coordinate";
 const MODE: &str = "mode";
+/// Columns of a mode; its number stands behind them.
+const PARTS: [&str; 3] = ["vertical", "lateral", "rotation"];
 /// Columns of the places across the girder.
 const OFFSETS: [&str; 2] = ["downwind_m", "up_m"];
 const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
@@ -72,8 +74,7 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
         let place = entry.place();
         positive(format!("{place}, frequency"), frequency_hz)?;
         positive(format!("{place}, generalised mass"), generalised_mass)?;
-        let columns = ["vertical", "lateral", "rotation"]
-            .map(|part| table.required(&[&format!("{part}_{number}")]));
+        let columns = PARTS.map(|part| table.required(&[&format!("{part}_{number}")]));
         let [v, l, r] = columns;
         let (v, l, r) = (v?, l?, r?);
         let at = |row: &TableRow| Ok([row.number(v)?, row.number(l)?, row.number(r)?]);
@@ -85,14 +86,36 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
             shape: table.rows.iter().map(at).collect::<Result<_>>()?,
         })
     });
+    let modes = modes.collect::<Result<Vec<_>>>()?;
+    refuse_unstated(&table, &modes)?;
     Ok(BridgeModes {
         reversed: false,
         source: header.text("source"),
         left_out: Vec::new(),
-        modes: modes.collect::<Result<_>>()?,
+        modes,
         nodes,
         offsets_m,
     })
+}
+
+/// Refuses columns of a mode that no line of the header states.
+fn refuse_unstated(table: &Table, modes: &[BridgeMode]) -> Result<()> {
+    let number = |column: &str| {
+        let (part, number) = column.rsplit_once('_')?;
+        number
+            .parse()
+            .ok()
+            .filter(|_: &usize| PARTS.contains(&part))
+    };
+    let stated = |n| modes.iter().any(|mode| mode.number == n);
+    let unstated = |column: &&String| number(column).is_some_and(|n| !stated(n));
+    match table.heading.iter().find(unstated) {
+        None => Ok(()),
+        Some(column) => {
+            let expected = format!("a line `# mode: …` for the column `{column}`");
+            Err(Error::input("header", expected, "none"))
+        }
+    }
 }
 
 /// Places downwind and up, of a file that knows them.
