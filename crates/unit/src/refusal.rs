@@ -61,8 +61,9 @@ impl fmt::Display for Refusal {
     }
 }
 
+/// What cannot be computed with the values as they are changes nothing.
 impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
-        Self::error(error.to_string())
+        Self::discard(error.to_string())
     }
 }

@@ -30,6 +30,23 @@ fn a_release_that_overflows_is_refused() {
     }
 }
 
+/// A width that gives no section: it is refused, and another leads on.
+#[test]
+fn a_section_that_cannot_be_is_refused() {
+    let unit = Unit::new("continuous_laguerre");
+    unit.ok(unit.set_up());
+    unit.ok(unit.enter());
+    let [width] = unit.get(["width"]);
+    unit.set("width", 1e100);
+    let read = unit.try_get(&["heave"], &mut [0.0]);
+    for status in [read, unit.exit()] {
+        unit.refused(status, fmi2Status::fmi2Discard, &["not positive definite"]);
+    }
+    unit.set("width", width);
+    unit.ok(unit.exit());
+    unit.ok(unit.step(0.0, 0.01));
+}
+
 /// A sampled model whose samples no step could count.
 #[test]
 fn samples_that_are_too_dense_are_refused() {
