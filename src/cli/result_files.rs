@@ -222,7 +222,8 @@ pub(super) fn write_response(
         } else {
             format!("{speed:.1} m/s ({percent:+} %)")
         };
-        let rows = simulated(model, speed, PERIODS.0 / frequency_hz, step)?;
+        let mut rows = Vec::new();
+        simulated(model, speed, PERIODS.0 / frequency_hz, step, &mut rows)?;
         runs.push((label, rows));
     }
     let runs: Vec<_> = runs

@@ -151,7 +151,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let (stop, step) = args.stop_and_step(e)?;
     let findings = of_trained(&model.section, &model);
     warn(&args.model, &sentences(&findings));
-    let rows = simulated(&model, speed, stop, step)?;
+    let mut rows = Vec::new();
+    let failed = match simulated(&model, speed, stop, step, &mut rows) {
+        Err(Error::Numerical(why)) if !rows.is_empty() => vec![why],
+        ended => ended.map(|()| Vec::new())?,
+    };
     let modes = modes(&model, speed)?;
     let columns = columns(&model.section.dofs());
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
@@ -164,28 +168,35 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     })?;
     let written = out.commit()?;
     let text = format!(
-        "{title}: {} of {step} s\n{}{}",
+        "{title}: {} of {step} s\n{}{}{}",
         counted(rows.len() - 1, "step"),
+        failed
+            .iter()
+            .map(|why| format!("  ENDS EARLY: {why}\n"))
+            .collect::<String>(),
         verdict(&model, speed, &modes),
         list(&written)
     );
-    Answer::new(
+    let answer = Answer::new(
         text,
-        &json!({ "columns": columns, "rows": rows, "modes": modes, "findings": findings }),
-    )
+        &json!({ "columns": columns, "rows": rows, "modes": modes, "findings": findings, "failed": failed }),
+    )?;
+    Ok(answer.passed_if(failed.is_empty()))
 }
 
 fn section_of(model: &TrainedModel) -> Result<CoupledSection> {
     CoupledSection::with_model(&model.section.structure()?, &model.model)
 }
 
-/// Rows of time (s) and motion of the released section, as `simulation.csv` has them, up to the time `stop` (s).
+/// Adds to `rows` time (s) and motion of the released section, as `simulation.csv` has them, up to the time `stop` (s) or, with
+/// an error, to where the motion overflows.
 pub(super) fn simulated(
     model: &TrainedModel,
     speed: f64,
     stop: f64,
     step: f64,
-) -> Result<Vec<Vec<f64>>> {
+    rows: &mut Vec<Vec<f64>>,
+) -> Result<()> {
     let section = section_of(model)?;
     let n = section.structure().dofs.len();
     let mut stepper = Stepper::new(section);
@@ -195,20 +206,21 @@ pub(super) fn simulated(
     let mut state = stepper.released(&released, &vec![0.0; n])?;
     let inputs = Inputs::steady(speed, n);
     let mut outputs = Outputs::default();
-    let steps = (stop / step).round() as usize;
-    let mut rows = Vec::with_capacity(steps + 1);
-    for i in 0..=steps {
+    for i in 0..=(stop / step).round() as usize {
+        let time = i as f64 * step;
+        let at_time = |why: &str| {
+            let why = why.trim_start_matches("step: ");
+            Error::Numerical(format!("{why} at {time:.6} s"))
+        };
         if i > 0 {
             let advanced = stepper.advance(&mut state, &inputs, step);
             advanced.map_err(|e| match e {
-                Error::Numerical(why) => {
-                    Error::Numerical(format!("{why} at {:.6} s", i as f64 * step))
-                }
+                Error::Numerical(why) => at_time(&why),
                 other => other,
             })?;
         }
         stepper.outputs(&state, &inputs, &mut outputs)?;
-        let mut row = vec![i as f64 * step];
+        let mut row = vec![time];
         for values in [
             &outputs.displacement,
             &outputs.rate,
@@ -217,9 +229,12 @@ pub(super) fn simulated(
         ] {
             row.extend_from_slice(values);
         }
+        if !row.iter().all(|x| x.is_finite()) {
+            return Err(at_time("the motion has overflowed"));
+        }
         rows.push(row);
     }
-    Ok(rows)
+    Ok(())
 }
 
 /// Names of the columns, with units.

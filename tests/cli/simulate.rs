@@ -56,13 +56,34 @@ fn a_simulation_says_whether_the_motion_grows() {
             &["30"],
             "coarse.json: experiment.step_size_s: ",
         ),
-        (
-            "soft.json",
-            &["60", "--stop-time", "1000"],
-            "the motion has overflowed at ",
-        ),
     ] {
         let (code, _, error) = run(model, more);
-        assert!(code != 0 && flowing(&error).contains(says), "{error}");
+        assert!(code == 2 && flowing(&error).contains(says), "{error}");
     }
+    // rows to the end of all numbers, drawn as well
+    let overflows = [
+        "simulate",
+        "soft.json",
+        "--wind-speed",
+        "60",
+        "--stop-time",
+        "1000",
+    ];
+    let (code, said, error) = aerodeck(at, &overflows);
+    assert_eq!(code, 1, "{said}{error}");
+    let said = flowing(&said);
+    let (_, end) = said
+        .split_once("ENDS EARLY: the motion has overflowed at ")
+        .expect(&said);
+    let end: f64 = end.split(' ').next().unwrap().parse().unwrap();
+    let rows = fs::read_to_string(at.join("simulation.csv")).unwrap();
+    let last = rows
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .map(|x| x.parse::<f64>().unwrap());
+    let last: Vec<f64> = last.collect();
+    assert!(last[0] < end && end - last[0] < 0.1, "{end}: {last:?}");
+    assert!(last.iter().all(|x| x.is_finite()), "{last:?}");
 }
