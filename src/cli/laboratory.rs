@@ -1,13 +1,17 @@
-//! The laboratory's report of `process`: what was found odd, every run, the derivatives with their errors, the stages of each run.
+//! The laboratory's report of `process`, printed and as a page: what was found odd, every run, the derivatives with their errors, the
+//! stages of each run.
 
 use super::output::OutputDir;
+use crate::aerodynamics::derivatives::Derivative;
 use crate::error::counted;
 use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
 use crate::section::Dof;
+use crate::signal::median;
 use crate::wind_tunnel::RawCampaign;
 use crate::wind_tunnel::processing::{ProcessingReport, RunReport};
+use std::fmt::Write as _;
 
 /// The page; its figures are those that stand in `out`.
 pub(super) fn laboratory_page(
@@ -110,7 +114,7 @@ pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
 }
 
 /// A run in one line.
-pub(super) fn line(run: &RunReport) -> String {
+fn line(run: &RunReport) -> String {
     let at = crate::wind_tunnel::processing::index(run.dof);
     let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
     let unit = if run.dof == Dof::Torsion {
@@ -135,4 +139,40 @@ pub(super) fn line(run: &RunReport) -> String {
         run.signal_to_noise.after_low_pass_db[at],
         counted(replaced, "sample"),
     )
+}
+
+/// What is printed: the lag, every run, the derivatives in all.
+pub(super) fn processing_text(
+    raw: &RawCampaign,
+    report: &ProcessingReport,
+    derivatives: Option<&IdentifiedDerivatives>,
+) -> String {
+    let mut text = format!("{}\n", raw.section);
+    let error = report
+        .lag_standard_error_s
+        .map_or_else(String::new, |e| format!(" ± {:.3}", 1e3 * e));
+    let _ = writeln!(
+        text,
+        "  lag of the force channels {:.3}{error} ms",
+        1e3 * report.lag_s
+    );
+    for run in &report.runs {
+        let _ = writeln!(text, "  {}", line(run));
+    }
+    if let Some(found) = derivatives {
+        let estimates = found.estimates.iter().filter(|e| e.value != 0.0);
+        let relative = estimates.map(|e| (e.standard_error / e.value).abs());
+        let median = median(&relative.collect::<Vec<_>>());
+        let _ = writeln!(
+            text,
+            "  {} derivatives, {} numbers in all, median standard error {:.2} %",
+            Derivative::ALL
+                .iter()
+                .filter(|d| found.each(**d).next().is_some())
+                .count(),
+            found.estimates.len(),
+            100.0 * median
+        );
+    }
+    text
 }

@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::figures;
-use super::laboratory::{laboratory_page, line};
+use super::laboratory::{laboratory_page, processing_text};
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::result_files::{lines_of, over_v_hat};
@@ -31,7 +31,6 @@ use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, ProcessingReport, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// File of the table of derivatives.
@@ -126,7 +125,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let page = laboratory_page(&raw, &processed.report, found, &notes, &out);
     out.write(super::report::folder::REPORT, sections_page(&page)?)?;
     let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
-    let text = text(&raw, &processed, derivatives.as_ref()) + &remarks;
+    let text = processing_text(&raw, &processed.report, found) + &remarks;
     let value = serde_json::json!({
         "report": processed.report,
         "derivatives": derivatives,
@@ -374,46 +373,4 @@ fn speeds_label(group: &[f64]) -> String {
     } else {
         format!("{low:.1} to {high:.1} m/s")
     }
-}
-
-fn text(
-    raw: &RawCampaign,
-    processed: &Processed,
-    derivatives: Option<&IdentifiedDerivatives>,
-) -> String {
-    let report = &processed.report;
-    let mut text = format!("{}\n", raw.section);
-    let error = report
-        .lag_standard_error_s
-        .map_or_else(String::new, |e| format!(" ± {:.3}", 1e3 * e));
-    let _ = writeln!(
-        text,
-        "  lag of the force channels {:.3}{error} ms",
-        1e3 * report.lag_s
-    );
-    for run in &report.runs {
-        let _ = writeln!(text, "  {}", line(run));
-    }
-    if let Some(found) = derivatives {
-        let median = {
-            let relative: Vec<f64> = found
-                .estimates
-                .iter()
-                .filter(|e| e.value != 0.0)
-                .map(|e| (e.standard_error / e.value).abs())
-                .collect();
-            crate::signal::median(&relative)
-        };
-        let _ = writeln!(
-            text,
-            "  {} derivatives, {} numbers in all, median standard error {:.2} %",
-            Derivative::ALL
-                .iter()
-                .filter(|d| found.each(**d).next().is_some())
-                .count(),
-            found.estimates.len(),
-            100.0 * median
-        );
-    }
-    text
 }
