@@ -8,7 +8,7 @@ use super::answer::{Findings, FlutterSearch, UnstableStart, choose};
 use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::judged::{Exit, FastMotion, StableRange, TestedFrom, damps_at, entry_reason};
 use super::onset::Onset;
-use crate::aerodynamics::{Transfer, TransferMatrix};
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{ValueAt, complex, first_order, root};
@@ -334,45 +334,6 @@ pub(super) fn damping_slope(
     let rate = Complex::new(0.0, -1.0) * (over_speed / speed_m_s) / (over_omega / omega);
     let slope = -rate.re / omega;
     slope.is_finite().then_some(slope)
-}
-
-/// Onset speed of one degree of freedom with the others locked, m/s; where it grows already at the highest `K`, the speed
-/// that belongs to that.
-pub(super) fn single_dof_onset(
-    structure: &Structure,
-    model: &dyn Transfer,
-    dof: usize,
-    range: ReducedFrequencyRange,
-    speed_max_m_s: f64,
-) -> Result<Option<f64>> {
-    let locked = structure.only(&[structure.dofs[dof]]);
-    let alone = OneDof {
-        structure,
-        model,
-        dof,
-    };
-    let search = determinant_onset("", &locked, &alone, range, speed_max_m_s)?;
-    Ok(search.critical_speed_m_s())
-}
-
-/// One diagonal entry of a model about the axis of a structure.
-struct OneDof<'a> {
-    structure: &'a Structure,
-    model: &'a dyn Transfer,
-    dof: usize,
-}
-
-impl Transfer for OneDof<'_> {
-    fn dofs(&self) -> &[Dof] {
-        &self.model.dofs()[self.dof..=self.dof]
-    }
-    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
-        let g = self.structure.at_axis(self.model.transfer(k)?);
-        Ok(DMatrix::from_element(1, 1, g[(self.dof, self.dof)]))
-    }
-    fn known_range(&self) -> Option<ReducedFrequencyRange> {
-        self.model.known_range()
-    }
 }
 
 /// The motion (m, rad) that the impedance at `omega` resists least: the right singular vector of the smallest singular

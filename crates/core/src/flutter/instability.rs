@@ -4,13 +4,13 @@
 //! damping derivative of that degree of freedom (`H1*`, `P1*`, `A2*`: `Im G_ii/K²`) is positive there, so that its own
 //! motion is fed by the wind without any help of another.
 
-use super::determinant::{impedance, null_vector, single_dof_onset};
+use super::determinant::{determinant_onset, impedance, null_vector};
 use super::onset::Onset;
-use crate::aerodynamics::Transfer;
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::{Dof, Structure};
-use crate::units::ReducedFrequencyRange;
-use nalgebra::Complex;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 /// Share of the kinetic energy from which on a mode counts as one of a single degree of freedom.
@@ -128,5 +128,44 @@ fn kind(participation: &[Participation]) -> Instability {
             Instability::TorsionDrivenFlutter
         }
         None => Instability::CoupledFlutter,
+    }
+}
+
+/// Onset speed of one degree of freedom with the others locked, m/s; where it grows already at the highest `K`, the speed
+/// that belongs to that.
+fn single_dof_onset(
+    structure: &Structure,
+    model: &dyn Transfer,
+    dof: usize,
+    range: ReducedFrequencyRange,
+    speed_max_m_s: f64,
+) -> Result<Option<f64>> {
+    let locked = structure.only(&[structure.dofs[dof]]);
+    let alone = OneDof {
+        structure,
+        model,
+        dof,
+    };
+    let search = determinant_onset("", &locked, &alone, range, speed_max_m_s)?;
+    Ok(search.critical_speed_m_s())
+}
+
+/// One diagonal entry of a model about the axis of a structure.
+struct OneDof<'a> {
+    structure: &'a Structure,
+    model: &'a dyn Transfer,
+    dof: usize,
+}
+
+impl Transfer for OneDof<'_> {
+    fn dofs(&self) -> &[Dof] {
+        &self.model.dofs()[self.dof..=self.dof]
+    }
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        let g = self.structure.at_axis(self.model.transfer(k)?);
+        Ok(DMatrix::from_element(1, 1, g[(self.dof, self.dof)]))
+    }
+    fn known_range(&self) -> Option<ReducedFrequencyRange> {
+        self.model.known_range()
     }
 }
