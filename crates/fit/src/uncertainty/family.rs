@@ -11,7 +11,8 @@ pub use deck::FamilyRange;
 pub use plan::FamilyPlan;
 
 use super::coverage::IntervalCoverage;
-use super::forms::{FormEnsemble, interval_with_forms};
+use super::forms::FormEnsemble;
+use super::model::interval_with_forms;
 use super::onset::onset_error;
 use super::table_covariance::table_uncertainty;
 use crate::aeroelastic::CoupledSection;

@@ -7,17 +7,13 @@
 //! their onsets belongs into the interval. Where tests surround the onset they agree to a per cent; where all tests lie beside it they do
 //! not, and nothing else would say so.
 
-use super::onset::{CONFIDENCE, OnsetError};
-use super::statistics::two_sided_quantile;
 use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
     TableHeader, TransferSample,
 };
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{
-    ErrorParts, FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset,
-};
+use crate::flutter::{FlutterSearch, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{
     Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
@@ -255,32 +251,6 @@ impl FormSpread {
             .collect();
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
         (!squares.is_empty()).then(|| mean.sqrt())
-    }
-}
-
-/// The interval of an onset with what the choice of its form leaves open: variances add, and degrees of freedom as Satterthwaite adds
-/// them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
-pub(crate) fn interval_with_forms(error: &OnsetError, spread: &FormSpread) -> OnsetInterval {
-    let form_m_s = spread.deviation_from_m_s(error.speed_m_s);
-    let parts = ErrorParts {
-        scatter_m_s: error.standard_error_m_s,
-        form_m_s,
-        between_speeds: error.between_speeds,
-    };
-    let form = form_m_s.unwrap_or(0.0).powi(2);
-    let (scatter, total) = (error.standard_error_m_s.powi(2), parts.standard_error_m_s());
-    let others = spread.forms.len().max(2) as f64 - 1.0;
-    let squares = scatter.powi(2) / error.degrees_of_freedom + form.powi(2) / others;
-    let freedom = if squares > 0.0 {
-        total.powi(4) / squares
-    } else {
-        error.degrees_of_freedom
-    };
-    let half = two_sided_quantile(CONFIDENCE, freedom) * total;
-    let interval = OnsetInterval::about(error.speed_m_s, half, freedom, parts);
-    match spread.missing() {
-        Some(why) => interval.undetermined(why),
-        None => interval,
     }
 }
 

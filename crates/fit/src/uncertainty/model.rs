@@ -1,7 +1,7 @@
 //! All that is known of the uncertainty of one trained model, as it is saved beside it.
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
-use super::forms::{FormEnsemble, FormSpread, interval_with_forms};
+use super::forms::{FormEnsemble, FormSpread};
 use super::onset::{
     CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
@@ -10,7 +10,7 @@ use super::statistics::two_sided_quantile;
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
+use crate::flutter::{ErrorParts, Onset, OnsetInterval, OnsetMethod, OnsetSearch};
 use crate::json;
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -293,4 +293,30 @@ pub(crate) fn derivative_intervals(
         }
     }
     Ok(intervals)
+}
+
+/// The interval of an onset with what the choice of its form leaves open: variances add, and degrees of freedom as Satterthwaite adds
+/// them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
+pub(crate) fn interval_with_forms(error: &OnsetError, spread: &FormSpread) -> OnsetInterval {
+    let form_m_s = spread.deviation_from_m_s(error.speed_m_s);
+    let parts = ErrorParts {
+        scatter_m_s: error.standard_error_m_s,
+        form_m_s,
+        between_speeds: error.between_speeds,
+    };
+    let form = form_m_s.unwrap_or(0.0).powi(2);
+    let (scatter, total) = (error.standard_error_m_s.powi(2), parts.standard_error_m_s());
+    let others = spread.forms.len().max(2) as f64 - 1.0;
+    let squares = scatter.powi(2) / error.degrees_of_freedom + form.powi(2) / others;
+    let freedom = if squares > 0.0 {
+        total.powi(4) / squares
+    } else {
+        error.degrees_of_freedom
+    };
+    let half = two_sided_quantile(CONFIDENCE, freedom) * total;
+    let interval = OnsetInterval::about(error.speed_m_s, half, freedom, parts);
+    match spread.missing() {
+        Some(why) => interval.undetermined(why),
+        None => interval,
+    }
 }
