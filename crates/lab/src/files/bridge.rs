@@ -11,6 +11,7 @@ mod field;
 mod matlab;
 mod modal_data;
 mod opensees;
+mod section_block;
 mod section_forces;
 mod single_file;
 mod table;
@@ -24,12 +25,10 @@ pub use axes::{Direction, WindAxes};
 pub use dampers::DamperBlock;
 pub use field::FieldTable;
 pub use modal_data::{BridgeModes, RawMode};
+pub use section_block::{BridgeSectionBlock, StaticBlock};
 pub use section_forces::{ElementForces, ModalSectionForces, read_section_forces};
 pub use single_file::write_modes;
-pub use toml_file::{
-    BridgeFile, BridgeSectionBlock, DampingRatios, ModesBlock, ModesFormat, SearchBlock,
-    StaticBlock,
-};
+pub use toml_file::{BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock};
 pub use wind_block::{ProfilePoint, WindBlock};
 
 use crate::error::Result;

@@ -3,16 +3,13 @@
 use super::dampers::{self, DamperBlock};
 use super::matlab::SpanBlock;
 use super::modal_data::BridgeModes;
+use super::section_block::BridgeSectionBlock;
 use super::wind_block::WindBlock;
 use super::{WindAxes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
-use crate::aerodynamics::derivatives::Interpolation;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
-use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::bridge::{BridgeMode, Dampers};
 use crate::error::{Error, Result, ensure, non_negative, of_schema, positive};
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
-use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -142,92 +139,6 @@ fn keep(numbers: &[usize], all: &mut BridgeModes) -> Result<()> {
     let kept = modes.extract_if(.., selected).collect();
     all.left_out = std::mem::replace(modes, kept);
     Ok(())
-}
-
-/// One section along the span: `derivatives` for the table, `model` for a model trained already (without one it is fitted to the
-/// table), or `static` alone for quasi-steady forces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BridgeSectionBlock {
-    /// Name.
-    pub name: String,
-    /// Width `B`, m.
-    pub width_m: f64,
-    /// Name of the first node; left out, the first of the bridge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub from: Option<String>,
-    /// Name of the last node; left out, the last of the bridge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to: Option<String>,
-    /// Embedded deck or file of a derivative table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub derivatives: Option<String>,
-    /// Notation, argument and axes of the table, as far as it does not state them itself.
-    #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
-    pub convention: StatedConvention,
-    /// Mean angle of the section in the tests, deg, nose-up positive; left out, what the table states, or 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub angle_deg: Option<f64>,
-    /// How the table is read between its points.
-    #[serde(default)]
-    pub interpolation: Interpolation,
-    /// Filters of the model that is fitted to the table; every mode has them, and more than three cost more than they bring.
-    #[serde(default = "three")]
-    pub filters: usize,
-    /// How the model is fitted to the table, as in a study; before `filters`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fit: Option<toml::Table>,
-    /// Motions with self-excited forces.
-    #[serde(default = "two")]
-    pub motions: Vec<Dof>,
-    /// File of a trained model.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub model: Option<PathBuf>,
-    /// Static coefficients; without `derivatives` and `model` the forces are quasi-steady.
-    #[serde(default, rename = "static", skip_serializing_if = "Option::is_none")]
-    pub statics: Option<StaticBlock>,
-}
-
-fn three() -> usize {
-    3
-}
-
-fn two() -> Vec<Dof> {
-    Dof::TWO.to_vec()
-}
-
-/// Static coefficients at the mean angle of attack, all over the width: lift up, moment nose-up, drag downwind.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct StaticBlock {
-    /// `C_D`.
-    pub drag: f64,
-    /// `C_L`.
-    pub lift: f64,
-    /// `C_M`.
-    pub moment: f64,
-    /// `dC_D/dα`, per rad.
-    pub drag_slope: f64,
-    /// `dC_L/dα`, per rad.
-    pub lift_slope: f64,
-    /// `dC_M/dα`, per rad.
-    pub moment_slope: f64,
-    /// Arms of the corrected quasi-steady theory over the width.
-    pub arms: Arms,
-}
-
-impl StaticBlock {
-    /// As the theory takes them.
-    pub fn coefficients(&self) -> CoefficientsAt {
-        CoefficientsAt {
-            drag: self.drag,
-            lift: self.lift,
-            moment: self.moment,
-            drag_slope: self.drag_slope,
-            lift_slope: self.lift_slope,
-            moment_slope: self.moment_slope,
-        }
-    }
 }
 
 /// Speeds that are looked at.
@@ -387,25 +298,5 @@ impl BridgeFile {
             keep(select, &mut modes)?;
         }
         Ok(modes)
-    }
-}
-
-impl BridgeSectionBlock {
-    fn validate(&self, place: &str) -> Result<()> {
-        positive(format!("{place}.width_m"), self.width_m)?;
-        ensure(
-            self.derivatives.is_some() || self.model.is_some() || self.statics.is_some(),
-            place,
-            "one of `derivatives`, `model`, `static`",
-            "none",
-        )?;
-        ensure(
-            self.motions == Dof::TWO || self.motions == Dof::THREE,
-            format_args!("{place}.motions"),
-            "[\"vertical\", \"torsion\"] or [\"vertical\", \"lateral\", \"torsion\"]",
-            Dof::names(&self.motions),
-        )?;
-        let statics = self.statics.unwrap_or_default();
-        statics.arms.validate(&format!("{place}.static."))
     }
 }
