@@ -11,6 +11,7 @@ pub(in crate::fmu) mod label;
 mod reference_runs;
 mod runtime;
 mod terminals;
+mod variable_rows;
 
 pub use super::standard::FmiVersion;
 use reference_runs::{WASM_MANIFEST, wasm_manifest};
@@ -18,7 +19,6 @@ use reference_runs::{WASM_MANIFEST, wasm_manifest};
 pub(super) use archive_file::archive;
 pub(crate) use archive_file::with_report;
 pub use archive_file::{Overwrite, write_archive};
-pub use documentation::documentation;
 pub use growth::GrowthPolicy;
 pub(crate) use growth::growth_of;
 pub use label::Label;
@@ -34,6 +34,7 @@ use super::location::MODEL_FILE;
 use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use super::resources::{GUST_FILE, OptionFiles, Resources};
 use super::variables::Listing;
+use super::xml::Element;
 use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
@@ -130,7 +131,9 @@ pub fn package(
         bounds: bounds_json.as_deref().map(str::as_bytes),
     };
     let resources = Resources::from_bytes(json.as_bytes(), files)?;
-    let page = documentation(&resources, runtimes, listing, verdict.as_ref())?;
+    let xml = description(&resources, listing, &label, version)?;
+    let described = Element::parse(&xml)?;
+    let page = documentation::documentation(&resources, runtimes, &described, verdict.as_ref())?;
     let options = [
         (FORCE_FILE, force),
         (GUST_FILE, gusts),
@@ -143,7 +146,7 @@ pub fn package(
         resources,
         bounds,
         listing,
-        label: &label,
+        xml,
         version,
         page,
         runtimes,
@@ -158,6 +161,18 @@ fn check_listing(listing: Listing, version: FmiVersion) -> Result<()> {
             Err(Error::input("real variables only", "FMI 2.0", "FMI 3.0"))
         }
         _ => Ok(()),
+    }
+}
+
+fn description(
+    resources: &Resources,
+    listing: Listing,
+    label: &Label,
+    version: FmiVersion,
+) -> Result<String> {
+    match version {
+        FmiVersion::Two => model_description(resources, listing, label),
+        FmiVersion::Three => description_fmi3::model_description(resources, label),
     }
 }
 
@@ -208,14 +223,16 @@ pub fn package_bridge(
         options.as_bytes(),
         field.as_deref().map(str::as_bytes),
     )?;
-    let page = bridge_page::documentation(&resources, &export.bridge, export.verdict.as_ref());
+    let xml = description(&resources, export.listing, label, version)?;
+    let (described, verdict) = (Element::parse(&xml)?, export.verdict.as_ref());
+    let page = bridge_page::documentation(&resources, &export.bridge, &described, verdict);
     let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)].into_iter();
     let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
     let parts = ArchiveParts {
         resources,
         bounds: None,
         listing: export.listing,
-        label,
+        xml,
         version,
         page,
         runtimes,
@@ -229,7 +246,7 @@ struct ArchiveParts<'a> {
     resources: Resources,
     bounds: Option<OnsetBounds>,
     listing: Listing,
-    label: &'a Label,
+    xml: String,
     version: FmiVersion,
     page: String,
     runtimes: &'a [Runtime],
@@ -245,16 +262,12 @@ fn assembled(
         resources,
         bounds,
         listing,
-        label,
+        xml,
         version,
         page,
         runtimes,
         reference_runs,
     } = parts;
-    let xml = match version {
-        FmiVersion::Two => model_description(&resources, listing, label)?,
-        FmiVersion::Three => description_fmi3::model_description(&resources, label)?,
-    };
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     let icon = match version {

@@ -1,9 +1,11 @@
 //! The page that documents the FMU of a bridge, in its archive.
 
 use super::documentation::sentences;
+use super::variable_rows::rows;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Variable};
+use crate::fmu::xml::Element;
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
@@ -11,11 +13,12 @@ use std::fmt::Write as _;
 pub(super) fn documentation(
     resources: &Resources,
     bridge: &BridgeOptions,
+    description: &Element,
     verdict: Option<&Verdict>,
 ) -> String {
     let model = &resources.model;
     if bridge.structure_alone {
-        return structure(resources, bridge);
+        return structure(resources, bridge, description);
     }
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head><body>\n\
@@ -23,10 +26,10 @@ pub(super) fn documentation(
          strips. Vertical displacement and force are positive up, lateral positive downwind, rotation and moment positive \
          nose-up (windward edge up). The wind is normal to the span; the speed at a strip is its wind factor times \
          <code>wind_speed</code>.</p>\n<p>Forces: {kind}. Data: {source}. Licence: {licence}.</p>\n\
-         <p>At constant wind a communication step of any size is exact for forces that are held or run on straight lines; where \
+         <p>At constant wind a communication step of any size is exact for forces that are held{straight}; where \
          the wind changes the motion follows its Taylor series. The mode coordinates are those of the shapes as they were \
          given.</p>\n<h2>Stability</h2>\n{stability}\
-         <h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>meaning</th></tr>\n",
+         ",
         name = escaped(&bridge.name),
         modes = bridge.modes.len(),
         nodes = bridge.nodes.len(),
@@ -34,51 +37,62 @@ pub(super) fn documentation(
         kind = model.model.kind(),
         source = escaped(&model.provenance.source),
         licence = escaped(&model.provenance.licence),
+        straight = straight_lines(description),
         stability = stability(verdict),
     );
-    page.push_str(&rows(resources));
-    page.push_str("</table>\n</body></html>\n");
+    page.push_str(&variables(resources, description));
+    page.push_str("</body></html>\n");
     page
 }
 
 /// The page of a structure alone.
-fn structure(resources: &Resources, bridge: &BridgeOptions) -> String {
+fn structure(resources: &Resources, bridge: &BridgeOptions, description: &Element) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}: structure</title></head><body>\n\
          <h1>{name}: structure</h1>\n<p>The structure of a bridge without its wind forces: {modes} modes, {nodes} nodes. Vertical \
          displacement and force are positive up, lateral positive downwind, rotation and moment positive nose-up (windward \
          edge up). Forces at nodes go in, the motion of the nodes comes out.</p>\n\
-         <p>A communication step of any size is exact for forces that are held or run on straight lines. The mode coordinates are \
-         those of the shapes as they were given.</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>meaning</th></tr>\n\
-         {rows}</table>\n</body></html>\n",
+         <p>A communication step of any size is exact for forces that are held{straight}. The mode coordinates are \
+         those of the shapes as they were given.</p>\n{rows}</body></html>\n",
         name = escaped(&bridge.name),
         modes = bridge.modes.len(),
         nodes = bridge.nodes.len(),
-        rows = rows(resources),
+        straight = straight_lines(description),
+        rows = variables(resources, description),
     )
 }
 
+/// FMI 3.0 has no derivatives of inputs.
+fn straight_lines(description: &Element) -> &'static str {
+    match description.attribute("fmiVersion") {
+        Some("3.0") => "",
+        _ => " or run on straight lines",
+    }
+}
+
 /// A row of the table for each variable.
-fn rows(resources: &Resources) -> String {
-    let mut page = String::new();
+fn variables(resources: &Resources, description: &Element) -> String {
+    let mut page = String::from(
+        "<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>type</th><th>unit</th><th>meaning</th></tr>\n",
+    );
     // those of further modes differ by their number
-    let first = |v: &&Variable| {
-        v.is_listed
-            && !matches!(
-                v.role,
-                Role::Mode(1.., _) | Role::InitialMode(1..) | Role::Damper(1.., _)
-            )
+    let further = |v: &Variable| {
+        matches!(
+            v.role,
+            Role::Mode(1.., _) | Role::InitialMode(1..) | Role::Damper(1.., _)
+        )
     };
-    for v in resources.table.variables().iter().filter(first) {
-        let unit = v.unit.map_or("", |u| u.name);
+    for row in rows(description, &resources.table, further) {
         let _ = writeln!(
             page,
-            "<tr><td><code>{}</code></td><td>{unit}</td><td>{}</td></tr>",
-            escaped(&v.name),
-            escaped(&v.description)
+            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            escaped(row.name),
+            row.kind,
+            row.unit,
+            escaped(row.description)
         );
     }
-    page
+    page + "</table>\n"
 }
 
 /// The verdict on the bridge as it was exported.

@@ -1,6 +1,7 @@
 //! `documentation/index.html` of an exported section, made from the variable table and the trained model.
 
 use super::runtime::Runtime;
+use super::variable_rows::{Row, rows};
 use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
@@ -8,33 +9,38 @@ use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::standard::FmiVersion;
-use crate::fmu::variables::{
-    Causality, Listing, Role, SectionParameter, StartValue, Variability, Variable,
-};
+use crate::fmu::variables::{Role, SectionParameter, Variable};
+use crate::fmu::xml::Element;
 use crate::plausibility::of_trained;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use crate::verdict::{Evidence, Phenomenon, Severity, Verdict};
 use askama::Template;
+use std::collections::HashSet;
 
-/// The page: one file, nothing loaded from elsewhere.
+/// The page: one file, nothing loaded from elsewhere; version, names and types are those of the archive's `description`.
 ///
 /// # Errors
 /// [`Error::Input`] and [`Error::Numerical`] when the onset of the default section cannot be computed.
-pub fn documentation(
+pub(super) fn documentation(
     resources: &Resources,
     runtimes: &[Runtime],
-    listing: Listing,
+    description: &Element,
     verdict: Option<&Verdict>,
 ) -> Result<String> {
     let model = &resources.model;
-    let parts = resources.parts();
-    let firsts: Vec<usize> = parts.iter().map(|p| p.strips.start).collect();
+    let fmi = description.attribute("fmiVersion").unwrap_or_default();
+    let version = match fmi {
+        "3.0" => FmiVersion::Three,
+        _ => FmiVersion::Two,
+    };
     let page = DocumentationPage {
         model,
         name: resources.words(|m| &m.name),
         kind: resources.words(|m| m.model.kind()),
+        fmi,
+        has_arrays: version == FmiVersion::Three,
         guid: resources.guid.to_string(),
         version: env!("CARGO_PKG_VERSION"),
         filters: resources
@@ -46,9 +52,9 @@ pub fn documentation(
         lateral: resources.models().any(|m| m.section.lateral.is_some()),
         platforms: runtimes
             .iter()
-            .map(|r| (r.path_in_archive(FmiVersion::Two), r.platform_words()))
+            .map(|r| (r.path_in_archive(version), r.platform_words()))
             .collect(),
-        groups: groups(resources.table.listed(listing).table.variables(), &firsts),
+        groups: groups(&shown(resources, description), version),
         models: resources.models().map(ModelText::new).collect(),
         stability: match &resources.force {
             None => stability(model, verdict)?,
@@ -67,13 +73,15 @@ struct DocumentationPage<'a> {
     model: &'a TrainedModel,
     name: String,
     kind: String,
+    fmi: &'a str,
+    has_arrays: bool,
     guid: String,
     version: &'static str,
     filters: usize,
     initial_rotation_deg: String,
     lateral: bool,
     platforms: Vec<(String, &'static str)>,
-    groups: Vec<Group>,
+    groups: Vec<Group<'a>>,
     models: Vec<ModelText<'a>>,
     stability: Vec<String>,
     force: Option<&'a ForceOptions>,
@@ -98,88 +106,78 @@ impl<'a> ModelText<'a> {
 }
 
 /// Variables of one role.
-struct Group {
+struct Group<'a> {
     title: &'static str,
     note: &'static str,
-    rows: Vec<Row>,
+    rows: Vec<Row<'a>>,
 }
 
-struct Row {
-    name: String,
-    kind: &'static str,
-    unit: String,
-    start: String,
-    limits: String,
-    description: String,
+/// Of several strips those of the first of each model alone: all strips of a model have the same variables.
+fn shown<'a>(resources: &Resources, description: &'a Element) -> Vec<Row<'a>> {
+    let parts = resources.parts();
+    let firsts: Vec<usize> = parts.iter().map(|p| p.strips.start).collect();
+    let strip = |v: &Variable| {
+        let name = v.name.strip_prefix("der(").unwrap_or(&v.name);
+        name.split_once("].").map(|(strip, _)| strip.to_owned())
+    };
+    let of_first = |v: &&Variable| matches!(v.role, Role::Motion(s, ..) if firsts.contains(&s));
+    let all = resources.table.variables().iter();
+    let named: HashSet<String> = all.filter(of_first).filter_map(strip).collect();
+    rows(description, &resources.table, |v| {
+        strip(v).is_some_and(|strip| !named.contains(&strip))
+    })
 }
 
-/// Of several strips those of these alone: all strips of a model have the same variables.
-fn groups(variables: &[Variable], strips: &[usize]) -> Vec<Group> {
-    let is_shown = |v: &Variable| match v.role {
-        Role::Motion(s, ..) | Role::Force(s, ..) | Role::OfStrip(s, _) | Role::Strip(s, _) => {
-            strips.contains(&s)
+fn groups<'a>(rows: &[Row<'a>], version: FmiVersion) -> Vec<Group<'a>> {
+    let group = |title, note, causality: &str, variability: &str| {
+        let belongs =
+            |row: &&Row<'_>| row.causality == causality && row.variability.starts_with(variability);
+        Group {
+            title,
+            note,
+            rows: rows.iter().filter(belongs).cloned().collect(),
         }
-        _ => true,
     };
-    let group = |title, note, belongs: &dyn Fn(&Variable) -> bool| Group {
-        title,
-        note,
-        rows: variables
-            .iter()
-            .filter(|v| belongs(v) && is_shown(v))
-            .map(row)
-            .collect(),
+    let inputs = match version {
+        FmiVersion::Two => {
+            "Continuous: held over a communication step, or on a straight line when the importer sets input derivatives."
+        }
+        FmiVersion::Three => "Continuous: held over a communication step.",
     };
+    let tunable =
+        "A change holds from the next communication step on and updates the calculated parameters.";
+    let calculated = "From the current parameters; available from the initialisation mode on.";
     vec![
+        group("Inputs", inputs, "input", ""),
+        group("Outputs", "At the communication points.", "output", ""),
         group(
-            "Inputs",
-            "Continuous: held over a communication step, or on a straight line when the importer sets input derivatives.",
-            &|v| v.causality == Causality::Input,
+            "Structural parameters",
+            "Sizes of arrays, to be chosen before the initialisation.",
+            "structuralParameter",
+            "",
         ),
-        group("Outputs", "At the communication points.", &|v| {
-            v.causality == Causality::Output
-        }),
         group(
             "Parameters that may be changed while running",
-            "A change holds from the next communication step on and updates the calculated parameters.",
-            &|v| v.causality == Causality::Parameter && v.variability == Variability::Tunable,
+            tunable,
+            "parameter",
+            "tunable",
         ),
-        group("Parameters that are fixed once initialised", "", &|v| {
-            v.causality == Causality::Parameter && v.variability == Variability::Fixed
-        }),
+        group(
+            "Parameters that are fixed once initialised",
+            "",
+            "parameter",
+            "fixed",
+        ),
         group(
             "Calculated parameters",
-            "From the current parameters; available from the initialisation mode on.",
-            &|v| v.causality == Causality::CalculatedParameter,
+            calculated,
+            "calculatedParameter",
+            "",
         ),
-        group("Constants", "", &|v| v.causality == Causality::Local),
+        group("States and their rates", "", "local", "continuous"),
+        group("Constants", "", "local", "constant"),
+        group("Time", "", "independent", ""),
     ]
-}
-
-fn row(v: &Variable) -> Row {
-    let unit = v.unit.map_or("–", |u| u.name);
-    let limit = |sign: &str, value: Option<f64>| value.map(|x| format!("{sign} {x}"));
-    let limits: Vec<_> = limit("≥", v.min)
-        .into_iter()
-        .chain(limit("≤", v.max))
-        .collect();
-    Row {
-        name: v.name.clone(),
-        kind: v.value.type_name(),
-        unit: v.display_unit.map_or_else(
-            || unit.to_owned(),
-            |shown| format!("{unit} (shown in {shown})"),
-        ),
-        start: match &v.value {
-            StartValue::Real(start) => start.map(|x| x.to_string()),
-            StartValue::Integer(start) => start.map(|x| x.to_string()),
-            StartValue::Boolean(start) => start.map(|x| x.to_string()),
-            StartValue::String(text) => Some(text.clone()),
-        }
-        .unwrap_or_default(),
-        limits: limits.join(", "),
-        description: v.description.clone(),
-    }
 }
 
 /// The tested range in the three ways of writing it.

@@ -70,7 +70,9 @@ fn the_page_names_everything_and_loads_nothing() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         let json = model(kind).to_json().unwrap();
         let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
-        let page = documentation(&resources, &embedded(), Listing::All, None).unwrap();
+        let xml = model_description(&resources, Listing::All, &Label::default()).unwrap();
+        let xml = Element::parse(&xml).unwrap();
+        let page = documentation::documentation(&resources, &embedded(), &xml, None).unwrap();
         for v in resources.table.variables() {
             assert!(
                 page.contains(&format!("<code>{}</code>", v.name)),
@@ -83,6 +85,46 @@ fn the_page_names_everything_and_loads_nothing() {
         }
         assert!(page.contains("Flutter onset "));
         assert_eq!(page.contains("is held</b>"), kind == "discrete_laguerre");
+    }
+}
+
+/// Version, names, types and sizes on the page are those of the archive.
+#[test]
+fn the_page_of_an_archive_describes_that_archive() {
+    let mut force = ForceOptions::single(31.0);
+    force.named_strips = true;
+    force.strips = vec![force.strips[0].clone(); 3];
+    for version in [FmiVersion::Two, FmiVersion::Three] {
+        let export = Export {
+            force: Some(force.clone()),
+            version,
+            reference_runs: false,
+            ..GrowthPolicy::Refuse.into()
+        };
+        let bytes = package(&model("rational"), &embedded(), export).unwrap();
+        let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
+        let [page, xml] = ["documentation/index.html", "modelDescription.xml"].map(|name| {
+            let mut text = String::new();
+            zip.by_name(name)
+                .unwrap()
+                .read_to_string(&mut text)
+                .unwrap();
+            text
+        });
+        let xml = Element::parse(&xml).unwrap();
+        let fmi = xml.attribute("fmiVersion").unwrap();
+        assert!(page.contains(&format!("FMI {fmi} co-simulation")), "{page}");
+        let is_three = version == FmiVersion::Three;
+        for v in &xml.child("ModelVariables").unwrap().children {
+            let name = v.attribute("name").unwrap();
+            let further = ["strip[2]", "strip[3]"].iter().any(|s| name.contains(s));
+            let shown = page.contains(&format!("<code>{name}</code>"));
+            assert_eq!(shown, !further, "{name}");
+        }
+        let heave = "<code>heave</code></td><td>Float64[strips]</td>";
+        assert_eq!(page.contains(heave), is_three);
+        let type_of_two = page.contains("<td>Real</td>") || page.contains("input derivatives");
+        assert_eq!(type_of_two, !is_three);
     }
 }
 
