@@ -1,6 +1,6 @@
 //! The page that documents the FMU of a bridge, in its archive.
 
-use super::documentation::sentences;
+use super::documentation::{GUSTS_ARE_INPUTS, gust_words, sentences};
 use super::variable_rows::rows;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::resources::Resources;
@@ -28,7 +28,7 @@ pub(super) fn documentation(
          <code>wind_speed</code>.</p>\n<p>Forces: {kind}. Data: {source}. Licence: {licence}.</p>\n\
          <p>At constant wind a communication step of any size is exact for forces that are held{straight}; where \
          the wind changes the motion follows its Taylor series. The mode coordinates are those of the shapes as they were \
-         given.</p>\n<h2>Stability</h2>\n{stability}\
+         given.</p>\n{gusts}<h2>Stability</h2>\n{stability}\
          ",
         name = escaped(&bridge.name),
         modes = bridge.modes.len(),
@@ -38,6 +38,7 @@ pub(super) fn documentation(
         source = escaped(&model.provenance.source),
         licence = escaped(&model.provenance.licence),
         straight = straight_lines(description),
+        gusts = gusts(resources, bridge),
         stability = stability(verdict),
     );
     page.push_str(&variables(resources, description));
@@ -68,6 +69,21 @@ fn straight_lines(description: &Element) -> &'static str {
         Some("3.0") => "",
         _ => " or run on straight lines",
     }
+/// What is said of gusts, where any act.
+fn gusts(resources: &Resources, bridge: &BridgeOptions) -> String {
+    let Some(gusts) = &bridge.gusts else {
+        return String::new();
+    };
+    let field = "A field of turbulence that lies in the archive blows on it";
+    let what = match (&resources.turbulence, gusts.strips.is_empty()) {
+        (None, _) => GUSTS_ARE_INPUTS.to_owned(),
+        (Some(_), true) => field.to_owned(),
+        (Some(_), false) => format!("{GUSTS_ARE_INPUTS}. {field}"),
+    };
+    let words = gust_words(&what, &gusts.source, gusts.admittance);
+    format!("<p>{}</p>\n", escaped(&words))
+}
+
 }
 
 /// A row of the table for each variable.

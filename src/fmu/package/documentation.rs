@@ -2,13 +2,13 @@
 
 use super::runtime::Runtime;
 use super::variable_rows::{Row, rows};
-use crate::aerodynamics::{Realizable, Transfer};
+use crate::aerodynamics::{RationalAdmittance, Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
-use crate::fmu::standard::FmiVersion;
+use crate::fmu::standard::{FmiVersion, each_once};
 use crate::fmu::variables::{Role, SectionParameter, Variable};
 use crate::fmu::xml::Element;
 use crate::plausibility::of_trained;
@@ -67,6 +67,7 @@ pub(super) fn documentation(
         .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
 }
 
+        gusts: gusts(resources),
 #[derive(Template)]
 #[template(path = "fmu_documentation.html")]
 struct DocumentationPage<'a> {
@@ -92,7 +93,30 @@ struct DocumentationPage<'a> {
 struct ModelText<'a> {
     model: &'a TrainedModel,
     range: Range,
+    gusts: Option<String>,
     speeds: Vec<Speeds>,
+}
+
+/// What is said of gusts, where they are inputs.
+fn gusts(resources: &Resources) -> Option<String> {
+    let admittance = resources.gusts.as_ref()?.admittance;
+    let further = resources.force.iter().flat_map(|force| &force.further);
+    let further = further.filter_map(|f| f.gusts.as_ref());
+    let all = resources.gusts.iter().chain(further);
+    let sources = each_once(all.map(|g| g.source.as_str()));
+    Some(gust_words(GUSTS_ARE_INPUTS, &sources, admittance))
+}
+
+pub(super) const GUSTS_ARE_INPUTS: &str = "Gusts along the mean wind and upwards are inputs";
+
+/// What gusts act, of which coefficients their forces are, and what they pass first.
+pub(super) fn gust_words(what: &str, source: &str, admittance: RationalAdmittance) -> String {
+    let behind = match admittance {
+        RationalAdmittance::None => "no admittance",
+        RationalAdmittance::Sears => "the admittance of Sears",
+        RationalAdmittance::Liepmann => "the admittance of Liepmann",
+    };
+    format!("{what}. The forces of gusts are those of {source}, with {behind}.")
 }
 
 impl<'a> ModelText<'a> {

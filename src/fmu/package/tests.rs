@@ -129,6 +129,40 @@ fn the_page_of_an_archive_describes_that_archive() {
 }
 
 #[test]
+fn page_of(model: &TrainedModel, export: Export) -> String {
+    let bytes = package(model, &embedded(), export).unwrap();
+    let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
+    let mut page = String::new();
+    let mut entry = zip.by_name("documentation/index.html").unwrap();
+    entry.read_to_string(&mut page).unwrap();
+    page
+}
+
+#[test]
+fn the_page_says_what_gusts_do() {
+    use crate::aerodynamics::RationalAdmittance;
+    let model = model("rational");
+    let table = Some("flat plate");
+    let dofs = model.section.dofs();
+    let sears = Some(RationalAdmittance::Sears);
+    let gusts = crate::files::coefficients::gust_force(table, sears, &dofs).unwrap();
+    for force in [None, Some(ForceOptions::single(31.0))] {
+        for gusts in [None, gusts.clone()] {
+            let act = gusts.is_some();
+            let export = Export {
+                force: force.clone(),
+                gusts,
+                reference_runs: false,
+                ..GrowthPolicy::Refuse.into()
+            };
+            let page = page_of(&model, export);
+            assert_eq!(page.contains("smooth wind"), !act);
+            let said = page.contains("static coefficients") && page.contains("admittance of Sears");
+            assert_eq!(said, act, "{page}");
+        }
+    }
+}
+
 fn files_are_replaced_only_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a b.fmu");
