@@ -63,7 +63,8 @@ pub struct Export {
     pub gusts: Option<GustForce>,
     /// 95 % interval of the onset of the section, where it is known.
     pub bounds: Option<OnsetBounds>,
-    /// Verdict on the section, for the page that documents it; without, what its own searches say.
+    /// Verdict on the section, or on the bridge whose forces they are, for the page that documents it; without, what the section's own
+    /// searches say.
     pub verdict: Option<Verdict>,
     /// Which variables its description lists.
     pub listing: Listing,

@@ -346,6 +346,10 @@ fn a_bridge_is_exported_in_parts() {
         let text = succeeds(at, &part(&["--kind", kind]));
         assert!(text.contains("flutter onset 7"), "{text}");
         let file = format!("bridge_{kind}.fmu");
+        assert!(
+            fmu_page(&at.join(&file)).contains("flutter onset 7"),
+            "{kind}"
+        );
         let text = succeeds(at, &["fmu", "check", &file]);
         assert!(text.ends_with("passed\n"), "{text}");
     }

@@ -248,6 +248,11 @@ fn a_model_alone_is_doubted(at: &Path, text: &str) {
         "{said}"
     );
     assert_eq!((code, &said["severity"]), (3, &"severe".into()));
+    // forces that go out alone have no verdict
+    let export = ["fmu", "export", "changed.json", "--kind", "force"];
+    let (code, _, error) = aerodeck(at, &export);
+    let warned = flowing(&error).contains("warning: changed.json: ");
+    assert!(code == 0 && warned, "{error}");
 }
 
 /// Forces a thousandth as large; poles and numbers of rows are as they were.

@@ -4,7 +4,7 @@ mod bridge;
 
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::answer::Answer;
-use crate::cli::common::{in_input, spelt};
+use crate::cli::common::{in_input, spelt, warn};
 use crate::cli::progress::Progress;
 use crate::cli::text;
 use crate::cli::{headline, stages};
@@ -17,6 +17,7 @@ use crate::fmu::package::{
     Export, FmiVersion, Label, Overwrite, Runtime, growth_of, package, write_archive,
 };
 use crate::fmu::variables::Listing;
+use crate::plausibility::{of_model, sentences};
 use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -227,6 +228,12 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         ExportKind::Force | ExportKind::Structure => ("deck_force.fmu", None),
     };
     let verdict = evidence.as_ref().map(Verdict::judge);
+    let findings = match verdict {
+        // has them among its doubts
+        Some(_) => Vec::new(),
+        None => of_model(&model.name, &model.model, model.tested_range, &[]),
+    };
+    warn(&args.model, &sentences(&findings));
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
@@ -269,6 +276,6 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&text::growth(&model.name, &growth));
     Answer::new(
         text,
-        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict }),
+        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict, "findings": findings }),
     )
 }

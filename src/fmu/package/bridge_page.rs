@@ -18,7 +18,7 @@ pub(super) fn documentation(
 ) -> String {
     let model = &resources.model;
     if bridge.structure_alone {
-        return structure(resources, bridge, description);
+        return structure(resources, bridge, description, verdict);
     }
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head><body>\n\
@@ -47,28 +47,28 @@ pub(super) fn documentation(
 }
 
 /// The page of a structure alone.
-fn structure(resources: &Resources, bridge: &BridgeOptions, description: &Element) -> String {
+fn structure(
+    resources: &Resources,
+    bridge: &BridgeOptions,
+    description: &Element,
+    verdict: Option<&Verdict>,
+) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}: structure</title></head><body>\n\
          <h1>{name}: structure</h1>\n<p>The structure of a bridge without its wind forces: {modes} modes, {nodes} nodes. Vertical \
          displacement and force are positive up, lateral positive downwind, rotation and moment positive nose-up (windward \
          edge up). Forces at nodes go in, the motion of the nodes comes out.</p>\n\
          <p>A communication step of any size is exact for forces that are held{straight}. The mode coordinates are \
-         those of the shapes as they were given.</p>\n{rows}</body></html>\n",
+         those of the shapes as they were given.</p>\n<h2>Stability of the whole bridge, with its wind forces</h2>\n{stability}{rows}</body></html>\n",
         name = escaped(&bridge.name),
         modes = bridge.modes.len(),
         nodes = bridge.nodes.len(),
         straight = straight_lines(description),
+        stability = stability(verdict),
         rows = variables(resources, description),
     )
 }
 
-/// FMI 3.0 has no derivatives of inputs.
-fn straight_lines(description: &Element) -> &'static str {
-    match description.attribute("fmiVersion") {
-        Some("3.0") => "",
-        _ => " or run on straight lines",
-    }
 /// What is said of gusts, where any act.
 fn gusts(resources: &Resources, bridge: &BridgeOptions) -> String {
     let Some(gusts) = &bridge.gusts else {
@@ -84,6 +84,12 @@ fn gusts(resources: &Resources, bridge: &BridgeOptions) -> String {
     format!("<p>{}</p>\n", escaped(&words))
 }
 
+/// FMI 3.0 has no derivatives of inputs.
+fn straight_lines(description: &Element) -> &'static str {
+    match description.attribute("fmiVersion") {
+        Some("3.0") => "",
+        _ => " or run on straight lines",
+    }
 }
 
 /// A row of the table for each variable.

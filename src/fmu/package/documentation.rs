@@ -11,7 +11,7 @@ use crate::fmu::resources::Resources;
 use crate::fmu::standard::{FmiVersion, each_once};
 use crate::fmu::variables::{Role, SectionParameter, Variable};
 use crate::fmu::xml::Element;
-use crate::plausibility::of_trained;
+use crate::plausibility::{self, Finding, of_model, of_trained};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -56,18 +56,24 @@ pub(super) fn documentation(
             .collect(),
         groups: groups(&shown(resources, description), version),
         models: resources.models().map(ModelText::new).collect(),
-        stability: match &resources.force {
-            None => stability(model, verdict)?,
-            Some(_) => Vec::new(),
+        judged: match (&resources.force, verdict) {
+            (None, _) => "Stability of the section as exported",
+            (Some(_), Some(_)) => "Stability of the bridge as exported",
+            (Some(_), None) => "What looks wrong in the forces",
+        },
+        stability: match (&resources.force, verdict) {
+            (None, _) => stability(model, verdict)?,
+            (Some(_), Some(verdict)) => sentences(verdict, None),
+            (Some(_), None) => of_forces(resources),
         },
         force: resources.force.as_ref(),
+        gusts: gusts(resources),
         sampling: resources.models().find_map(SamplingText::new),
     };
     page.render()
         .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
 }
 
-        gusts: gusts(resources),
 #[derive(Template)]
 #[template(path = "fmu_documentation.html")]
 struct DocumentationPage<'a> {
@@ -84,17 +90,11 @@ struct DocumentationPage<'a> {
     platforms: Vec<(String, &'static str)>,
     groups: Vec<Group<'a>>,
     models: Vec<ModelText<'a>>,
+    judged: &'static str,
     stability: Vec<String>,
     force: Option<&'a ForceOptions>,
-    sampling: Option<SamplingText>,
-}
-
-/// Where a model holds, and how it was made.
-struct ModelText<'a> {
-    model: &'a TrainedModel,
-    range: Range,
     gusts: Option<String>,
-    speeds: Vec<Speeds>,
+    sampling: Option<SamplingText>,
 }
 
 /// What is said of gusts, where they are inputs.
@@ -117,6 +117,13 @@ pub(super) fn gust_words(what: &str, source: &str, admittance: RationalAdmittanc
         RationalAdmittance::Liepmann => "the admittance of Liepmann",
     };
     format!("{what}. The forces of gusts are those of {source}, with {behind}.")
+}
+
+/// Where a model holds, and how it was made.
+struct ModelText<'a> {
+    model: &'a TrainedModel,
+    range: Range,
+    speeds: Vec<Speeds>,
 }
 
 impl<'a> ModelText<'a> {
@@ -283,6 +290,13 @@ fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<Stri
         }
     };
     Ok(sentences(verdict, motion))
+}
+
+/// What looks wrong in forces that have no section to be judged with.
+fn of_forces(resources: &Resources) -> Vec<String> {
+    let of = |m: &TrainedModel| of_model(&m.name, &m.model, m.tested_range, &[]);
+    let found: Vec<Finding> = resources.models().flat_map(of).collect();
+    plausibility::sentences(&found)
 }
 
 /// A verdict, sentence by sentence, with what is known of the motion at the onset.

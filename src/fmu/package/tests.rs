@@ -1,4 +1,5 @@
 use super::*;
+use crate::trained_model::Model;
 use std::io::{Cursor, Read};
 use zip::CompressionMethod;
 
@@ -128,7 +129,6 @@ fn the_page_of_an_archive_describes_that_archive() {
     }
 }
 
-#[test]
 fn page_of(model: &TrainedModel, export: Export) -> String {
     let bytes = package(model, &embedded(), export).unwrap();
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
@@ -163,6 +163,29 @@ fn the_page_says_what_gusts_do() {
     }
 }
 
+/// Forces of turned signs are doubted on the page of a unit that has no section as well.
+#[test]
+fn the_page_of_forces_says_what_looks_wrong_in_them() {
+    let mut odd = model("rational");
+    let Model::Rational(forces) = &mut odd.model else {
+        panic!("another model")
+    };
+    let terms = [&mut forces.a1, &mut forces.a2, &mut forces.a3];
+    let terms = terms.into_iter().chain(&mut forces.lag_terms);
+    terms.for_each(|m| *m *= -1.0);
+    for (model, wrong) in [(model("rational"), false), (odd, true)] {
+        let export = Export {
+            force: Some(ForceOptions::single(31.0)),
+            reference_runs: false,
+            ..GrowthPolicy::Allow.into()
+        };
+        let page = page_of(&model, export);
+        assert_eq!(page.contains("What looks wrong in the forces"), wrong);
+        assert_eq!(page.contains("sign of forces and motion"), wrong, "{page}");
+    }
+}
+
+#[test]
 fn files_are_replaced_only_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a b.fmu");

@@ -98,7 +98,10 @@ impl BridgeStudy {
         let (motions, back) = forces.connections();
         let from = |list: &[Connection]| list.iter().map(|c| c.from[1].clone()).collect();
         let to = |list: &[Connection]| list.iter().map(|c| c.to[1].clone()).collect();
-        let export = forces.packed(label, FmiVersion::Two);
+        let export = Export {
+            verdict: Some(verdict.clone()),
+            ..forces.packed(label, FmiVersion::Two)
+        };
         let components = vec![
             SystemComponent {
                 name: STRUCTURE.to_owned(),

@@ -160,6 +160,7 @@ impl FmuExportArgs {
         let mut export = forces.packed(&self.label()?, self.fmi);
         export.listing = self.listing();
         export.reference_runs = !self.no_reference;
+        export.verdict = Some(verdict.clone());
         let bytes = package(&forces.model, &self.runtimes()?, export)?;
         let path = self.place("bridge_force.fmu");
         self.write(&path, &bytes)?;
