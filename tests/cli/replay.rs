@@ -126,6 +126,21 @@ fn an_archive_is_what_its_exporter_meant_until_it_is_spoilt() {
             ],
         );
 
+        // an importer that sets nothing has the numbers of the model, whatever the description says
+        for (input, wrong) in [("15.0", "16.0"), ("38.0", "39.0")] {
+            spoil(&whole, &spoilt, "modelDescription.xml", |text| {
+                text.replacen(
+                    &format!("start=\"{input}\""),
+                    &format!("start=\"{wrong}\""),
+                    1,
+                )
+            });
+            let said = format!("expected its start value {}", wrong.trim_end_matches(".0"));
+            not_as_meant(at, "spoilt.fmu", &[&said]);
+            let (code, text, _) = command::aerodeck(at, &["fmu", "check", "spoilt.fmu"]);
+            assert!(code == 1 && flowing(&text).contains(&said), "{text}");
+        }
+
         let result = "extra/org.fmi-standard.fmi-ls-ref/above_out.csv";
         spoil(&whole, &spoilt, result, |text| {
             let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();

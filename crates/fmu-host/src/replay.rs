@@ -7,6 +7,7 @@ use super::Fmu;
 use super::description::{Value, VariableType};
 use super::simulation::{Times, ValueTable, run, start};
 use super::slave::{Slave, find};
+use super::trials::check_starts;
 use crate::error::{Error, Place, Result, ensure};
 use crate::xml::Element;
 use serde::Serialize;
@@ -43,10 +44,10 @@ pub struct ReplayedRun {
     pub same: bool,
 }
 
-/// Repeats every experiment of the archive in new instances.
+/// Repeats every experiment of the archive in new instances, and compares the start values of the description with those of one.
 ///
 /// # Errors
-/// [`Error::Input`] for an archive without experiments and for files of it that cannot be read; those of [`Fmu::instantiate`] and
+/// [`Error::Input`] for an archive without experiments, for start values that no instance has, and for files of it that cannot be read; those of [`Fmu::instantiate`] and
 /// of a run.
 pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
     let manifest = fmu.folder().join(LS_REF_MANIFEST);
@@ -71,6 +72,10 @@ pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
     if runs.is_empty() {
         return Err(none());
     }
+    // the runs set their own, an importer may not
+    let d = fmu.model_description();
+    let mut slave = fmu.instantiate(&d.model_name)?;
+    check_starts(&mut slave, &Times::new(d, &super::Simulation::default())?)?;
     Ok(runs)
 }
 

@@ -164,26 +164,7 @@ impl<'a> Plan<'a> {
 
 fn default_experiment(plan: &Plan<'_>) -> Result<String> {
     let mut slave = plan.instance()?;
-    let d = plan.fmu.model_description();
-    let e = &d.default_experiment;
-    slave.setup(plan.times.start, Some(plan.times.stop), e.tolerance)?;
-    slave.enter_initialization()?;
-    for v in &d.variables {
-        if v.causality == Causality::Independent {
-            continue;
-        }
-        let value = slave.get_by_reference(v.kind, v.value_reference)?;
-        if v.effective_initial() == Some(Initial::Exact)
-            && let Some(stated) = &v.start
-            && !same_start(stated, &value)
-        {
-            return Err(Error::input(
-                format!("variable `{}` in the initialisation mode", v.name),
-                format!("its start value {stated}"),
-                value.to_string(),
-            ));
-        }
-    }
+    check_starts(&mut slave, &plan.times)?;
     slave.exit_initialization()?;
     let table = plan.run(&mut slave)?;
     finite(&table)?;
@@ -195,6 +176,29 @@ fn default_experiment(plan: &Plan<'_>) -> Result<String> {
         plan.times.start,
         plan.record.len()
     ))
+}
+
+/// Brings a new instance into the initialisation mode, where it must have the start values that its description states.
+pub(super) fn check_starts(slave: &mut Slave, times: &Times) -> Result<()> {
+    let tolerance = slave.model_description().default_experiment.tolerance;
+    slave.setup(times.start, Some(times.stop), tolerance)?;
+    slave.enter_initialization()?;
+    for v in &slave.model_description().variables {
+        let is_stated =
+            v.causality == Causality::Input || v.effective_initial() == Some(Initial::Exact);
+        let Some(stated) = v.start.as_ref().filter(|_| is_stated) else {
+            continue;
+        };
+        let value = slave.get_by_reference(v.kind, v.value_reference)?;
+        if !same_start(stated, &value) {
+            return Err(Error::input(
+                format!("variable `{}` in the initialisation mode", v.name),
+                format!("its start value {stated}"),
+                value.to_string(),
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Start values pass through decimal text.
