@@ -148,8 +148,12 @@ impl Groups {
 
     /// Whether a reference is that of the time, of names or of the number of strips.
     pub(crate) fn is_known(&self, reference: u32) -> bool {
-        let last = self.time() as usize + self.names.len() + usize::from(self.strips.is_some());
-        (self.time() as usize..=last).contains(&(reference as usize))
+        (self.time() as usize..=self.last()).contains(&(reference as usize))
+    }
+
+    /// The last value reference.
+    fn last(&self) -> usize {
+        self.time() as usize + self.names.len() + usize::from(self.strips.is_some())
     }
 
     /// Value reference of a listed variable, and which of its numbers an index in the table is.
@@ -170,10 +174,13 @@ impl Groups {
     /// A reference that is none, or that of the time, where only variables are allowed.
     pub fn indices<'a>(&self, references: &'a [u32]) -> CallResult<Cow<'a, [u32]>> {
         if let Some(wrong) = references.iter().find(|r| **r >= self.time()) {
-            return Err(Refusal::error(format!(
-                "value reference {wrong}: there is no such variable to be set or differentiated, the last one is {}",
-                self.time().saturating_sub(1)
-            )));
+            let why = match self.is_known(*wrong) {
+                true => {
+                    "the time, names and the number of strips are not what this call takes".into()
+                }
+                false => format!("there is no such variable, the last one is {}", self.last()),
+            };
+            return Err(Refusal::error(format!("value reference {wrong}: {why}")));
         }
         if !self.are_other {
             return Ok(Cow::Borrowed(references));

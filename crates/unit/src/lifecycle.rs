@@ -147,11 +147,7 @@ impl StateSet {
             .filter(|s| self.contains(*s))
             .map(State::name)
             .collect();
-        if names.is_empty() {
-            "in no state".into()
-        } else {
-            format!("in: {}", names.join(", "))
-        }
+        format!("in: {}", names.join(", "))
     }
 }
 

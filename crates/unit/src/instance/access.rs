@@ -13,7 +13,7 @@ impl Instance {
         let index = reference as usize;
         match self.layout.access.get(index) {
             Some(access) if access.data_type == wanted => Ok((index, *access)),
-            _ => Err(wrong_reference(index, wanted, self.table())),
+            found => Err(wrong_reference(index, found, wanted, self.table())),
         }
     }
 
@@ -47,12 +47,17 @@ impl Instance {
             Causality::Local => "a state or its rate",
             Causality::Independent => "the time",
         };
+        let when = match allowed == StateSet::NONE {
+            true => "in any state".to_owned(),
+            false => format!(
+                "in the state `{}`, only {}",
+                self.memory.state.name(),
+                allowed.names()
+            ),
+        };
+        let (name, changes) = (&v.name, v.variability);
         Refusal::error(format!(
-            "`{}` ({what}, {:?}) cannot be {verb} in the state `{}`, only {}",
-            v.name,
-            v.variability,
-            self.memory.state.name(),
-            allowed.names()
+            "`{name}` ({what}, {changes:?}) cannot be {verb} {when}"
         ))
     }
 
@@ -66,12 +71,18 @@ impl Instance {
 }
 
 #[cold]
-fn wrong_reference(index: usize, wanted: DataType, table: &VariableTable) -> Refusal {
-    Refusal::error(match table.variables().get(index) {
-        Some(v) => format!(
-            "value reference {index}: `{}` is of type {}, not {wanted:?}",
-            v.name,
-            v.value.type_name()
+fn wrong_reference(
+    index: usize,
+    found: Option<&Access>,
+    wanted: DataType,
+    table: &VariableTable,
+) -> Refusal {
+    Refusal::error(match found {
+        Some(found) => format!(
+            "`{}` is {}, not {}",
+            table.variables()[index].name,
+            found.data_type.words(),
+            wanted.words()
         ),
         None => format!(
             "value reference {index}: there is no such variable, the last one is {}",

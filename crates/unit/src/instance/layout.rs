@@ -18,6 +18,18 @@ pub enum DataType {
     String,
 }
 
+impl DataType {
+    /// In words, the same in every version of the standard.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Real => "a real number",
+            Self::Integer => "an integer",
+            Self::Boolean => "a truth value",
+            Self::String => "a text",
+        }
+    }
+}
+
 /// Where a value comes from, and what follows when it is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {

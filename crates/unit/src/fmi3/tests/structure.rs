@@ -126,4 +126,10 @@ fn every_strip_depends_on_itself() {
     unit.refused(status, "no such variable");
     // and the run goes on
     unit.ok(unit.step(0.0, 0.01));
+    let (none, mut real, mut integers) = (9999, 0.0, [0; 3]);
+    let status = unsafe { fmi3GetFloat64(unit.handle, &raw const none, 1, &raw mut real, 1) };
+    let last = unit.groups.strips_reference().unwrap();
+    unit.refused(status, &format!("no such variable, the last one is {last}"));
+    let status = unsafe { fmi3GetInt32(unit.handle, &raw const lift, 1, integers.as_mut_ptr(), 3) };
+    unit.refused(status, "is a real number, not an integer");
 }
