@@ -6,7 +6,9 @@ use crate::error::raised;
 use crate::records::Records;
 use crate::work::Work;
 use aerodeck::aerodynamics::derivatives::TableHeader;
+use aerodeck::aerodynamics::derivatives::notation::Convention;
 use aerodeck::identification::derivatives::{DerivativeOptions, identify_derivatives};
+use aerodeck::plausibility::of_table;
 use aerodeck::wind_tunnel::RecordSource;
 use aerodeck::wind_tunnel::campaign::{LoadedCampaign, read_campaign};
 use aerodeck::wind_tunnel::processing::{self, ProcessingOptions};
@@ -89,7 +91,8 @@ pub fn process(
     let done = work.run(py, || {
         let LoadedCampaign {
             campaign: raw,
-            mut warnings,
+            warnings,
+            mut doubts,
         } = read_campaign(&campaign)?;
         let runs = raw.runs.len();
         let processed = processing::process(&raw, &options, &|done| work.tell(done, runs))?;
@@ -98,24 +101,27 @@ pub fn process(
             .iter()
             .map(|r| r as &dyn RecordSource)
             .collect();
+        doubts.extend(processed.report.doubts());
         let found = identify_derivatives(&sources, &DerivativeOptions::default())?;
         let header = TableHeader {
             source: raw.source.clone(),
             licence: raw.licence.clone(),
             model_length_m: Some(raw.rig.model_length_m),
+            doubts: doubts.clone(),
             ..TableHeader::default()
         };
         let table = found.table(&raw.section, header)?;
-        warnings.extend(processed.report.warnings());
-        warnings.extend(found.warnings.iter().cloned());
-        aerodeck::Result::Ok((processed, found, table, warnings))
+        let of_runs = processed.report.warnings();
+        let warnings = [doubts, warnings, of_runs, found.warnings.clone()].concat();
+        let odd = of_table(&table, &Convention::default());
+        aerodeck::Result::Ok((processed, found, table, odd, warnings))
     })?;
-    let (processed, found, table, warnings) = done.map_err(raised)?;
+    let (processed, found, table, odd, warnings) = done.map_err(raised)?;
     Ok(Processing {
         estimates: to_python(py, &found.estimates)?.unbind(),
         report: to_python(py, &processed.report)?.unbind(),
-        records: Py::new(py, Records(processed.records, Vec::new()))?,
-        derivatives: Py::new(py, Derivatives(table, Vec::new()))?,
+        records: Py::new(py, Records(processed.records, odd.clone()))?,
+        derivatives: Py::new(py, Derivatives(table, odd))?,
         warnings,
     })
 }

@@ -20,7 +20,7 @@ use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
 use crate::json;
-use crate::plausibility::{Finding, of_table, sentences};
+use crate::plausibility::{Finding, FindingKind, of_table, sentences};
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
     sections_page,
@@ -28,7 +28,7 @@ use crate::report::{
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
 use crate::units::group_of;
-use crate::wind_tunnel::campaign::Campaign;
+use crate::wind_tunnel::campaign::read_campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, ProcessingReport, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource};
 use std::path::{Path, PathBuf};
@@ -81,15 +81,16 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
     let stage = progress.stage("reading the campaign");
-    let reading = Campaign::read(&args.campaign)?.load()?;
+    let mut read = read_campaign(&args.campaign)?;
     drop(stage);
-    let raw = reading.raw;
+    let raw = read.campaign;
     let stage = progress.steps("processing");
     let total = raw.runs.len() as u64;
     let processed = process(&raw, &options, &|done| stage.at(done as u64, total))
         .map_err(|e| e.in_file(&args.campaign))?;
     drop(stage);
-    let mut notes: Vec<String> = reading.findings.iter().map(ToString::to_string).collect();
+    read.doubts.extend(processed.report.doubts());
+    let (mut notes, doubts) = (read.warnings, read.doubts);
     notes.extend(processed.report.warnings());
     let stage = progress.stage("derivatives");
     let derivatives = derivatives(&processed, &mut notes)?;
@@ -102,7 +103,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let mut tabled = false;
     if let Some(found) = &derivatives {
         write_derivatives(args, &raw, found, &mut out)?;
-        match write_table(&raw, found, &notes, &mut out) {
+        match write_table(&raw.section, found, header(&raw, &notes, &doubts), &mut out) {
             Ok(odd) => {
                 tabled = true;
                 notes.extend(sentences(&odd));
@@ -122,13 +123,22 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
         ));
     }
     let found = derivatives.as_ref();
-    let page = laboratory_page(&raw, &processed.report, found, &notes, &out);
+    let page = laboratory_page(
+        &raw,
+        &processed.report,
+        found,
+        &[&doubts[..], &notes].concat(),
+        &out,
+    );
     out.write(super::report::folder::REPORT, sections_page(&page)?)?;
-    let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
-    let text = processing_text(&raw, &processed.report, found) + &remarks;
+    let mut text = processing_text(&raw, &processed.report, found);
+    for (what, texts) in [("doubt", &doubts), ("note", &notes)] {
+        text.extend(texts.iter().map(|t| format!("  {what}: {t}\n")));
+    }
     let value = serde_json::json!({
         "report": processed.report,
         "derivatives": derivatives,
+        "doubts": doubts,
         "notes": notes,
     });
     // broadband runs give records, and are not asked for more
@@ -278,27 +288,32 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
     Ok(names)
 }
 
-/// Writes the table, with what a study of it has to know, and says what is odd about it.
-fn write_table(
-    raw: &RawCampaign,
-    found: &IdentifiedDerivatives,
-    notes: &[String],
-    out: &mut OutputDir,
-) -> Result<Vec<Finding>> {
-    let header = TableHeader {
+/// What a study of the table has to know.
+fn header(raw: &RawCampaign, notes: &[String], doubts: &[String]) -> TableHeader {
+    TableHeader {
         source: raw.source.clone(),
         licence: raw.licence.clone(),
         generator: concat!("aerodeck ", env!("CARGO_PKG_VERSION")).to_owned(),
         model_length_m: Some(raw.rig.model_length_m),
         notes: notes.to_vec(),
+        doubts: doubts.to_vec(),
         ..TableHeader::default()
-    };
-    let table = match found.table(&raw.section, header.clone()) {
+    }
+}
+
+/// Writes the table, and says what is odd about it beside the doubts of its header.
+fn write_table(
+    section: &str,
+    found: &IdentifiedDerivatives,
+    header: TableHeader,
+    out: &mut OutputDir,
+) -> Result<Vec<Finding>> {
+    let table = match found.table(section, header.clone()) {
         Ok(table) => table,
         Err(e) => {
             // one motion alone: its column, in the same columns
             let (points, mut text) = (found.points(), Vec::new());
-            write_points(&raw.section, found.width_m, &header, &points, &mut text)
+            write_points(section, found.width_m, &header, &points, &mut text)
                 .map_err(|e| Error::io(TABLE, e))?;
             out.write(TABLE, text)?;
             return Err(e);
@@ -307,8 +322,10 @@ fn write_table(
     let mut text = Vec::new();
     write_csv(&table, &mut text).map_err(|e| Error::io(TABLE, e))?;
     out.write(TABLE, text)?;
-    out.write(workbook_name(&raw.section), workbook_bytes(&table)?)?;
-    Ok(of_table(&table, &Convention::default()))
+    out.write(workbook_name(section), workbook_bytes(&table)?)?;
+    let mut odd = of_table(&table, &Convention::default());
+    odd.retain(|f| f.kind != FindingKind::Contradiction);
+    Ok(odd)
 }
 
 /// Measured points of each speed with the lines of the flat plate and of quasi-steady theory.

@@ -300,3 +300,36 @@ fn three_speeds_close_together_are_processed() {
     assert_eq!(estimates["estimates"].as_array().unwrap().len(), 8 * 12);
     assert!(at.join("results/derivatives.csv").is_file());
 }
+
+/// What recordings say against the campaign file leaves nothing to be judged, by the table and by the workbook.
+#[test]
+fn a_contradiction_of_the_measurements_reaches_the_verdict() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let campaign = ["campaign", "virtual", "LN21-5200", "--clean"];
+    succeeds(at, &[&campaign[..], &["--out", "raw"]].concat());
+    let file = at.join("raw/campaign.toml");
+    let right = fs::read_to_string(&file).unwrap();
+    let wrong = right.replace("mean_speed_m_s = 8.18", "mean_speed_m_s = 8.98");
+    fs::write(&file, wrong).unwrap();
+    fs::write(at.join("section.toml"), SECTION).unwrap();
+    let process = ["process", "raw/campaign.toml", "--out", "results"];
+    let section = ["--section", "section.toml", "--no-figures"];
+    let text = flowing(&succeeds(at, &[&process[..], &section].concat()));
+    let doubt =
+        "run `LN21-5200-vertical-8.18`: the mean speed is 8.983 m/s, its channel says 8.183 m/s";
+    assert!(text.contains(&format!("doubt: {doubt}")), "{text}");
+    for table in ["derivatives.csv", "AerodynamicDerivatives_LN21-5200.xlsx"] {
+        let set = format!("deck.source='{table}'");
+        let required = "flutter.required_speed_m_s=20.0";
+        let run = ["flutter", "results/study.toml", "--json"];
+        let set = ["--set", &set, "--set", required];
+        let (code, said, error) = command::aerodeck(at, &[&run[..], &set].concat());
+        assert_eq!(code, 3, "{error}");
+        let verdict = &serde_json::from_str::<Value>(&said).unwrap()["verdict"];
+        assert_eq!(verdict["outcome"]["state"], "cannot_be_judged", "{verdict}");
+        let is_said = |d: &&Value| d["text"].as_str().unwrap().contains(doubt);
+        let found = verdict["doubts"].as_array().unwrap().iter().find(is_said);
+        assert_eq!(found.expect(table)["severity"], "severe", "{verdict}");
+    }
+}

@@ -49,12 +49,16 @@ const MOST_A2: f64 = 1.5;
 struct Signature([[Option<f64>; 5]; 2]);
 
 /// What looks wrong in a table: signs, sizes and units that are those of another convention. Empty when nothing does. `label` is
-/// the convention that the file states, or that was stated for it.
+/// the convention that the file states, or that was stated for it. What its
+/// measurements contradict is found as well.
 pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let width = format!("{}: width_m", table.name);
     let mut found: Vec<Finding> = beyond(&width, table.width_m, &DECK_WIDTH)
         .into_iter()
         .collect();
+    let measured = format!("measurements of {}", table.name);
+    let doubt = |text| Finding::doubt(FindingKind::Contradiction, &measured, text);
+    found.extend(table.header.doubts.iter().map(doubt));
     found.extend(of_sway(table));
     let own = Signature::new(&|d| table.points(d).to_vec());
     let score = own.score();

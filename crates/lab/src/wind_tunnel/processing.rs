@@ -88,9 +88,9 @@ pub fn process(
         let bodies = of_dof
             .iter()
             .filter_map(|p| Some((&p.run.name[..], p.still_air.as_ref()?)));
-        let warning = body::compare_runs(dof, bodies.collect())?;
+        let doubt = body::compare_runs(dof, bodies.collect())?;
         if let Some(first) = of_dof.first_mut() {
-            first.findings.warnings.extend(warning);
+            first.findings.doubts.extend(doubt);
         }
     }
     let stated = options.dofs.clone();

@@ -35,6 +35,8 @@ pub struct TableHeader {
     pub rotation_amplitude_deg: Option<f64>,
     /// What was assumed in reading the table.
     pub notes: Vec<String>,
+    /// What the measurements contradict of what was stated of them: nothing may rest on the table before it is cleared.
+    pub doubts: Vec<String>,
 }
 
 impl TableHeader {

@@ -40,7 +40,7 @@ pub const WIDTH_ASSUMED: &str = "the width of the section model is not stated an
 const FORMATS: [&str; 2] = ["aerodeck derivative table 2", "aerodeck derivative table 1"];
 
 /// Keys of the header; `sign_convention` stands in files of the first format only.
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "name",
     "source",
     "licence",
@@ -56,10 +56,11 @@ const KEYS: [&str; 15] = [
     "axes",
     "definition",
     "note",
+    "doubt",
 ];
 
 /// Keys that may stand more than once.
-const REPEATED: [&str; 1] = ["note"];
+const REPEATED: [&str; 2] = ["note", "doubt"];
 
 /// Units of the columns in files of the second format.
 const UNITS_WRITTEN: &str =
@@ -147,6 +148,7 @@ impl Head {
     /// Where the table comes from.
     pub(crate) fn provenance(&self) -> Result<TableHeader> {
         let head = &self.header;
+        let texts = |key| head.all(key).map(|e| e.value.clone()).collect();
         let stated = |key| head.optional(key).filter(|e| !e.value.is_empty());
         Ok(TableHeader {
             source: head.text("source"),
@@ -159,7 +161,8 @@ impl Head {
             rotation_amplitude_deg: stated("rotation_amplitude_deg")
                 .map(HeaderLine::positive)
                 .transpose()?,
-            notes: head.all("note").map(|e| e.value.clone()).collect(),
+            notes: texts("note"),
+            doubts: texts("doubt"),
         })
     }
 }
@@ -225,8 +228,10 @@ pub(super) fn write_head(
             CommentHeader::write_line(out, key, value)?;
         }
     }
-    for note in &header.notes {
-        CommentHeader::write_line(out, "note", note)?;
+    for (key, texts) in [("note", &header.notes), ("doubt", &header.doubts)] {
+        for text in texts {
+            CommentHeader::write_line(out, key, text)?;
+        }
     }
     Ok(())
 }

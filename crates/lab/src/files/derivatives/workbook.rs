@@ -29,6 +29,8 @@ pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2
 
 /// Name of the sheet of notes.
 pub(super) const NOTES: &str = "Notes";
+/// Key in it of what the measurements contradict, one to a line.
+pub(super) const DOUBTS: &str = "doubts";
 
 /// Name of the sheet of dimensions that the laboratory's own package writes.
 const DIMENSIONS: &str = "Dim section model";
@@ -77,6 +79,8 @@ pub(super) fn read_three_sheets(
     let mut points = read_sheets(book, &convention)?;
     let mut header = options.header.clone();
     header.notes.extend(fill_in(&mut points, options.missing));
+    let doubts = notes.0.get(DOUBTS).into_iter().flat_map(|d| d.lines());
+    header.doubts.extend(doubts.map(str::to_owned));
     let stated = width_in_book(book, &notes)?;
     let table = table_from(path, options, header, points, stated)?;
     Ok(TableInConvention { table, convention })

@@ -7,7 +7,7 @@
 use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, ExpressedTable};
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::{Error, Result, ensure};
-use crate::files::derivatives::workbook::{DERIVATIVES, NOTES, REDUCED_VELOCITIES, SPEEDS};
+use crate::files::derivatives::workbook::{DERIVATIVES, DOUBTS, NOTES, REDUCED_VELOCITIES, SPEEDS};
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 
 /// One number of a test point.
@@ -84,7 +84,9 @@ fn write_notes(
         ("axes", convention.axes.words().to_owned()),
         ("definition", convention.notation.definition().to_owned()),
     ];
-    for (row, (key, value)) in (0_u32..).zip(lines) {
+    let doubts = [(DOUBTS, header.doubts.join("\n"))];
+    let doubts = doubts.into_iter().filter(|(_, text)| !text.is_empty());
+    for (row, (key, value)) in (0_u32..).zip(lines.into_iter().chain(doubts)) {
         sheet.write_string(row, 0, key)?;
         sheet.write_string(row, 1, value)?;
     }

@@ -4,7 +4,8 @@
 use super::file::Campaign;
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{
-    DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond, ratio_hint,
+    DECK_WIDTH, FindingSeverity, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond,
+    ratio_hint,
 };
 use crate::section::Dof;
 use crate::signal::{clipped_stretches, extremes, mean};
@@ -32,6 +33,8 @@ pub struct RunFinding {
     pub sample: Option<usize>,
     /// Number of samples from there.
     pub samples: Option<usize>,
+    /// How much it weighs: a doubt where what is stated and what is measured contradict each other.
+    pub severity: FindingSeverity,
     /// What was found.
     pub what: String,
 }
@@ -57,13 +60,14 @@ impl fmt::Display for RunFinding {
 
 impl RunFinding {
     /// About a run as a whole.
-    pub(super) fn of_run(run: &str, what: String) -> Self {
+    pub(super) fn of_run(run: &str, severity: FindingSeverity, what: String) -> Self {
         Self {
             run: run.to_owned(),
             recording: String::new(),
             channel: None,
             sample: None,
             samples: None,
+            severity,
             what,
         }
     }
@@ -93,6 +97,7 @@ pub(super) fn channel_findings(
         channel: Some(name.to_owned()),
         sample,
         samples,
+        severity: FindingSeverity::Note,
         what,
     };
     let (low, high) = extremes(samples.iter().copied());
@@ -122,16 +127,18 @@ pub(super) fn channel_findings(
 /// # Errors
 /// [`Error::Input`] when another motion than those stated moves most: then motion channels are exchanged, or the run is.
 pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<RunFinding>> {
+    use FindingSeverity::{Doubt, Note};
     let mut found = Vec::new();
-    let mut say = |what: String| found.push(RunFinding::of_run(&run.name, what));
+    let mut say = |severity, what| found.push(RunFinding::of_run(&run.name, severity, what));
     let measured = &run.in_wind.wind_speed_m_s;
     if let Some(still) = &run.still_air {
         let (in_wind, still_air) = (run.in_wind.sample_count(), still.sample_count());
         if in_wind != still_air {
-            say(format!(
-                "{in_wind} samples in wind, {still_air} in still air; only the first {} have both",
-                in_wind.min(still_air)
-            ));
+            let both = in_wind.min(still_air);
+            let what = format!(
+                "{in_wind} samples in wind, {still_air} in still air; only the first {both} have both"
+            );
+            say(Note, what);
         }
     }
     let off = match measured.is_empty() {
@@ -147,18 +154,17 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
             format_args!("about the {channel:.3} m/s of the channel `wind_speed`"),
             format_args!("{stated} m/s{hint}"),
         )?;
-        say(format!(
-            "the mean speed is {stated} m/s, its channel says {channel:.3} m/s{hint}"
-        ));
+        let what =
+            format!("the mean speed is {stated} m/s, its channel says {channel:.3} m/s{hint}");
+        say(Doubt, what);
     }
     if let Some(still) = &run.still_air
         && !still.wind_speed_m_s.is_empty()
         && mean(&still.wind_speed_m_s) > SPEED_OFF_AT_MOST * run.mean_speed_m_s
     {
-        say(format!(
-            "the still-air recording has a wind of {:.3} m/s",
-            mean(&still.wind_speed_m_s)
-        ));
+        let wind = mean(&still.wind_speed_m_s);
+        let what = format!("the still-air recording has a wind of {wind:.3} m/s");
+        say(Doubt, what);
     }
     let still = run.still_air.iter().map(|r| ("still air", r));
     for (name, recording) in std::iter::once(("in wind", &run.in_wind)).chain(still) {
@@ -175,17 +181,18 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
                     spread(dof) / stated,
                 ));
             } else if is_stated && spread(dof) == 0.0 {
-                say(format!("{name}: no {} motion", dof.name()));
+                say(Doubt, format!("{name}: no {} motion", dof.name()));
             } else if !is_stated && spread(dof) > OTHER_MOTION_AT_MOST * stated {
                 let part = 100.0 * spread(dof) / stated;
-                say(format!(
+                let what = format!(
                     "{name}: {} motion of {part:.0} % of the stated one, both over the width",
                     dof.name()
-                ));
+                );
+                say(Note, what);
             }
         }
         let of_motion = motion_hints(&run.name, name, recording, motion, width_m);
-        of_motion.into_iter().for_each(|f| say(f.what));
+        of_motion.into_iter().for_each(|f| say(f.severity, f.what));
     }
     Ok(found)
 }
@@ -249,7 +256,7 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
     }
     said.into_iter()
         .flatten()
-        .map(|odd| RunFinding::of_run("", odd.to_string()))
+        .map(|odd| RunFinding::of_run("", odd.severity, odd.to_string()))
         .collect()
 }
 
@@ -287,7 +294,7 @@ fn motion_hints(
                 "{name}: {} motion of {amplitude:.3e} {unit} in amplitude on a model of {width_m} m: {units}?",
                 dof.name()
             );
-            found.push(RunFinding::of_run(run, what));
+            found.push(RunFinding::of_run(run, FindingSeverity::Doubt, what));
         }
     }
     found

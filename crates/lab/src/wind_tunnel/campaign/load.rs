@@ -7,6 +7,7 @@ use super::findings::{RunFinding, file_hints, run_findings};
 use super::recording::{LoadedRecording, SAME_RATE};
 use super::section_forces::SectionForces;
 use crate::error::{Result, all_or_errors, ensure, positive};
+use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::signal::mean;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
@@ -61,6 +62,8 @@ pub struct LoadedCampaign {
     pub campaign: RawCampaign,
     /// What is odd about them, in words.
     pub warnings: Vec<String>,
+    /// What they contradict of what is stated.
+    pub doubts: Vec<String>,
 }
 
 /// All recordings that a campaign file names.
@@ -69,11 +72,19 @@ pub struct LoadedCampaign {
 /// [`Error::Io`](crate::error::Error::Io); [`Error::Input`](crate::error::Error::Input) naming file, run, recording, channel and sample.
 pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<LoadedCampaign> {
     let reading = Campaign::read(path)?.load()?;
-    let findings = reading.findings.iter().map(ToString::to_string);
     Ok(LoadedCampaign {
+        warnings: reading.words(FindingSeverity::Note),
+        doubts: reading.words(FindingSeverity::Doubt),
         campaign: reading.raw,
-        warnings: findings.collect(),
     })
+}
+
+impl CampaignReading {
+    /// The findings of this weight in words.
+    pub fn words(&self, severity: FindingSeverity) -> Vec<String> {
+        let of_weight = self.findings.iter().filter(|f| f.severity == severity);
+        of_weight.map(ToString::to_string).collect()
+    }
 }
 
 impl Campaign {

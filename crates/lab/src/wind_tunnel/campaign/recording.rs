@@ -7,6 +7,7 @@ use super::findings::{RunFinding, channel_findings, first_gap};
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
 use crate::files::lab::ChannelSet;
+use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
 
@@ -162,6 +163,7 @@ impl ChannelExtraction<'_> {
                     channel: Some(channel.name.clone()),
                     sample: first_gap(&c.samples).map(|gap| gap.0),
                     samples: first_gap(&c.samples).map(|gap| gap.1),
+                    severity: FindingSeverity::Note,
                     what: "wind speed is not a number or of another length; ignored".to_owned(),
                 });
                 Ok(Vec::new())

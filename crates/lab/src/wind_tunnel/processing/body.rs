@@ -116,7 +116,7 @@ pub(super) fn check_force(run: &str, rig: &Rig, still: &RawRecording, dof: Dof) 
     )
 }
 
-/// Compares the inertia with that of the rig, if it states one: a warning with the figures, or nothing.
+/// Compares the inertia with that of the rig, if it states one: a doubt with the figures, or nothing.
 pub(super) fn compare(
     run: &str,
     rig: &Rig,
@@ -157,7 +157,7 @@ pub(super) fn compare(
     )))
 }
 
-/// Compares the inertia of the runs in which `dof` moves, by their names, which is that of one model: a warning with the figures, or
+/// Compares the inertia of the runs in which `dof` moves, by their names, which is that of one model: a doubt with the figures, or
 /// nothing.
 pub(super) fn compare_runs(
     dof: Dof,

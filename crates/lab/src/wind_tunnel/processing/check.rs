@@ -29,6 +29,8 @@ pub(crate) struct RunCheck {
     pub clipped_still_air: Vec<ClippedStretch>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// What contradicts what is stated, or another run.
+    pub doubts: Vec<String>,
 }
 
 /// Checks both recordings of a run.

@@ -59,7 +59,7 @@ impl<'a> PreparedRun<'a> {
             if let Some(inertia) = &still_air {
                 let density = run.air_density_kg_m3;
                 findings
-                    .warnings
+                    .doubts
                     .extend(body::compare(&run.name, rig, inertia, density)?);
             }
         }

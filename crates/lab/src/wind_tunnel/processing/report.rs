@@ -127,6 +127,9 @@ pub struct RunReport {
     pub levels: Vec<StageLevels>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// What contradicts what is stated, or another run: nothing may rest on the run before it is cleared.
+    #[serde(default)]
+    pub doubts: Vec<String>,
 }
 
 /// What processing did to a campaign.
@@ -149,9 +152,7 @@ pub struct ProcessingReport {
 impl ProcessingReport {
     /// Every warning with its run, and stated frequencies that no run has.
     pub fn warnings(&self) -> Vec<String> {
-        let of_run = |r: &RunReport, w: &String| format!("run {}: {w}", r.run);
-        let of_runs = self.runs.iter();
-        let of_runs = of_runs.flat_map(|r| r.warnings.iter().map(move |w| of_run(r, w)));
+        let of_runs = self.of_runs(|r| &r.warnings);
         let found = |f: &f64| {
             let mut segments = self.runs.iter().flat_map(|r| &r.segments);
             segments.any(|s| is_near(s.segment.frequency_hz, *f))
@@ -159,25 +160,37 @@ impl ProcessingReport {
         let stated = self.options.segments.frequencies_hz.iter();
         let lost = stated.filter(|f| !found(f));
         let lost = lost.map(|f| format!("no run moves at the stated {f} Hz"));
-        of_runs.chain(lost).collect()
+        of_runs.into_iter().chain(lost).collect()
+    }
+
+    /// Every doubt with its run.
+    pub fn doubts(&self) -> Vec<String> {
+        self.of_runs(|r| &r.doubts)
+    }
+
+    fn of_runs(&self, texts: impl Fn(&RunReport) -> &[String]) -> Vec<String> {
+        let of_run = |r: &RunReport, text: &String| format!("run {}: {text}", r.run);
+        let runs = self.runs.iter();
+        runs.flat_map(|r| texts(r).iter().map(move |text| of_run(r, text)))
+            .collect()
     }
 }
 
 /// A lag of one run is off that of the campaign when it is this many standard errors and a fiftieth of a sample away.
 const LAG_OFF: (f64, f64) = (5.0, 0.02);
-/// Phase by which a lag may turn the highest frequency of a run, degrees: beyond the one it is said to be grave, beyond the other it is
+/// Phase by which a lag may turn the highest frequency of a run, degrees: beyond the one it is a doubt, beyond the other it is
 /// refused, unless the lag is stated.
 const LAG_TURNS: (f64, f64) = (2.0, 5.0);
 /// Amplitudes in wind and in still air may differ by this fraction without a warning.
 const SAME_AMPLITUDE: f64 = 0.01;
 
 impl RunReport {
-    /// What to say of the lag that the inertia of this run shows: nothing where it is the one that was corrected.
-    fn lag_warning(&self, found: &StillAirInertia, is_stated: bool) -> Result<Option<String>> {
+    /// Says what the lag that the inertia of this run shows is: nothing where it is the one that was corrected.
+    fn say_lag(&mut self, found: &StillAirInertia, is_stated: bool) -> Result<()> {
         let off = (found.lag_s - self.lag_corrected_s).abs();
         let (errors, samples) = LAG_OFF;
         if off <= errors * found.lag_standard_error_s || off * self.sampling_hz <= samples {
-            return Ok(None);
+            return Ok(());
         }
         let frequencies = self.segments.iter().map(|s| s.segment.frequency_hz);
         let highest = frequencies.fold(0.0, f64::max);
@@ -196,14 +209,15 @@ impl RunReport {
             ),
             &own,
         )?;
-        let grave = if turned > grave {
-            ": its derivatives are wrong by as much"
-        } else {
-            ""
-        };
-        Ok(Some(format!(
-            "its own inertia says {own}; {corrected:.3} ms were corrected{grave}"
-        )))
+        let what = format!("its own inertia says {own}; {corrected:.3} ms were corrected");
+        match turned > grave {
+            true => {
+                let doubt = format!("{what}: its derivatives are wrong by as much");
+                self.doubts.push(doubt);
+            }
+            false => self.warnings.push(what),
+        }
+        Ok(())
     }
 }
 
@@ -216,9 +230,9 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) -> Resul
     if report.segments.is_empty() {
         warnings.push("no stretch of harmonic motion: no test points".into());
     }
-    match &report.still_air {
+    match report.still_air.clone() {
         Some(s) if s.tells_lag(report.sampling_hz) => {
-            warnings.extend(report.lag_warning(s, options.lag_s.is_some())?);
+            report.say_lag(&s, options.lag_s.is_some())?;
         }
         _ if options.lag_s.is_none() && report.alignment.is_some() => warnings
             .push("the inertia in still air is too small to tell the lag of the channels".into()),

@@ -126,6 +126,7 @@ impl<'a> RunInProgress<'a> {
             dimensionless: DimensionlessFactors::new(run, rig),
             levels: Vec::new(),
             warnings: findings.warnings.clone(),
+            doubts: findings.doubts.clone(),
         };
         let mut under_way = Self {
             clipped: prepared.clipped(&covered, offset),

@@ -27,7 +27,7 @@ fn a_stated_mass_is_compared_with_still_air() {
             .is_empty()
     );
     raw.rig.model_mass_kg = Some(1.1 * mass);
-    let warnings = done(&raw, &ProcessingOptions::default()).report.warnings();
+    let warnings = done(&raw, &ProcessingOptions::default()).report.doubts();
     assert!(
         warnings.len() == 1
             && warnings[0].contains("still air shows 5.36")
@@ -69,7 +69,7 @@ fn runs_of_one_model_show_one_inertia() {
     let quiet = done(&raw, &ProcessingOptions::default()).report.warnings();
     assert!(quiet.is_empty(), "{quiet:?}");
     of_last(&mut raw, 1.1);
-    let warnings = done(&raw, &ProcessingOptions::default()).report.warnings();
+    let warnings = done(&raw, &ProcessingOptions::default()).report.doubts();
     assert!(
         warnings.len() == 1 && warnings[0].contains("another inertia in torsion motion"),
         "{warnings:?}"
@@ -120,7 +120,7 @@ fn a_run_of_another_lag_is_refused_unless_the_lag_is_stated() {
         lag_s: Some(0.0),
         ..ProcessingOptions::default()
     };
-    let warnings = done(&raw, &stated).report.warnings();
+    let warnings = done(&raw, &stated).report.doubts();
     assert!(
         warnings
             .iter()
