@@ -13,6 +13,7 @@ mod ntnu;
 mod quantity;
 mod recording;
 mod section_forces;
+mod wind_speed;
 mod write;
 
 pub use channel_map::sampling_by_time;

@@ -2,6 +2,7 @@
 //! what is stated, units that were probably not meant; and where a channel is no number.
 
 use super::file::Campaign;
+use super::wind_speed::other_than_one_wind;
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{
     DECK_WIDTH, FindingSeverity, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond,
@@ -152,12 +153,15 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
             off <= ANOTHER_SPEED,
             format_args!("run `{}`: mean_speed_m_s", run.name),
             format_args!("about the {channel:.3} m/s of the channel `wind_speed`"),
-            format_args!("{stated} m/s{hint}"),
+            format_args!("{stated:.3} m/s{hint}"),
         )?;
         let what =
-            format!("the mean speed is {stated} m/s, its channel says {channel:.3} m/s{hint}");
+            format!("the mean speed is {stated:.3} m/s, its channel says {channel:.3} m/s{hint}");
         say(Doubt, what);
     }
+    other_than_one_wind(measured)
+        .into_iter()
+        .for_each(|what| say(Doubt, what));
     if let Some(still) = &run.still_air
         && !still.wind_speed_m_s.is_empty()
         && mean(&still.wind_speed_m_s) > SPEED_OFF_AT_MOST * run.mean_speed_m_s

@@ -148,10 +148,10 @@ fn absurd_numbers_are_refused_and_odd_ones_said() {
         "{said}"
     );
     assert!(
-        said.ends_with("found 80 m/s (ten times that: a decimal place?)"),
+        said.ends_with("found 80.000 m/s (ten times that: a decimal place?)"),
         "{said}"
     );
-    assert!(stated("9.8").ends_with("found 9.8 m/s"));
+    assert!(stated("9.8").ends_with("found 9.800 m/s"));
     let said = hints("name = \"y\", unit = \"mm\"", "name = \"y\", unit = \"m\"");
     assert!(
         said.iter().any(|s| s.ends_with("millimetres for metres?")),

@@ -1,6 +1,7 @@
 //! What is odd in recordings that can be read.
 
 use super::*;
+use crate::plausibility::FindingSeverity;
 use crate::wind_tunnel::campaign::findings::RunFinding;
 
 fn findings(a: &str, b: &str) -> Vec<String> {
@@ -54,9 +55,62 @@ fn what_does_not_stop_reading_is_a_finding() {
     );
     let off = small().replace("name = \"one\"", "name = \"one\"\nmean_speed_m_s = 9");
     let found = load(&off, &a, &b).unwrap().findings;
+    assert_eq!(found[0].severity, FindingSeverity::Doubt);
     assert!(
         found[0]
             .to_string()
-            .contains("the mean speed is 9 m/s, its channel says 8.0")
+            .contains("the mean speed is 9.000 m/s, its channel says 8.0")
     );
+}
+
+/// The mean of the channel is that of the run: what no turbulence about it explains is a doubt.
+#[test]
+fn a_wind_that_is_not_one_is_a_doubt() {
+    type Change = fn(f64, &mut f64);
+    let found = |change: Change| {
+        let a = recording(2000, |i, r| change(i as f64, &mut r[4]));
+        let reading = load(&small(), &a, &recording(2000, still)).unwrap();
+        let of_wind = |f: &&RunFinding| f.what.starts_with("the wind speed is");
+        let doubts = reading.findings.iter().filter(of_wind);
+        doubts
+            .map(|f| (f.severity, f.what.clone()))
+            .collect::<Vec<_>>()
+    };
+    // gusts of a tenth, some of them as long as half of the recording
+    let gusts: Change = |i, v| *v += 0.8 * ((0.37 * i).sin() + (TAU * i / 1300.0).cos());
+    assert_eq!(found(gusts), []);
+    let wrong: [(Change, &str); 4] = [
+        (
+            |i, v| {
+                if i % 50.0 == 0.0 {
+                    *v = 60.0
+                }
+            },
+            "drop out",
+        ),
+        (
+            |i, v| {
+                if i < 460.0 {
+                    *v = 0.0
+                }
+            },
+            "begin late",
+        ),
+        (
+            |i, v| {
+                if i > 1500.0 {
+                    *v = 0.0
+                }
+            },
+            "or stop?",
+        ),
+        (|i, v| *v *= 1.0 + 0.2 * i / 2000.0, "drift?"),
+    ];
+    for (change, words) in wrong {
+        let found = found(change);
+        assert!(
+            found.len() == 1 && found[0].0 == FindingSeverity::Doubt && found[0].1.contains(words),
+            "{words}: {found:?}"
+        );
+    }
 }
