@@ -7,7 +7,7 @@
 use super::csv_header::{ReadOptions, TableInConvention};
 use super::csv_wide::{self, plain_name};
 use super::workbook::{WorkbookOptions, notes_of};
-use super::xlsx_cells::{CellContent, CheckedWorkbook, Sheet};
+use super::xlsx_cells::{CellContent, CheckedWorkbook, DATE, Sheet, cell_name};
 use crate::aerodynamics::derivatives::notation::Notation;
 use crate::error::{Error, Result, positive};
 
@@ -40,8 +40,11 @@ pub(super) fn read(
         1 => stem.to_owned(),
         _ => format!("{stem}, {name}"),
     };
-    let text = text_of(&cells, names);
-    csv_wide::parse(&text, &stem, &options).map_err(|e| e.within(format!("sheet {name}")))
+    let read = || {
+        refuse_two_marks(&cells, names)?;
+        csv_wide::parse(&text_of(&cells, names), &stem, &options)
+    };
+    read().map_err(|e| e.within(format!("sheet {name}")))
 }
 
 /// Name, cells and row of names of the sheet that is meant.
@@ -119,6 +122,27 @@ fn row_of_names(sheet: &Sheet, notation: Option<Notation>) -> Option<u32> {
     None
 }
 
+/// Refuses numbers in texts of which some have commas and some have points: `1,029` beside `0.1234` is a thousand.
+fn refuse_two_marks(sheet: &Sheet, names: u32) -> Result<()> {
+    let first = |mark: char| {
+        let mut below = sheet.cells.range((names + 1, 0)..);
+        below.find_map(|((row, column), cell)| match cell {
+            CellContent::Text(text) if text.contains(mark) && is_number(&cell_text(cell)) => {
+                Some((cell_name(*row, *column), text))
+            }
+            _ => None,
+        })
+    };
+    match (first(','), first('.')) {
+        (Some((comma, number)), Some((point, other))) => Err(Error::input(
+            format!("cell {comma}"),
+            format!("a point in the number, as in `{other}` of cell {point}"),
+            format!("`{number}`"),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// The row of names and those below it as text, with a tab between cells; what stands above is left empty.
 fn text_of(sheet: &Sheet, names: u32) -> String {
     let named = sheet.cells.range((names, 0)..=(names, u32::MAX));
@@ -136,7 +160,7 @@ fn text_of(sheet: &Sheet, names: u32) -> String {
                     .unwrap_or_default()
             })
             .collect();
-        let numbers = cells.iter().any(|c| c.parse::<f64>().is_ok());
+        let numbers = cells.iter().any(|c| is_number(c) || c == DATE);
         if row == names || row > names + 1 || numbers {
             text.push_str(&cells.join("\t"));
         }
@@ -145,15 +169,15 @@ fn text_of(sheet: &Sheet, names: u32) -> String {
     text
 }
 
+fn is_number(text: &str) -> bool {
+    text.parse::<f64>().is_ok()
+}
+
 /// A cell in a row of text: a number that was typed with a comma is one.
 fn cell_text(cell: &CellContent) -> String {
     let text = cell.text().replace(['\t', '\n', '\r', ';'], " ");
     let number = text.trim().replace(',', ".");
-    if number.parse::<f64>().is_ok() {
-        number
-    } else {
-        text
-    }
+    if is_number(&number) { number } else { text }
 }
 
 #[cfg(test)]

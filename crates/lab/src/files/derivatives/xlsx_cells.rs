@@ -19,6 +19,8 @@ const CELLS_AT_MOST: usize = 200_000;
 
 /// What a cell holds whose formula nobody evaluated: no number, so that it is refused where one is read, and no empty cell.
 const NO_VALUE: &str = "a formula without a value: save the workbook once in a spreadsheet";
+/// The same of a date, as of 1.3 that a spreadsheet took for the first of March.
+pub(super) const DATE: &str = "a date";
 
 /// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,10 +85,7 @@ impl Sheet {
             DataRef::String(text) => CellContent::Text(text.clone()),
             DataRef::SharedString(text) => CellContent::Text((*text).to_owned()),
             DataRef::DateTime(_) | DataRef::DateTimeIso(_) | DataRef::DurationIso(_) => {
-                // as of 1.3 that a spreadsheet took for the first of March
-                let expected = "a number or a text";
-                let place = format!("{}, cell {}", place(), cell_name(row, column));
-                return Err(Error::input(place, expected, "a date"));
+                CellContent::Text(DATE.to_owned())
             }
             other => CellContent::Text(Data::from(other.clone()).to_string()),
         };

@@ -260,3 +260,45 @@ fn other_formats_are_read() {
         assert!((first - 4.0).abs() < 1e-14, "{ending}: {first}");
     }
 }
+
+/// A comma among points is one of thousands.
+#[test]
+fn commas_and_points_in_texts_are_refused() {
+    let (_folder, path) = saved(|book| {
+        let sheet = book.add_worksheet();
+        write(sheet, 0, "V*", NAMES, 1.0);
+        sheet.write_string(2, 2, "1,029").unwrap();
+        sheet.write_string(3, 2, "0.1234").unwrap();
+    });
+    let refused = in_scanlan(&path).unwrap_err().to_string();
+    assert!(
+        refused.contains(
+            "cell C3: expected a point in the number, as in `0.1234` of cell C4, found `1,029`"
+        ),
+        "{refused}"
+    );
+}
+
+/// A date above the table is none of its numbers; one in it is none at all.
+#[test]
+fn only_dates_in_the_table_are_refused() {
+    let dated = |row| {
+        saved(|book| {
+            let sheet = book.add_worksheet();
+            write(sheet, 2, "V*", NAMES, 1.0);
+            let date = rust_xlsxwriter::ExcelDateTime::from_ymd(2021, 11, 3).unwrap();
+            let format = Format::new().set_num_format("yyyy-mm-dd");
+            sheet
+                .write_datetime_with_format(row, 2, &date, &format)
+                .unwrap();
+        })
+    };
+    let (_folder, path) = dated(0);
+    same(&in_scanlan(&path).unwrap(), 1.0);
+    let (_folder, path) = dated(4);
+    let refused = in_scanlan(&path).unwrap_err().to_string();
+    assert!(
+        refused.contains("line 5") && refused.contains("a date"),
+        "{refused}"
+    );
+}

@@ -255,18 +255,20 @@ fn a_date_is_no_number() {
     let path = dir.path().join("dates.xlsx");
     let mut book = rust_xlsxwriter::Workbook::new();
     let sheet = book.add_worksheet();
-    sheet.set_name("H1").unwrap();
+    sheet.set_name("Aerodynamic Derivatives").unwrap();
+    sheet.write_string(0, 1, "H1").unwrap();
     let date = rust_xlsxwriter::ExcelDateTime::from_ymd(2024, 3, 1).unwrap();
     let format = rust_xlsxwriter::Format::new().set_num_format("yyyy-mm-dd");
     sheet
-        .write_datetime_with_format(3, 1, &date, &format)
+        .write_datetime_with_format(1, 1, &date, &format)
         .unwrap();
     book.save(&path).unwrap();
     let mut book = CheckedWorkbook::open(&path).unwrap();
-    let refused = book.sheet("H1").unwrap_err().to_string();
+    let sheet = book.sheet(DERIVATIVES.0).unwrap().unwrap();
+    let refused = number(&sheet, DERIVATIVES.0, 1, 1).unwrap_err().to_string();
     assert_eq!(
         refused,
-        "sheet H1, cell B4: expected a number or a text, found a date"
+        "sheet Aerodynamic Derivatives, cell B2: expected a number, found `a date`"
     );
 }
 
