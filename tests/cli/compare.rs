@@ -133,6 +133,21 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         }
         refused(folder.path(), &impossible, &[option, "found"]);
     }
+    std::fs::write(folder.path().join("u.csv"), "a [N],b [kN]\n1,2\n").unwrap();
+    let units = [
+        "compare",
+        "signals",
+        "u.csv",
+        "--reference",
+        "a",
+        "--compared",
+        "b",
+    ];
+    refused(
+        folder.path(),
+        &units,
+        &["a channel in N, as `a`", "`b` in kN"],
+    );
     refused(
         folder.path(),
         &arguments("forecast"),

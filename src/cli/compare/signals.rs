@@ -102,13 +102,18 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
     let set = ChannelSet::read(&args.file, args.group.as_deref())?;
     let channel = |name: &str| {
         let found = set.channel(name);
-        found.map(|c| &c.samples[..]).ok_or_else(|| {
+        found.ok_or_else(|| {
             Error::input("channel", set.listing(), format!("`{name}`")).in_file(&args.file)
         })
     };
     let (reference, compared) = (channel(&args.reference)?, channel(&args.compared)?);
+    if let (Some(one), Some(other)) = (&reference.unit, &compared.unit) {
+        let expected = format!("a channel in {one}, as `{}`", args.reference);
+        let found = format!("`{}` in {other}", args.compared);
+        ensure(one == other, "--compared", expected, found).map_err(|e| e.in_file(&args.file))?;
+    }
     let sampling_hz = sampling(args, &set).map_err(|e| e.in_file(&args.file))?;
-    let pair = SignalPair::new(reference, compared, 1.0 / sampling_hz)
+    let pair = SignalPair::new(&reference.samples, &compared.samples, 1.0 / sampling_hz)
         .map_err(|e| e.in_file(&args.file))?;
     let stage = progress.stage("metrics");
     let lines = metrics(&pair, args)?;

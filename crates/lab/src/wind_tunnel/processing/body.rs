@@ -152,7 +152,7 @@ pub(super) fn compare(
         ),
     )?;
     Ok(Some(format!(
-        "still air shows {shown} in {} motion, `{key}` states {stated} {unit}",
+        "still air shows {shown} in {} motion, `{key}` states {stated:.4} {unit}",
         found.dof.name()
     )))
 }

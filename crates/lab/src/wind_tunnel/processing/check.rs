@@ -46,13 +46,13 @@ pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<RunCheck> {
     let wind = &run.in_wind;
     check_recording(&place("in wind"), wind, rig)?;
     let mut findings = RunCheck {
-        clipped_in_wind: clipped(&place("in wind"), wind, rig)?,
+        clipped_in_wind: clipped(&run.name, "in wind", wind, rig)?,
         ..RunCheck::default()
     };
     if let Some(still) = &run.still_air {
         check_recording(&place("still air"), still, rig)?;
         check_pair(&run.name, wind, still)?;
-        findings.clipped_still_air = clipped(&place("still air"), still, rig)?;
+        findings.clipped_still_air = clipped(&run.name, "still air", still, rig)?;
         if wind.sample_count() != still.sample_count() {
             findings.warnings.push(format!(
                 "{} samples in wind, {} in still air: only the part that both cover is used",
@@ -61,16 +61,17 @@ pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<RunCheck> {
             ));
         }
     }
-    for c in findings
-        .clipped_in_wind
-        .iter()
-        .chain(&findings.clipped_still_air)
-    {
-        findings.warnings.push(format!(
-            "{}: {} samples from sample {} stand at the limit of the channel; they are replaced",
-            c.channel, c.samples, c.first
-        ));
-    }
+    let clipped = [&findings.clipped_in_wind, &findings.clipped_still_air];
+    let channels = clipped
+        .into_iter()
+        .flat_map(|c| c.chunk_by(|a, b| a.channel == b.channel));
+    findings.warnings.extend(channels.map(|stretches| {
+        let samples: usize = stretches.iter().map(|c| c.samples).sum();
+        format!(
+            "{}: {samples} samples from sample {} on stand at the limit of the channel; they are replaced",
+            stretches[0].channel, stretches[0].first
+        )
+    }));
     Ok(findings)
 }
 
@@ -158,11 +159,16 @@ fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<(
     Ok(())
 }
 
-fn clipped(place: &str, recording: &RawRecording, rig: &Rig) -> Result<Vec<ClippedStretch>> {
+fn clipped(
+    run: &str,
+    what: &str,
+    recording: &RawRecording,
+    rig: &Rig,
+) -> Result<Vec<ClippedStretch>> {
     let mut found = Vec::new();
     for (name, samples) in channels(recording, rig) {
-        let channel = format!("{place}, {name}");
-        let stretches = check_clipping(&channel, 0, samples)?;
+        let channel = format!("{what}, {name}");
+        let stretches = check_clipping(&format!("run {run}, {channel}"), 0, samples)?;
         found.extend(stretches.iter().map(|(first, samples)| ClippedStretch {
             channel: channel.clone(),
             first: *first,

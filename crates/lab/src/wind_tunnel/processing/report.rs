@@ -9,7 +9,7 @@ use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
 use super::signals::{HarmonicSegment, Level, SectionSignals, level};
-use super::spikes::Replaced;
+use super::spikes::{CLIPPED, Replaced};
 use super::still_air::{Alignment, RemovedInertia};
 use crate::error::{Result, ensure};
 use crate::section::Dof;
@@ -245,7 +245,9 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) -> Resul
         ));
     }
     warnings.extend(report.low_pass.as_ref().and_then(|l| l.warning()));
-    for r in &report.replaced {
+    // what is clipped is said of its channel
+    let others = report.replaced.iter().filter(|r| r.reason != CLIPPED);
+    for r in others {
         warnings.push(format!(
             "samples {} to {} ({:.2} s) replaced: {}",
             r.first,

@@ -22,6 +22,9 @@ const ROUNDS: usize = 8;
 /// heaving model) has residuals of second order only, and no noise to measure them by. The moment counts over the width.
 const NEGLIGIBLE: f64 = 1e-2;
 
+/// Why a sample at the limit of its channel is replaced.
+pub(super) const CLIPPED: &str = "clipped";
+
 /// A stretch of samples that was replaced.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replaced {
@@ -59,7 +62,7 @@ pub(crate) fn remove_spikes(
     let edge = filter.map_or(0, ButterworthLowPass::padding);
     let mut reasons = vec![None; count];
     for range in clipped {
-        mark(&mut reasons, range.start, range.end, guard, "clipped");
+        mark(&mut reasons, range.start, range.end, guard, CLIPPED);
     }
     let mut parts = fit_all(signals, regressors, &reasons)?;
     for _ in 0..ROUNDS {

@@ -310,5 +310,15 @@ fn a_short_clip_is_replaced() {
         "{:?}",
         run.replaced
     );
+    let warnings = processed.report.warnings();
+    let of_clipping = warnings
+        .iter()
+        .filter(|w| w.contains("limit of") || w.contains("clipped"));
+    let said: Vec<_> = of_clipping.collect();
+    let once = |cell: &str| format!("run {}: in wind, cell {cell}, fx: ", run.run);
+    assert!(
+        said.len() == 2 && said[0].starts_with(&once("near")) && said[1].starts_with(&once("far")),
+        "{said:?}"
+    );
     assert!(worst(&processed, &made.truth.records, 0) < 0.05);
 }
