@@ -141,6 +141,11 @@ fn an_archive_is_what_its_exporter_meant_until_it_is_spoilt() {
             assert!(code == 1 && flowing(&text).contains(&said), "{text}");
         }
 
+        spoil(&whole, &spoilt, "modelDescription.xml", |text| {
+            text.replacen("start=\"38.0\"", "start=\"NaN\"", 1)
+        });
+        not_as_meant(at, "spoilt.fmu", &["expected a start value, found none"]);
+
         let result = "extra/org.fmi-standard.fmi-ls-ref/above_out.csv";
         spoil(&whole, &spoilt, result, |text| {
             let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();

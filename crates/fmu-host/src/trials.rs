@@ -184,19 +184,19 @@ pub(super) fn check_starts(slave: &mut Slave, times: &Times) -> Result<()> {
     slave.setup(times.start, Some(times.stop), tolerance)?;
     slave.enter_initialization()?;
     for v in &slave.model_description().variables {
-        let is_stated =
-            v.causality == Causality::Input || v.effective_initial() == Some(Initial::Exact);
-        let Some(stated) = v.start.as_ref().filter(|_| is_stated) else {
+        if v.causality == Causality::Independent {
             continue;
-        };
-        let value = slave.get_by_reference(v.kind, v.value_reference)?;
-        if !same_start(stated, &value) {
-            return Err(Error::input(
-                format!("variable `{}` in the initialisation mode", v.name),
-                format!("its start value {stated}"),
-                value.to_string(),
-            ));
         }
+        let value = slave.get_by_reference(v.kind, v.value_reference)?;
+        let is_input = v.causality == Causality::Input;
+        let (expected, found) = match &v.start {
+            _ if !is_input && v.effective_initial() != Some(Initial::Exact) => continue,
+            Some(stated) if same_start(stated, &value) => continue,
+            Some(stated) => (format!("its start value {stated}"), value.to_string()),
+            None => ("a start value".to_owned(), "none".to_owned()),
+        };
+        let place = format!("variable `{}` in the initialisation mode", v.name);
+        return Err(Error::input(place, expected, found));
     }
     Ok(())
 }
