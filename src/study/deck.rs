@@ -44,7 +44,7 @@ pub struct Deck {
 
 #[derive(Debug, Clone)]
 enum DeckData {
-    Table(DerivativeTable),
+    Table(Box<DerivativeTable>),
     FlatPlate,
 }
 
@@ -100,11 +100,11 @@ impl Deck {
             table
                 .header
                 .state_angle("deck.angle_deg", study.deck.angle_deg)?;
-            DeckData::Table(table)
+            DeckData::Table(Box::new(table))
         } else {
-            DeckData::Table(
+            DeckData::Table(Box::new(
                 embedded::deck_where_files_are_taken(name).map_err(|e| e.at("deck.source"))?,
-            )
+            ))
         };
         if !is_file && !study.deck.convention.is_empty() {
             return Err(Error::input(

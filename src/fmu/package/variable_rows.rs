@@ -45,8 +45,8 @@ fn row<'a>(element: &'a Element, named: &dyn Fn(&str) -> Option<&'a str>) -> Row
     };
     let of = |name: &str| element.attribute(name).unwrap_or_default();
     let size = |d: &'a Element| {
-        d.attribute("start")
-            .or(named(d.attribute("valueReference")?))
+        let of_another = || named(d.attribute("valueReference")?);
+        d.attribute("start").or_else(of_another)
     };
     let sizes = element.children_named("Dimension").filter_map(size);
     let sizes = sizes.map(|size| format!("[{size}]"));

@@ -13,15 +13,15 @@ pub(super) fn other_than_one_wind(wind_m_s: &[f64]) -> Option<String> {
     let (whole, middle) = (mean(wind_m_s), median(wind_m_s));
     if (whole - middle).abs() > SAME_WIND * whole.abs() {
         return Some(format!(
-            "the wind speed is {whole:.3} m/s in the mean and {middle:.3} m/s in the median: does the channel drop out, begin late \
-             or stop?"
+            "the wind speed is {whole:.3} m/s in the mean and {middle:.3} m/s in the median, as of a channel that drops out, \
+             begins late or stops"
         ));
     }
     let (first, second) = wind_m_s.split_at(wind_m_s.len() / 2);
     let [(first, error), (second, other)] = [first, second].map(mean_and_error);
     ((first - second).abs() > SAME_WIND * whole.abs() + ERRORS * error.hypot(other)).then(|| {
         format!(
-            "the wind speed is {first:.3} m/s in the first half and {second:.3} m/s in the second: does the channel drift?"
+            "the wind speed is {first:.3} m/s in the first half and {second:.3} m/s in the second, as of a channel that drifts"
         )
     })
 }

@@ -86,7 +86,7 @@ fn a_wind_that_is_not_one_is_a_doubt() {
                     *v = 60.0
                 }
             },
-            "drop out",
+            "drops out",
         ),
         (
             |i, v| {
@@ -94,7 +94,7 @@ fn a_wind_that_is_not_one_is_a_doubt() {
                     *v = 0.0
                 }
             },
-            "begin late",
+            "begins late",
         ),
         (
             |i, v| {
@@ -102,9 +102,9 @@ fn a_wind_that_is_not_one_is_a_doubt() {
                     *v = 0.0
                 }
             },
-            "or stop?",
+            "or stops",
         ),
-        (|i, v| *v *= 1.0 + 0.2 * i / 2000.0, "drift?"),
+        (|i, v| *v *= 1.0 + 0.2 * i / 2000.0, "drifts"),
     ];
     for (change, words) in wrong {
         let found = found(change);
