@@ -163,6 +163,24 @@ fn the_page_says_what_gusts_do() {
     }
 }
 
+/// An array whose size is no structural parameter states its number.
+#[test]
+fn sizes_of_arrays_of_nodes_are_numbers_on_the_page() {
+    let mut force = ForceOptions::single(31.0);
+    force.named_strips = true;
+    force.strips = vec![force.strips[0].clone(); 2];
+    force.nodes = vec![4, 7];
+    let export = Export {
+        force: Some(force),
+        version: FmiVersion::Three,
+        reference_runs: false,
+        ..GrowthPolicy::Refuse.into()
+    };
+    let page = page_of(&model("rational"), export);
+    let heave = "<code>heave</code></td><td>Float64[2]</td>";
+    assert!(page.contains(heave), "{page}");
+}
+
 /// Forces of turned signs are doubted on the page of a unit that has no section as well.
 #[test]
 fn the_page_of_forces_says_what_looks_wrong_in_them() {
