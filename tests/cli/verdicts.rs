@@ -158,12 +158,12 @@ fn tests_of_one_frequency_have_no_interval() {
         "--set",
         "deck.source=\"one.csv\"",
         "--set",
-        "flutter.required_speed_m_s=5.0",
+        "flutter.required_speed_m_s=20.0",
     ];
     let (code, said, _) = aerodeck(at, &run);
     let said = flowing(&said);
     assert!(
-        code == 3 && said.contains("? CANNOT BE JUDGED, required 5 m/s"),
+        code == 3 && said.contains("? CANNOT BE JUDGED, required 20 m/s"),
         "{said}"
     );
     assert!(

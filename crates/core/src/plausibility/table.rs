@@ -373,7 +373,7 @@ mod tests {
     /// Sizes that are odd together, none by itself.
     #[test]
     fn what_is_odd_is_named() {
-        let half = USUAL.map(|(_, usual, spread)| Some(usual * (1.9 * spread).exp()));
+        let half = USUAL.map(|(_, usual, spread)| Some(usual * (-1.9 * spread).exp()));
         let odd = Signature([half, half]);
         assert!(odd.score() > ODD);
         assert!(
