@@ -31,7 +31,13 @@ fn what(critical: &Critical, evidence: &Evidence) -> String {
         format!("{name} at {best} ({})", c.forces)
     };
     match &critical.governs {
-        Some(c) if c.phenomenon != Phenomenon::Flutter => format!("{}; {flutter}", says(c)),
+        Some(c) if c.phenomenon != Phenomenon::Flutter => {
+            // beyond the search there may be flutter before it
+            match evidence.searched_to_m_s.is_some_and(|to| c.best_m_s > to) {
+                true => format!("{flutter}; {}", says(c)),
+                false => format!("{}; {flutter}", says(c)),
+            }
+        }
         Some(c) => {
             let mut others = critical.others.iter();
             let before = others

@@ -234,6 +234,14 @@ fn a_search_answers_for_half_of_its_range() {
     assert_eq!(of_search(Some(40.0), stable(model, 15.0)), Some(15.0));
     assert_eq!(of_search(None, stable(model, 40.0)), Some(40.0));
     assert_eq!(of_search(Some(40.0), found(model, 38.0, 1.0)), Some(37.0));
+    let mut far = scanned(1.0, vec![stable(model, 24.0)]);
+    far.divergence = vec![DivergenceReading::at(model, Some(66.9))];
+    for (searched_to_m_s, first) in [(24.0, "no flutter up to 24"), (80.0, "static divergence")] {
+        far.searched_to_m_s = Some(searched_to_m_s);
+        far.required = None;
+        let headline = Verdict::judge(&far).headline;
+        assert!(headline.starts_with(first), "{headline}");
+    }
 }
 
 #[test]
