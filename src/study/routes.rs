@@ -275,13 +275,11 @@ impl RouteTable {
         };
         let from = self.routes.len();
         self.add_transfer_routes(study, &forces, false);
-        let own = deck
-            .own_onset(structure, study.speeds().searched_to_m_s)
-            .ok();
+        let own = deck.own_onset(structure, study.speeds().searched_to_m_s);
         for route in &mut self.routes[from..] {
             if let (FlutterSearch::Onset(onset), Some(own)) = (
                 &mut route.search,
-                own.as_ref().and_then(FlutterSearch::onset),
+                own.as_ref().ok().and_then(FlutterSearch::onset),
             ) {
                 onset.interval = own.interval.clone();
             }

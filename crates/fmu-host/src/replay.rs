@@ -47,8 +47,8 @@ pub struct ReplayedRun {
 /// Repeats every experiment of the archive in new instances, and compares the start values of the description with those of one.
 ///
 /// # Errors
-/// [`Error::Input`] for an archive without experiments, for start values that no instance has, and for files of it that cannot be read; those of [`Fmu::instantiate`] and
-/// of a run.
+/// [`Error::Input`] for an archive without experiments, for start values that no instance has, and for files of it that cannot be read;
+/// those of [`Fmu::instantiate`] and of a run.
 pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
     let manifest = fmu.folder().join(LS_REF_MANIFEST);
     let none =

@@ -22,7 +22,7 @@ pub(crate) struct CompareDecksArgs {
     #[arg(
         long,
         value_delimiter = ',',
-        default_value = "LN21-5200,LN21-5500,LN21-5800,LN21-6100"
+        default_value = THESIS_DECKS.join(",")
     )]
     decks: Vec<String>,
     /// Train on this deck only and predict the forces of all.

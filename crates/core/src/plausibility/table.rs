@@ -48,9 +48,8 @@ const MOST_A2: f64 = 1.5;
 /// has no such derivative.
 struct Signature([[Option<f64>; 5]; 2]);
 
-/// What looks wrong in a table: signs, sizes and units that are those of another convention. Empty when nothing does. `label` is
-/// the convention that the file states, or that was stated for it. What its
-/// measurements contradict is found as well.
+/// What looks wrong in a table: signs, sizes and units that are those of another convention, and what its measurements contradict.
+/// Empty when nothing does. `label` is the convention that the file states, or that was stated for it.
 pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let width = format!("{}: width_m", table.name);
     let mut found: Vec<Finding> = beyond(&width, table.width_m, &DECK_WIDTH)
