@@ -300,9 +300,9 @@ impl Study {
 
 /// Refuses a file whose section is still to be stated, as `process` leaves it.
 fn require_section(text: &str) -> Result<()> {
-    let stated = text
-        .parse::<toml::Table>()
-        .map_or(true, |values| values.contains_key("section"));
+    let stated = text.parse::<toml::Table>().map_or(true, |values| {
+        values.contains_key("section") || !values.contains_key("deck")
+    });
     if stated {
         return Ok(());
     }

@@ -127,7 +127,10 @@ fn family_row(r: &RangeCount) -> [String; 11] {
         r.range.title().to_owned(),
         r.decks.to_string(),
         r.held.of.to_string(),
-        format!("{} ({:5.1} %)", r.held.inside, r.held.percent),
+        match r.held.of {
+            0 => "–".to_owned(),
+            _ => format!("{} ({:5.1} %)", r.held.inside, r.held.percent),
+        },
         r.no_flutter.to_string(),
         r.refused.to_string(),
         r.false_no_flutter.to_string(),

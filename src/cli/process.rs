@@ -37,6 +37,8 @@ use std::path::{Path, PathBuf};
 const TABLE: &str = "derivatives.csv";
 /// File of what was done.
 const REPORT: &str = "processing.json";
+/// The page; not the name of a study's, which may stand in the same folder.
+const PAGE: &str = "processing.html";
 /// File of the study.
 const STUDY: &str = "study.toml";
 
@@ -130,7 +132,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
         &[&doubts[..], &notes].concat(),
         &out,
     );
-    out.write(super::report::folder::REPORT, sections_page(&page)?)?;
+    out.write(PAGE, sections_page(&page)?)?;
     let mut text = processing_text(&raw, &processed.report, found);
     for (what, texts) in [("doubt", &doubts), ("note", &notes)] {
         text.extend(texts.iter().map(|t| format!("  {what}: {t}\n")));

@@ -9,6 +9,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::write_csv;
 use crate::files::text::file_name;
+use crate::files::toml_lines::of_a_kind_of_ours;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
@@ -244,7 +245,8 @@ pub(crate) fn read_model(path: &Path) -> Result<TrainedModel> {
         )
         .in_file(path));
     }
-    TrainedModel::read(path)
+    let what = "a trained model as written by `aerodeck train`";
+    TrainedModel::read(path).map_err(|e| of_a_kind_of_ours(what, path).unwrap_or(e))
 }
 
 /// Reads the uncertainties that `train` wrote beside the models.

@@ -48,6 +48,8 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
         assert!(text.contains(word), "`{word}` is not in:\n{text}");
     }
     let out = at.join("results");
+    // `study results/study.toml` writes its page into the same folder
+    assert!(out.join("processing.html").exists() && !out.join("report.html").exists());
     let report = json(out.join("processing.json"));
     // 1.7 ms is what the virtual campaign applies
     assert!((report["lag_s"].as_f64().unwrap() - 1.7e-3).abs() < 5e-5);

@@ -86,6 +86,21 @@ fn new_files_of_scatter_and_campaign_are_understood() {
     refused(at, &["new", "--campaign", "--wind"], &["--campaign"]);
 }
 
+/// A file of one kind given to a command for another is named, with its own command.
+#[test]
+fn files_of_another_kind_are_named() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--monte-carlo"]);
+    succeeds(at, &["new", "--wind"]);
+    let scatter = "found a Monte Carlo file, which `aerodeck monte-carlo` takes";
+    refused(at, &["study", "scatter.toml"], &[scatter]);
+    refused(at, &["fmu", "export", "scatter.toml"], &[scatter]);
+    let wind = "found a wind file, which `aerodeck buffeting` takes";
+    refused(at, &["study", "wind.toml"], &[wind]);
+    refused(at, &["simulate", "wind.toml"], &[wind]);
+}
+
 /// Five answers on standard input are a study that runs; fewer are refused and leave nothing.
 #[test]
 fn a_study_is_made_of_five_answers() {

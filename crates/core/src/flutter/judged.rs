@@ -42,6 +42,9 @@ pub struct MovedOnset {
 }
 
 impl StableRange {
+    /// A search that ends below says nothing that can be written.
+    const WRITTEN_AS_ZERO_M_S: f64 = 5e-4;
+
     /// Every speed from still air to this one, m/s.
     pub fn up_to(to_m_s: f64) -> Self {
         Self {
@@ -53,7 +56,7 @@ impl StableRange {
 
     /// The answer in words.
     pub fn explain(&self) -> String {
-        if self.from_m_s > self.to_m_s {
+        if self.from_m_s > self.to_m_s || self.to_m_s < Self::WRITTEN_AS_ZERO_M_S {
             let why = self
                 .not_judged
                 .as_deref()

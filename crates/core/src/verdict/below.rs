@@ -27,8 +27,9 @@ fn tell_of_slow_wind(tested: &ReducedFrequencyRange) -> bool {
 }
 
 /// What to say of wind slower than `from_m_s`, where the fastest motion has a reduced frequency above the tests. There the forces
-/// come close to those in still air; that they feed no motion is known only of forces that damp each of them.
-pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
+/// come close to those in still air; that they feed no motion is known only of forces that damp each of them. What is judged
+/// ends at `to_m_s`: a motion that is never among the tests is faster than they are up to there.
+pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64, to_m_s: f64) -> Doubt {
     let kind = DoubtKind::NotJudgedBelow {
         speed_m_s: from_m_s,
     };
@@ -39,7 +40,7 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
     };
     let k = range.max.full_width();
     let open = why_slow_wind_is_open(range, tested.below);
-    let lose = "heave with rotation, and sway by itself, lose energy at";
+    let lose = "heave with rotation, and sway by itself where it moves, lose energy at";
     let what = match (open, tested.below) {
         (Some(open), _) => format!("by {} {open}", first.forces),
         (None, FastMotion::DampedAtTheEnd) => {
@@ -48,9 +49,12 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         (None, _) => format!("by fitted forces {lose} all higher K"),
     };
     let severity = Severity::severe_if(open.is_some());
+    let slow = match from_m_s < to_m_s {
+        true => format!("Below {}", speed(from_m_s)),
+        false => format!("Up to {}, the highest speed judged,", speed(to_m_s)),
+    };
     let text = format!(
-        "Below {} {} lies at K above {k:.2}, where nothing was tested; {what}",
-        speed(from_m_s),
+        "{slow} {} lies at K above {k:.2}, where nothing was tested; {what}",
         the_mode(&tested.branch),
     );
     Doubt::new(severity, kind, text).settled_by(format!("tests at K above {k:.2}"))

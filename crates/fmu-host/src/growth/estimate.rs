@@ -33,16 +33,10 @@ pub struct Growth {
 
 /// Period in s from the size of rates against displacements, by the slowest motion.
 pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
-    let mut sums = vec![0.0; width];
-    for row in samples.chunks_exact(width) {
-        for (sum, x) in sums.iter_mut().zip(row) {
-            *sum += x * x;
-        }
-    }
-    let slowest = sums
+    let slowest = sizes(samples, width)
         .chunks_exact(2)
-        .map(|pair| (pair[1] / pair[0]).sqrt())
-        .filter(|w| w.is_finite())
+        .filter(|pair| pair[0] > f64::MIN_POSITIVE)
+        .map(|pair| pair[1] / pair[0])
         .fold(f64::INFINITY, f64::min);
     TAU / slowest
 }
@@ -102,11 +96,14 @@ fn forward_displacements(physical: &[Complex<f64>]) -> Vec<Complex<f64>> {
         .collect()
 }
 
+/// Norm of each signal, from parts of its largest value: the squares of a motion that has grown long enough overflow.
 fn sizes(samples: &[f64], width: usize) -> Vec<f64> {
     (0..width)
         .map(|i| {
-            let squares: f64 = samples.iter().skip(i).step_by(width).map(|x| x * x).sum();
-            squares.sqrt().max(f64::MIN_POSITIVE)
+            let signal = || samples.iter().skip(i).step_by(width);
+            let largest = signal().fold(f64::MIN_POSITIVE, |most, x| x.abs().max(most));
+            let squares: f64 = signal().map(|x| (x / largest).powi(2)).sum();
+            (largest * squares.sqrt()).max(f64::MIN_POSITIVE)
         })
         .collect()
 }
@@ -219,6 +216,18 @@ mod tests {
         let found = growth_of_samples(&motion(&modes, 0.02, 10.0), 4, 0.02).unwrap();
         assert!((found.rate_per_s + 0.040).abs() < 1e-10, "{found:?}");
         assert!((found.frequency_rad_s - 12.6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_motion_whose_squares_overflow_is_no_loss() {
+        let modes = [(c(0.5, 12.6), [c(1.0, 0.0), c(0.02, 0.0)])];
+        let small = motion(&modes, 0.02, 10.0);
+        let large: Vec<_> = small.iter().map(|x| x * 1e200).collect();
+        for samples in [small, large] {
+            let found = growth_of_samples(&samples, 4, 0.02).unwrap();
+            assert!((found.rate_per_s - 0.5).abs() < 1e-8, "{found:?}");
+            assert!((rough_period(&samples, 4) - TAU / 12.6).abs() < 0.01);
+        }
     }
 
     #[test]

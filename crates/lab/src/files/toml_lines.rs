@@ -101,19 +101,29 @@ fn refused_text(value: &toml::Value) -> Option<String> {
 }
 
 /// Files with a command of their own: what they are, a key that no other of them has, and the command.
-const KINDS: [(&str, &str, &str); 4] = [
+const KINDS: [(&str, &str, &str); 5] = [
     ("a study file", "deck", "study"),
     ("a bridge file", "modes", "bridge flutter"),
     ("a campaign file", "channels", "process"),
     ("a Monte Carlo file", "parameter", "monte-carlo"),
+    ("a wind file", "speeds", "buffeting"),
 ];
 
 /// That a file is not `what` was meant but of another kind, if it is.
 fn other_kind(what: &str, text: &str) -> Option<Error> {
     let root: toml::Table = toml::from_str(text).ok()?;
     let (_, own, _) = KINDS.iter().find(|(kind, ..)| *kind == what)?;
-    let mut others = KINDS.iter().filter(|_| !root.contains_key(*own));
-    let (found, _, command) = others.find(|(_, key, _)| root.contains_key(*key))?;
+    (!root.contains_key(*own)).then(|| not_but(what, &root))?
+}
+
+/// That the file at `path` is one of these kinds and not `what` was meant, which is none of them, if it is.
+pub fn of_a_kind_of_ours(what: &str, path: &Path) -> Option<Error> {
+    let root: toml::Table = toml::from_str(&read_text(path).ok()?).ok()?;
+    not_but(what, &root).map(|e| e.in_file(path))
+}
+
+fn not_but(what: &str, root: &toml::Table) -> Option<Error> {
+    let (found, _, command) = KINDS.iter().find(|(_, key, _)| root.contains_key(*key))?;
     let found = format!("{found}, which `aerodeck {command}` takes");
     Some(Error::input("", what, found))
 }

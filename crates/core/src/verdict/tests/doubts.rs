@@ -274,7 +274,7 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
     assert!(verdict.is_met());
     assert_eq!(verdict.critical.judged_from_m_s, 16.4);
     let text = "Below 16.4 m/s the torsion mode lies at K above 0.97, where nothing was tested; by fitted forces heave with \
-                rotation, and sway by itself, lose energy at all higher K";
+                rotation, and sway by itself where it moves, lose energy at all higher K";
     assert_eq!(verdict.doubts[0].text, text);
     assert_eq!(verdict.doubts[0].severity, Severity::Minor);
     assert!(verdict.explanation.contains(text));
@@ -288,6 +288,15 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
     assert_eq!(
         open.doubts[0].settled_by.as_deref(),
         Some("tests at K above 0.97")
+    );
+    // a motion that never comes among the tests: the end of the search is no speed at which it does
+    let mut never = evidence.clone();
+    never.flutter[0] = stable("the model", 16.4);
+    never.flutter[0].basis = evidence.flutter[0].basis.clone();
+    let said = &Verdict::judge(&never).doubts[0].text;
+    assert!(
+        said.starts_with("Up to 16.4 m/s, the highest speed judged, the torsion mode"),
+        "{said}"
     );
     // above, it is a note
     evidence.required = Some(RequiredSpeed { speed_m_s: 30.0 });
