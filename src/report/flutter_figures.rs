@@ -327,14 +327,14 @@ fn onset_marker(colour: &'static str, shape: Shape, hollow: bool) -> Ink {
     })
 }
 
-/// The onset in words, for the legend.
+/// The onset in words, for the legend; numbers first, as the middle of a line that is too long is left out.
 fn statement(onset: &Onset) -> String {
     format!(
-        "Onset {}: V = {} m/s, f = {} Hz, V/(fB) = {}, {} ({})",
-        onset.at.model,
+        "Onset V = {} m/s, f = {} Hz, V/(fB) = {}: {}, {} ({})",
         significant(onset.at.speed_m_s),
         significant(onset.at.frequency_hz),
         significant(onset.at.reduced_velocity.v_star()),
+        onset.at.model,
         ModeBranch::in_words(&onset.branch),
         onset.at.method.name(),
     )
