@@ -186,6 +186,11 @@ impl BridgeStudy {
         self.by_model.forces().common_range(of)
     }
 
+    /// Reduced frequencies in which each section was tested, its own; those that no test stands behind are left out.
+    pub(crate) fn section_ranges(&self) -> impl Iterator<Item = ReducedFrequencyRange> {
+        self.sections.iter().filter_map(|s| s.tested)
+    }
+
     /// Angle of the tests at each node, deg; 0 where nothing is stated, or the forces are no tests.
     pub(crate) fn tested_angles_deg(&self) -> Vec<f64> {
         let mut angles = vec![0.0; self.by_model.nodes.len()];

@@ -15,4 +15,5 @@ mod like_modes;
 mod plausibility;
 mod published;
 mod refused;
+mod shapes;
 mod stated;

@@ -33,7 +33,6 @@ mod words;
 #[cfg(test)]
 mod tests;
 
-pub use below::why_slow_wind_is_open;
 pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{

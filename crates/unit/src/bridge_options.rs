@@ -62,6 +62,9 @@ pub struct BridgeOptions {
     pub named: Vec<usize>,
     /// Reduced frequencies, of the bridge, in which the force models were tested.
     pub tested_range: Option<ReducedFrequencyRange>,
+    /// Those of each section that was tested, its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub section_ranges: Vec<ReducedFrequencyRange>,
     /// Modal coordinates at release, one per mode.
     pub initial: Vec<f64>,
     /// Gusts as inputs of strips; none without.

@@ -8,7 +8,7 @@
 
 use aerodeck_core::{
     aerodynamics, aeroelastic, bridge, error, flutter, response, section, state_space,
-    trained_model, units, verdict,
+    trained_model, units,
 };
 use error::Error;
 

@@ -3,7 +3,7 @@
 use super::BridgeStudy;
 use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::error::Result;
-use crate::flutter::{FastMotion, bridge_damps_fast_motion, judged_speeds};
+use crate::flutter::{FastMotion, FlutterSearch, bridge_damps_fast_motion, judged_speeds};
 use crate::units::ReducedFrequencyRange;
 use crate::verdict::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
@@ -20,10 +20,10 @@ impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
     pub fn evidence(&self, results: &BridgeFlutter, failed: &[String]) -> Evidence {
         let mut flutter = self.readings(results);
-        // the table is the answer where it is inside its range, the models where it ends before they flutter
+        // the table is the answer where it is inside its range, the models where it ends before they flutter or judges nothing
         if let [tables, models] = &flutter[..]
             && tables.search.critical().is_none()
-            && models.search.critical().is_some()
+            && (models.search.critical().is_some() || judges_nothing(&tables.search))
         {
             flutter.reverse();
         }
@@ -85,7 +85,8 @@ impl BridgeStudy {
         let mut judged = judged_speeds(&section, &self.search(), Some(tested))?;
         if let Some(from) = &mut judged.tested_from {
             let damped = bridge_damps_fast_motion(&self.by_model, tested.max)?;
-            from.below = FastMotion::damped_if(damped);
+            let damped = damped.then_some(FastMotion::Damped);
+            from.below = FastMotion::new(damped, self.section_ranges());
         }
         Ok(Reach::new(judged, &results.curves, self.by_model.width_m()))
     }
@@ -109,6 +110,10 @@ impl BridgeStudy {
             all => all.iter().map(|models| reading(MODELS, models)).collect(),
         }
     }
+}
+
+fn judges_nothing(search: &FlutterSearch) -> bool {
+    matches!(search, FlutterSearch::StableUpTo(range) if range.is_empty())
 }
 
 fn failure(text: &str) -> Failure {

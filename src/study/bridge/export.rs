@@ -165,6 +165,7 @@ impl BridgeStudy {
                 .ok_or_else(|| Error::Numerical("FMU: a section has no force model".into()))?,
             named,
             tested_range: self.tested_range(),
+            section_ranges: self.section_ranges().collect(),
             initial: self.release(motion.transpose()?.as_ref()),
             gusts,
             onset_interval: found.onset().and_then(|onset| {

@@ -173,10 +173,7 @@ pub fn table_tested_from(
     Ok(last.map(|(omega, row)| TestedFrom {
         speed_m_s: omega.re * structure.width_m / k,
         branch: structure.branch_name(*row),
-        below: match damped {
-            true => FastMotion::DampedAtTheEnd,
-            false => FastMotion::Open,
-        },
+        below: FastMotion::new(damped.then_some(FastMotion::DampedAtTheEnd), [range]),
     }))
 }
 

@@ -54,9 +54,14 @@ impl StableRange {
         }
     }
 
+    /// Whether nothing was judged, or nothing that can be written.
+    pub fn is_empty(&self) -> bool {
+        self.from_m_s > self.to_m_s || self.to_m_s < Self::WRITTEN_AS_ZERO_M_S
+    }
+
     /// The answer in words.
     pub fn explain(&self) -> String {
-        if self.from_m_s > self.to_m_s || self.to_m_s < Self::WRITTEN_AS_ZERO_M_S {
+        if self.is_empty() {
             let why = self
                 .not_judged
                 .as_deref()
@@ -94,24 +99,52 @@ pub enum FastMotion {
     Damped,
     /// Forces take energy out of every motion at the highest tested `K`; above, nothing is known.
     DampedAtTheEnd,
+    /// The forces damp them, but tests do not tell how forces go over into those of still air.
+    Guessed,
     /// Neither: forces may feed some.
     Open,
 }
 
 impl FastMotion {
-    /// By what the forces of a fit do to [all](damps_fast_motion) of them.
-    pub fn damped_if(damped: bool) -> Self {
+    /// By what forces do to [all](damps_fast_motion) of them, `damped` where they take energy out of each, and by the `tests` behind
+    /// the forces, each in the reduced frequency of its own section.
+    pub fn new(
+        damped: Option<Self>,
+        tests: impl IntoIterator<Item = ReducedFrequencyRange>,
+    ) -> Self {
+        let mut told = tests.into_iter().map(|tested| tell_of_slow_wind(&tested));
         match damped {
-            true => Self::Damped,
-            false => Self::Open,
+            None => Self::Open,
+            // at least one, and all
+            Some(damped) if told.next() == Some(true) && told.all(|told| told) => damped,
+            Some(_) => Self::Guessed,
         }
     }
+
+    /// Why damping in wind slower than every test is not known; `None` where no motion gains energy there and tests tell how forces go
+    /// over into those of still air.
+    pub fn why_open(self) -> Option<&'static str> {
+        match self {
+            Self::Damped | Self::DampedAtTheEnd => None,
+            Self::Guessed => Some(
+                "damping there is a guess: tests have to reach K 0.8 of their own section and to lead up to the highest over a factor of 2.5",
+            ),
+            Self::Open => Some("a motion may gain energy there"),
+        }
+    }
+}
+
+/// Measured in docs/verdict.md on decks cut to other tests.
+fn tell_of_slow_wind(tested: &ReducedFrequencyRange) -> bool {
+    let k = tested.max.full_width();
+    let lower_ends = tested.lower_ends().map(|(end, _)| end.full_width());
+    k >= 0.8 && k >= 2.5 * lower_ends.fold(0.0, f64::max)
 }
 
 /// The last mode that comes down among the tests as the wind rises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestedFrom {
-    /// Wind speed at which it does, m/s; the highest that was looked at where it lies above the tests at all of them.
+    /// Wind speed at which it does, m/s; by its last frequency where it lies above the tests at all speeds that were looked at.
     pub speed_m_s: f64,
     /// Its branch.
     pub branch: String,
@@ -195,12 +228,13 @@ impl RangePassages {
         self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The last of the entries, with what is known of motions before it.
-    pub(super) fn tested_from(&self) -> Option<TestedFrom> {
+    /// The last of the entries, with what is known of motions before it by forces of a section that was `tested`.
+    pub(super) fn tested_from(&self, tested: Option<ReducedFrequencyRange>) -> Option<TestedFrom> {
+        let damped = self.damped_before.then_some(FastMotion::Damped);
         self.last_entry().map(|(speed_m_s, branch)| TestedFrom {
             speed_m_s: *speed_m_s,
             branch: branch.clone(),
-            below: FastMotion::damped_if(self.damped_before),
+            below: FastMotion::new(damped, tested),
         })
     }
 

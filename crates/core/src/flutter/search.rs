@@ -161,7 +161,7 @@ pub fn judged_speeds(
     let (mut found, ended) = followed("", &scan, search, |_| false)?;
     scan.bound(&mut found, ended.is_some(), &search.speeds_m_s()?)?;
     Ok(JudgedSpeeds {
-        tested_from: found.reach.tested_from(),
+        tested_from: found.reach.tested_from(tested),
         range: found.reach.judged(found.looked_at),
     })
 }
@@ -238,12 +238,18 @@ fn follow(
             return Ok(());
         }
     }
-    let above = modes.all.iter().filter(|mode| {
-        let k = tracker.k(highest, mode);
-        scan.tested.is_some_and(|range| k > range.max)
-    });
-    let never = above.map(|mode| (highest, tracker.name(mode.branch)));
-    found.reach.entries.extend(never);
+    if let Some(range) = scan.tested {
+        let above = modes.all.iter().map(|mode| {
+            let part = tracker.k(highest, mode).full_width() / range.max.full_width();
+            (part, tracker.name(mode.branch))
+        });
+        // beyond the search a mode comes among the tests about where its last frequency does
+        let never = above.filter(|(part, _)| *part > 1.0);
+        found
+            .reach
+            .entries
+            .extend(never.map(|(part, name)| (part * highest, name)));
+    }
     Ok(())
 }
 

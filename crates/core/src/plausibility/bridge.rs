@@ -2,6 +2,7 @@
 
 mod dampers;
 mod line;
+mod shapes;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
 use super::section::{USUAL_DAMPING, fast_plate, unusual_air, unusual_damping, unusual_radius};
@@ -11,6 +12,7 @@ use crate::section::{Dof, Rotation, SectionModel, Translation};
 use dampers::of_dampers;
 pub use line::of_profile;
 use line::{LENGTH, length_m, of_line};
+use shapes::of_shapes;
 use std::f64::consts::{PI, TAU};
 
 /// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
@@ -98,6 +100,7 @@ pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
         let of_frequencies = frequencies(bridge, length);
         found.extend(masses(bridge, of_frequencies.is_empty()));
         found.extend(of_frequencies);
+        found.extend(of_shapes(bridge, length));
     }
     found
 }
@@ -220,6 +223,18 @@ fn twice(girder: &Girder<'_>) -> Vec<Finding> {
     found
 }
 
+/// Width of the girder over its length, m: whichever section is listed first.
+fn mean_width_m(bridge: &Bridge) -> f64 {
+    let length =
+        |group: &StripGroup| -> f64 { group.nodes.iter().map(|n| bridge.nodes[*n].length_m).sum() };
+    let parts = bridge
+        .groups
+        .iter()
+        .map(|g| (g.width_m * length(g), length(g)));
+    let (areas, lengths) = parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    areas / lengths
+}
+
 /// Mass and inertia per length: `M/∫φ²` of each mode is no less than they are, since the rest of the mode has mass as well, and
 /// equal to them in a mode of one motion. With usual frequencies they say where a flat plate flutters.
 fn masses(bridge: &Bridge, frequencies_are_usual: bool) -> Vec<Finding> {
@@ -235,7 +250,7 @@ fn masses(bridge: &Bridge, frequencies_are_usual: bool) -> Vec<Finding> {
     else {
         return Vec::new();
     };
-    let width = bridge.width_m();
+    let width = mean_width_m(bridge);
     let ratio = mass / (bridge.air_density_kg_m3 * width * width);
     let (low, high) = MASS_RATIOS;
     if !(low..=high).contains(&ratio) {
@@ -279,7 +294,7 @@ fn fast_bridge(bridge: &Bridge, mass_kg_m: f64, inertia_kg_m2_m: f64) -> Option<
     };
     let (heave, twist) = (lowest(0)?, lowest(2)?);
     let plate = SectionModel::two_dof(
-        bridge.width_m(),
+        mean_width_m(bridge),
         bridge.air_density_kg_m3,
         Translation::new(mass_kg_m, heave.frequency_hz, 0.0),
         Rotation::new(inertia_kg_m2_m, twist.frequency_hz, 0.0),
@@ -298,7 +313,10 @@ fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
         (0..bridge.modes.len()).filter(|m| bridge.main_motion(&bridge.modes[*m]) == Some(0));
     let speeds = vertical.map(|i| {
         let mode = &bridge.modes[i];
-        (mode.frequency_hz * length_m / half_waves(mode) as f64, mode)
+        (
+            mode.frequency_hz * length_m / half_waves(mode, 0) as f64,
+            mode,
+        )
     });
     let Some((speed, mode)) = speeds.min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Vec::new();
@@ -322,14 +340,13 @@ fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
     vec![found.otherwise(otherwise)]
 }
 
-/// Half waves of the vertical shape over the whole girder.
-fn half_waves(mode: &BridgeMode) -> usize {
-    let least = 0.05 * greatest(mode, 0);
-    let signs: Vec<bool> = mode
-        .shape
-        .iter()
-        .filter(|s| s[0].abs() > least)
-        .map(|s| s[0] > 0.0)
+/// Half waves of one motion over the whole girder.
+fn half_waves(mode: &BridgeMode, motion: usize) -> usize {
+    let least = 0.05 * greatest(mode, motion);
+    let values = mode.shape.iter().map(|s| s[motion]);
+    let signs: Vec<bool> = values
+        .filter(|s| s.abs() > least)
+        .map(|s| s > 0.0)
         .collect();
     1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }

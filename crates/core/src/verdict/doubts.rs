@@ -150,7 +150,7 @@ impl Weighed<'_> {
             found.push(remark(why));
         }
         if from > 0.0 && !matches!(first.search, FlutterSearch::UnstableAtOrBelow(_)) {
-            found.push(not_judged_below(first, from, to));
+            found.push(not_judged_below(first, from));
         }
         found
     }

@@ -187,9 +187,14 @@ fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {
 fn no_requirement(judgement: &Judgement) -> String {
     let how = "state required_speed_m_s, the criterion of a code";
     match judgement.suggested_m_s {
-        Some(most) => format!(
-            "No required speed is stated, so that nothing is judged; {how}: up to {most} m/s it would be met."
-        ),
+        Some(most) => {
+            let nothing_found = judgement.critical.least_m_s().is_none();
+            // a search that found nothing and went farther would show more
+            let at_least = if nothing_found { "at least " } else { "" };
+            format!(
+                "No required speed is stated, so that nothing is judged; {how}: {at_least}up to {most} m/s it would be met."
+            )
+        }
         None => {
             let severe = judgement
                 .doubts

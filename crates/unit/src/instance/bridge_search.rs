@@ -10,16 +10,21 @@ use crate::flutter::{
 };
 use crate::onset_start::simulated_onset;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
-use crate::verdict::why_slow_wind_is_open;
 
 /// Speeds of the search for the onset; more than for a section would take seconds.
 const SPEEDS: usize = 60;
 
-/// Why damping is not known in wind slower than every test of a bridge; no parameter changes it.
-pub(super) fn slow_wind(bridge: &Bridge, tested: ReducedFrequencyRange) -> Option<&'static str> {
+/// Why damping is not known in wind slower than every test of a bridge, in reduced frequencies of its own and of its `sections`; no
+/// parameter changes it.
+pub(super) fn slow_wind(
+    bridge: &Bridge,
+    tested: ReducedFrequencyRange,
+    sections: &[ReducedFrequencyRange],
+) -> Option<&'static str> {
     // what cannot be said is not said to be damped
     let damps = bridge_damps_fast_motion(bridge, tested.max).unwrap_or(false);
-    why_slow_wind_is_open(&tested, FastMotion::damped_if(damps))
+    let damped = damps.then_some(FastMotion::Damped);
+    FastMotion::new(damped, sections.iter().copied()).why_open()
 }
 
 impl OnsetCard {

@@ -29,6 +29,8 @@ pub(super) struct ModalBridge {
     /// Motions and modes: indices, and what they stand for.
     responses: Vec<(usize, Role)>,
     tested: Option<ReducedFrequencyRange>,
+    /// Reduced frequencies of the tests of each section.
+    section_ranges: Vec<ReducedFrequencyRange>,
     /// Why damping is not known in wind slower than every test, once it has been asked.
     slow_wind: OnceLock<Option<&'static str>>,
     /// Root of the generalised mass of each mode.
@@ -46,7 +48,7 @@ pub(super) type BridgeUnit = Coupled<ModalBridge>;
 impl ModalBridge {
     /// See [`slow_wind`].
     fn slow_wind(&self, built: &BuiltBridge) -> Option<&'static str> {
-        let ask = || slow_wind(&built.own.bridge, self.tested?);
+        let ask = || slow_wind(&built.own.bridge, self.tested?, &self.section_ranges);
         *self.slow_wind.get_or_init(ask)
     }
 }
@@ -73,6 +75,7 @@ impl BridgeUnit {
             roots: roots.collect(),
             masses: masses.map(|(index, _)| index).collect(),
             tested: options.tested_range,
+            section_ranges: options.section_ranges.clone(),
             slow_wind: OnceLock::new(),
             // without a start the first onset is searched for
             start: options.onset,

@@ -13,7 +13,6 @@ use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
-use crate::verdict::why_slow_wind_is_open;
 
 /// The section of the model with the parameters in `values` (one number per variable of `table`).
 ///
@@ -147,7 +146,7 @@ pub(super) fn slow_wind(model: &TrainedModel) -> Option<&'static str> {
     let k = model.tested_range.max;
     // what cannot be said is not said to be damped
     let damps = damps_fast_motion(&dofs, k, |k| forces.transfer(k)).unwrap_or(false);
-    why_slow_wind_is_open(&model.tested_range, FastMotion::damped_if(damps))
+    FastMotion::new(damps.then_some(FastMotion::Damped), [model.tested_range]).why_open()
 }
 
 /// Onset and divergence of a section.

@@ -74,6 +74,7 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         forces: vec![model.model.clone()],
         named: vec![0],
         tested_range: Some(model.tested_range),
+        section_ranges: vec![model.tested_range],
         initial: vec![0.01, 0.002],
         gusts: None,
         onset_interval: None,

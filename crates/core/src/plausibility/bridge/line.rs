@@ -17,6 +17,8 @@ const SKEW_DEG: (f64, f64) = (2.0, 5.0);
 const LENGTHS_WITHIN: f64 = 0.05;
 /// Rise of the line of the nodes over its length that no road has.
 const STEEPEST: f64 = 0.12;
+/// Height between neighbours that a girder may have beside what a road rises, m.
+const STEP_M: f64 = 1.0;
 /// Distance of a node from the straight line in plan over the length: the ends of a circular arc then turn by 1° and by 4.6°.
 const CURVED: (f64, f64) = (0.005, 0.02);
 
@@ -56,7 +58,31 @@ pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
         );
     }
     found.extend(curve(&in_plan, length));
+    found.extend(step(nodes, offsets_m));
     found
+}
+
+/// A node above or below its neighbours, as nodes of cables and towers are.
+fn step(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Option<Finding> {
+    let heights = nodes.iter().zip(offsets_m);
+    let places: Vec<[f64; 2]> = heights.map(|(n, o)| [n.along_m, o[1]]).collect();
+    let steps = places.windows(3).zip(&nodes[1..]);
+    let odd = steps.filter_map(|(three, node)| {
+        let [[x0, z0], [x, z], [x1, z1]] = [three[0], three[1], three[2]];
+        let beside = z - z0 - (z1 - z0) * (x - x0) / (x1 - x0);
+        (beside.abs() > STEP_M + STEEPEST * (x1 - x0)).then_some((node, beside))
+    });
+    let (node, beside) = odd.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let text = format!(
+        "node {} lies {:.1} m {} the line between its neighbours",
+        node.name,
+        beside.abs(),
+        if beside > 0.0 { "above" } else { "below" }
+    );
+    Some(
+        Finding::doubt(FindingKind::Contradiction, "nodes", text)
+            .otherwise("nodes of cables and towers are no part of the girder".to_owned()),
+    )
 }
 
 /// Lengths on which the wind acts against the places of their nodes: half of them would be half the wind forces.

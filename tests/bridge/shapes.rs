@@ -1,0 +1,67 @@
+//! Shapes that no girder has: nodes of other parts of a bridge, and nodes that are too few.
+
+use crate::bridges::{TWO, langenuen_text, read};
+use aerodeck::bridge::Bridge;
+use aerodeck::plausibility::of_bridge;
+
+fn langenuen() -> Bridge {
+    read(&langenuen_text("LN21-5200", TWO, "modified_akima")).by_model
+}
+
+fn changed(change: impl Fn(&mut Bridge)) -> Vec<String> {
+    let mut bridge = langenuen();
+    change(&mut bridge);
+    of_bridge(&bridge).iter().map(ToString::to_string).collect()
+}
+
+/// Every second node without rotations was an onset 47 % too high, met without a word.
+#[test]
+fn nodes_that_never_turn_are_doubted() {
+    assert!(changed(|_| {}).is_empty());
+    let every = |step: usize| {
+        changed(move |bridge| {
+            for mode in &mut bridge.modes {
+                mode.shape.iter_mut().step_by(step).for_each(|s| s[2] = 0.0);
+            }
+        })
+    };
+    let found = every(2);
+    assert!(
+        found.iter().any(
+            |f| f.starts_with("modes: 32 of 63 nodes, the first of them 1001, turn in no mode")
+        ),
+        "{found:?}"
+    );
+    // supports
+    let supports = every(31);
+    assert!(
+        !supports.iter().any(|text| text.contains("turn in no mode")),
+        "{supports:?}"
+    );
+}
+
+#[test]
+fn a_shape_that_jumps_at_a_node_is_doubted() {
+    let found = changed(|bridge| bridge.modes[2].shape[30][0] *= -1.0);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        found[0].contains("of its greatest value beside the line between its neighbours"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn nodes_too_far_apart_for_a_mode_are_doubted() {
+    let found = changed(|bridge| {
+        let kept = |i: usize| i.is_multiple_of(15) || i == 62;
+        let mut at = 0..;
+        bridge.nodes.retain(|_| at.next().is_some_and(kept));
+        bridge.groups[0].nodes = (0..bridge.nodes.len()).collect();
+        for mode in &mut bridge.modes {
+            let mut at = 0..;
+            mode.shape.retain(|_| at.next().is_some_and(kept));
+        }
+    });
+    let text = "nodes: neighbouring nodes are up to ";
+    assert!(found.iter().any(|f| f.starts_with(text)), "{found:?}");
+}
