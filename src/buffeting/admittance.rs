@@ -1,5 +1,6 @@
 //! Aerodynamic admittance: the part of the quasi-steady gust force that a gust of finite length exerts.
 
+use crate::aerodynamics::RationalAdmittance;
 use crate::aerodynamics::flat_plate::theodorsen;
 use crate::error::{Result, positive};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -39,7 +40,27 @@ fn benchmark_decay() -> f64 {
     7.0
 }
 
+impl From<RationalAdmittance> for Admittance {
+    fn from(packed: RationalAdmittance) -> Self {
+        match packed {
+            RationalAdmittance::None => Self::None {},
+            RationalAdmittance::Sears => Self::Sears {},
+            RationalAdmittance::Liepmann => Self::Liepmann {},
+        }
+    }
+}
+
 impl Admittance {
+    /// As files spell it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::None {} => "none",
+            Self::Sears {} => "sears",
+            Self::Liepmann {} => "liepmann",
+            Self::Davenport { .. } => "davenport",
+        }
+    }
+
     /// Checks the decay factor.
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
         if let Self::Davenport { decay } = self {

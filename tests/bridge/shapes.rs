@@ -2,7 +2,7 @@
 
 use crate::bridges::{TWO, langenuen_text, read};
 use aerodeck::bridge::Bridge;
-use aerodeck::plausibility::of_bridge;
+use aerodeck::plausibility::{TurbulenceFigures, of_bridge, of_turbulence};
 
 fn langenuen() -> Bridge {
     read(&langenuen_text("LN21-5200", TWO, "modified_akima")).by_model
@@ -64,4 +64,45 @@ fn nodes_too_far_apart_for_a_mode_are_doubted() {
     });
     let text = "nodes: neighbouring nodes are up to ";
     assert!(found.iter().any(|f| f.starts_with(text)), "{found:?}");
+}
+
+/// Gusts in km/h or of another wind, times in milliseconds, and a record of half a second had a response without a word.
+#[test]
+fn turbulence_that_is_none_of_this_wind_is_doubted() {
+    let modes = langenuen().modes;
+    let right = TurbulenceFigures {
+        step_s: 0.1,
+        duration_s: 600.0,
+        deviations_m_s: [3.6, 1.8],
+    };
+    let stated = [Some(0.12), Some(0.06)];
+    let found = |figures: &TurbulenceFigures| -> Vec<String> {
+        let found = of_turbulence(&modes, figures, Some(30.0), stated);
+        found.iter().map(ToString::to_string).collect()
+    };
+    assert!(found(&right).is_empty());
+    let in_km_h = found(&TurbulenceFigures {
+        deviations_m_s: [12.96, 6.48],
+        ..right
+    });
+    assert_eq!(
+        in_km_h[0],
+        "u: standard deviation = 12.96: that is 0.432 of the mean wind of 30 m/s; the intensity that is stated is 0.12; in km/h it \
+         would be 3.6 m/s"
+    );
+    assert_eq!(in_km_h.len(), 2);
+    let in_ms = found(&TurbulenceFigures {
+        step_s: 100.0,
+        duration_s: 6e5,
+        ..right
+    });
+    assert!(in_ms[0].ends_with("in ms it would be 0.1 s"), "{in_ms:?}");
+    let short = found(&TurbulenceFigures {
+        duration_s: 0.5,
+        ..right
+    });
+    assert!(
+        short[0].contains("which does not come into motion in it"),
+        "{short:?}"
+    );
 }

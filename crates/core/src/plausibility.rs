@@ -11,11 +11,14 @@ mod model;
 mod section;
 mod table;
 
-pub use bridge::{Girder, is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile};
+pub use bridge::{
+    Girder, TurbulenceFigures, is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile,
+    of_turbulence,
+};
 pub use coefficients::of_coefficients;
 pub use limits::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
-    ratio_hint,
+    ratio_hint, significant,
 };
 pub use model::{of_model, of_trained};
 pub use section::WIDEST_MODEL_M;

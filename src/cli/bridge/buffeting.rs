@@ -13,6 +13,7 @@ use crate::cli::common::warn;
 use crate::error::{Error, Result};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
+use crate::plausibility::{Finding, sentences};
 use crate::report::sections_page;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
 use crate::verdict::Verdict;
@@ -88,6 +89,7 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     let folder = out.target("");
     let answer = judged(
         &study,
+        &study.findings,
         verdict.as_ref(),
         &text,
         &results,
@@ -159,13 +161,14 @@ fn verdict(study: &BridgeStudy) -> Result<Option<Verdict>> {
 /// The answer with the verdict.
 fn judged(
     study: &BridgeStudy,
+    findings: &[Finding],
     verdict: Option<&Verdict>,
     text: &str,
     results: &impl Serialize,
     answer: impl FnOnce(String, serde_json::Value) -> Result<Answer>,
 ) -> Result<Answer> {
     let json = serde_json::json!({
-        "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": study.findings
+        "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": findings
     });
     let text = headline::stated(&study.file.name, verdict) + text;
     Ok(answer(text, json)?.with_outcome_of(verdict))
@@ -185,7 +188,8 @@ fn by_file(
     };
     let field = read_field(path)?;
     let odd = field.odd_speed(speed).map_err(|e| e.in_file(path))?;
-    warn(path, &Vec::from_iter(odd));
+    let of_field = study.findings_of(&field, Some(speed));
+    warn(path, &[Vec::from_iter(odd), sentences(&of_field)].concat());
     let found = study
         .buffeting_by(block, speed, &field)
         .map_err(|e| e.in_file(path))?;
@@ -199,9 +203,15 @@ fn by_file(
         path.display()
     );
     let verdict = verdict(study)?;
-    judged(study, verdict.as_ref(), &text, &found, |text, json| {
-        Answer::new(text, &json)
-    })
+    let findings = [&study.findings[..], &of_field].concat();
+    judged(
+        study,
+        &findings,
+        verdict.as_ref(),
+        &text,
+        &found,
+        |text, json| Answer::new(text, &json),
+    )
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];

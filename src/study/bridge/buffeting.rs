@@ -11,6 +11,7 @@ use crate::buffeting::{
 };
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
+use crate::plausibility::{Finding, of_turbulence};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -233,6 +234,16 @@ impl BridgeStudy {
             response,
             change,
         })
+    }
+
+    /// What is odd about the turbulence of a file, in a mean wind of `speed_m_s`, m/s, where that is known.
+    pub fn findings_of(&self, field: &FieldTable, speed_m_s: Option<f64>) -> Vec<Finding> {
+        // a block that cannot be read states nothing here; whoever needs it says why
+        let block = self.buffeting_block().ok();
+        let block = block.as_ref();
+        let stated = [block.and_then(|b| b.along), block.and_then(|b| b.vertical)];
+        let stated = stated.map(|gust| gust.map(|g| g.spectrum.intensity));
+        of_turbulence(&self.by_model.modes, &field.figures(), speed_m_s, stated)
     }
 
     /// Response to the turbulence of a file, at the nodes of the bridge.

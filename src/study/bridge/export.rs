@@ -4,6 +4,7 @@ use super::BridgeStudy;
 use super::answers::coupled;
 use crate::aerodynamics::RationalAdmittance;
 use crate::aeroelastic::CoupledSection;
+use crate::buffeting::Admittance;
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
 use crate::flutter::{
@@ -203,6 +204,25 @@ impl BridgeStudy {
                 .collect(),
             source: format!("quasi-steady theory with the static coefficients of {names}"),
         }))
+    }
+
+    /// That gusts are packed with another admittance than `[buffeting]` states for them.
+    pub fn other_admittance(&self, wanted: &BridgeExportOptions) -> Option<String> {
+        if wanted.gust_strips.is_none() && wanted.turbulence.is_none() {
+            return None;
+        }
+        let block = self.buffeting_block().ok()?;
+        let packed = Admittance::from(wanted.admittance);
+        let components = [("u", block.along), ("w", block.vertical)];
+        let stated = components.map(|(name, gust)| Some((name, gust?.admittance)));
+        let mut others = stated.into_iter().flatten().filter(|(_, a)| *a != packed);
+        let (name, stated) = others.next()?;
+        Some(format!(
+            "gusts are packed with the admittance {} on u and w, where [buffeting] states {} for {name}: motions of the FMU are not those \
+             of `bridge buffeting` (--admittance chooses another)",
+            packed.name(),
+            stated.name(),
+        ))
     }
 
     /// A field of a file, one gust per node.

@@ -3,6 +3,7 @@
 mod dampers;
 mod line;
 mod shapes;
+mod turbulence;
 
 use super::limits::{DECK_WIDTH, beyond, significant};
 use super::section::{USUAL_DAMPING, fast_plate, unusual_air, unusual_damping, unusual_radius};
@@ -14,6 +15,7 @@ pub use line::of_profile;
 use line::{LENGTH, length_m, of_line};
 use shapes::of_shapes;
 use std::f64::consts::{PI, TAU};
+pub use turbulence::{TurbulenceFigures, of_turbulence};
 
 /// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
 /// anything as heavy as a bridge is far below this.

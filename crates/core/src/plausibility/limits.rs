@@ -72,7 +72,7 @@ pub fn beyond(key: &str, value: f64, limits: &Limits) -> Option<Finding> {
 }
 
 /// A number with four significant digits and no zeros behind them.
-pub(super) fn significant(x: f64) -> String {
+pub fn significant(x: f64) -> String {
     let short = format!("{x:.3e}");
     let rounded: f64 = short.parse().unwrap_or(x);
     match (1e-6..1e9).contains(&rounded.abs()) || rounded == 0.0 {

@@ -3,11 +3,13 @@
 use super::{ExportKind, FmuExportArgs};
 use crate::cli::answer::Answer;
 use crate::cli::bridge::{self, files::BRIDGE_FMU};
+use crate::cli::common::warn;
 use crate::cli::progress::Progress;
 use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::fmu::package::{BridgeExport, package, package_bridge};
+use crate::plausibility::sentences;
 use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart};
 use crate::verdict::Verdict;
 use std::path::PathBuf;
@@ -82,6 +84,11 @@ impl FmuExportArgs {
             admittance: self.admittance.unwrap_or_default(),
             turbulence: self.turbulence.as_deref().map(read_field).transpose()?,
         };
+        let field = wanted.turbulence.as_ref();
+        let of_field = field.map(|field| study.findings_of(field, field.mean_speed_m_s));
+        let mut odd = sentences(&of_field.unwrap_or_default());
+        odd.extend(study.other_admittance(&wanted));
+        warn(&self.model, &odd);
         let verdict = study.verdict()?;
         let answer = match self.kind {
             ExportKind::Section => {

@@ -2,7 +2,8 @@
 
 use super::table::Table;
 use crate::error::{Error, Place, Result, ensure};
-use crate::plausibility::ratio_hint;
+use crate::plausibility::{TurbulenceFigures, ratio_hint, significant};
+use crate::signal::mean_and_deviation;
 use std::path::Path;
 
 /// Nodes and columns this close are at one place, m: places are written with a few digits.
@@ -53,6 +54,20 @@ impl FieldTable {
         Ok(odd.then(|| {
             format!("the turbulence is that of {mean:.3} m/s, the response at {speed_m_s} m/s")
         }))
+    }
+
+    /// What it holds, in figures: deviations from the mean of each place.
+    pub fn figures(&self) -> TurbulenceFigures {
+        let variance = |row: &Vec<f64>| mean_and_deviation(row.iter().copied()).1.powi(2);
+        let deviation = |rows: &[Vec<f64>]| {
+            let sum: f64 = rows.iter().map(variance).sum();
+            (sum / rows.len() as f64).sqrt()
+        };
+        TurbulenceFigures {
+            step_s: self.step_s,
+            duration_s: self.step_s * self.gusts[0][0].len() as f64,
+            deviations_m_s: [deviation(&self.gusts[0]), deviation(&self.gusts[1])],
+        }
     }
 
     /// The field at other places, m: its own where a place is one of them, else on the straight line between its neighbours.
@@ -152,15 +167,18 @@ fn parse(table: &Table) -> Result<FieldTable> {
 
 fn step(times: &[f64], table: &Table) -> Result<f64> {
     ensure(times.len() >= 3, "", "three samples or more", times.len())?;
-    let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-    let wrong = |t: &[f64]| (t[1] - t[0] - mean).abs() > SAME_STEP * mean.abs().max(t[1].abs());
+    // the usual step: rows that are missing, or one wrong time, are found where they are
+    let mut steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+    let middle = steps.len() / 2;
+    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let wrong = |t: &[f64]| (t[1] - t[0] - usual).abs() > SAME_STEP * usual.abs().max(t[1].abs());
     match times.windows(2).position(wrong) {
-        None if mean > 0.0 => Ok(mean),
+        None if usual > 0.0 => Ok((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64),
         at => {
             let place = Place::line(table.rows[at.unwrap_or(0) + 1].line).column("time_s");
             Err(Error::input(
                 place,
-                format!("times that rise by {mean} s"),
+                format!("times that rise by {} s", significant(usual)),
                 times[at.unwrap_or(0) + 1].to_string(),
             ))
         }
@@ -183,7 +201,7 @@ mod tests {
             (
                 "0.1,",
                 "0.15,",
-                "line 4, column time_s: expected times that rise by 0.1 s",
+                "line 5, column time_s: expected times that rise by",
             ),
             ("u[-10]", "u[here]", "heading, column 2: expected a place"),
         ] {
@@ -192,6 +210,17 @@ mod tests {
                 .to_string();
             assert!(message.contains(expected), "{message}");
         }
+    }
+
+    /// The mean of all steps named the first of the right ones.
+    #[test]
+    fn a_gap_is_found_where_it_is() {
+        let row = |i: usize| format!("{},1,2\n", 0.1 * i as f64);
+        let rows: String = (0..60).filter(|i| !(40..45).contains(i)).map(row).collect();
+        let table = Table::parse(&format!("time_s,u[0],w[0]\n{rows}")).unwrap();
+        let message = parse(&table).unwrap_err().to_string();
+        let expected = "line 42, column time_s: expected times that rise by 0.1 s, found 4.5";
+        assert_eq!(message, expected);
     }
 
     #[test]
