@@ -46,6 +46,7 @@ pub use stationarity::{
 pub use wavelet::{NormalisedWaveletDetails, wavelet, wavelet_normalised};
 
 use crate::error::{Error, Result, counted, ensure, positive};
+use crate::signal::check_finite;
 use serde::Serialize;
 
 /// A reference signal and the signal compared with it, sampled together.
@@ -81,8 +82,8 @@ impl<'a> SignalPair<'a> {
             "at least 2 samples",
             counted(reference.len(), "sample"),
         )?;
-        check_finite("reference signal", reference)?;
-        check_finite("compared signal", compared)?;
+        check_finite("reference signal", 0, reference)?;
+        check_finite("compared signal", 0, compared)?;
         let even = reference.len() & !1;
         Ok(Self {
             reference: &reference[..even],
@@ -109,17 +110,6 @@ impl<'a> SignalPair<'a> {
     /// Number of samples used, even.
     pub const fn sample_count(&self) -> usize {
         self.reference.len()
-    }
-}
-
-fn check_finite(place: &str, signal: &[f64]) -> Result<()> {
-    match signal.iter().position(|x| !x.is_finite()) {
-        None => Ok(()),
-        Some(index) => Err(Error::input(
-            format!("{place}, sample {index}"),
-            "a finite number",
-            signal[index].to_string(),
-        )),
     }
 }
 

@@ -23,7 +23,9 @@ pub use resample::resampled;
 pub use rustfft::num_complex::Complex64;
 pub use samples::mean_and_deviation;
 pub use samples::random_stream;
+pub(crate) use samples::root_mean_square;
 pub use samples::{
-    check_clipping, clipped_stretches, extremes, largest_about_mean, mean, robust_deviation,
+    check_clipping, check_finite, clipped_stretches, extremes, largest_about_mean,
+    largest_magnitude, mean, robust_deviation,
 };
 pub use samples::{median, rate};

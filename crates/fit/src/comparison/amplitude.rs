@@ -2,6 +2,7 @@
 
 use super::{Metric, SignalPair, exponential, warping_path};
 use crate::error::Result;
+use crate::signal::largest_magnitude;
 use serde::Serialize;
 
 /// One level of each signal, in the unit of the signals.
@@ -28,8 +29,10 @@ pub struct DistanceDetails {
 /// # Errors
 /// [`crate::Error::Input`] if the reference is zero throughout.
 pub fn peak(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
-    let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    levels(largest(pair.reference()), largest(pair.compared()))
+    levels(
+        largest_magnitude(pair.reference()),
+        largest_magnitude(pair.compared()),
+    )
 }
 
 /// RMS metric `M_rms = exp(−|rms₁ − rms₂|/rms₁)`; means are not removed.
@@ -60,7 +63,14 @@ pub(super) fn distance_metric(
     pairs: impl Iterator<Item = (f64, f64)> + Clone,
 ) -> Result<Metric<DistanceDetails>> {
     let distance = norm(pairs.clone().map(|(a, b)| a - b));
-    let reference_norm = norm(pairs.map(|(a, _)| a));
+    relative_distance(distance, norm(pairs.map(|(a, _)| a)))
+}
+
+/// `exp(−distance/reference_norm)`.
+pub(super) fn relative_distance(
+    distance: f64,
+    reference_norm: f64,
+) -> Result<Metric<DistanceDetails>> {
     Ok(Metric {
         value: exponential(distance, reference_norm)?,
         details: DistanceDetails {
@@ -68,6 +78,28 @@ pub(super) fn distance_metric(
             reference_norm,
         },
     })
+}
+
+/// The same as [`distance_metric`] over contents `≥ 0` that a signal may have none of: 1 where neither has any, 0 where one has.
+pub(super) fn content_metric(
+    pairs: impl Iterator<Item = (f64, f64)> + Clone,
+) -> Result<Metric<DistanceDetails>> {
+    let nothing = |value| Metric {
+        value,
+        details: DistanceDetails {
+            distance: 0.0,
+            reference_norm: 0.0,
+        },
+    };
+    let (first, second) = (
+        pairs.clone().any(|p| p.0 > 0.0),
+        pairs.clone().any(|p| p.1 > 0.0),
+    );
+    match (first, second) {
+        (true, true) => distance_metric(pairs),
+        (false, false) => Ok(nothing(1.0)),
+        _ => Ok(nothing(0.0)),
+    }
 }
 
 fn levels(reference: f64, compared: f64) -> Result<Metric<LevelDetails>> {

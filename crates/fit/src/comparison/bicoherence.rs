@@ -1,6 +1,6 @@
 //! Metric of quadratic phase coupling.
 
-use super::amplitude::distance_metric;
+use super::amplitude::content_metric;
 use super::morlet::{Morlet, RowBuffer, WaveletParameters};
 use super::{Metric, SignalPair};
 use crate::error::{Result, ensure, non_negative, positive};
@@ -98,19 +98,11 @@ pub fn bicoherence(
             compared,
         })
         .collect();
-    let exists = |level: fn(&Coupling) -> f64| couplings.iter().any(|c| level(c) > 0.0);
-    let value = match (exists(|c| c.reference), exists(|c| c.compared)) {
-        (false, false) => 1.0,
-        (true, true) => {
-            let roots = couplings
-                .iter()
-                .map(|c| (c.reference.sqrt(), c.compared.sqrt()));
-            distance_metric(roots)?.value
-        }
-        _ => 0.0,
-    };
+    let roots = couplings
+        .iter()
+        .map(|c| (c.reference.sqrt(), c.compared.sqrt()));
     Ok(Metric {
-        value,
+        value: content_metric(roots)?.value,
         details: BicoherenceDetails {
             couplings,
             thresholds: [first.1, second.1],

@@ -8,7 +8,7 @@
 
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, ensure};
-use crate::signal::{Complex64, Fourier, extremes, mean_and_deviation};
+use crate::signal::{Complex64, Fourier, extremes, largest_magnitude, mean_and_deviation};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -80,7 +80,7 @@ pub fn probability_density(
 /// The values themselves or their standard scores.
 fn values(place: &str, signal: &[f64], parameters: &DensityParameters) -> Result<Vec<f64>> {
     let (mean, deviation) = mean_and_deviation(signal.iter().copied());
-    let largest = signal.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let largest = largest_magnitude(signal);
     // The deviation of a constant is the rounding error of its mean.
     ensure(
         deviation > 1e-12 * largest,

@@ -1,6 +1,6 @@
 //! Metric of non-stationary content.
 
-use super::amplitude::{DistanceDetails, distance_metric};
+use super::amplitude::{DistanceDetails, content_metric};
 use super::morlet::{LevelGroup, Morlet, RowBuffer, WaveletParameters};
 use super::scalogram::{Moments, Scalogram};
 use super::surrogates::{Gamma, phase_randomised};
@@ -91,7 +91,7 @@ pub fn stationarity(
     let value = match (reference.stationary, compared.stationary) {
         (true, true) => 1.0,
         (false, false) => {
-            let metric = content_metric(&plan, &signals)?;
+            let metric = of_contents(&plan, &signals)?;
             content = Some(metric.details);
             metric.value
         }
@@ -214,26 +214,14 @@ impl<'a> Surrogates<'a> {
     }
 }
 
-fn content_metric(plan: &Morlet, signals: &[Surrogates<'_>; 2]) -> Result<Metric<DistanceDetails>> {
+/// The wavelet metric of the non-stationary content.
+fn of_contents(plan: &Morlet, signals: &[Surrogates<'_>; 2]) -> Result<Metric<DistanceDetails>> {
     let groups = plan.by_groups(|group| {
         let [first, second] = [&signals[0], &signals[1]].map(|s| s.content(plan, &group));
         let pairs = first.into_iter().zip(second);
         pairs.filter(|p| *p != (0.0, 0.0)).collect::<Vec<_>>()
     });
-    let pairs = || groups.iter().flatten().copied();
-    let nothing = |value| Metric {
-        value,
-        details: DistanceDetails {
-            distance: 0.0,
-            reference_norm: 0.0,
-        },
-    };
-    let (first, second) = (pairs().any(|p| p.0 > 0.0), pairs().any(|p| p.1 > 0.0));
-    match (first, second) {
-        (true, true) => distance_metric(pairs()),
-        (false, false) => Ok(nothing(1.0)),
-        _ => Ok(nothing(0.0)),
-    }
+    content_metric(groups.iter().flatten().copied())
 }
 
 #[cfg(test)]

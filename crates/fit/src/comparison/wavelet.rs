@@ -1,6 +1,6 @@
 //! Metrics of amplitude over time and frequency.
 
-use super::amplitude::DistanceDetails;
+use super::amplitude::{DistanceDetails, relative_distance};
 use super::morlet::{LevelGroup, Morlet, RowBuffer, WaveletParameters};
 use super::{Metric, SignalPair, exponential, zero_signal};
 use crate::error::Result;
@@ -31,14 +31,7 @@ pub fn wavelet(
         [distance, reference]
     });
     let norm = |k: usize| sums.iter().map(|s| s[k]).sum::<f64>().sqrt();
-    let (distance, reference_norm) = (norm(0), norm(1));
-    Ok(Metric {
-        value: exponential(distance, reference_norm)?,
-        details: DistanceDetails {
-            distance,
-            reference_norm,
-        },
-    })
+    relative_distance(norm(0), norm(1))
 }
 
 /// Frequency-normalised wavelet metric `M_wf`: how the content moves in frequency, whatever its amplitude.

@@ -2,6 +2,7 @@
 
 use super::design::Block;
 use super::speed_prior::POINTS_OF_A_SPEED;
+use crate::signal::mean;
 use crate::units::{SAME_SPEED, group_of, near_groups};
 
 /// Reduced frequencies closer than this ratio are one test point, as in tables.
@@ -14,18 +15,16 @@ pub(super) fn speed_groups(blocks: &[Block]) -> Option<(Vec<usize>, Vec<f64>)> {
     if groups.len() < 2 {
         return None;
     }
-    let mean = |g: &Vec<f64>| g.iter().sum::<f64>() / g.len() as f64;
     Some((
         speeds.into_iter().map(|v| group_of(&groups, v)).collect(),
-        groups.iter().map(mean).collect(),
+        groups.iter().map(|g| mean(g)).collect(),
     ))
 }
 
 /// The speed of all blocks, if they have one.
 pub(super) fn only_speed(blocks: &[Block]) -> Vec<f64> {
     let speeds: Option<Vec<f64>> = blocks.iter().map(|b| b.speed_m_s).collect();
-    let mean = |all: Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
-    speeds.map(mean).into_iter().collect()
+    speeds.map(|all| mean(&all)).into_iter().collect()
 }
 
 /// Reduced frequencies that the blocks of every group have; `None` when they share none or do not say.

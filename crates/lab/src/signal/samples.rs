@@ -1,6 +1,6 @@
 //! Plain statistics and rates of samples: median and robust scatter, clipping, central differences; streams of random numbers.
 
-use crate::error::{Result, ensure};
+use crate::error::{Result, ensure, finite};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -25,6 +25,17 @@ pub fn mean_and_deviation(values: impl ExactSizeIterator<Item = f64> + Clone) ->
     let mean = values.clone().sum::<f64>() / count;
     let squares: f64 = values.map(|v| (v - mean).powi(2)).sum();
     (mean, (squares / (count - 1.0)).sqrt())
+}
+
+/// Largest magnitude of a value; zero for none.
+pub fn largest_magnitude(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// Root mean square; zero for none.
+pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
+    let squares: f64 = values.iter().map(|v| v * v).sum();
+    (squares / values.len().max(1) as f64).sqrt()
 }
 
 /// Largest distance of a value from the mean of all.
@@ -58,6 +69,20 @@ pub fn robust_deviation(values: &[f64]) -> f64 {
     let centre = median(values);
     let distances: Vec<f64> = values.iter().map(|x| (x - centre).abs()).collect();
     NORMAL_MAD * median(&distances)
+}
+
+/// Refuses samples of a channel that are no finite numbers; `before` so many samples precede these.
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) at the first of them.
+pub fn check_finite(channel: &str, before: usize, samples: &[f64]) -> Result<()> {
+    match samples.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(bad) => {
+            let place = format!("{channel}, sample {}", before + bad);
+            finite(place, samples[bad]).map(|_| ())
+        }
+    }
 }
 
 /// So many equal samples at the extreme of a channel are a converter at its limit: 0.04 s at 200 Hz.

@@ -12,7 +12,7 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
-use crate::signal::random_stream;
+use crate::signal::{largest_magnitude, random_stream};
 use nalgebra::Complex;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -76,7 +76,7 @@ impl UnitMotion {
     ) -> Self {
         let (lines, duration_s) = Lines::new(motion, frequencies_hz, timing, seed);
         let on_time = lines.samples(duration_s, timing, 0.0);
-        let largest = on_time[0].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = largest_magnitude(&on_time[0]);
         let unit = |x: Vec<f64>| -> Vec<f64> {
             let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
             x.into_iter().map(|x| scale * x).collect()

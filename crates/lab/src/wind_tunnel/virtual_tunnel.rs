@@ -23,7 +23,7 @@ use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Result, positive};
 use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::section::Dof;
-use crate::signal::random_stream;
+use crate::signal::{random_stream, root_mean_square};
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -354,8 +354,7 @@ impl TunnelPlan {
         };
         let fresh = (1.0 - memory * memory).sqrt();
         for force in &mut record.force {
-            let mean_square = force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64;
-            let deviation = self.noise_fraction * mean_square.sqrt();
+            let deviation = self.noise_fraction * root_mean_square(force);
             let mut noise: f64 = StandardNormal.sample(&mut random);
             for (k, f) in force.iter_mut().enumerate() {
                 if k > 0 {

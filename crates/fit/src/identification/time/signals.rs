@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::signal::check_clipping;
+use crate::signal::{check_clipping, check_finite};
 use crate::wind_tunnel::RecordSource;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use std::fs::File;
@@ -137,12 +137,8 @@ impl Signals {
         record.for_each_block(&mut |block| {
             let channels: Vec<&Vec<f64>> = block.motion.iter().chain(block.force).collect();
             for (c, channel) in channels.iter().enumerate() {
-                if let Some(k) = channel.iter().position(|v| !v.is_finite()) {
-                    let at = signals.rows() + k;
-                    let place = format!("record {}, channel {}, sample {at}", header.name, c + 1);
-                    let found = channel[k].to_string();
-                    return Err(Error::input(place, "a finite number", found));
-                }
+                let place = format!("record {}, channel {}", header.name, c + 1);
+                check_finite(&place, signals.rows(), channel)?;
             }
             signals.extend(channels[0].len(), |c, k| channels[c][k])
         })?;

@@ -9,7 +9,7 @@ use crate::plausibility::{
     ratio_hint,
 };
 use crate::section::Dof;
-use crate::signal::{clipped_stretches, extremes, mean};
+use crate::signal::{clipped_stretches, extremes, largest_magnitude, mean};
 use crate::wind_tunnel::{RawRecording, RawRun};
 use serde::Serialize;
 use std::fmt;
@@ -240,7 +240,7 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
                 &MODEL_LENGTH,
             ));
             for (i, cell) in rig.cells.iter().enumerate() {
-                let farthest = cell.position_m.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let farthest = largest_magnitude(&cell.position_m);
                 let key = format!("rig.cells[{i}].position_m");
                 said.push(beyond(&key, farthest, &MODEL_LENGTH).filter(|_| farthest > 1.0));
             }

@@ -1,8 +1,8 @@
 //! What a raw run must be before anything is computed from it.
 
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
-use crate::signal::check_clipping;
+use crate::signal::{check_clipping, check_finite};
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, SAMPLES_AT_LEAST};
 use serde::{Deserialize, Serialize};
 
@@ -148,13 +148,7 @@ fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<(
             format_args!("{count} samples, as the first force channel"),
             samples.len(),
         )?;
-        if let Some(k) = samples.iter().position(|x| !x.is_finite()) {
-            return Err(Error::input(
-                format!("{place}, {name}, sample {k}"),
-                "a finite number",
-                samples[k].to_string(),
-            ));
-        }
+        check_finite(&format!("{place}, {name}"), 0, samples)?;
     }
     Ok(())
 }

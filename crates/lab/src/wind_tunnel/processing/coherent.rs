@@ -6,6 +6,7 @@
 
 use super::signals::HarmonicSegment;
 use crate::error::{Error, Result};
+use crate::signal::largest_magnitude;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -37,7 +38,7 @@ impl Regressors {
         degree: usize,
     ) -> Self {
         let scaled = |x: Vec<f64>| {
-            let size = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            let size = largest_magnitude(&x);
             let factor = if size > 0.0 { 1.0 / size } else { 0.0 };
             x.into_iter().map(|v| v * factor).collect::<Vec<f64>>()
         };

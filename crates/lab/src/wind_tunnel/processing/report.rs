@@ -8,11 +8,12 @@ use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
-use super::signals::{HarmonicSegment, Level, SectionSignals, level};
+use super::signals::{HarmonicSegment, SectionSignals};
 use super::spikes::{CLIPPED, Replaced};
 use super::still_air::{Alignment, RemovedInertia};
 use crate::error::{Result, ensure};
 use crate::section::Dof;
+use crate::signal::{largest_magnitude, root_mean_square};
 use crate::wind_tunnel::{RawRun, Rig};
 use serde::{Deserialize, Serialize};
 
@@ -29,11 +30,10 @@ pub struct StageLevels {
 
 impl StageLevels {
     pub(super) fn new(stage: &str, signals: &SectionSignals) -> Self {
-        let levels: [Level; 3] = std::array::from_fn(|d| level(&signals.force[d]));
         Self {
             stage: stage.to_owned(),
-            peak: levels.map(|l| l.peak),
-            rms: levels.map(|l| l.rms),
+            peak: signals.force.each_ref().map(|f| largest_magnitude(f)),
+            rms: signals.force.each_ref().map(|f| root_mean_square(f)),
         }
     }
 }

@@ -9,9 +9,9 @@
 //! Noise of a sensor, or the foot of a filter, is not that first motion. So before the first and after the last segment the motion
 //! is zero, and a channel that moves by less than a part of the driven one is zero throughout.
 
-use super::signals::{HarmonicSegment, SectionSignals, index, level};
+use super::signals::{HarmonicSegment, SectionSignals, index};
 use crate::section::Dof;
-use crate::signal::mean;
+use crate::signal::{mean, root_mean_square};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -33,10 +33,7 @@ pub(crate) fn still_the_rest(
     negligible: f64,
 ) -> CrossTalk {
     let count = signals.len();
-    let size = |d: Dof| {
-        let rms = level(&signals.motion[index(d)]).rms;
-        rms * d.motion_scale(width_m)
-    };
+    let size = |d: Dof| root_mean_square(&signals.motion[index(d)]) * d.motion_scale(width_m);
     let own = size(driven).max(f64::MIN_POSITIVE);
     let parts = Dof::THREE.map(|d| size(d) / own);
     let removed = parts.map(|p| p < negligible);

@@ -1,19 +1,17 @@
 //! One run through all stages.
 
-use super::cells::CellShare;
 use super::coherent::{Parts, Regressors};
-use super::drift::CellDrift;
 use super::options::ProcessingOptions;
 use super::prepare::PreparedRun;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
 use super::rest::{CrossTalk, RemovedMeans, Rest, remove_means, rest, still_the_rest};
-use super::signals::{HarmonicSegment, SectionSignals, level};
+use super::signals::{HarmonicSegment, SectionSignals};
 use super::still_air::{Alignment, RemovedInertia};
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
 use crate::Error;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::signal::{ButterworthLowPass, delayed, extremes};
+use crate::signal::{ButterworthLowPass, delayed, extremes, root_mean_square};
 use crate::wind_tunnel::{RawCampaign, RawRecording, Record, Rig};
 use std::ops::Range;
 
@@ -35,17 +33,6 @@ pub(crate) struct ProcessedRun {
     pub report: RunReport,
     /// Signals after each stage.
     pub stages: Vec<StageSignals>,
-}
-
-/// Both recordings in step, in global axes, about the centre of rotation.
-struct AlignedRecordings {
-    wind: SectionSignals,
-    still_air: SectionSignals,
-    shares: Vec<CellShare>,
-    covered: Range<usize>,
-    /// `None` without a recording in still air.
-    alignment: Option<Alignment>,
-    cell_drift: Vec<CellDrift>,
 }
 
 /// Takes a prepared run through all stages.
@@ -91,7 +78,8 @@ struct RunInProgress<'a> {
 }
 
 impl<'a> RunInProgress<'a> {
-    /// Stages 3 to 6.
+    /// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells. Both recordings in step, in global axes, about the centre of
+    /// rotation.
     fn in_step(
         prepared: &'a PreparedRun<'a>,
         rig: &'a Rig,
@@ -99,26 +87,52 @@ impl<'a> RunInProgress<'a> {
         options: &'a ProcessingOptions,
     ) -> Result<Self> {
         let (run, findings) = (prepared.run, &prepared.findings);
-        let start = in_step(prepared, rig, lag_s, options.drift_degree)?;
-        let covered = start.covered;
-        let offset = start.alignment.map_or(0.0, |a| a.offset_samples);
+        let ready = |recording: &RawRecording, segments: &[HarmonicSegment], what: &str| {
+            let mut recording = without_lag(recording, lag_s);
+            let motion = still_air::from_rest(&recording.motion[index(prepared.dof)]);
+            let (rotation, degree) = (rotation(&recording), options.drift_degree);
+            let drift =
+                drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)
+                    .map_err(|e| of_recording(e, &run.name, what))?;
+            Ok::<_, Error>((recording, drift))
+        };
+        let (mut wind, cell_drift) = ready(&run.in_wind, &prepared.segments, "in wind")?;
+        let (mut covered, mut alignment, mut still) = (0..wind.sample_count(), None, None);
+        if let Some(recording) = &run.still_air {
+            let (recording, _) = ready(recording, &prepared.still_segments, "still air")?;
+            let aligned = still_air::align(&run.name, &wind, &recording, prepared.dof)?;
+            covered = aligned.covered;
+            alignment = Some(aligned.alignment);
+            let within = |x: &[f64]| x[covered.clone()].to_vec();
+            wind = wind.map(within);
+            still = Some(aligned.still_air.map(within));
+        }
+        let (signals, cells) = on_the_model(&wind, rig);
+        let still_air = match still {
+            Some(still) => on_the_model(&still, rig).0,
+            None => SectionSignals {
+                force: signals.force.each_ref().map(|f| vec![0.0; f.len()]),
+                ..signals.clone()
+            },
+        };
+        let offset = alignment.map_or(0.0, |a: Alignment| a.offset_samples);
         let clipped = [&findings.clipped_in_wind, &findings.clipped_still_air];
         let report = RunReport {
             run: run.name.clone(),
             dof: prepared.dof,
-            sampling_hz: start.wind.sampling_hz,
+            sampling_hz: signals.sampling_hz,
             samples: run.in_wind.sample_count(),
             cut: [covered.start, run.in_wind.sample_count() - covered.end],
             clipped: clipped.into_iter().flatten().cloned().collect(),
             segments: prepared.covered_segments(&covered)?,
             still_air: prepared.still_air.clone(),
             lag_corrected_s: lag_s,
-            alignment: start.alignment,
-            cells: start.shares,
+            alignment,
+            cells,
             means: RemovedMeans::default(),
             inertia: RemovedInertia::default(),
             replaced: Vec::new(),
-            cell_drift: start.cell_drift,
+            cell_drift,
             drift: RemovedDrift::default(),
             low_pass: None,
             cross_talk: CrossTalk::default(),
@@ -133,8 +147,8 @@ impl<'a> RunInProgress<'a> {
             prepared,
             rig,
             options,
-            signals: start.wind,
-            still_air: start.still_air,
+            signals,
+            still_air,
             report,
             stages: Vec::new(),
         };
@@ -244,54 +258,6 @@ impl<'a> RunInProgress<'a> {
     }
 }
 
-/// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells.
-fn in_step(
-    prepared: &PreparedRun<'_>,
-    rig: &Rig,
-    lag_s: f64,
-    degree: usize,
-) -> Result<AlignedRecordings> {
-    let run = prepared.run;
-    let ready = |recording: &RawRecording, segments: &[HarmonicSegment], what: &str| {
-        let mut recording = without_lag(recording, lag_s);
-        let motion = still_air::from_rest(&recording.motion[index(prepared.dof)]);
-        let rotation = rotation(&recording);
-        let drift =
-            drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)
-                .map_err(|e| of_recording(e, &run.name, what))?;
-        Ok::<_, Error>((recording, drift))
-    };
-    let (wind, cell_drift) = ready(&run.in_wind, &prepared.segments, "in wind")?;
-    let Some(still) = &run.still_air else {
-        let (wind, shares) = on_the_model(&wind, rig);
-        let nothing = wind.force.each_ref().map(|f| vec![0.0; f.len()]);
-        return Ok(AlignedRecordings {
-            still_air: SectionSignals {
-                force: nothing,
-                ..wind.clone()
-            },
-            covered: 0..wind.len(),
-            wind,
-            shares,
-            alignment: None,
-            cell_drift,
-        });
-    };
-    let (still, _) = ready(still, &prepared.still_segments, "still air")?;
-    let aligned = still_air::align(&run.name, &wind, &still, prepared.dof)?;
-    let covered = aligned.covered;
-    let (wind, shares) = on_the_model(&wind.map(|x| x[covered.clone()].to_vec()), rig);
-    let (still_air, _) = on_the_model(&aligned.still_air.map(|x| x[covered.clone()].to_vec()), rig);
-    Ok(AlignedRecordings {
-        wind,
-        still_air,
-        shares,
-        covered,
-        alignment: Some(aligned.alignment),
-        cell_drift,
-    })
-}
-
 /// An error of a computation, with the recording that it is of.
 fn of_recording(error: Error, run: &str, what: &str) -> Error {
     match error {
@@ -355,7 +321,7 @@ fn noise_ratio(
         let rest: Vec<f64> = steady()
             .map(|k| signals.force[d][k] - parts[d].coherent[k])
             .collect();
-        let (signal, noise) = (level(&coherent).rms, level(&rest).rms);
+        let (signal, noise) = (root_mean_square(&coherent), root_mean_square(&rest));
         if signal > 0.0 && noise > 0.0 {
             20.0 * (signal / noise).log10()
         } else {

@@ -9,7 +9,7 @@ use super::options::SegmentOptions;
 use super::signals::HarmonicSegment;
 use crate::error::{Result, ensure};
 use crate::section::Dof;
-use crate::signal::{largest_about_mean, median, plateau, refine_frequency};
+use crate::signal::{largest_about_mean, largest_magnitude, median, plateau, refine_frequency};
 use crate::wind_tunnel::{RawRecording, Segment};
 
 /// Passages are counted from and to this part of the amplitude.
@@ -43,7 +43,7 @@ pub(crate) fn find_segments(
     sampling_hz: f64,
     options: &SegmentOptions,
 ) -> Vec<HarmonicSegment> {
-    let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let amplitude = largest_magnitude(motion);
     let passages = upward_passages(motion, HYSTERESIS * amplitude);
     let groups = groups_of_one_period(&passages);
     let mut found = Vec::new();
@@ -93,7 +93,7 @@ pub(crate) fn find_segments(
 /// said, whatever moves.
 pub(crate) fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
     let motion = super::still_air::from_rest(&recording.motion[super::index(dof)]);
-    let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let amplitude = largest_magnitude(&motion);
     let periods = upward_passages(&motion, HYSTERESIS * amplitude)
         .len()
         .saturating_sub(1);

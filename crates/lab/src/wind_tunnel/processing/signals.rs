@@ -52,24 +52,6 @@ impl SectionSignals {
     }
 }
 
-/// How large a signal is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Level {
-    /// Greatest absolute value.
-    pub peak: f64,
-    /// Root mean square.
-    pub rms: f64,
-}
-
-/// How large `x` is.
-pub(crate) fn level(x: &[f64]) -> Level {
-    let square: f64 = x.iter().map(|v| v * v).sum();
-    Level {
-        peak: x.iter().fold(0.0_f64, |m, v| m.max(v.abs())),
-        rms: (square / x.len().max(1) as f64).sqrt(),
-    }
-}
-
 /// One record of the run, or one per segment when ramps are cut.
 pub(super) fn records(
     campaign: &RawCampaign,

@@ -11,7 +11,7 @@ use super::options::SpikeOptions;
 use super::signals::SectionSignals;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::signal::{ButterworthLowPass, robust_deviation};
+use crate::signal::{ButterworthLowPass, largest_magnitude, robust_deviation};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -69,7 +69,7 @@ pub(crate) fn remove_spikes(
         let mut added = false;
         let scale = |d: usize| Dof::THREE[d].force_scale(width_m) / width_m;
         let greatest = (0..parts.len())
-            .map(|d| greatest(&parts[d].coherent) / scale(d))
+            .map(|d| largest_magnitude(&parts[d].coherent) / scale(d))
             .fold(0.0, f64::max);
         for (d, part) in parts.iter().enumerate() {
             let least = NEGLIGIBLE * greatest * scale(d);
@@ -156,14 +156,14 @@ fn outliers(
     }
     stretches.push(at..residual.len());
     // a rest has no force that follows the motion: what counts there is that of the recording
-    let overall = greatest(&part.coherent);
+    let overall = largest_magnitude(&part.coherent);
     for (i, range) in stretches.into_iter().enumerate() {
         if range.is_empty() {
             continue;
         }
         let deviation = robust_deviation(&residual[range.clone()]);
         let follows = if i % 2 == 1 {
-            greatest(&part.coherent[range.clone()])
+            largest_magnitude(&part.coherent[range.clone()])
         } else {
             overall
         };
@@ -173,10 +173,6 @@ fn outliers(
         found.extend(range.filter(|k| residual[*k].abs() > limit));
     }
     found
-}
-
-fn greatest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 fn replace(

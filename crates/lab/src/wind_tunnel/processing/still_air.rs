@@ -9,10 +9,10 @@
 //! after both are in global axes, about the centre of rotation and in step. The mass of the air that moves with the model in
 //! still air leaves with it: the derivatives are those of wind against still air, as in every such test.
 
-use super::signals::{SectionSignals, level};
+use super::signals::SectionSignals;
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
-use crate::signal::{delay, delayed};
+use crate::signal::{delay, delayed, root_mean_square};
 use crate::wind_tunnel::RawRecording;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -132,7 +132,7 @@ pub(crate) fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals)
     for (wind, still) in in_wind.force.iter_mut().zip(&still_air.force) {
         wind.iter_mut().zip(still).for_each(|(w, s)| *w -= s);
     }
-    let rms = |s: &SectionSignals| std::array::from_fn(|d| level(&s.force[d]).rms);
+    let rms = |s: &SectionSignals| s.force.each_ref().map(|f| root_mean_square(f));
     RemovedInertia {
         removed_rms: rms(still_air),
         left_rms: rms(in_wind),

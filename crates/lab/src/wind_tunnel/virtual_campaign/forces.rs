@@ -3,6 +3,7 @@
 
 use super::plan::{Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence};
 use super::truth::AppliedSpike;
+use crate::signal::largest_magnitude;
 use crate::wind_tunnel::{Record, Segment};
 use nalgebra::{Rotation3, Vector3};
 use rand::Rng;
@@ -163,8 +164,7 @@ pub(super) fn place_spike(
     let last = ((middle + 0.5 * spike.duration_s) * rate).floor() as usize;
     let range = (segment.start_s * rate) as usize..(segment.end_s * rate) as usize;
     let largest = |force: Option<&[f64]>| {
-        let of_segment = force.and_then(|f| f.get(range.clone())).unwrap_or(&[]);
-        of_segment.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
+        largest_magnitude(force.and_then(|f| f.get(range.clone())).unwrap_or(&[]))
     };
     Some(AppliedSpike {
         first,

@@ -10,7 +10,7 @@ use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
-use crate::signal::random_stream;
+use crate::signal::{random_stream, root_mean_square};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::virtual_forces::TransferColumn;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record};
@@ -161,11 +161,7 @@ impl<'a> RunInMaking<'a> {
         let d = &plan.disturbances;
         let forces = [Dof::Lateral, Dof::Vertical, Dof::Torsion].map(|d| force_of(record, d));
         let length = plan.support.model_length_m;
-        let rms = |force: Option<&[f64]>| {
-            let force = force.unwrap_or(&[]);
-            let square: f64 = force.iter().map(|f| f * f).sum();
-            (square / force.len().max(1) as f64).sqrt()
-        };
+        let rms = |force: Option<&[f64]>| root_mean_square(force.unwrap_or(&[]));
         let mut run = Self {
             plan,
             index,
