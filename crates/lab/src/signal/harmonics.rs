@@ -82,12 +82,8 @@ pub fn fit_harmonics(
         format_args!("samples within 0 to {}", signal.len()),
         format_args!("{} to {}", range.start, range.end),
     )?;
-    let mut regressors = HarmonicRegressors {
-        centre: 0.5 * (range.start + range.end - 1) as f64,
-        half: (0.5 * range.len() as f64).max(1.0),
-        turns: Turns::new(TAU * frequency_hz / sampling_hz),
-        harmonics,
-    };
+    let angle = TAU * frequency_hz / sampling_hz;
+    let mut regressors = HarmonicRegressors::new(&range, angle, harmonics);
     let unknowns = regressors.unknowns();
     let mut gram = DMatrix::zeros(unknowns, unknowns);
     let mut moments = DVector::zeros(unknowns);
@@ -130,17 +126,35 @@ pub fn fit_harmonics(
     })
 }
 
+/// Samples of a block.
+const BLOCK: usize = 64;
+
 /// Constant, trend, then cosine and sine of each harmonic.
 struct HarmonicRegressors {
     /// Middle of the stretch, and half of its length, samples.
     centre: f64,
     half: f64,
-    /// Of the first harmonic.
-    turns: Turns,
     harmonics: usize,
+    /// Angle `θ` of the first harmonic from sample to sample.
+    angle: f64,
+    /// `e^{iθk}` of the samples of the first block.
+    turns: [Complex<f64>; BLOCK],
+    /// Number of the block that was asked for last, and the turn of its first sample.
+    block: (usize, Complex<f64>),
 }
 
 impl HarmonicRegressors {
+    fn new(range: &Range<usize>, angle: f64, harmonics: usize) -> Self {
+        Self {
+            centre: 0.5 * (range.start + range.end - 1) as f64,
+            half: (0.5 * range.len() as f64).max(1.0),
+            harmonics,
+            angle,
+            turns: std::array::from_fn(|k| Complex::cis(angle * k as f64)),
+            block: (0, Complex::new(1.0, 0.0)),
+        }
+    }
+
     fn unknowns(&self) -> usize {
         2 + 2 * self.harmonics
     }
@@ -149,7 +163,7 @@ impl HarmonicRegressors {
     fn at(&mut self, k: usize, row: &mut [f64]) {
         row[0] = 1.0;
         row[1] = (k as f64 - self.centre) / self.half;
-        let turn = self.turns.at(k);
+        let turn = self.turn(k);
         let mut power = Complex::new(1.0, 0.0);
         for n in 0..self.harmonics {
             power *= turn;
@@ -157,34 +171,15 @@ impl HarmonicRegressors {
             row[3 + 2 * n] = -power.im;
         }
     }
-}
 
-/// `e^{iθk}` at one sample after the other: that of the first of a block of samples times that of the place in the block.
-struct Turns {
-    angle: f64,
-    places: [Complex<f64>; Self::BLOCK],
-    /// Number of the block, and its first turn.
-    block: (usize, Complex<f64>),
-}
-
-impl Turns {
-    const BLOCK: usize = 64;
-
-    fn new(angle: f64) -> Self {
-        Self {
-            angle,
-            places: std::array::from_fn(|k| Complex::cis(angle * k as f64)),
-            block: (0, Complex::new(1.0, 0.0)),
-        }
-    }
-
-    fn at(&mut self, k: usize) -> Complex<f64> {
-        let block = k / Self::BLOCK;
+    /// `e^{iθk}`: that of the first sample of a block times that of the place in the block.
+    fn turn(&mut self, k: usize) -> Complex<f64> {
+        let block = k / BLOCK;
         if self.block.0 != block {
-            let first = (block * Self::BLOCK) as f64;
+            let first = (block * BLOCK) as f64;
             self.block = (block, Complex::cis(self.angle * first));
         }
-        self.block.1 * self.places[k % Self::BLOCK]
+        self.block.1 * self.turns[k % BLOCK]
     }
 }
 

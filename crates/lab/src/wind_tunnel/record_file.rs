@@ -152,17 +152,14 @@ fn push_number(text: &mut String, x: f64) {
 }
 
 /// What stands between commas; as `split(',')`, without its search for characters of any size.
-struct Cells<'a>(Option<&'a str>);
-
-impl<'a> Iterator for Cells<'a> {
-    type Item = &'a str;
-
-    fn next(&mut self) -> Option<&'a str> {
-        let rest = self.0?;
+fn cells(line: &str) -> impl Iterator<Item = &str> {
+    let mut left = Some(line);
+    std::iter::from_fn(move || {
+        let rest = left?;
         let comma = rest.bytes().position(|b| b == b',');
-        self.0 = comma.map(|at| &rest[at + 1..]);
+        left = comma.map(|at| &rest[at + 1..]);
         Some(comma.map_or(rest, |at| &rest[..at]))
-    }
+    })
 }
 
 /// Rows being collected into a block.
@@ -219,7 +216,7 @@ impl<'a> RecordRows<'a> {
         if line.trim().is_empty() {
             return Ok(());
         }
-        let mut cells = Cells(Some(line));
+        let mut cells = cells(line);
         for (column, channel) in self.columns.channels.iter().enumerate() {
             let cell = cells.next().ok_or_else(|| self.unequal(line))?;
             let value = cell.parse().or_else(|_| cell.trim().parse::<f64>());

@@ -12,13 +12,6 @@ use std::borrow::Cow;
 /// A row of a thousand channels has 20 kB.
 const LINE_BYTES_AT_MOST: usize = 1 << 20;
 
-/// How cells and numbers are written.
-#[derive(Debug, Clone, Copy)]
-struct Style {
-    separator: u8,
-    decimal_comma: bool,
-}
-
 /// Reads the text of a CSV file.
 ///
 /// # Errors
@@ -33,9 +26,10 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     let start = take_comments(bytes, &mut set);
     let (skipped, rest) = (count_lines(&bytes[..start]), &bytes[start..]);
     check_lines(rest, skipped)?;
-    let style = Style::detect(rest);
+    let separator = separator(rest);
+    let decimal_comma = separator != b',';
     let mut reader = csv::ReaderBuilder::new()
-        .delimiter(style.separator)
+        .delimiter(separator)
         .has_headers(false)
         .flexible(true)
         .from_reader(rest);
@@ -49,7 +43,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
             Err(e) => return Err(Error::input(Place::line(line), "a row", e.to_string())),
         }
         match &mut table {
-            None => table = Some(ChannelTable::begin(&row, style)),
+            None => table = Some(ChannelTable::begin(&row, decimal_comma)),
             Some(table) => table.take(&row, line)?,
         }
     }
@@ -114,39 +108,31 @@ fn count_lines(bytes: &[u8]) -> usize {
     bytes.iter().filter(|b| **b == b'\n').count()
 }
 
-impl Style {
-    /// The separator is the one of semicolon, tab and comma that the first line holds, in this order: where
-    /// semicolons or tabs separate, commas are decimal.
-    fn detect(text: &[u8]) -> Self {
-        let first = text.split(|b| *b == b'\n').next().unwrap_or(text);
-        let separator = [b';', b'\t']
-            .into_iter()
-            .find(|s| first.contains(s))
-            .unwrap_or(b',');
-        Self {
-            separator,
-            decimal_comma: separator != b',',
-        }
-    }
+/// The separator is the one of semicolon, tab and comma that the first line holds, in this order: where
+/// semicolons or tabs separate, commas are decimal.
+fn separator(text: &[u8]) -> u8 {
+    let first = text.split(|b| *b == b'\n').next().unwrap_or(text);
+    let mut others = [b';', b'\t'].into_iter();
+    others.find(|s| first.contains(s)).unwrap_or(b',')
+}
 
-    /// A number, NaN where nothing stands; `None` for text.
-    fn number(self, cell: &[u8]) -> Option<f64> {
-        let text = std::str::from_utf8(cell).ok()?.trim();
-        if text.is_empty() {
-            return Some(f64::NAN);
-        }
-        let text = if self.decimal_comma && text.contains(',') {
-            Cow::Owned(text.replacen(',', ".", 1))
-        } else {
-            Cow::Borrowed(text)
-        };
-        text.parse().ok()
+/// A number, NaN where nothing stands; `None` for text.
+fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
+    let text = std::str::from_utf8(cell).ok()?.trim();
+    if text.is_empty() {
+        return Some(f64::NAN);
     }
+    let text = if decimal_comma && text.contains(',') {
+        Cow::Owned(text.replacen(',', ".", 1))
+    } else {
+        Cow::Borrowed(text)
+    };
+    text.parse().ok()
 }
 
 /// Columns being filled.
 struct ChannelTable {
-    style: Style,
+    decimal_comma: bool,
     names: Vec<String>,
     units: Vec<Option<String>>,
     /// `None` for a column of text.
@@ -159,8 +145,9 @@ struct ChannelTable {
 
 impl ChannelTable {
     /// From the first row.
-    fn begin(row: &csv::ByteRecord, style: Style) -> Self {
-        let numbers: Option<Vec<f64>> = row.iter().map(|cell| style.number(cell)).collect();
+    fn begin(row: &csv::ByteRecord, decimal_comma: bool) -> Self {
+        let numbers = row.iter().map(|cell| number(cell, decimal_comma));
+        let numbers: Option<Vec<f64>> = numbers.collect();
         let cells = row.iter().map(decoded);
         let (names, units) = match &numbers {
             Some(_) => (1..=row.len())
@@ -169,7 +156,7 @@ impl ChannelTable {
             None => cells.map(|cell| name_and_unit(cell.trim())).unzip(),
         };
         Self {
-            style,
+            decimal_comma,
             names,
             units,
             columns: match &numbers {
@@ -199,7 +186,7 @@ impl ChannelTable {
             let Some(column) = &mut self.columns[c] else {
                 continue;
             };
-            match self.style.number(cell) {
+            match number(cell, self.decimal_comma) {
                 Some(x) => {
                     column.push(x);
                     self.one_mark(cell, line, c)?;
@@ -219,11 +206,7 @@ impl ChannelTable {
     /// Refuses a number with a point beside others with a comma, and the other way round: it may be a thousand.
     fn one_mark(&mut self, cell: &[u8], line: usize, column: usize) -> Result<()> {
         let is_mark = |byte: &&u8| matches!(byte, b',' | b'.');
-        let Some(mark) = cell
-            .iter()
-            .find(is_mark)
-            .filter(|_| self.style.decimal_comma)
-        else {
+        let Some(mark) = cell.iter().find(is_mark).filter(|_| self.decimal_comma) else {
             return Ok(());
         };
         let first = *self.mark.get_or_insert(*mark);
@@ -237,7 +220,7 @@ impl ChannelTable {
 
     /// Takes a row without any number as units.
     fn take_units(&mut self, row: &csv::ByteRecord) -> bool {
-        let is_text = |cell: &[u8]| self.style.number(cell).is_none_or(f64::is_nan);
+        let is_text = |cell: &[u8]| number(cell, self.decimal_comma).is_none_or(f64::is_nan);
         if self.units_taken || !row.iter().all(is_text) || row.iter().all(<[u8]>::is_empty) {
             return false;
         }
