@@ -17,14 +17,12 @@ use std::path::Path;
 
 /// Reads the folder.
 pub(super) fn read(folder: &Path) -> Result<ModalData> {
-    let path = folder.join("nodes.csv");
-    let nodes = tables::nodes(&Table::read(&path)?).map_err(|e| e.in_file(&path))?;
-    let frequencies = column(
-        &folder.join("eigenfrequencies.csv"),
-        "a positive frequency in Hz",
-    )?;
+    let nodes = Table::read(&folder.join("nodes.csv"), tables::nodes)?;
+    let frequencies = Table::read(&folder.join("eigenfrequencies.csv"), |table| {
+        column(table, "a positive frequency in Hz")
+    })?;
     let path = folder.join("generalised_masses.csv");
-    let masses = column(&path, "a positive generalised mass")?;
+    let masses = Table::read(&path, |table| column(table, "a positive generalised mass"))?;
     ensure(
         masses.len() == frequencies.len(),
         "",
@@ -39,15 +37,14 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
             number: i + 1,
             frequency_hz,
             generalised_mass,
-            shape: shape(&Table::read(&path)?, &nodes).map_err(|e| e.in_file(&path))?,
+            shape: Table::read(&path, |table| shape(table, &nodes))?,
         });
     }
     Ok(ModalData { nodes, modes })
 }
 
 /// The last number of every row, which are those of the modes 1, 2, ….
-fn column(path: &Path, expected: &str) -> Result<Vec<f64>> {
-    let table = Table::read(path)?;
+fn column(table: &Table, expected: &str) -> Result<Vec<f64>> {
     let mode = match table.heading.is_empty() {
         true => Some(0),
         false => table.column(&["mode", "mode no", "mode number"]),
@@ -64,8 +61,7 @@ fn column(path: &Path, expected: &str) -> Result<Vec<f64>> {
         }
         row.positive(last, expected)
     };
-    let rows = table.rows.iter().enumerate().map(one);
-    rows.collect::<Result<_>>().map_err(|e| e.in_file(path))
+    table.rows.iter().enumerate().map(one).collect()
 }
 
 fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {

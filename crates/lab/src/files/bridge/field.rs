@@ -31,7 +31,7 @@ pub struct FieldTable {
 
 /// Reads a table of columns.
 pub(super) fn read(path: &Path) -> Result<FieldTable> {
-    parse(&Table::read(path)?).map_err(|e| e.in_file(path))
+    Table::read(path, parse)
 }
 
 impl FieldTable {

@@ -16,12 +16,9 @@ use std::path::Path;
 
 /// Reads the folder.
 pub(super) fn read(folder: &Path) -> Result<ModalData> {
-    let path = folder.join("nodes.out");
-    let nodes = nodes(&Table::read(&path)?).map_err(|e| e.in_file(&path))?;
+    let nodes = Table::read(&folder.join("nodes.out"), nodes)?;
     let path = folder.join("eigenvalues.out");
-    let eigenvalues = Table::read(&path)?
-        .all_numbers()
-        .map_err(|e| e.in_file(&path))?;
+    let eigenvalues = Table::read(&path, Table::all_numbers)?;
     let masses = masses(&folder.join("masses.out"), eigenvalues.len())?;
     let mut modes = Vec::with_capacity(masses.len());
     for (i, (square, generalised_mass)) in eigenvalues.into_iter().zip(masses).enumerate() {
@@ -37,7 +34,7 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
             number: i + 1,
             frequency_hz: square.sqrt() / TAU,
             generalised_mass,
-            shape: shape(&Table::read(&path)?, nodes.len()).map_err(|e| e.in_file(&path))?,
+            shape: Table::read(&path, |table| shape(table, nodes.len()))?,
         });
     }
     Ok(ModalData { nodes, modes })
@@ -55,23 +52,20 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
     if !path.exists() {
         return Ok(vec![1.0; modes]);
     }
-    let masses = Table::read(path)?
-        .all_numbers()
-        .map_err(|e| e.in_file(path))?;
-    if masses.len() == modes && masses.iter().all(|m| *m > 0.0) {
-        return Ok(masses);
-    }
-    let found = format!(
-        "{} numbers, the least {}",
-        masses.len(),
-        masses.iter().copied().fold(f64::INFINITY, f64::min)
-    );
-    Err(Error::input(
-        "",
-        format!("{modes} positive masses, one per eigenvalue"),
-        found,
-    )
-    .in_file(path))
+    Table::read(path, |table| {
+        let masses = table.all_numbers()?;
+        ensure(
+            masses.len() == modes && masses.iter().all(|m| *m > 0.0),
+            "",
+            format_args!("{modes} positive masses, one per eigenvalue"),
+            format_args!(
+                "{} numbers, the least {}",
+                masses.len(),
+                masses.iter().copied().fold(f64::INFINITY, f64::min)
+            ),
+        )?;
+        Ok(masses)
+    })
 }
 
 fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {

@@ -56,10 +56,11 @@ fn are_names(cells: &[String]) -> bool {
 }
 
 impl Table {
-    /// The table in a file.
-    pub(super) fn read(path: &Path) -> Result<Self> {
+    /// What `make` makes of the table in a file; errors name the file.
+    pub(super) fn read<T>(path: &Path, make: impl FnOnce(&Self) -> Result<T>) -> Result<T> {
         let text = read_text(path)?;
-        Self::parse(&text).map_err(|e| e.in_file(path))
+        let made = Self::parse(&text).and_then(|table| make(&table));
+        made.map_err(|e| e.in_file(path))
     }
 
     pub(super) fn parse(text: &str) -> Result<Self> {

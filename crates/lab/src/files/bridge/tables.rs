@@ -18,12 +18,11 @@ const SHAPES: &str = "shapes.csv";
 
 /// Reads the folder.
 pub(super) fn read(folder: &Path) -> Result<ModalData> {
-    let path = folder.join(NODES);
-    let nodes = nodes(&Table::read(&path)?).map_err(|e| e.in_file(&path))?;
-    let path = folder.join(MODES);
-    let mut modes = modes(&Table::read(&path)?, nodes.len()).map_err(|e| e.in_file(&path))?;
-    let path = folder.join(SHAPES);
-    fill(&Table::read(&path)?, &nodes, &mut modes).map_err(|e| e.in_file(&path))?;
+    let nodes = Table::read(&folder.join(NODES), nodes)?;
+    let mut modes = Table::read(&folder.join(MODES), |table| modes(table, nodes.len()))?;
+    Table::read(&folder.join(SHAPES), |table| {
+        fill(table, &nodes, &mut modes)
+    })?;
     Ok(ModalData { nodes, modes })
 }
 
