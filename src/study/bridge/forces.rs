@@ -8,7 +8,7 @@ use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
-use crate::files::derivatives::TableWords;
+use crate::files::derivatives::named_table_in;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_model, of_table};
 use crate::section::Dof;
@@ -228,12 +228,8 @@ pub(crate) fn block_table(
     name: &str,
     directory: &Path,
 ) -> Result<DerivativeTable> {
-    let words = TableWords {
-        name,
-        directory,
-        convention: block.convention,
-    };
-    words.read(&format!("section {}: convention", block.name))
+    let place = format!("section {}: convention", block.name);
+    named_table_in(name, directory, block.convention, &place)
 }
 
 /// A finding with the section that it is of.

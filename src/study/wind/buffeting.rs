@@ -12,7 +12,7 @@ use crate::buffeting::{
     SpectrumCurve, compare, time_ensemble,
 };
 use crate::error::{Error, Result};
-use crate::files::derivatives::{TableWords, embedded, is_table_file};
+use crate::files::derivatives::{embedded, is_table_file, named_table_in};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_table};
 use crate::section::{Dof, SectionModel, Structure};
@@ -229,12 +229,7 @@ impl<'a> Setting<'a> {
     /// The table between its points for the frequency domain, a model fitted to it for the time domain where that is asked for.
     fn take_table(&mut self, name: &str) -> Result<()> {
         let study = self.study;
-        let words = TableWords {
-            name,
-            directory: &study.directory,
-            convention: study.convention,
-        };
-        let table = words.read("convention")?;
+        let table = named_table_in(name, &study.directory, study.convention, "convention")?;
         self.angle_deg = table.header.angle_deg;
         self.findings = of_table(&table, &study.convention.or_usual());
         let dofs = &self.structure.dofs;

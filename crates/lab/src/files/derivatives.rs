@@ -65,45 +65,34 @@ pub fn named_sheet(file: &str, sheet: Option<&str>) -> String {
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 pub fn named_table(name: &str, directory: &Path) -> Result<DerivativeTable> {
+    named_table_in(name, directory, StatedConvention::default(), "")
+}
+
+/// A table as a file of settings names it, with what that says of the convention, as far as a file does not state it itself:
+/// nothing for a deck, whose convention is known. `place` is the key of the convention.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] for a table that is wrong, or contradicted.
+pub fn named_table_in(
+    name: &str,
+    directory: &Path,
+    convention: StatedConvention,
+    place: &str,
+) -> Result<DerivativeTable> {
     if is_table_file(name) {
-        read_table(directory.join(name))
-    } else {
-        embedded::deck_where_files_are_taken(name)
+        let options = ReadOptions {
+            convention,
+            ..ReadOptions::default()
+        };
+        return Ok(read_table_with(directory.join(name), &options)?.table);
     }
-}
-
-/// A table as a file of settings names it, with what that says of its convention.
-#[derive(Debug, Clone, Copy)]
-pub struct TableWords<'a> {
-    /// An embedded deck, or a file.
-    pub name: &'a str,
-    /// Against which the path of a file is read.
-    pub directory: &'a Path,
-    /// As far as a file does not state it itself; nothing for a deck, whose convention is known.
-    pub convention: StatedConvention,
-}
-
-impl TableWords<'_> {
-    /// The table; `place` is the key of the convention.
-    ///
-    /// # Errors
-    /// [`Error::Io`]; [`Error::Input`] for a table that is wrong, or contradicted.
-    pub fn read(&self, place: &str) -> Result<DerivativeTable> {
-        if is_table_file(self.name) {
-            let options = ReadOptions {
-                convention: self.convention,
-                ..ReadOptions::default()
-            };
-            return Ok(read_table_with(self.directory.join(self.name), &options)?.table);
-        }
-        ensure(
-            self.convention.is_empty(),
-            place,
-            "a table in a file (.csv, .xlsx, .xls, .ods)",
-            format_args!("`{}`, whose convention is known", self.name),
-        )?;
-        embedded::deck_where_files_are_taken(self.name)
-    }
+    ensure(
+        convention.is_empty(),
+        place,
+        "a table in a file (.csv, .xlsx, .xls, .ods)",
+        format_args!("`{name}`, whose convention is known"),
+    )?;
+    embedded::deck_where_files_are_taken(name)
 }
 
 /// Reads a table from `path`: a workbook when the name ends so (`table.xlsx#SHEET` names a sheet of it), else a CSV.

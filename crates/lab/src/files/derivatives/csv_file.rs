@@ -26,11 +26,11 @@ use crate::aerodynamics::derivatives::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{
     Argument, Convention, ExpressedPoint, StatedConvention,
 };
-use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
+use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result, ensure};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, write_head};
-use crate::files::derivatives::csv_wide;
+use crate::files::derivatives::csv_wide::{self, Rows};
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
 use crate::files::text::read_text;
 use std::collections::BTreeMap;
@@ -45,9 +45,6 @@ const ARGUMENT: usize = 3;
 
 /// A file of tables, bytes: 18 derivatives at ten thousand points in full precision.
 const BYTES_AT_MOST: u64 = 100 << 20;
-
-/// Points of one derivative and the lines they stand on.
-type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<u64>)>;
 
 /// Reads a table in this project's CSV, in whatever convention its header states.
 ///
@@ -139,14 +136,7 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
     wanted[ARGUMENT] = column.name();
     let columns = find_columns(&names, wanted, line)?;
     let rows = read_rows(&mut reader, &columns, &convention)?;
-    for (derivative, (points, lines)) in &rows {
-        let name = convention.notation.name_of(*derivative);
-        check_points(points, |i| Place::line(lines[i]).about(name))?;
-    }
-    let mut points = rows
-        .into_iter()
-        .map(|(d, (points, _))| (d, points))
-        .collect();
+    let mut points = csv_wide::checked(rows, &convention)?;
     let mut header = head.provenance()?;
     header.notes.extend(fill_in(&mut points, options.missing));
     let width = head.width_m(options.width_m)?;
@@ -269,7 +259,7 @@ fn read_rows(
         };
         check_point_count(place(0), points.len() + 1)?;
         points.push(convention.read_point(derivative, &point));
-        lines.push(line);
+        lines.push(line as usize);
     }
     Ok(rows)
 }

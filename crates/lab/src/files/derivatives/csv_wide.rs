@@ -26,7 +26,7 @@ const SPEED: &str = "mean_speed_m_s";
 
 type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 /// Points of one derivative and the lines they stand on.
-type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<usize>)>;
+pub(super) type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<usize>)>;
 
 /// Where the numbers stand.
 struct WideColumns {
@@ -189,7 +189,7 @@ impl WideRow<'_> {
 }
 
 /// The points, each derivative's own checked.
-fn checked(rows: Rows, convention: &Convention) -> Result<Points> {
+pub(super) fn checked(rows: Rows, convention: &Convention) -> Result<Points> {
     for (derivative, (points, lines)) in &rows {
         let name = convention.notation.name_of(*derivative);
         check_points(points, |i| Place::line(lines[i]).about(name))?;
