@@ -196,6 +196,13 @@ pub struct Record {
 }
 
 impl Record {
+    /// The degrees of freedom that move.
+    pub fn moving(&self) -> impl Iterator<Item = Dof> {
+        let channels = self.header.dofs.iter().zip(&self.motion);
+        let moving = channels.filter(|(_, motion)| motion.iter().any(|x| *x != 0.0));
+        moving.map(|(dof, _)| *dof)
+    }
+
     /// All of a source, in memory.
     pub fn whole(source: &dyn RecordSource) -> Result<Self> {
         let header = source.header().clone();

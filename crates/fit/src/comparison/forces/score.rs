@@ -230,8 +230,7 @@ impl ModelOnRecord<'_> {
         let record = self.record;
         let predicted = predicted_forces(self.model, record)?;
         let h = &record.header;
-        let moves = |m: &Vec<f64>| m.iter().any(|x| *x != 0.0);
-        let moving = record.motion.iter().position(moves).unwrap_or(0);
+        let motion = record.moving().next().unwrap_or(h.dofs[0]);
         let mut scores = Vec::new();
         for (i, &force) in h.dofs.iter().enumerate() {
             let case = Case {
@@ -239,7 +238,7 @@ impl ModelOnRecord<'_> {
                 model: self.name.to_owned(),
                 speed_m_s: h.mean_speed_m_s,
                 held_out: self.held_out,
-                motion: h.dofs[moving],
+                motion,
                 force,
             };
             for segment in &h.segments {

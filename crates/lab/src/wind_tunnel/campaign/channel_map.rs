@@ -172,6 +172,14 @@ pub(super) fn cell_quantity(key: &str) -> Quantity {
     }
 }
 
+/// Its unit as it is written.
+pub(super) fn cell_unit(key: &str) -> &'static str {
+    match cell_quantity(key) {
+        Quantity::Force => "N",
+        _ => "Nm",
+    }
+}
+
 /// The time channel as a sampling frequency, Hz.
 pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
     let n = time_s.len();

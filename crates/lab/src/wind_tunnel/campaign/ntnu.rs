@@ -9,8 +9,7 @@
 //! `forces_global_coord_center` of a group; units and descriptions are those that its import of TDMS files writes.
 
 use super::channel::{CellChannel, ChannelRef};
-use super::channel_map::{ChannelMap, cell_quantity};
-use super::quantity::Quantity;
+use super::channel_map::{ChannelMap, cell_unit};
 use crate::section::Dof;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
 use crate::wind_tunnel::{CELL_CHANNELS, LoadCell, RawRecording, Rig};
@@ -29,12 +28,7 @@ pub(super) fn channel_map(rig: &Rig) -> ChannelMap {
     let cells = rig.cells.iter().enumerate().map(|(i, cell)| {
         let channel = |(k, key): (usize, &&str)| {
             let name = format!("forces_global_coord[{}]", 6 * i + k + 1);
-            let unit = if cell_quantity(key) == Quantity::Force {
-                "N"
-            } else {
-                "Nm"
-            };
-            let channel = CellChannel::Measured(ChannelRef::new(name, unit));
+            let channel = CellChannel::Measured(ChannelRef::new(name, cell_unit(key)));
             ((*key).to_owned(), channel)
         };
         let channels = CELL_CHANNELS.iter().enumerate().map(channel).collect();
@@ -73,10 +67,7 @@ pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
     let rig = &made.raw.rig;
     let mut file = FileBuilder::new();
     for (run, truth) in made.raw.runs.iter().zip(&made.truth.records) {
-        let moving: Vec<&str> = (0..truth.header.dofs.len())
-            .filter(|j| truth.motion[*j].iter().any(|x| *x != 0.0))
-            .map(|j| truth.header.dofs[j].name())
-            .collect();
+        let moving: Vec<&str> = truth.moving().map(Dof::name).collect();
         let still = run.still_air.iter().map(|r| ("still", r));
         for (what, recording) in std::iter::once(("wind", &run.in_wind)).chain(still) {
             let n = recording.sample_count() as u64;

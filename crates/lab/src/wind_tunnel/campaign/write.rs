@@ -2,12 +2,11 @@
 
 use super::air::Air;
 use super::channel::{CellChannel, ChannelRef};
-use super::channel_map::{ChannelMap, cell_quantity};
+use super::channel_map::{ChannelMap, cell_unit};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
 };
 use super::ntnu;
-use super::quantity::Quantity;
 use crate::error::{Error, Result};
 use crate::files::text::{csv_cell, file_name};
 use crate::json;
@@ -109,8 +108,6 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
     let first = raw.runs.first();
     let density = first.map(|r| r.air_density_kg_m3);
     let run = |(run, truth): (&RawRun, &crate::wind_tunnel::Record)| {
-        let n = truth.header.dofs.len();
-        let moves = |j: &usize| truth.motion[*j].iter().any(|x| *x != 0.0);
         let file = |what: &str| match format {
             FileFormat::Csv => FileRef::File(PathBuf::from(format!(
                 "runs/{}-{what}.csv",
@@ -123,7 +120,7 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
         };
         RunBlock {
             name: run.name.clone(),
-            motion: (0..n).filter(moves).map(|j| truth.header.dofs[j]).collect(),
+            motion: truth.moving().collect(),
             in_wind: file("wind"),
             still_air: Some(file("still")),
             mean_speed_m_s: Some(run.mean_speed_m_s),
@@ -171,12 +168,8 @@ fn csv_columns(rig: &Rig) -> Vec<(String, &'static str)> {
     let mut columns: Vec<(String, &str)> = own.map(|(n, u)| (n.to_owned(), u)).collect();
     for cell in &rig.cells {
         for key in CELL_CHANNELS {
-            let unit = if cell_quantity(key) == Quantity::Force {
-                "N"
-            } else {
-                "Nm"
-            };
-            columns.push((csv_cell(&format!("{}.{key}", cell.name)), unit));
+            let name = csv_cell(&format!("{}.{key}", cell.name));
+            columns.push((name, cell_unit(key)));
         }
     }
     columns
