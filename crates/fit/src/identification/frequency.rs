@@ -6,14 +6,14 @@ mod poles;
 use super::basis::{Basis, assemble};
 use super::constrained::LinearSolution;
 use super::degenerate::note_lags;
-use super::dissipative::{ConstraintReport, Constraints, FitRequirements};
+use super::dissipative::{ConstraintReport, Constraints};
 use super::entry_report::EntryReport;
 use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
 use super::report::{FitReport, Fitted, FittedTable, variance};
-use super::samples::{EntrySamples, sizes, sort_by_entry, state_requirements};
+use super::samples::{EntrySamples, sort_by_entry, state_requirements};
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -140,13 +140,7 @@ fn fit_linear(
         entries,
         form: &fit.form,
         shares: by_noise(entries, &fit.form, &poles)?,
-        requirements: FitRequirements {
-            dofs: dofs.to_vec(),
-            k_max: tested.max.full_width(),
-            constraints: fit.constraints,
-            // every entry has met its own already
-            limits: Vec::new(),
-        },
+        requirements: fit.requirements(dofs, tested),
     };
     let bound = joint.at(&poles)?;
     if bound.constrained.is_none() {
@@ -200,6 +194,7 @@ fn constrained_reports(
         let (report, variance) = entry_report(
             entry,
             &together.bases[e],
+            &poles[e],
             &together.solutions[e],
             together.coefficients(e),
         );
@@ -207,14 +202,11 @@ fn constrained_reports(
         variances.push(variance);
     }
     let finish = |(e, report): (usize, EntryReport)| {
-        let values = together.coefficients(e);
-        let mut report = report.with_coefficients(
+        report.with_coefficients(
             together.bases[e].names(),
-            values,
+            together.coefficients(e),
             together.covariance(e, &variances),
-        );
-        report.poles.clone_from(&poles[e]);
-        report
+        )
     };
     Ok(reports.into_iter().enumerate().map(finish).collect())
 }
@@ -231,8 +223,7 @@ fn describe(weights: FrequencyWeights) -> &'static str {
 fn fit_entry(entry: &EntrySamples, form: &Form, poles: &[f64]) -> Result<EntryReport> {
     let basis = Basis::new(form, poles)?;
     let fit = entry.fit(&basis)?;
-    let (mut report, variance) = entry_report(entry, &basis, &fit, &fit.coefficients);
-    report.poles = poles.to_vec();
+    let (report, variance) = entry_report(entry, &basis, poles, &fit, &fit.coefficients);
     let covariance = variance
         .map(|v| fit.inverse_gram().map(|gram| gram * v))
         .transpose()?;
@@ -243,23 +234,13 @@ fn fit_entry(entry: &EntrySamples, form: &Form, poles: &[f64]) -> Result<EntryRe
 fn entry_report(
     entry: &EntrySamples,
     basis: &Basis,
+    poles: &[f64],
     fit: &LinearSolution,
     coefficients: &[f64],
 ) -> (EntryReport, Option<f64>) {
     let residuals = entry.residuals(basis, coefficients);
     let unknowns = fit.unknowns;
-    let relative = sizes(entry, &residuals);
-    let report = EntryReport {
-        force: entry.force,
-        motion: entry.motion,
-        relative_rms: Some(relative.rms),
-        worst_relative: Some(relative.worst),
-        poles: Vec::new(),
-        coefficients: Vec::new(),
-        covariance: Vec::new(),
-        condition: fit.factor.condition(unknowns),
-        cancellation: fit.cancellation,
-    };
+    let report = entry.report(&residuals, poles, fit);
     let sum = if std::ptr::eq(coefficients, fit.coefficients.as_slice()) {
         fit.factor.residual_sum(unknowns, 0)
     } else {

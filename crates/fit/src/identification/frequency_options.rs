@@ -1,12 +1,13 @@
 //! What a fit to a transfer matrix is asked to do.
 
 use super::basis::index_of;
-use super::dissipative::Constraints;
+use super::dissipative::{Constraints, FitRequirements};
 use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
 use crate::error::{Error, Result, ensure, non_negative};
 use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
 /// What one entry of `G` has to be in slow motion: `G → value + slope·iK` for K → 0, as quasi-steady theory gives it.
@@ -130,6 +131,20 @@ impl FrequencyFit {
         Self {
             form: self.form.for_rows(rows, most),
             ..self.clone()
+        }
+    }
+
+    /// What the fit is asked for besides least squares, but for the limits: every entry or force meets its own.
+    pub(super) fn requirements(
+        &self,
+        dofs: &[Dof],
+        tested: ReducedFrequencyRange,
+    ) -> FitRequirements {
+        FitRequirements {
+            dofs: dofs.to_vec(),
+            k_max: tested.max.full_width(),
+            constraints: self.constraints,
+            limits: Vec::new(),
         }
     }
 

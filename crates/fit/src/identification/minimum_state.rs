@@ -14,7 +14,7 @@ use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
 use super::frequency_options::FrequencyFit;
 use super::report::{FittedTable, SearchPoint, SearchReport};
-use super::samples::{EntrySamples, shares, sizes};
+use super::samples::{EntrySamples, shares};
 use super::search::{Bounds, best_of, descend, search_poles};
 use crate::aerodynamics::MinimumStateModel;
 use crate::error::{Error, Result};
@@ -84,13 +84,7 @@ pub(super) fn fit_minimum_state(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    task.requirements = Some(FitRequirements {
-        dofs: dofs.to_vec(),
-        k_max: tested.max.full_width(),
-        constraints: fit.constraints,
-        // every force has met its own already
-        limits: Vec::new(),
-    });
+    task.requirements = Some(fit.requirements(dofs, tested));
     task.constrain(dofs, best, alone)
 }
 
@@ -359,19 +353,8 @@ impl LagSearch<'_> {
             let (i, j) = (at / n, at % n);
             let mut own = values[i][j * feed..(j + 1) * feed].to_vec();
             own.extend((0..self.states).map(|l| model.d[(i, l)] * model.e[(l, j)]));
-            let relative = sizes(entry, &entry.residuals(&basis, &own));
-            let solution = &solutions[i];
-            let report = EntryReport {
-                force: entry.force,
-                motion: entry.motion,
-                relative_rms: Some(relative.rms),
-                worst_relative: Some(relative.worst),
-                poles: model.lags.clone(),
-                coefficients: Vec::new(),
-                covariance: Vec::new(),
-                condition: solution.factor.condition(solution.unknowns),
-                cancellation: solution.cancellation,
-            };
+            let residuals = entry.residuals(&basis, &own);
+            let report = entry.report(&residuals, &model.lags, &solutions[i]);
             // the product of D and E is not linear in what was searched: no standard errors
             reports.push(report.with_coefficients(basis.names(), &own, None));
         }

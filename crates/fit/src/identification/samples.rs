@@ -2,6 +2,7 @@
 
 use super::basis::{Basis, index_of};
 use super::constrained::{LinearProblem, LinearSolution};
+use super::entry_report::EntryReport;
 use super::frequency_options::{FrequencyFit, FrequencyWeights, limits_by_entry};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
@@ -39,6 +40,14 @@ pub fn sample_model(model: &dyn Transfer, ks: &[ReducedFrequency]) -> Result<Vec
     Ok(samples)
 }
 
+/// What a sample of a part sees of a value.
+pub(crate) fn part_of(value: Complex<f64>, part: Part) -> f64 {
+    match part {
+        Part::Real => value.re,
+        Part::Imaginary => value.im,
+    }
+}
+
 /// All samples of one entry.
 #[derive(Debug, Clone)]
 pub(crate) struct EntrySamples {
@@ -69,10 +78,7 @@ impl EntrySample {
     /// The part of complex columns that the sample sees.
     pub(crate) fn seen<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
         let part = self.part;
-        columns.iter().map(move |z| match part {
-            Part::Real => z.re,
-            Part::Imaginary => z.im,
-        })
+        columns.iter().map(move |z| part_of(*z, part))
     }
 }
 
@@ -127,6 +133,40 @@ impl EntrySamples {
         let residuals = self.residuals(basis, coefficients).into_iter();
         let rows = residuals.zip(&self.rows);
         rows.map(move |(r, row)| r * row.weight * share)
+    }
+
+    /// Account of coefficients that leave these unweighted residuals of a fit, but for the coefficients themselves.
+    pub(super) fn report(
+        &self,
+        residuals: &[f64],
+        poles: &[f64],
+        fit: &LinearSolution,
+    ) -> EntryReport {
+        let sum: f64 = residuals.iter().map(|r| r * r).sum();
+        let total: f64 = self.rows.iter().map(|r| r.value * r.value).sum();
+        let relative = residuals
+            .iter()
+            .zip(&self.rows)
+            .filter(|(_, row)| row.magnitude > 0.0);
+        let worst = relative
+            .map(|(r, row)| r.abs() / row.magnitude)
+            .fold(0.0, f64::max);
+        let rms = if total > 0.0 {
+            (sum / total).sqrt()
+        } else {
+            0.0
+        };
+        EntryReport {
+            force: self.force,
+            motion: self.motion,
+            relative_rms: Some(rms),
+            worst_relative: Some(worst),
+            poles: poles.to_vec(),
+            coefficients: Vec::new(),
+            covariance: Vec::new(),
+            condition: fit.factor.condition(fit.unknowns),
+            cancellation: fit.cancellation,
+        }
     }
 
     /// Residuals of given coefficients, unweighted, in the order of the rows.
@@ -264,73 +304,4 @@ pub(super) fn shares(entries: &[&EntrySamples]) -> Vec<f64> {
         entry.weight / size
     };
     entries.iter().map(share).collect()
-}
-
-/// Sizes of unweighted residuals.
-pub(super) struct RelativeSizes {
-    /// Root mean square over that of the data.
-    pub rms: f64,
-    /// Largest over the size of its own sample.
-    pub worst: f64,
-}
-
-/// Sizes of residuals relative to the samples of their entry.
-pub(super) fn sizes(entry: &EntrySamples, residuals: &[f64]) -> RelativeSizes {
-    let sum: f64 = residuals.iter().map(|r| r * r).sum();
-    let total: f64 = entry.rows.iter().map(|r| r.value * r.value).sum();
-    let relative = residuals
-        .iter()
-        .zip(&entry.rows)
-        .filter(|(_, row)| row.magnitude > 0.0);
-    let worst = relative
-        .map(|(r, row)| r.abs() / row.magnitude)
-        .fold(0.0, f64::max);
-    let rms = if total > 0.0 {
-        (sum / total).sqrt()
-    } else {
-        0.0
-    };
-    RelativeSizes { rms, worst }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::aerodynamics::FlatPlate;
-
-    #[test]
-    fn weights_are_those_of_the_formulae() {
-        let ks = [0.1, 0.5].map(ReducedFrequency::from_full_width);
-        let samples = sample_model(&FlatPlate::default(), &ks).unwrap();
-        assert_eq!(samples.len(), 16);
-        let g = FlatPlate::default().transfer(ks[1]).unwrap();
-        for (weights, expected) in [
-            (FrequencyWeights::None, 1.0),
-            (FrequencyWeights::Derivatives, 4.0),
-            (FrequencyWeights::Relative, 1.0 / g[(0, 1)].norm()),
-        ] {
-            let (entries, notes) = sort_by_entry(&samples, &Dof::TWO, weights).unwrap();
-            assert!(notes.is_empty());
-            let row = entries[1].rows.iter().find(|r| r.k == 0.5).unwrap();
-            assert!((row.weight / expected - 1.0).abs() < 1e-14);
-        }
-    }
-
-    #[test]
-    fn missing_entries_and_bad_numbers_are_named() {
-        let ks = [0.1, 0.5].map(ReducedFrequency::from_full_width);
-        let mut samples = sample_model(&FlatPlate::default(), &ks).unwrap();
-        let message = |s: &[TransferSample]| {
-            sort_by_entry(s, &Dof::TWO, FrequencyWeights::None)
-                .unwrap_err()
-                .to_string()
-        };
-        samples[3].value = f64::NAN;
-        assert_eq!(
-            message(&samples),
-            "sample 3: expected a finite value, found NaN"
-        );
-        samples.retain(|s| s.motion == Dof::Vertical);
-        assert!(message(&samples).contains("vertical force due to torsion motion"));
-    }
 }
