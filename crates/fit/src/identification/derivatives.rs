@@ -25,7 +25,7 @@ mod test_points;
 
 pub use result::{DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::wind_tunnel::RecordSource;
 
 /// All derivatives that the harmonic segments of `records` determine.
@@ -38,16 +38,21 @@ pub fn identify_derivatives(
     options: &DerivativeOptions,
 ) -> Result<IdentifiedDerivatives> {
     options.validate()?;
-    let points = test_points::collect(records, options)?;
+    let first = records
+        .first()
+        .ok_or_else(|| Error::input("records", "at least one", "none"))?
+        .header();
     let mut result = IdentifiedDerivatives {
-        width_m: points.width_m,
-        dofs: points.dofs.clone(),
-        rotation_amplitude_deg: points.rotation_amplitude_deg(),
+        width_m: first.width_m,
+        dofs: first.dofs.clone(),
+        rotation_amplitude_deg: None,
         estimates: Vec::new(),
-        warnings: points.warnings,
+        warnings: Vec::new(),
     };
-    for group in &points.groups {
-        regression::solve(&points.dofs, group, &mut result)?;
+    let groups = test_points::collect(records, first, options, &mut result.warnings)?;
+    result.rotation_amplitude_deg = test_points::rotation_amplitude_deg(&first.dofs, &groups);
+    for group in &groups {
+        regression::solve(&first.dofs, group, &mut result)?;
     }
     result.sort();
     Ok(result)

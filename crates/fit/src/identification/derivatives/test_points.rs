@@ -1,14 +1,12 @@
 //! Steady harmonic stretches of records, sorted into test points.
 
 use super::result::DerivativeOptions;
-use crate::error::{Error, Result, ensure};
+use crate::error::{Result, ensure};
 use crate::identification::time::record::check_numbers;
 use crate::identification::time::signals::Signals;
 use crate::numbered::numbered;
 use crate::section::Dof;
-use crate::signal::{
-    HarmonicFit, Plateau, fit_harmonics, largest_about_mean, plateau, refine_frequency,
-};
+use crate::signal::{HarmonicFit, fit_harmonics, largest_about_mean, plateau, refine_frequency};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{RecordHeader, RecordSource};
 use std::ops::Range;
@@ -94,40 +92,23 @@ impl TestRun {
     }
 }
 
-/// All test points.
-pub(super) struct TestPoints {
-    pub width_m: f64,
-    pub dofs: Vec<Dof>,
-    pub groups: Vec<Vec<TestRun>>,
-    pub warnings: Vec<String>,
+/// Largest amplitude of rotation, deg; `None` where no run drives it.
+pub(super) fn rotation_amplitude_deg(dofs: &[Dof], groups: &[Vec<TestRun>]) -> Option<f64> {
+    let torsion = dofs.iter().position(|d| *d == Dof::Torsion)?;
+    let driven = groups.iter().flatten().filter(|s| s.driven == torsion);
+    driven
+        .map(|s| s.amplitude[torsion].to_degrees())
+        .reduce(f64::max)
 }
 
-impl TestPoints {
-    /// Largest amplitude of rotation, deg; `None` where no run drives it.
-    pub(super) fn rotation_amplitude_deg(&self) -> Option<f64> {
-        let torsion = self.dofs.iter().position(|d| *d == Dof::Torsion)?;
-        let driven = self.groups.iter().flatten().filter(|s| s.driven == torsion);
-        driven
-            .map(|s| s.amplitude[torsion].to_degrees())
-            .reduce(f64::max)
-    }
-}
-
-/// Takes the steady stretches of all records and groups them.
+/// The test points: steady stretches of all records, which are to be like the `first`, in groups.
 pub(super) fn collect(
     records: &[&dyn RecordSource],
+    first: &RecordHeader,
     options: &DerivativeOptions,
-) -> Result<TestPoints> {
-    let first = records
-        .first()
-        .ok_or_else(|| Error::input("records", "at least one", "none"))?
-        .header();
-    let mut points = TestPoints {
-        width_m: first.width_m,
-        dofs: first.dofs.clone(),
-        groups: Vec::new(),
-        warnings: Vec::new(),
-    };
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Vec<TestRun>>> {
+    let mut groups = Vec::new();
     let each = numbered(records.len(), &|_, _| (), |r| {
         let header = records[r].header();
         check(header, first)?;
@@ -143,10 +124,10 @@ pub(super) fn collect(
         for (stretch, segment) in stretches.into_iter().zip(&header.segments) {
             match stretch {
                 Some(stretch) => {
-                    points.warnings.extend(stretch.few_samples());
-                    insert(&mut points.groups, stretch, options);
+                    warnings.extend(stretch.few_samples());
+                    insert(&mut groups, stretch, options);
                 }
-                None => points.warnings.push(format!(
+                None => warnings.push(format!(
                     "record {}: no whole period of steady motion at {:.3} Hz",
                     header.name, segment.frequency_hz
                 )),
@@ -154,12 +135,12 @@ pub(super) fn collect(
         }
     }
     ensure(
-        !points.groups.is_empty(),
+        !groups.is_empty(),
         "records",
         "stretches of harmonic motion (`segment` lines)",
         "none",
     )?;
-    Ok(points)
+    Ok(groups)
 }
 
 fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
@@ -211,14 +192,18 @@ fn stretch(
     let start = at(s.start_s);
     let mut channels = signals.range(start..at(s.end_s))?;
     channels.truncate(header.dofs.len());
-    let Some(steady) = SteadyMotion::find(header, &channels, s.frequency_hz, options)? else {
+    let Some(driven) = driven_motion(header, &channels) else {
         return Ok(None);
     };
-    let SteadyMotion {
-        driven,
-        frequency_hz,
-        plateau: p,
-    } = steady;
+    let motion = &channels[driven];
+    let steady = |f| plateau(motion, 0..motion.len(), rate, f, options.full_amplitude);
+    let Some(rough) = steady(s.frequency_hz) else {
+        return Ok(None);
+    };
+    let frequency_hz = refine_frequency(motion, rough.range(), rate, s.frequency_hz)?;
+    let Some(p) = steady(frequency_hz) else {
+        return Ok(None);
+    };
     let harmonics = HARMONICS.min((HARMONICS_OVER_SAMPLING * rate / frequency_hz) as usize);
     let fit = |x: &Vec<f64>| {
         let run = &x[p.range()];
@@ -243,42 +228,14 @@ fn stretch(
     }))
 }
 
-/// Whole periods of a driven motion at full amplitude.
-struct SteadyMotion {
-    /// The motion that is driven, by its place among the degrees of freedom.
-    driven: usize,
-    frequency_hz: f64,
-    plateau: Plateau,
-}
-
-impl SteadyMotion {
-    /// Those of the greatest motion in a segment; `None` when nothing moves or there is no whole period.
-    fn find(
-        header: &RecordHeader,
-        motions: &[Vec<f64>],
-        stated_hz: f64,
-        options: &DerivativeOptions,
-    ) -> Result<Option<Self>> {
-        let size = |j: usize| {
-            let greatest = largest_about_mean(&motions[j]);
-            greatest * header.dofs[j].motion_scale(header.width_m)
-        };
-        let driven = (0..header.dofs.len()).max_by(|a, b| size(*a).total_cmp(&size(*b)));
-        let Some(driven) = driven.filter(|j| size(*j) > 0.0) else {
-            return Ok(None);
-        };
-        let (motion, rate) = (&motions[driven], header.sampling_hz);
-        let steady = |f| plateau(motion, 0..motion.len(), rate, f, options.full_amplitude);
-        let Some(rough) = steady(stated_hz) else {
-            return Ok(None);
-        };
-        let frequency_hz = refine_frequency(motion, rough.range(), rate, stated_hz)?;
-        Ok(steady(frequency_hz).map(|plateau| Self {
-            driven,
-            frequency_hz,
-            plateau,
-        }))
-    }
+/// The greatest motion, by its place among the degrees of freedom; `None` when nothing moves.
+fn driven_motion(header: &RecordHeader, motions: &[Vec<f64>]) -> Option<usize> {
+    let size = |j: usize| {
+        let greatest = largest_about_mean(&motions[j]);
+        greatest * header.dofs[j].motion_scale(header.width_m)
+    };
+    let greatest = (0..header.dofs.len()).max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    greatest.filter(|j| size(*j) > 0.0)
 }
 
 /// Into the group of the same frequency and the nearest speed, unless that motion is there already: repeated tests are points of their own.
