@@ -6,8 +6,8 @@ use crate::cli::figures;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
-    BandCheck, CompareOptions, History, ModelsComparison, Score, compare_models, inside,
-    score_table,
+    CompareOptions, History, ModelsComparison, Score, compare_models, in_magnitude_band,
+    in_phase_band, score_table,
 };
 use crate::error::{Result, counted};
 use crate::files::text::csv_cell;
@@ -267,7 +267,7 @@ fn transfer_table(results: &ModelsComparison) -> String {
     for entry in &results.entries {
         for model in &entry.models {
             for (point, off) in entry.points.iter().zip(&model.points) {
-                let BandCheck { magnitude, phase } = inside(off.0, off.1);
+                let (magnitude, phase) = (in_magnitude_band(off.0), in_phase_band(off.1));
                 let _ = writeln!(
                     text,
                     "{},{},{:.4},{:.5},{:.6},{:.3},{},{:.3},{:.3},{magnitude},{phase}",

@@ -15,8 +15,7 @@ mod tested_deck;
 
 pub use decks::DecksComparison;
 pub use decks::compare_decks;
-pub use entries::BandCheck;
-pub use entries::inside;
+pub use entries::{in_magnitude_band, in_phase_band};
 pub use models::History;
 pub use models::ModelsComparison;
 pub use models::compare_models;

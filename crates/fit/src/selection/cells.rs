@@ -21,7 +21,7 @@ pub struct SelectionPlan {
 }
 
 /// One number of filters with one pole or decay factor.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Cell {
     /// Number of filters `L`.
     pub filters: usize,
@@ -133,11 +133,7 @@ fn cells_of(
             let mut cell = Cell {
                 filters: l + 1,
                 value: grid.values()[value],
-                residual: None,
-                cross_validation: None,
-                cancellation: None,
-                onset_m_s: None,
-                rejected: Vec::new(),
+                ..Cell::default()
             };
             match fit {
                 Ok(fit) => {

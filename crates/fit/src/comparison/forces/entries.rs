@@ -3,6 +3,7 @@
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::error::Result;
+use crate::identification::samples::part_of;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
@@ -64,20 +65,14 @@ pub struct DerivativeComparison {
     pub models: Vec<(String, Vec<(f64, f64)>)>,
 }
 
-/// Which bands a deviation is inside.
-pub struct BandCheck {
-    /// Of magnitude.
-    pub magnitude: bool,
-    /// Of phase.
-    pub phase: bool,
+/// Whether a deviation of magnitude, percent, is inside the band.
+pub fn in_magnitude_band(percent: f64) -> bool {
+    percent.abs() <= MAGNITUDE_BAND_PERCENT
 }
 
-/// Whether a deviation of magnitude (percent) and phase (degrees) is inside the bands.
-pub fn inside(percent: f64, degrees: f64) -> BandCheck {
-    BandCheck {
-        magnitude: percent.abs() <= MAGNITUDE_BAND_PERCENT,
-        phase: degrees.abs() <= PHASE_BAND_DEG,
-    }
+/// Whether a deviation of phase, degrees, is inside the band.
+pub fn in_phase_band(degrees: f64) -> bool {
+    degrees.abs() <= PHASE_BAND_DEG
 }
 
 impl EntryComparison {
@@ -93,10 +88,10 @@ impl EntryComparison {
         };
         format!(
             "magnitude within ±15 % at {} of {} (worst {:+.0} %), phase within ±5° at {} (worst {:+.1}°)",
-            count(|p| inside(p.0, p.1).magnitude),
+            count(|p| in_magnitude_band(p.0)),
             points.len(),
             worst(|p| p.0),
-            count(|p| inside(p.0, p.1).phase),
+            count(|p| in_phase_band(p.1)),
             worst(|p| p.1),
         )
     }
@@ -233,11 +228,7 @@ pub(super) fn compare_derivatives(
                 let v_hat = first.0 + part * (last.0 - first.0);
                 let k = ReducedFrequency::from_v_hat(v_hat);
                 let g = model.transfer(k)?[(i, j)] / k.full_width().powi(2);
-                let value = match derivative.part() {
-                    Part::Real => g.re,
-                    Part::Imaginary => g.im,
-                };
-                Ok((v_hat, value))
+                Ok((v_hat, part_of(g, derivative.part())))
             };
             let points = (0..CURVE_POINTS).map(at).collect::<Result<Vec<_>>>()?;
             of_models.push((name.clone(), points));

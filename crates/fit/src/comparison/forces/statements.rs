@@ -1,6 +1,6 @@
 //! What the thesis says of its comparisons in words and numbers, beside what is found here.
 
-use super::entries::{EntryComparison, inside};
+use super::entries::{EntryComparison, in_phase_band};
 use super::score::Score;
 use crate::section::Dof;
 use serde::Serialize;
@@ -106,7 +106,7 @@ pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<St
             .points
             .iter()
             .zip(&e.models[0].points)
-            .filter(|(_, m)| !inside(m.0, m.1).phase)
+            .filter(|(_, m)| !in_phase_band(m.1))
             .map(|(p, _)| format!("{:.2}", p.frequency_hz))
             .collect();
         let list = if beyond.is_empty() {
