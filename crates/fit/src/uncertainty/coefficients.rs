@@ -6,7 +6,7 @@ use super::parameters::{Coordinates, Parameter, per_chain};
 use super::speed_groups::speed_groups;
 use super::speed_prior::SpeedPrior;
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
-use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
+use crate::aerodynamics::{DiscreteLaguerre, Transfer};
 use crate::error::{Result, ensure};
 use crate::identification::basis::assemble;
 use crate::identification::report::FitReport;
@@ -117,7 +117,7 @@ impl CoefficientUncertainty {
         tested: ReducedFrequencyRange,
         prior: SpeedPrior,
     ) -> Result<()> {
-        let at = self.slopes_over(tested)?;
+        let at = self.transfer_slopes(&spread_over(tested, POINTS))?;
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
         let (scatter, effects) =
@@ -131,23 +131,8 @@ impl CoefficientUncertainty {
         Ok(())
     }
 
-    /// Transfer functions with their slopes at points over a range, logarithmic.
-    fn slopes_over(&self, range: ReducedFrequencyRange) -> Result<Vec<Slopes>> {
-        let ks = spread_over(range, POINTS);
-        let all = self.transfer_slopes(&ks)?;
-        let of = |(k, (value, slopes)): (&ReducedFrequency, _)| Slopes {
-            k: k.full_width(),
-            value,
-            slopes,
-        };
-        Ok(ks.iter().zip(all).map(of).collect())
-    }
-
     /// The transfer matrix at every `K`, and its derivatives with respect to the parameters, by central differences.
-    pub(crate) fn transfer_slopes(
-        &self,
-        ks: &[ReducedFrequency],
-    ) -> Result<Vec<(TransferMatrix, Vec<TransferMatrix>)>> {
+    pub(super) fn transfer_slopes(&self, ks: &[ReducedFrequency]) -> Result<Vec<Slopes>> {
         let values = self.values();
         let model = self.model_at(&values)?;
         let mut pairs = Vec::with_capacity(values.len());
@@ -166,7 +151,11 @@ impl CoefficientUncertainty {
                     Ok((up.transfer(k)? - down.transfer(k)?).unscale(*step))
                 };
                 let slopes = pairs.iter().map(slope).collect::<Result<_>>()?;
-                Ok((model.transfer(k)?, slopes))
+                Ok(Slopes {
+                    k: k.full_width(),
+                    value: model.transfer(k)?,
+                    slopes,
+                })
             })
             .collect()
     }

@@ -8,14 +8,14 @@ pub use report::{CoverageReport, IntervalCoverage};
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
-use super::onset::onset_error;
+use super::onset::{OnsetError, onset_error};
 use super::record_covariance::record_uncertainty;
 use super::scattered::ScatteredTunnel;
-use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
+use crate::identification::samples::part_of;
 use crate::identification::{Fitted, TimeFit, fit_records};
 use crate::numbered::{OnDone, numbered};
 use crate::section::SectionModel;
@@ -50,10 +50,7 @@ struct KnownDeck {
 
 /// One repetition.
 struct Repetition {
-    onset_m_s: f64,
-    standard_error_m_s: f64,
-    half_width_m_s: f64,
-    degrees_of_freedom: f64,
+    error: OnsetError,
     derivatives_inside: Vec<bool>,
     speeds_differ: bool,
 }
@@ -139,10 +136,7 @@ impl KnownDeck {
         };
         let error = onset_error(&estimate, &self.section.structure()?, &onset, None)?;
         Ok(Some(Repetition {
-            onset_m_s: onset.at.speed_m_s,
-            standard_error_m_s: error.standard_error_m_s,
-            half_width_m_s: error.half_width_m_s(),
-            degrees_of_freedom: error.degrees_of_freedom,
+            error,
             derivatives_inside: self.derivatives(&estimate)?,
             speeds_differ: estimate
                 .speeds
@@ -160,10 +154,7 @@ impl KnownDeck {
             let place = |dof| estimate.dofs.iter().position(|d| *d == dof).unwrap_or(0);
             let which = interval.derivative;
             let z = g[(place(which.force()), place(which.motion()))];
-            let truth = match which.part() {
-                Part::Real => z.re,
-                Part::Imaginary => z.im,
-            } / interval.k.powi(2);
+            let truth = part_of(z, which.part()) / interval.k.powi(2);
             inside.push(interval.low <= truth && truth <= interval.high);
         }
         Ok(inside)
@@ -178,10 +169,12 @@ impl KnownDeck {
         }
         let count = good.len() as f64;
         let mean = |f: &dyn Fn(&Repetition) -> f64| good.iter().map(|r| f(r)).sum::<f64>() / count;
-        let average = mean(&|r| r.onset_m_s);
-        let scatter = (mean(&|r| (r.onset_m_s - average).powi(2)) * count / (count - 1.0)).sqrt();
-        let variance = mean(&|r| r.standard_error_m_s.powi(2));
-        let inside = |r: &Repetition, target: f64| (r.onset_m_s - target).abs() <= r.half_width_m_s;
+        let onset = |r: &Repetition| r.error.speed_m_s;
+        let average = mean(&onset);
+        let scatter = (mean(&|r| (onset(r) - average).powi(2)) * count / (count - 1.0)).sqrt();
+        let variance = mean(&|r| r.error.standard_error_m_s.powi(2));
+        let inside =
+            |r: &Repetition, target: f64| (onset(r) - target).abs() <= r.error.half_width_m_s();
         let holds = |target: f64| IntervalCoverage::count(good.iter().map(|r| inside(r, target)));
         let mut report = CoverageReport {
             plan: plan.clone(),
@@ -191,10 +184,10 @@ impl KnownDeck {
             standard_error_of_mean_m_s: scatter / count.sqrt(),
             scatter_m_s: scatter,
             stated_standard_error_m_s: variance.sqrt(),
-            mean_half_width_m_s: mean(&|r| r.half_width_m_s),
-            mean_degrees_of_freedom: mean(&|r| r.degrees_of_freedom),
+            mean_half_width_m_s: mean(&|r| r.error.half_width_m_s()),
+            mean_degrees_of_freedom: mean(&|r| r.error.degrees_of_freedom),
             observed_degrees_of_freedom: 2.0 * variance * variance
-                / (mean(&|r| r.standard_error_m_s.powi(4)) - variance * variance),
+                / (mean(&|r| r.error.standard_error_m_s.powi(4)) - variance * variance),
             holds_truth: holds(self.true_onset_m_s),
             holds_fit_without_noise: holds(self.true_onset_m_s + self.bias_m_s),
             derivatives_hold_truth: IntervalCoverage::count(

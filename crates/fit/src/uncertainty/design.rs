@@ -38,27 +38,6 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Rows, residuals and working variance of several forces, one below the other.
-    pub(crate) fn stacked(
-        name: String,
-        speed_m_s: Option<f64>,
-        k: Option<f64>,
-        parts: &[(DMatrix<f64>, DVector<f64>, f64)],
-    ) -> Self {
-        let blocks: Vec<Self> = parts
-            .iter()
-            .map(|(rows, residual, variance)| Self {
-                name: String::new(),
-                speed_m_s,
-                k,
-                rows: rows.clone(),
-                residual: residual.clone(),
-                variance: DVector::from_element(residual.len(), *variance),
-            })
-            .collect();
-        Self::joined(name, &blocks)
-    }
-
     /// Several blocks as one, of the speed and frequency of the first.
     pub(crate) fn joined(name: String, blocks: &[Self]) -> Self {
         let count = blocks.iter().map(|b| b.residual.len()).sum();

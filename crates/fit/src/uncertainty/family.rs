@@ -23,13 +23,13 @@ use crate::numbered::{OnDone, numbered};
 use deck::{SEARCHED, SyntheticDeck};
 use serde::Serialize;
 
-/// Required speeds over the true onset with which a deck is asked whether it meets them.
 /// Decks of a family at most: more are days.
 const MOST_DECKS: usize = 1_000_000;
+/// Required speeds over the true onset with which a deck is asked whether it meets them.
 const REQUIRED: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.02, 1.1, 1.25, 1.5];
 
 /// What the program says of one deck.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DeckOutcome {
     /// Number of the deck.
     pub deck: usize,
@@ -124,13 +124,7 @@ fn judged(number: usize, deck: &SyntheticDeck) -> DeckOutcome {
         range: deck.range,
         motions: deck.dofs.len(),
         truth_m_s: deck.truth_m_s,
-        interval_m_s: None,
-        onset_m_s: None,
-        parts_m_s: None,
-        no_flutter_up_to_m_s: None,
-        refused: None,
-        met_above_truth: Vec::new(),
-        met_below_truth: 0,
+        ..DeckOutcome::default()
     };
     if let Err(error) = outcome.answer(deck) {
         outcome.refused = Some(error.to_string());

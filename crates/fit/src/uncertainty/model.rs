@@ -11,6 +11,7 @@ use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::flutter::{ErrorParts, Onset, OnsetInterval, OnsetMethod, OnsetSearch};
+use crate::identification::samples::part_of;
 use crate::json;
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -265,24 +266,21 @@ pub(crate) fn derivative_intervals(
     ks: &[ReducedFrequency],
 ) -> Result<Vec<DerivativeInterval>> {
     let mut intervals = Vec::new();
-    for (&k, (here, slopes)) in ks.iter().zip(estimate.transfer_slopes(ks)?) {
+    for here in estimate.transfer_slopes(ks)? {
         for (i, &force) in estimate.dofs.iter().enumerate() {
             for (j, &motion) in estimate.dofs.iter().enumerate() {
                 for part in [Part::Imaginary, Part::Real] {
-                    let at = |g: &TransferMatrix| match part {
-                        Part::Real => g[(i, j)].re,
-                        Part::Imaginary => g[(i, j)].im,
-                    } / k.full_width().powi(2);
-                    let gradient: Vec<f64> = slopes.iter().map(at).collect();
+                    let at = |g: &TransferMatrix| part_of(g[(i, j)], part) / here.k.powi(2);
+                    let gradient: Vec<f64> = here.slopes.iter().map(at).collect();
                     let standard_error = estimate.standard_error(&gradient)?;
                     let nu = estimate
                         .degrees_of_freedom(&gradient)
                         .unwrap_or(f64::INFINITY);
                     let half = two_sided_quantile(CONFIDENCE, nu.min(1e6)) * standard_error;
-                    let value = at(&here);
+                    let value = at(&here.value);
                     intervals.push(DerivativeInterval {
                         derivative: Derivative::from_entry(force, motion, part),
-                        k: k.full_width(),
+                        k: here.k,
                         value,
                         standard_error,
                         low: value - half,

@@ -124,64 +124,84 @@ pub enum Coordinates {
 pub(crate) const SEARCHED_POLES: &str =
     "searched poles are parameters through their Jacobian columns";
 
-/// Poles among the parameters.
-pub(super) struct FreePoles {
+/// The parameters of a fit: its coefficients row by row, then the poles that a search left free to follow the data.
+pub(super) struct FitParameters {
+    /// With the number of filters that the fit has chosen.
+    pub form: Form,
+    pub all: Vec<Parameter>,
+    /// First parameter of every transfer function.
+    pub first: Vec<usize>,
     pub searched: Vec<SearchedPole>,
-    pub parameters: Vec<Parameter>,
     /// Poles that the bounds or the least ratio of the search hold.
-    pub held: usize,
+    held: usize,
 }
 
-/// The poles that a search left free to follow the data; transfer functions with `own` filters do not share those of the others.
-pub(super) fn free_poles(
-    form: &Form,
-    options: &PoleSearch,
-    own: &[OwnFilters],
-    report: &FitReport,
-) -> FreePoles {
-    let mut poles = FreePoles {
-        searched: Vec::new(),
-        parameters: Vec::new(),
-        held: 0,
-    };
-    let mut dofs: Vec<Dof> = report.entries.iter().map(|e| e.motion).collect();
-    dofs.sort();
-    dofs.dedup();
-    let place = |dof: Dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
-    let apart: Vec<_> = own.iter().map(|o| (o.force, o.motion)).collect();
-    for search in &report.search {
-        // the poles in use: a search may end between the points it evaluated
-        let used = report
-            .entries
-            .iter()
-            .find(|e| match search.entry {
-                Some(entry) => entry == (e.force, e.motion),
-                None => !apart.contains(&(e.force, e.motion)),
-            })
-            .map(|e| form.collapse(&e.poles))
-            .unwrap_or_default();
-        for (index, pole) in used.iter().enumerate() {
-            let near = |bound: f64| (pole / bound).ln().abs() < AT_BOUND;
-            let pressed =
-                index > 0 && pole / used[index - 1] < (1.0 + AT_BOUND) * options.min_ratio;
-            if near(search.min) || near(search.max) || pressed {
-                poles.held += 1;
-                continue;
+impl FitParameters {
+    /// Those of a fit; transfer functions with `own` filters do not share the poles of the others.
+    pub(super) fn new(
+        form: &Form,
+        options: &PoleSearch,
+        own: &[OwnFilters],
+        report: &FitReport,
+    ) -> Self {
+        let form = report.form_fitted(form, own);
+        let (mut all, mut first) = (Vec::new(), Vec::new());
+        for entry in &report.entries {
+            first.push(all.len());
+            let (force, motion) = (Some(entry.force), Some(entry.motion));
+            let coefficients = entry.coefficients.iter();
+            all.extend(
+                coefficients.map(|c| Parameter::new(c.name.clone(), force, motion, c.value)),
+            );
+        }
+        let (mut searched, mut held) = (Vec::new(), 0);
+        let mut dofs: Vec<Dof> = report.entries.iter().map(|e| e.motion).collect();
+        dofs.sort();
+        dofs.dedup();
+        let place = |dof: Dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
+        let apart: Vec<_> = own.iter().map(|o| (o.force, o.motion)).collect();
+        for search in &report.search {
+            // the poles in use: a search may end between the points it evaluated
+            let used = report
+                .entries
+                .iter()
+                .find(|e| match search.entry {
+                    Some(entry) => entry == (e.force, e.motion),
+                    None => !apart.contains(&(e.force, e.motion)),
+                })
+                .map(|e| form.collapse(&e.poles))
+                .unwrap_or_default();
+            for (index, pole) in used.iter().enumerate() {
+                let near = |bound: f64| (pole / bound).ln().abs() < AT_BOUND;
+                let pressed =
+                    index > 0 && pole / used[index - 1] < (1.0 + AT_BOUND) * options.min_ratio;
+                if near(search.min) || near(search.max) || pressed {
+                    held += 1;
+                    continue;
+                }
+                searched.push(SearchedPole {
+                    entry: search.entry.map(|(f, m)| (place(f), place(m))),
+                    apart: apart.iter().map(|(f, m)| (place(*f), place(*m))).collect(),
+                    index,
+                });
+                let (force, motion) = search.entry.unzip();
+                all.push(Parameter::new(
+                    format!("pole {index}"),
+                    force,
+                    motion,
+                    *pole,
+                ));
             }
-            poles.searched.push(SearchedPole {
-                entry: search.entry.map(|(f, m)| (place(f), place(m))),
-                apart: apart.iter().map(|(f, m)| (place(*f), place(*m))).collect(),
-                index,
-            });
-            let (force, motion) = search.entry.unzip();
-            let parameter = Parameter::new(format!("pole {index}"), force, motion, *pole);
-            poles.parameters.push(parameter);
+        }
+        Self {
+            form,
+            all,
+            first,
+            searched,
+            held,
         }
     }
-    poles
-}
 
-impl FreePoles {
     /// How poles enter, in words.
     pub(crate) fn sentence(&self) -> String {
         let mut text = if self.searched.is_empty() {
@@ -197,6 +217,61 @@ impl FreePoles {
         }
         text
     }
+
+    /// How they make the model.
+    pub(super) fn coordinates(&self, report: &FitReport) -> Coordinates {
+        let rows = report.entries.chunks(report.entries.len().isqrt());
+        Coordinates::Continuous {
+            form: self.form.clone(),
+            chains: rows
+                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
+                .collect(),
+            searched: self.searched.clone(),
+        }
+    }
+
+    /// Orthonormal directions that the active constraints of a fit leave to its parameters, P×q; all where nothing
+    /// holds it.
+    pub(super) fn tangent(&self, report: &FitReport) -> Result<DMatrix<f64>> {
+        let parameters = self.all.len();
+        let Some(constraints) = &report.constraints else {
+            return Ok(DMatrix::identity(parameters, parameters));
+        };
+        let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
+        // squares of the gradients of what is held, whatever the limit does
+        let mut constrained_squares = vec![0.0; gradients.len()];
+        let n = report.entries.len().isqrt();
+        for (e, entry) in report.entries.iter().enumerate() {
+            let (i, j) = (e / n, e % n);
+            let values = entry.values();
+            let basis = Basis::new(&self.form, &entry.poles)?;
+            let each = gradients.iter_mut().zip(&mut constrained_squares);
+            for ((gradient, square), active) in each.zip(&constraints.active) {
+                let own = active.gradient_beyond_limit(i, j, &basis);
+                gradient.as_mut_slice()[self.first[e]..][..own.len()].copy_from_slice(&own);
+                *square += norm_squared(&active.gradient(i, j, &basis));
+            }
+            for (m, pole) in self.searched.iter().enumerate() {
+                if !pole.is_of(i, j) {
+                    continue;
+                }
+                let step = 2.0 * STEP * entry.poles[pole.index];
+                let (up, down) = moved_pole(&self.form, &entry.poles, pole.index)?;
+                for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
+                    let value = |b: &Basis| beyond_limit(active, i, j, b, &values);
+                    let at = parameters - self.searched.len() + m;
+                    gradient[at] += (value(&up) - value(&down)) / step;
+                }
+            }
+        }
+        let mut space = AffineSpace::whole(parameters);
+        for (gradient, square) in gradients.iter().zip(constrained_squares) {
+            if gradient.norm_squared() > NOTHING_HELD.powi(2) * square {
+                space.hold(gradient, 0.0, SAME_DIRECTION);
+            }
+        }
+        Ok(space.basis())
+    }
 }
 
 /// The columns of a chain with one of its free poles a little larger, and a little smaller.
@@ -204,82 +279,6 @@ pub(super) fn moved_pole(form: &Form, chain: &[f64], index: usize) -> Result<(Ba
     let moved =
         |factor: f64| Basis::new(form, &form.with_pole(chain, index, factor * chain[index]));
     Ok((moved(1.0 + STEP)?, moved(1.0 - STEP)?))
-}
-
-/// The coefficients of a fit row by row, then its searched poles; and the first parameter of every transfer function.
-pub(super) fn parameters_of(report: &FitReport, poles: &FreePoles) -> (Vec<Parameter>, Vec<usize>) {
-    let (mut all, mut first) = (Vec::new(), Vec::new());
-    for entry in &report.entries {
-        first.push(all.len());
-        let (force, motion) = (Some(entry.force), Some(entry.motion));
-        let coefficients = entry.coefficients.iter();
-        all.extend(coefficients.map(|c| Parameter::new(c.name.clone(), force, motion, c.value)));
-    }
-    all.extend_from_slice(&poles.parameters);
-    (all, first)
-}
-
-/// How those parameters make the model.
-pub(super) fn coordinates_of(
-    form: &Form,
-    report: &FitReport,
-    searched: Vec<SearchedPole>,
-) -> Coordinates {
-    let rows = report.entries.chunks(report.entries.len().isqrt());
-    Coordinates::Continuous {
-        form: form.clone(),
-        chains: rows
-            .map(|row| row.iter().map(|e| e.poles.clone()).collect())
-            .collect(),
-        searched,
-    }
-}
-
-/// Orthonormal directions that the active constraints of a fit leave to its parameters, P×q; all where nothing holds it. `first` is the first parameter of every transfer function; searched poles are the last.
-pub(super) fn tangent_of(
-    report: &FitReport,
-    form: &Form,
-    poles: &FreePoles,
-    first: &[usize],
-    parameters: usize,
-) -> Result<DMatrix<f64>> {
-    let Some(constraints) = &report.constraints else {
-        return Ok(DMatrix::identity(parameters, parameters));
-    };
-    let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
-    // squares of the gradients of what is held, whatever the limit does
-    let mut constrained_squares = vec![0.0; gradients.len()];
-    let n = report.entries.len().isqrt();
-    for (e, entry) in report.entries.iter().enumerate() {
-        let (i, j) = (e / n, e % n);
-        let values = entry.values();
-        let basis = Basis::new(form, &entry.poles)?;
-        let each = gradients.iter_mut().zip(&mut constrained_squares);
-        for ((gradient, square), active) in each.zip(&constraints.active) {
-            let own = active.gradient_beyond_limit(i, j, &basis);
-            gradient.as_mut_slice()[first[e]..][..own.len()].copy_from_slice(&own);
-            *square += norm_squared(&active.gradient(i, j, &basis));
-        }
-        for (m, pole) in poles.searched.iter().enumerate() {
-            if !pole.is_of(i, j) {
-                continue;
-            }
-            let step = 2.0 * STEP * entry.poles[pole.index];
-            let (up, down) = moved_pole(form, &entry.poles, pole.index)?;
-            for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
-                let value = |b: &Basis| beyond_limit(active, i, j, b, &values);
-                let at = parameters - poles.searched.len() + m;
-                gradient[at] += (value(&up) - value(&down)) / step;
-            }
-        }
-    }
-    let mut space = AffineSpace::whole(parameters);
-    for (gradient, square) in gradients.iter().zip(constrained_squares) {
-        if gradient.norm_squared() > NOTHING_HELD.powi(2) * square {
-            space.hold(gradient, 0.0, SAME_DIRECTION);
-        }
-    }
-    Ok(space.basis())
 }
 
 /// What a transfer function adds to what a constraint holds beyond its limit.

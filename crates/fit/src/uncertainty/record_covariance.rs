@@ -2,15 +2,12 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::columns::Expansion;
-use super::parameters::{
-    Coordinates, FreePoles, Parameter, constraint_sentence, coordinates_of, free_poles,
-    parameters_of, tangent_of,
-};
+use super::design::Block;
+use super::parameters::{Coordinates, FitParameters, Parameter, constraint_sentence};
 use super::segments::{StretchRows, Stretched, gather, sandwich};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
 use crate::identification::discrete::discrete_pass;
-use crate::identification::form::Form;
 use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
 use crate::identification::report::FitReport;
@@ -48,25 +45,23 @@ pub fn record_uncertainty(
         records: &records,
         progress,
     };
-    let form = report.form_fitted(&fit.form, &fit.own);
-    let poles = free_poles(&form, &fit.poles, &fit.own, report);
-    let (parameters, first) = parameters_of(report, &poles);
-    let entries = Entries::new(&form, first, parameters.len(), report, &poles)?;
+    let parameters = FitParameters::new(&fit.form, &fit.poles, &fit.own, report);
+    let entries = Entries::new(report, &parameters)?;
     let rows = Rows {
         orthonormal: true,
         thinned: false,
         stretches: STRETCHES,
     };
     let closed = task.pass(&entries.candidates(), rows, 1, 1)?.stretches;
-    let tangent = tangent_of(report, &form, &poles, &entries.first, parameters.len())?;
+    let tangent = parameters.tangent(report)?;
     let (design, blocks) = sandwich(entries.blocks(&records.each, &closed)?, tangent)?;
-    let searched = poles.sentence() + &constraint_sentence(report);
+    let searched = parameters.sentence() + &constraint_sentence(report);
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; {searched}"),
         Some(report.tested_range),
         records.dofs,
-        coordinates_of(&form, report, poles.searched),
-        parameters,
+        parameters.coordinates(report),
+        parameters.all,
         design,
     )
 }
@@ -91,13 +86,8 @@ struct Entries {
 }
 
 impl Entries {
-    fn new(
-        form: &Form,
-        first: Vec<usize>,
-        parameters: usize,
-        report: &FitReport,
-        poles: &FreePoles,
-    ) -> Result<Self> {
+    fn new(report: &FitReport, parameters: &FitParameters) -> Result<Self> {
+        let (form, searched) = (&parameters.form, &parameters.searched);
         let inputs = report.entries.len().isqrt();
         let mut entries = Self {
             inputs,
@@ -105,12 +95,11 @@ impl Entries {
             natives: Vec::new(),
             values: report.entries.iter().map(EntryReport::values).collect(),
             slopes: Vec::new(),
-            first,
+            first: parameters.first.clone(),
             constants: Vec::new(),
-            parameters,
+            parameters: parameters.all.len(),
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
         };
-        let searched = &poles.searched;
         for (e, (entry, values)) in report.entries.iter().zip(&entries.values).enumerate() {
             let expansion = Expansion::new(form, &entry.poles, !searched.is_empty())?;
             let (i, j) = (e / inputs, e % inputs);
@@ -174,22 +163,13 @@ impl Entries {
                     "covariance: poles per transfer function need records of single motions".into(),
                 ));
             }
-            for i in 0..self.inputs {
-                let (rows, residual, total) = self.part(stretch, i)?;
-                parts.push(StretchRows {
-                    of: stretch,
-                    force: i,
-                    rows,
-                    residual,
-                    total,
-                });
-            }
+            parts.extend((0..self.inputs).map(|i| self.part(stretch, i)));
         }
         Ok(gather(records, parts))
     }
 
-    /// Weighted rows, residuals and sum of squares of force `i` in one stretch.
-    fn part(&self, stretch: &Stretch, i: usize) -> Result<(DMatrix<f64>, DVector<f64>, f64)> {
+    /// Rows of force `i` in one stretch.
+    fn part<'a>(&self, stretch: &'a Stretch, i: usize) -> StretchRows<'a> {
         let moving = stretch.set.len();
         let which = if self.shared {
             0
@@ -219,9 +199,19 @@ impl Entries {
                 }
             }
         }
-        let rows = &factor.r * columns * weight;
-        let residual = (factor.qtb.column(i) - &factor.r * fitted) * weight;
-        Ok((rows, residual, factor.total_sum(i) * weight * weight))
+        StretchRows {
+            of: stretch,
+            force: i,
+            block: Block {
+                name: String::new(),
+                speed_m_s: None,
+                k: None,
+                rows: &factor.r * columns * weight,
+                residual: (factor.qtb.column(i) - &factor.r * fitted) * weight,
+                variance: DVector::zeros(factor.columns()),
+            },
+            total: factor.total_sum(i) * weight * weight,
+        }
     }
 }
 

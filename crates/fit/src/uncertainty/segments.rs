@@ -13,7 +13,7 @@ use super::design::{Block, Design};
 use crate::error::Result;
 use crate::identification::time::pass::Stretch;
 use crate::identification::time::record::DimensionlessRecord;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -61,21 +61,23 @@ pub(super) fn sandwich(stretched: Stretched, tangent: DMatrix<f64>) -> Result<(D
 pub(super) struct StretchRows<'a> {
     pub of: &'a Stretch,
     pub force: usize,
-    /// Weighted as the force is in that stretch; so are the others.
-    pub rows: DMatrix<f64>,
-    pub residual: DVector<f64>,
-    /// Sum of squares of the data.
+    /// Weighted as the force is in that stretch; its variance is still to be set.
+    pub block: Block,
+    /// Sum of squares of the data, weighted as well.
     pub total: f64,
 }
 
 /// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
 /// them.
-pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows<'_>>) -> Stretched {
-    let weights = weights(records, &parts);
-    let mut stretches: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-    for (at, part) in parts.iter().enumerate() {
+pub(super) fn gather(
+    records: &[DimensionlessRecord],
+    mut parts: Vec<StretchRows<'_>>,
+) -> Stretched {
+    weigh(records, &mut parts);
+    let mut stretches: BTreeMap<(usize, usize), Vec<StretchRows<'_>>> = BTreeMap::new();
+    for part in parts {
         let stretch = stretches.entry((part.of.record, part.of.stretch));
-        stretch.or_default().push(at);
+        stretch.or_default().push(part);
     }
     let mut out = Stretched {
         blocks: Vec::new(),
@@ -84,7 +86,7 @@ pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows<'_>
     };
     let mut keys: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for ((record, stretch), members) in stretches {
-        let segment = parts[members[0]].of.segment;
+        let segment = members[0].of.segment;
         let record_of = &records[record];
         let hertz = segment.map(|s| record_of.header.segments[s].frequency_hz);
         let number = stretch + 1;
@@ -104,54 +106,39 @@ pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<StretchRows<'_>
             out.names.push(of_segment);
             out.names.len() - 1
         }));
-        let scaled: Vec<_> = members
-            .iter()
-            .map(|&m| {
-                let (part, Weight { scale, variance }) = (&parts[m], weights[m]);
-                (&part.rows * scale, &part.residual * scale, variance)
-            })
-            .collect();
-        let k = hertz.map(|f| TAU * f / record_of.rate);
-        let speed_m_s = Some(record_of.header.mean_speed_m_s);
-        out.blocks.push(Block::stacked(name, speed_m_s, k, &scaled));
+        let of_forces: Vec<Block> = members.into_iter().map(|part| part.block).collect();
+        out.blocks.push(Block {
+            speed_m_s: Some(record_of.header.mean_speed_m_s),
+            k: hertz.map(|f| TAU * f / record_of.rate),
+            ..Block::joined(name, &of_forces)
+        });
     }
     out
 }
 
-/// What rows of a part are multiplied with, and the working variance of them then.
-#[derive(Clone, Copy)]
-struct Weight {
-    scale: f64,
-    variance: f64,
-}
-
-/// The weights of all parts: equations of one group share their scale.
-fn weights(records: &[DimensionlessRecord], parts: &[StretchRows<'_>]) -> Vec<Weight> {
+/// Gives the rows of all parts their weight and their working variance: equations of one group share their scale.
+fn weigh<'a>(records: &[DimensionlessRecord], parts: &mut [StretchRows<'a>]) {
     // inputs that moved, and force: equations that share their scale
-    let mut groups: BTreeMap<(&[usize], usize), Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<(&'a [usize], usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
         let group = groups.entry((&part.of.set, part.force));
         group.or_default().push(at);
     }
-    let alone = Weight {
-        scale: 1.0,
-        variance: 1.0,
-    };
-    let mut weights = vec![alone; parts.len()];
     for members in groups.values() {
-        let total: f64 = members.iter().map(|&m| parts[m].total).sum();
+        let own: Vec<&StretchRows<'_>> = members.iter().map(|&m| &parts[m]).collect();
+        let total: f64 = own.iter().map(|part| part.total).sum();
         let scale = if total > 0.0 {
             total.sqrt().recip()
         } else {
             1.0
         };
-        let own: Vec<&StretchRows<'_>> = members.iter().map(|&m| &parts[m]).collect();
         for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
-            let variance = variance * scale * scale;
-            weights[m] = Weight { scale, variance };
+            let block = &mut parts[m].block;
+            block.rows *= scale;
+            block.residual *= scale;
+            block.variance.fill(variance * scale * scale);
         }
     }
-    weights
 }
 
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
@@ -160,7 +147,7 @@ fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows<'_>]
     let floor = 1e-12
         * parts
             .iter()
-            .map(|p| p.residual.norm_squared())
+            .map(|p| p.block.residual.norm_squared())
             .fold(0.0, f64::max);
     if floor <= 0.0 {
         // a fit without residuals has no scale; only relative sizes matter
@@ -172,7 +159,8 @@ fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows<'_>]
             let hz = p.of.segment.map_or(1.0, |s| {
                 records[p.of.record].header.segments[s].frequency_hz
             });
-            let mean_square = p.residual.norm_squared().max(floor) / p.residual.len() as f64;
+            let mean_square =
+                p.block.residual.norm_squared().max(floor) / p.block.residual.len() as f64;
             let weight = p.of.weights[p.force];
             (p.of.record, hz.ln(), (mean_square / weight.powi(2)).ln())
         })

@@ -2,9 +2,7 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::design::{Block, Design};
-use super::parameters::{
-    STEP, constraint_sentence, coordinates_of, free_poles, moved_pole, parameters_of, tangent_of,
-};
+use super::parameters::{FitParameters, STEP, constraint_sentence, moved_pole};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::EntryReport;
@@ -42,22 +40,22 @@ pub fn table_uncertainty(
         ));
     }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
-    let form = report.form_fitted(&fit.form, &fit.own);
-    let poles = free_poles(&form, &fit.poles, &fit.own, report);
-    let (parameters, first) = parameters_of(report, &poles);
-    let first_pole = parameters.len() - poles.searched.len();
+    let parameters = FitParameters::new(&fit.form, &fit.poles, &fit.own, report);
+    let count = parameters.all.len();
+    let first_pole = count - parameters.searched.len();
     let mut runs: Vec<MotionSamples> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
-        let searched = poles
+        let searched = parameters
             .searched
             .iter()
             .enumerate()
             .filter(|(_, pole)| pole.is_of(e / dofs.len(), e % dofs.len()));
         let searched: Vec<(usize, usize)> =
             searched.map(|(m, p)| (first_pole + m, p.index)).collect();
-        let report = &report.entries[e];
-        let mut rows = vec![vec![0.0; parameters.len()]; entry.rows.len()];
-        let (residuals, variance) = rows_of(entry, report, &form, &searched, first[e], &mut rows)?;
+        let (report, first) = (&report.entries[e], parameters.first[e]);
+        let mut rows = vec![vec![0.0; count]; entry.rows.len()];
+        let (residuals, variance) =
+            rows_of(entry, report, &parameters.form, &searched, first, &mut rows)?;
         for ((sample, line), residual) in entry.rows.iter().zip(rows).zip(residuals) {
             let place = runs.iter().position(|run| run.holds(entry.motion, sample));
             let place = place.unwrap_or_else(|| {
@@ -72,9 +70,9 @@ pub fn table_uncertainty(
             runs[place].rows.push((line, residual, variance));
         }
     }
-    let tangent = tangent_of(report, &form, &poles, &first, parameters.len())?;
+    let tangent = parameters.tangent(report)?;
     let blocks = runs.into_iter().map(MotionSamples::block).collect();
-    let searched = poles.sentence() + &constraint_sentence(report);
+    let searched = parameters.sentence() + &constraint_sentence(report);
     CoefficientUncertainty::new(
         format!(
             "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
@@ -83,8 +81,8 @@ pub fn table_uncertainty(
         ),
         Some(report.tested_range),
         dofs.to_vec(),
-        coordinates_of(&form, report, poles.searched),
-        parameters,
+        parameters.coordinates(report),
+        parameters.all,
         Design::new(blocks, tangent)?,
     )
 }

@@ -27,10 +27,11 @@ const HIGHEST: f64 = 15.0;
 const OF_A_POINT: f64 = 6.0 / 16.0;
 
 /// Where the tests of a deck lie, seen from the reduced frequency of its true onset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FamilyRange {
     /// Around it.
+    #[default]
     Normal,
     /// It lies within 8 % of their lowest or highest.
     Edge,

@@ -20,14 +20,9 @@ pub(super) struct Sampler {
     parameters: Vec<(SectionProperty, Transform)>,
     /// Lower factor of the correlation matrix; `None` when all are independent.
     correlation: Option<DMatrix<f64>>,
-    scatter: CoefficientScatter,
-}
-
-#[derive(Debug, Clone)]
-enum CoefficientScatter {
-    None,
-    Relative(f64),
-    Covariance(CovarianceFactor),
+    /// Standard deviation of each coefficient over its value, which goes before the covariance.
+    relative_scatter: Option<f64>,
+    covariance: Option<CovarianceFactor>,
 }
 
 /// One sample, kept from one to the next so that nothing is allocated anew.
@@ -53,18 +48,14 @@ impl Sampler {
             let place = format!("{key}.distribution");
             parameters.push((random.name, random.distribution.resolve(&place, nominal)?));
         }
-        let scatter = match (plan.aerodynamics.relative_scatter, covariance) {
-            (Some(scatter), _) => CoefficientScatter::Relative(scatter),
-            (None, Some(factor)) => CoefficientScatter::Covariance(factor),
-            (None, None) => CoefficientScatter::None,
-        };
         Ok(Self {
             seed: plan.seed,
             section: section.clone(),
             coefficients: coefficients.to_vec(),
             correlation: correlation(plan)?,
             parameters,
-            scatter,
+            relative_scatter: plan.aerodynamics.relative_scatter,
+            covariance,
         })
     }
 
@@ -90,21 +81,17 @@ impl Sampler {
                 *place = transform.value(z);
             }
         }
-        match &self.scatter {
-            CoefficientScatter::None => {}
-            CoefficientScatter::Relative(scatter) => {
-                for (value, nominal) in sample.coefficients.iter_mut().zip(&self.coefficients) {
-                    let z: f64 = random.sample(StandardNormal);
-                    *value = nominal * (1.0 + scatter * z);
-                }
+        if let Some(scatter) = self.relative_scatter {
+            for (value, nominal) in sample.coefficients.iter_mut().zip(&self.coefficients) {
+                let z: f64 = random.sample(StandardNormal);
+                *value = nominal * (1.0 + scatter * z);
             }
-            CoefficientScatter::Covariance(covariance) => {
-                fill(&mut sample.normal, covariance.factor.ncols(), &mut random);
-                for (row, place) in covariance.places.iter().enumerate() {
-                    let terms = covariance.factor.row(row);
-                    let change: f64 = terms.iter().zip(&sample.normal).map(|(s, z)| s * z).sum();
-                    sample.coefficients[*place] = self.coefficients[*place] + change;
-                }
+        } else if let Some(covariance) = &self.covariance {
+            fill(&mut sample.normal, covariance.factor.ncols(), &mut random);
+            for (row, place) in covariance.places.iter().enumerate() {
+                let terms = covariance.factor.row(row);
+                let change: f64 = terms.iter().zip(&sample.normal).map(|(s, z)| s * z).sum();
+                sample.coefficients[*place] = self.coefficients[*place] + change;
             }
         }
     }
