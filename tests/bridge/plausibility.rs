@@ -248,25 +248,6 @@ fn axes_are_compared_with_the_line_of_the_nodes() {
     );
 }
 
-/// Nodes of cables among those of the girder were taken for it.
-#[test]
-fn a_node_above_its_neighbours_is_doubted() {
-    let modes = |raised_m: f64| {
-        let mut modes = langenuen();
-        modes.offsets_m = vec![[0.0, 30.0]; modes.nodes.len()];
-        modes.offsets_m[20][1] += raised_m;
-        modes.findings()
-    };
-    assert!(modes(3.0).is_empty());
-    let found = modes(60.0);
-    assert_eq!(found.len(), 1, "{found:?}");
-    let text = found[0].to_string();
-    assert!(
-        text.contains("lies 60.0 m above the line between its neighbours"),
-        "{text}"
-    );
-}
-
 /// Shapes without rotations or without vertical displacements look safe in every wind.
 #[test]
 fn a_bridge_that_turns_or_bends_nowhere_is_doubted_once() {

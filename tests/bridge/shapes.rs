@@ -2,6 +2,7 @@
 
 use crate::bridges::{TWO, langenuen_text, read};
 use aerodeck::bridge::Bridge;
+use aerodeck::files::bridge::embedded;
 use aerodeck::plausibility::{TurbulenceFigures, of_bridge, of_turbulence};
 
 fn langenuen() -> Bridge {
@@ -104,5 +105,24 @@ fn turbulence_that_is_none_of_this_wind_is_doubted() {
     assert!(
         short[0].contains("which does not come into motion in it"),
         "{short:?}"
+    );
+}
+
+/// Nodes of cables among those of the girder were taken for it.
+#[test]
+fn a_node_above_its_neighbours_is_doubted() {
+    let modes = |raised_m: f64| {
+        let mut modes = embedded::modes("langenuen").unwrap();
+        modes.offsets_m = vec![[0.0, 30.0]; modes.nodes.len()];
+        modes.offsets_m[20][1] += raised_m;
+        modes.findings()
+    };
+    assert!(modes(3.0).is_empty());
+    let found = modes(60.0);
+    assert_eq!(found.len(), 1, "{found:?}");
+    let text = found[0].to_string();
+    assert!(
+        text.contains("lies 60.0 m above the line between its neighbours"),
+        "{text}"
     );
 }

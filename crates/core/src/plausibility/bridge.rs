@@ -13,7 +13,7 @@ use crate::section::{Dof, Rotation, SectionModel, Translation};
 use dampers::of_dampers;
 pub use line::of_profile;
 use line::{LENGTH, length_m, of_line};
-use shapes::of_shapes;
+use shapes::{greatest, half_waves, of_shapes, place};
 use std::f64::consts::{PI, TAU};
 pub use turbulence::{TurbulenceFigures, of_turbulence};
 
@@ -156,17 +156,6 @@ fn still(bridge: &Bridge, motion: usize, name: &str) -> Option<Finding> {
     };
     let found = Finding::doubt(FindingKind::Contradiction, "modes", text);
     Some(found.otherwise(otherwise.to_owned()))
-}
-
-fn place(mode: &BridgeMode) -> String {
-    format!("mode {}", mode.number)
-}
-
-fn greatest(mode: &BridgeMode, motion: usize) -> f64 {
-    mode.shape
-        .iter()
-        .map(|s| s[motion].abs())
-        .fold(0.0, f64::max)
 }
 
 fn greatest_displacement(mode: &BridgeMode) -> f64 {
@@ -340,15 +329,4 @@ fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
     );
     let found = Finding::unit(format!("{}: frequency_hz", place(mode)), hertz, text);
     vec![found.otherwise(otherwise)]
-}
-
-/// Half waves of one motion over the whole girder.
-fn half_waves(mode: &BridgeMode, motion: usize) -> usize {
-    let least = 0.05 * greatest(mode, motion);
-    let values = mode.shape.iter().map(|s| s[motion]);
-    let signs: Vec<bool> = values
-        .filter(|s| s.abs() > least)
-        .map(|s| s > 0.0)
-        .collect();
-    1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }

@@ -1,6 +1,5 @@
 //! Shapes from node to node: a girder bends and twists smoothly, and its nodes have to be near enough to say how.
 
-use super::{greatest, half_waves, place};
 use crate::bridge::{Bridge, BridgeMode};
 use crate::plausibility::{Finding, FindingKind};
 
@@ -84,4 +83,26 @@ fn sparse(bridge: &Bridge, length_m: f64) -> Option<Finding> {
         place(mode)
     );
     Some(contradiction("nodes", text).otherwise("more nodes have to be exported".to_owned()))
+}
+
+pub(super) fn place(mode: &BridgeMode) -> String {
+    format!("mode {}", mode.number)
+}
+
+pub(super) fn greatest(mode: &BridgeMode, motion: usize) -> f64 {
+    mode.shape
+        .iter()
+        .map(|s| s[motion].abs())
+        .fold(0.0, f64::max)
+}
+
+/// Half waves of one motion over the whole girder.
+pub(super) fn half_waves(mode: &BridgeMode, motion: usize) -> usize {
+    let least = 0.05 * greatest(mode, motion);
+    let values = mode.shape.iter().map(|s| s[motion]);
+    let signs: Vec<bool> = values
+        .filter(|s| s.abs() > least)
+        .map(|s| s > 0.0)
+        .collect();
+    1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }

@@ -3,7 +3,6 @@
 use super::table::Table;
 use crate::error::{Error, Place, Result, ensure};
 use crate::plausibility::{TurbulenceFigures, ratio_hint, significant};
-use crate::signal::mean_and_deviation;
 use std::path::Path;
 
 /// Nodes and columns this close are at one place, m: places are written with a few digits.
@@ -58,7 +57,10 @@ impl FieldTable {
 
     /// What it holds, in figures: deviations from the mean of each place.
     pub fn figures(&self) -> TurbulenceFigures {
-        let variance = |row: &Vec<f64>| mean_and_deviation(row.iter().copied()).1.powi(2);
+        let variance = |row: &Vec<f64>| {
+            let mean = row.iter().sum::<f64>() / row.len() as f64;
+            row.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / row.len() as f64
+        };
         let deviation = |rows: &[Vec<f64>]| {
             let sum: f64 = rows.iter().map(variance).sum();
             (sum / rows.len() as f64).sqrt()
