@@ -52,6 +52,7 @@ mod wrapping;
 pub use answer::Answer;
 
 use crate::error::{Error, Result};
+use answer::{FAILED, NOT_MET};
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::Shell;
 use std::ffi::OsString;
@@ -61,10 +62,6 @@ use std::process::ExitCode;
 
 /// Exit code for wrong input, as clap uses it for wrong arguments.
 const WRONG_INPUT: u8 = 2;
-/// Exit code when a computation failed or a check did not pass.
-const FAILED: u8 = 1;
-/// Exit code when a speed is required and it is not known to be met.
-const NOT_MET: u8 = 3;
 
 /// What each exit code means.
 const EXIT_CODES: [(u8, &str); 5] = [
@@ -123,16 +120,32 @@ enum Command {
     Study(study::RunStudyArgs),
     Report(report::ReportArgs),
     Plot(plot::PlotArgs),
-    Tunnel(tunnel::TunnelArgs),
+    /// Rebuild the forced-vibration records of a study's deck and write them as CSV
+    ///
+    /// Example: aerodeck tunnel study.toml
+    #[command(verbatim_doc_comment)]
+    Tunnel(common::StudyArgs),
     #[command(subcommand)]
     Campaign(campaign::CampaignCommand),
     Process(process::ProcessArgs),
-    Train(train::TrainArgs),
+    /// Train the models of a study from its records (see `tunnel`) and tables
+    ///
+    /// Example: aerodeck train study.toml
+    #[command(verbatim_doc_comment)]
+    Train(common::StudyArgs),
     Flutter(flutter::FlutterArgs),
     MonteCarlo(monte_carlo::MonteCarloArgs),
     Simulate(simulate::SimulateArgs),
-    QuasiSteady(quasi_steady::QuasiSteadyArgs),
-    Buffeting(buffeting::BuffetingArgs),
+    /// Static equilibrium over wind speed, linear quasi-steady model, its onset, and a nonlinear run in gusts
+    ///
+    /// Example: aerodeck quasi-steady wind.toml
+    #[command(verbatim_doc_comment)]
+    QuasiSteady(wind::WindArgs),
+    /// RMS response to turbulence over wind speed, in the frequency and in the time domain
+    ///
+    /// Example: aerodeck buffeting wind.toml
+    #[command(verbatim_doc_comment)]
+    Buffeting(wind::WindArgs),
     #[command(subcommand)]
     Bridge(bridge::BridgeCommand),
     #[command(subcommand)]
@@ -142,7 +155,15 @@ enum Command {
     #[command(subcommand)]
     Derivatives(derivatives::Derivatives),
     Validate(validate::ValidateArgs),
-    Thesis(thesis::ThesisArgs),
+    /// Repeat the thesis's headline: discrete Laguerre and rational functions on its own deck, 37.6 m/s
+    ///
+    /// Example: aerodeck thesis --out thesis
+    #[command(verbatim_doc_comment)]
+    Thesis {
+        /// Write thesis.html into this folder: every figure and table that can be computed, its numbers beside ours.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     Select(select::SelectArgs),
     Coverage(coverage::CoverageArgs),
     #[command(subcommand)]
@@ -207,7 +228,7 @@ pub fn answer(arguments: &[String]) -> Result<(serde_json::Value, u8)> {
         Error::input("arguments", "a command line of the program", said.trim())
     })?;
     let answer = cli.answer()?;
-    Ok((answer.value(), exit_code(&answer)))
+    Ok((answer.value(), answer.exit_code()))
 }
 
 impl Cli {
@@ -255,14 +276,6 @@ fn kind(line: &ArgMatches) -> String {
     }
 }
 
-fn exit_code(answer: &Answer) -> u8 {
-    match (answer.refused(), answer.passed()) {
-        (true, _) => NOT_MET,
-        (false, true) => 0,
-        (false, false) => FAILED,
-    }
-}
-
 /// Names that are no UTF-8 cannot be said in results, which are text.
 fn readable_arguments() -> Result<()> {
     match std::env::args_os().find(|a| a.to_str().is_none()) {
@@ -298,7 +311,7 @@ fn print(answer: &Answer, json: bool) -> u8 {
             complain(&error);
             FAILED
         }
-        Ok(()) => exit_code(answer),
+        Ok(()) => answer.exit_code(),
     }
 }
 
@@ -337,7 +350,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Ssp(command) => ssp::run(command, progress),
         Command::Derivatives(command) => derivatives::run(command),
         Command::Validate(args) => validate::run(args, progress),
-        Command::Thesis(args) => thesis::run(args, progress),
+        Command::Thesis { out } => thesis::run(out.as_deref(), progress),
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
         Command::Compare(command) => compare::run(command, progress),

@@ -6,6 +6,11 @@ use crate::json;
 use crate::verdict::Verdict;
 use serde::Serialize;
 
+/// Exit code when a computation failed or a check did not pass.
+pub(super) const FAILED: u8 = 1;
+/// Exit code when a speed is required and it is not known to be met.
+pub(super) const NOT_MET: u8 = 3;
+
 /// Text without the control characters of an input, which a terminal would obey.
 pub(super) fn plain(text: &str) -> String {
     let shown = |c: char| {
@@ -92,14 +97,13 @@ impl Answer {
         format!("{:#}", self.json)
     }
 
-    /// Whether a speed is required and not known to be met.
-    pub(crate) fn refused(&self) -> bool {
-        self.refused
-    }
-
-    /// Whether every check passed.
-    pub(crate) fn passed(&self) -> bool {
-        self.passed
+    /// That of the process: whether a speed is required and not known to be met comes before whether every check passed.
+    pub(super) fn exit_code(&self) -> u8 {
+        match (self.refused, self.passed) {
+            (true, _) => NOT_MET,
+            (false, true) => 0,
+            (false, false) => FAILED,
+        }
     }
 }
 

@@ -24,7 +24,11 @@ use crate::error::Result;
 #[derive(clap::Subcommand)]
 pub(super) enum BridgeCommand {
     Flutter(flutter::BridgeFlutterArgs),
-    Show(show::BridgeShowArgs),
+    /// Draw the modes of a bridge and state how alike vertical and torsional modes are
+    ///
+    /// Example: aerodeck bridge show bridge.toml --out modes
+    #[command(verbatim_doc_comment)]
+    Show(args::BridgeArgs),
     Buffeting(buffeting::BridgeBuffetingArgs),
     Convert(convert::BridgeConvertArgs),
 }

@@ -18,19 +18,9 @@ pub(super) const PAGE: &str = "buffeting.html";
 /// Key of that page where it is part of a study.
 pub(super) const OF_STUDY: &str = "study";
 
-/// RMS response to turbulence over wind speed, in the frequency and in the time domain
-///
-/// Example: aerodeck buffeting wind.toml
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct BuffetingArgs {
-    #[command(flatten)]
-    wind: WindArgs,
-}
-
 /// Runs the command.
-pub(crate) fn run(args: &BuffetingArgs, progress: &Progress) -> Result<Answer> {
-    let (study, mut out) = args.wind.open()?;
+pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
+    let (study, mut out) = args.open()?;
     let speeds = study.speed_range()?.curve_speeds_m_s();
     let results = response(&study, &speeds, progress)?;
     // a requirement is judged where it is stated, also beside a response to turbulence

@@ -18,31 +18,76 @@ use crate::plausibility::{of_table, sentences};
 use crate::report::axes_sketch;
 use crate::signal::extremes;
 use clap::Subcommand;
+use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Show tables of aerodynamic derivatives and convert them between notations
 #[derive(Subcommand)]
 pub(crate) enum Derivatives {
-    Convert(ConvertArgs),
-    Show(ShowArgs),
-    Notations(NotationsArgs),
-    Template(TemplateArgs),
+    /// Write a table of derivatives in another notation, argument or axes; the result states them
+    ///
+    /// Example: aerodeck derivatives convert LN21-5200 polimi.csv --to polimi
+    #[command(verbatim_doc_comment)]
+    Convert {
+        #[command(flatten)]
+        table: TableArgs,
+        /// The result (.csv, .xlsx).
+        out: PathBuf,
+    },
+    /// Show a table of derivatives: where it comes from, its convention, ranges or all its points
+    ///
+    /// Example: aerodeck derivatives show LN21-5200 --to polimi
+    #[command(verbatim_doc_comment)]
+    Show {
+        #[command(flatten)]
+        table: TableArgs,
+        /// Every test point instead of the ranges.
+        #[arg(long)]
+        points: bool,
+    },
+    /// List the notations, arguments and axes that are understood; draw the axes
+    ///
+    /// Example: aerodeck derivatives notations --sketch figures
+    #[command(verbatim_doc_comment)]
+    Notations {
+        /// Folder into which a sketch of the axes is drawn (axes.svg).
+        #[arg(long)]
+        sketch: Option<PathBuf>,
+    },
+    /// Write an empty workbook to be filled with a table of derivatives, with instructions
+    ///
+    /// Example: aerodeck derivatives template table.xlsx --notation polimi
+    #[command(verbatim_doc_comment)]
+    Template {
+        /// The workbook (.xlsx).
+        out: PathBuf,
+        /// Notation of the columns.
+        #[arg(long, default_value = "scanlan")]
+        notation: Notation,
+        /// Replace a file that is there.
+        #[arg(long)]
+        force: bool,
+    },
 }
 
 /// Runs the command.
 pub(crate) fn run(command: &Derivatives) -> Result<Answer> {
     match command {
-        Derivatives::Convert(args) => convert(args),
-        Derivatives::Show(args) => show(args),
-        Derivatives::Notations(args) => notations(args),
-        Derivatives::Template(args) => template(args),
+        Derivatives::Convert { table, out } => convert(table, out),
+        Derivatives::Show { table, points } => show(table, *points),
+        Derivatives::Notations { sketch } => notations(sketch.as_deref()),
+        Derivatives::Template {
+            out,
+            notation,
+            force,
+        } => template(out, *notation, *force),
     }
 }
 
 /// A table and its conventions.
 #[derive(clap::Args)]
-struct TableArgs {
+pub(crate) struct TableArgs {
     /// Table of derivatives (.csv, .xlsx, .xls, .ods), or the name of an embedded deck.
     table: String,
     /// The sheet of a workbook that is meant, where several hold derivatives.
@@ -113,43 +158,33 @@ impl TableArgs {
     }
 }
 
-/// Write a table of derivatives in another notation, argument or axes; the result states them
-///
-/// Example: aerodeck derivatives convert LN21-5200 polimi.csv --to polimi
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct ConvertArgs {
-    #[command(flatten)]
-    table: TableArgs,
-    /// The result (.csv, .xlsx).
-    out: PathBuf,
+/// The name of a file that is to be written, if it ends as one of a known kind.
+fn named<'a>(path: &'a Path, endings: &[&str]) -> Result<&'a OsStr> {
+    let known = |end: &OsStr| endings.iter().any(|e| end.eq_ignore_ascii_case(e));
+    let name = path.file_name();
+    let name = name.filter(|_| path.extension().is_some_and(known));
+    name.ok_or_else(|| {
+        let expected = format!("a file name that ends in .{}", endings.join(" or ."));
+        Error::input("out", expected, path.display().to_string())
+    })
 }
 
-fn convert(args: &ConvertArgs) -> Result<Answer> {
-    let extension = args
-        .out
-        .extension()
-        .map(|e| e.to_string_lossy().to_lowercase());
-    let is_workbook = extension.as_deref() == Some("xlsx");
-    let known = is_workbook || extension.as_deref() == Some("csv");
-    let name = args.out.file_name().filter(|_| known).ok_or_else(|| {
-        let found = args.out.display().to_string();
-        Error::input("out", "a file name that ends in .csv or .xlsx", found)
-    })?;
+fn convert(args: &TableArgs, result: &Path) -> Result<Answer> {
+    let name = named(result, &["csv", "xlsx"])?;
     let TableInConvention {
         table,
         convention: from,
-    } = args.table.read()?;
-    let to = args.table.target();
-    refuse_own_input(args)?;
-    let bytes = if is_workbook {
+    } = args.read()?;
+    let to = args.target();
+    refuse_own_input(args, result)?;
+    let bytes = if named(result, &["xlsx"]).is_ok() {
         workbook_bytes_in(&table, &to)?
     } else {
         let mut bytes = Vec::new();
-        write_csv_in(&table, &to, &mut bytes).map_err(|e| Error::io(&args.out, e))?;
+        write_csv_in(&table, &to, &mut bytes).map_err(|e| Error::io(result, e))?;
         bytes
     };
-    let mut out = OutputDir::new(folder_of(&args.out))?;
+    let mut out = OutputDir::new(folder_of(result))?;
     out.write(name, bytes)?;
     let mut text = format!(
         "{}: {} derivatives\n  from {from}\n  to   {to}\n",
@@ -163,16 +198,16 @@ fn convert(args: &ConvertArgs) -> Result<Answer> {
 }
 
 /// The table that is read stays as it is.
-fn refuse_own_input(args: &ConvertArgs) -> Result<()> {
+fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
     let place = |path: &Path| path.canonicalize().ok();
-    let input = place(file_and_sheet(&args.table.table).0.as_ref());
+    let input = place(file_and_sheet(&args.table).0.as_ref());
     ensure(
-        input.is_none() || input != place(&args.out),
+        input.is_none() || input != place(result),
         "out",
         "another file than the table that is read",
         "that, which was left as it is",
     )
-    .map_err(|e| e.in_file(&args.out))
+    .map_err(|e| e.in_file(result))
 }
 
 /// What the reader took for granted and what looks wrong, also as lines of the text.
@@ -185,30 +220,17 @@ fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Ve
     warnings
 }
 
-/// Show a table of derivatives: where it comes from, its convention, ranges or all its points
-///
-/// Example: aerodeck derivatives show LN21-5200 --to polimi
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct ShowArgs {
-    #[command(flatten)]
-    table: TableArgs,
-    /// Every test point instead of the ranges.
-    #[arg(long)]
-    points: bool,
-}
-
-fn show(args: &ShowArgs) -> Result<Answer> {
+fn show(args: &TableArgs, each_point: bool) -> Result<Answer> {
     let TableInConvention {
         table,
         convention: from,
-    } = args.table.read()?;
-    let expressed = args.table.target().express(&table);
+    } = args.read()?;
+    let expressed = args.target().express(&table);
     let mut text = head(&table, &from, &expressed.convention);
     let warnings = warnings(&table, &from, &mut text);
     for derivative in &expressed.derivatives {
         let symbol = expressed.convention.symbol(derivative.derivative);
-        if args.points {
+        if each_point {
             let _ = writeln!(text, "  {symbol}");
             for p in &derivative.points {
                 let speed = p
@@ -265,18 +287,7 @@ fn ranges(symbol: &str, derivative: &ExpressedDerivative, table: &ExpressedTable
     )
 }
 
-/// List the notations, arguments and axes that are understood; draw the axes
-///
-/// Example: aerodeck derivatives notations --sketch figures
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct NotationsArgs {
-    /// Folder into which a sketch of the axes is drawn (axes.svg).
-    #[arg(long)]
-    sketch: Option<PathBuf>,
-}
-
-fn notations(args: &NotationsArgs) -> Result<Answer> {
+fn notations(sketch: Option<&Path>) -> Result<Answer> {
     let mut text = String::from("notation\n");
     for notation in Notation::NAMED {
         let _ = writeln!(
@@ -309,7 +320,7 @@ fn notations(args: &NotationsArgs) -> Result<Answer> {
         })
     });
     let value = serde_json::json!({ "notations": notations, "files": [] });
-    let Some(folder) = &args.sketch else {
+    let Some(folder) = sketch else {
         return Answer::new(text, &value);
     };
     let mut out = OutputDir::new(folder)?;
@@ -325,47 +336,18 @@ fn also(notation: Notation) -> String {
     }
 }
 
-/// Write an empty workbook to be filled with a table of derivatives, with instructions
-///
-/// Example: aerodeck derivatives template table.xlsx --notation polimi
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct TemplateArgs {
-    /// The workbook (.xlsx).
-    out: PathBuf,
-    /// Notation of the columns.
-    #[arg(long, default_value = "scanlan")]
-    notation: Notation,
-    /// Replace a file that is there.
-    #[arg(long)]
-    force: bool,
-}
-
-fn template(args: &TemplateArgs) -> Result<Answer> {
-    let is_workbook = args
-        .out
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
-    let name = args
-        .out
-        .file_name()
-        .filter(|_| is_workbook)
-        .ok_or_else(|| {
-            let found = args.out.display().to_string();
-            Error::input("out", "a file name that ends in .xlsx", found)
-        })?;
-    if args.out.exists() && !args.force {
-        let expected = "no file there yet (or --force)";
-        return Err(
-            Error::input("out", expected, "one, which was left as it is").in_file(&args.out),
-        );
-    }
+fn template(workbook: &Path, notation: Notation, force: bool) -> Result<Answer> {
+    let name = named(workbook, &["xlsx"])?;
+    let expected = "no file there yet (or --force)";
+    let free = force || !workbook.exists();
+    ensure(free, "out", expected, "one, which was left as it is")
+        .map_err(|e| e.in_file(workbook))?;
     let convention = StatedConvention {
-        notation: Some(args.notation),
+        notation: Some(notation),
         ..StatedConvention::default()
     };
     let convention = convention.or_usual();
-    let mut out = OutputDir::new(folder_of(&args.out))?;
+    let mut out = OutputDir::new(folder_of(workbook))?;
     out.write(name, template_bytes(&convention)?)?;
     let text = format!("a table to be filled in: {convention}\n");
     out.answer(text, serde_json::json!({ "convention": convention }))

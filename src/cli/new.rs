@@ -4,7 +4,7 @@ mod questions;
 
 use super::answer::Answer;
 use super::common::folder_of;
-use super::output::{OutputDir, list};
+use super::output::{OutputDir, Written, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
 use crate::error::{Error, Result};
 use crate::files::derivatives::{is_table_file, named_sheet};
@@ -74,43 +74,31 @@ struct Instead {
 impl Instead {
     /// Its usual name, its text and what to do with it.
     fn template(&self) -> Option<[&'static str; 3]> {
-        let all = [
-            (
-                self.bridge,
-                [
-                    "bridge.toml",
-                    new_bridge_text(),
-                    "state your bridge in it, then run `aerodeck bridge flutter",
-                ],
-            ),
-            (
-                self.wind,
-                [
-                    "wind.toml",
-                    example_wind_study_text(),
-                    "state your section and its wind in it, then run `aerodeck buffeting",
-                ],
-            ),
-            (
-                self.campaign,
-                [
-                    "campaign.toml",
-                    include_str!("new/campaign.toml"),
-                    "state your rig, channels and files in it, then run `aerodeck campaign check",
-                ],
-            ),
-            (
-                self.monte_carlo,
-                [
-                    "scatter.toml",
-                    include_str!("new/monte_carlo.toml"),
-                    "name your model in it, then run `aerodeck monte-carlo",
-                ],
-            ),
-        ];
-        all.into_iter()
-            .find(|(is_wanted, _)| *is_wanted)
-            .map(|(_, template)| template)
+        match self {
+            Self { bridge: true, .. } => Some([
+                "bridge.toml",
+                new_bridge_text(),
+                "state your bridge in it, then run `aerodeck bridge flutter",
+            ]),
+            Self { wind: true, .. } => Some([
+                "wind.toml",
+                example_wind_study_text(),
+                "state your section and its wind in it, then run `aerodeck buffeting",
+            ]),
+            Self { campaign: true, .. } => Some([
+                "campaign.toml",
+                include_str!("new/campaign.toml"),
+                "state your rig, channels and files in it, then run `aerodeck campaign check",
+            ]),
+            Self {
+                monte_carlo: true, ..
+            } => Some([
+                "scatter.toml",
+                include_str!("new/monte_carlo.toml"),
+                "name your model in it, then run `aerodeck monte-carlo",
+            ]),
+            _ => None,
+        }
     }
 }
 
@@ -121,7 +109,7 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
     }
     let path = args.out.clone().unwrap_or_else(|| "study.toml".into());
     let folder = folder_of(&path);
-    let name = file_name(&path)?;
+    file_name(&path)?;
     let answers = match args.interactive {
         true => Some(questions::ask(&mut stdin().lock(), &mut stderr())?),
         false => None,
@@ -143,11 +131,7 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
         .map_or(text.clone(), |a| a.stated_in(&text));
     let study = Study::from_toml(&text, folder.to_path_buf())?;
     let deck = Deck::load(&study)?;
-    let mut out = OutputDir::new(folder)?;
-    out.write(name, &text)?;
-    let instead = "choose another --out";
-    out.refuse_edited(&name.to_string_lossy(), args.force, instead)?;
-    let written = out.commit()?;
+    let written = args.leave(&path, &text)?;
     let mut said = format!("{}\n", deck.description());
     for warning in deck.warnings() {
         said.push_str(&format!("warning: deck: {warning}\n"));
@@ -179,21 +163,24 @@ impl NewArgs {
     /// Writes a file that needs no more than to be edited.
     fn template(&self, usual: &str, text: &str, next: &str) -> Result<Answer> {
         let path = self.out.clone().unwrap_or_else(|| usual.into());
-        let name = file_name(&path)?;
-        let mut out = OutputDir::new(folder_of(&path))?;
-        out.write(name, text)?;
-        out.refuse_edited(&name.to_string_lossy(), self.force, "choose another --out")?;
-        let written = out.commit()?;
+        let written = self.leave(&path, text)?;
         let said = format!("{}{next} {}`\n", list(&written), path.display());
         Answer::new(said, &serde_json::json!({ "files": written }))
+    }
+
+    fn leave(&self, path: &Path, text: &str) -> Result<Vec<Written>> {
+        let name = file_name(path)?;
+        let mut out = OutputDir::new(folder_of(path))?;
+        out.write(name, text)?;
+        out.refuse_edited(&name.to_string_lossy(), self.force, "choose another --out")?;
+        out.commit()
     }
 }
 
 /// The path of a table as the study in `folder` has to name it.
 fn beside(table: &Path, folder: &Path) -> Result<String> {
     let full = |path: &Path| path.canonicalize().map_err(|e| Error::io(path, e));
-    let here = table.parent().filter(|p| !p.as_os_str().is_empty());
-    let table_folder = full(here.unwrap_or(Path::new(".")))?;
+    let table_folder = full(folder_of(table))?;
     std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
     let name = Path::new(table.file_name().unwrap_or_default());
     let inside = table_folder.strip_prefix(full(folder)?);

@@ -27,19 +27,9 @@ const GUSTS: &str = "gusts.csv";
 /// Lines of the table at most.
 const TABLE_LINES: usize = 15;
 
-/// Static equilibrium over wind speed, linear quasi-steady model, its onset, and a nonlinear run in gusts
-///
-/// Example: aerodeck quasi-steady wind.toml
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct QuasiSteadyArgs {
-    #[command(flatten)]
-    wind: WindArgs,
-}
-
 /// Runs the command.
-pub(crate) fn run(args: &QuasiSteadyArgs, progress: &Progress) -> Result<Answer> {
-    let (study, mut out) = args.wind.open()?;
+pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
+    let (study, mut out) = args.open()?;
     let stage = progress.stage("equilibria and modes over wind speed");
     let results = quasi_steady_study(&study)?;
     drop(stage);

@@ -12,46 +12,46 @@ use std::path::PathBuf;
 /// Systems of FMUs (SSP 1.0)
 #[derive(clap::Subcommand)]
 pub(super) enum SspCommand {
-    Export(SspExportArgs),
-}
-
-/// Pack a bridge as a system: its structure and its wind forces as FMUs of their own, connected, with their parameters
-///
-/// Example: aerodeck ssp export bridge.toml --out bridge.ssp
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(super) struct SspExportArgs {
-    /// The bridge file (see docs/bridge.md).
-    bridge: PathBuf,
-    /// The system; by default `bridge.ssp` beside the bridge file.
-    #[arg(long)]
-    out: Option<PathBuf>,
-    /// Replace a file that is there.
-    #[arg(long)]
-    force: bool,
-    /// Export a bridge that grows below its onset, at reduced frequencies that were not tested.
-    #[arg(long)]
-    allow_unstable: bool,
+    /// Pack a bridge as a system: its structure and its wind forces as FMUs of their own, connected, with their parameters
+    ///
+    /// Example: aerodeck ssp export bridge.toml --out bridge.ssp
+    #[command(verbatim_doc_comment)]
+    Export {
+        /// The bridge file (see docs/bridge.md).
+        bridge: PathBuf,
+        /// The system; by default `bridge.ssp` beside the bridge file.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Replace a file that is there.
+        #[arg(long)]
+        force: bool,
+        /// Export a bridge that grows below its onset, at reduced frequencies that were not tested.
+        #[arg(long)]
+        allow_unstable: bool,
+    },
 }
 
 /// Runs the command.
 pub(super) fn run(command: &SspCommand, progress: &Progress) -> Result<Answer> {
-    let SspCommand::Export(args) = command;
-    let study = bridge::read(&args.bridge, progress)?;
+    let SspCommand::Export {
+        bridge: file,
+        out,
+        force,
+        allow_unstable,
+    } = command;
+    let study = bridge::read(file, progress)?;
     let stage = progress.stage("packing the system");
     let wanted = BridgeExportOptions {
-        allow_unstable: args.allow_unstable,
+        allow_unstable: *allow_unstable,
         ..BridgeExportOptions::default()
     };
     let verdict = study.verdict()?;
     let label = Label::default().dated()?;
     let system = study.system(&wanted, &verdict, &Runtime::available()?, &label);
     let system = system.map_err(stages::or_allow_unstable)?;
-    let path = args
-        .out
-        .clone()
-        .unwrap_or_else(|| args.bridge.with_file_name("bridge.ssp"));
-    write_archive(&path, &system.package()?, Overwrite::replacing(args.force))?;
+    let beside = || file.with_file_name("bridge.ssp");
+    let path = out.clone().unwrap_or_else(beside);
+    write_archive(&path, &system.package()?, Overwrite::replacing(*force))?;
     drop(stage);
     let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
     let parameters: usize = system.components.iter().map(|c| c.values.len()).sum();

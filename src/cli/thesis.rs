@@ -10,24 +10,13 @@ use crate::error::{Error, Result};
 use crate::report::sections_page;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Onset printed in the thesis (Figures 4.2 and 4.3) for both models, m/s.
 const PRINTED_M_S: f64 = 37.6;
 
-/// Repeat the thesis's headline: discrete Laguerre and rational functions on its own deck, 37.6 m/s
-///
-/// Example: aerodeck thesis --out thesis
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct ThesisArgs {
-    /// Write thesis.html into this folder: every figure and table that can be computed, its numbers beside ours.
-    #[arg(long)]
-    out: Option<PathBuf>,
-}
-
-/// Runs the command.
-pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
+/// Runs the command, which writes its page into the folder `left_in`.
+pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer> {
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
@@ -53,7 +42,7 @@ pub(crate) fn run(args: &ThesisArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&text::deviations(&results.deviations));
     text.push_str(&text::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
-    if let Some(folder) = &args.out {
+    if let Some(folder) = left_in {
         model_figures::flutter_figure(&study, &results, None, &mut out)?;
         result_files::write_curves(&study, &results.curves, &mut out)?;
         if let Some(own) = trained.first()

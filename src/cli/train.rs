@@ -9,21 +9,11 @@ use crate::error::Result;
 use crate::fmu::package::growth_of;
 use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
 
-/// Train the models of a study from its records (see `tunnel`) and tables
-///
-/// Example: aerodeck train study.toml
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct TrainArgs {
-    #[command(flatten)]
-    study: StudyArgs,
-}
-
 /// Runs the command.
-pub(crate) fn run(args: &TrainArgs, progress: &Progress) -> Result<Answer> {
-    let mut study = args.study.read()?;
+pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
+    let mut study = args.read()?;
     let deck = Deck::load(&study)?;
-    let directory = args.study.directory();
+    let directory = args.directory();
     let records = if study.deck.records.is_empty() {
         RecordSet::in_folder(&study, &deck, &directory.join(stages::RECORDS))?
     } else {

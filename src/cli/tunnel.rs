@@ -9,21 +9,11 @@ use crate::error::Result;
 use crate::study::Deck;
 use std::fmt::Write as _;
 
-/// Rebuild the forced-vibration records of a study's deck and write them as CSV
-///
-/// Example: aerodeck tunnel study.toml
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct TunnelArgs {
-    #[command(flatten)]
-    study: StudyArgs,
-}
-
 /// Runs the command.
-pub(crate) fn run(args: &TunnelArgs, progress: &Progress) -> Result<Answer> {
-    let study = args.study.read()?;
+pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
+    let study = args.read()?;
     let deck = Deck::load(&study)?;
-    let mut out = OutputDir::new(&args.study.directory())?;
+    let mut out = OutputDir::new(&args.directory())?;
     let records = stages::tunnel(&study, &deck, &mut out, progress)?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
     for record in &records {

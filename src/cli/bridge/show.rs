@@ -12,20 +12,10 @@ use std::fmt::Write as _;
 /// Pairs of modes whose similarity is stated.
 const PAIRS: usize = 10;
 
-/// Draw the modes of a bridge and state how alike vertical and torsional modes are
-///
-/// Example: aerodeck bridge show bridge.toml --out modes
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct BridgeShowArgs {
-    #[command(flatten)]
-    bridge: BridgeArgs,
-}
-
 /// Runs the command.
-pub(super) fn run(args: &BridgeShowArgs, progress: &Progress) -> Result<Answer> {
-    let study = args.bridge.study(progress)?;
-    let mut out = args.bridge.out()?;
+pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
+    let study = args.study(progress)?;
+    let mut out = args.out()?;
     let bridge = &study.by_model;
     let title = format!(
         "{}: modes without wind, the largest displacement of each is 1",

@@ -6,21 +6,11 @@ use crate::cli::text::to_tenths_of_mm;
 use crate::error::{Result, counted};
 use crate::wind_tunnel::campaign::{Campaign, CampaignReading, RecordingSummary};
 use std::fmt::Write as _;
-use std::path::PathBuf;
-
-/// Read a campaign file and all recordings it names: runs, channels, lengths, rates, speeds, densities, findings
-///
-/// Example: aerodeck campaign check campaign.toml
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct CampaignCheckArgs {
-    /// The campaign file.
-    campaign: PathBuf,
-}
+use std::path::Path;
 
 /// Runs the command.
-pub(crate) fn run(args: &CampaignCheckArgs, progress: &Progress) -> Result<Answer> {
-    let campaign = Campaign::read(&args.campaign)?;
+pub(crate) fn run(file: &Path, progress: &Progress) -> Result<Answer> {
+    let campaign = Campaign::read(file)?;
     let stage = progress.stage("reading the recordings");
     let reading = campaign.load()?;
     drop(stage);

@@ -5,29 +5,13 @@ use crate::cli::progress::Progress;
 use crate::error::Result;
 use crate::fmu::importer::{CheckReport, Fmu};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 
-/// Check any co-simulation FMU (FMI 2.0 or 3.0) and step it; fails when something is wrong
-///
-/// The code of the FMU runs in this process, with all your rights: check an archive that you do not trust with --no-run.
-///
-/// Example: aerodeck fmu check deck_section.fmu
-/// Example: aerodeck fmu check foreign.fmu --no-run
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct FmuCheckArgs {
-    /// The FMU.
-    fmu: PathBuf,
-    /// Check archive and description alone; no code of the FMU is loaded.
-    #[arg(long)]
-    no_run: bool,
-}
-
-/// Runs the command.
-pub(super) fn run(args: &FmuCheckArgs, progress: &Progress) -> Result<Answer> {
+/// Runs the command; none of the code in the archive with `no_run`.
+pub(super) fn run(path: &Path, no_run: bool, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("checking the FMU");
-    let fmu = Fmu::open(&args.fmu)?;
-    let report = match args.no_run {
+    let fmu = Fmu::open(path)?;
+    let report = match no_run {
         true => fmu.check_without_running(),
         false => fmu.check(),
     };

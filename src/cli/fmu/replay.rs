@@ -7,20 +7,7 @@ use crate::fmu::importer::{Fmu, LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 use crate::fmu::package::COMPONENT;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::PathBuf;
-
-/// Repeat the reference runs that an FMU carries (FMI-LS-REF) and say whether it does what its exporter meant
-///
-/// Every binary that loads on this machine is run; fails when one differs by more than rounding. Its code runs in this process, with
-/// all your rights.
-///
-/// Example: aerodeck fmu replay deck_section.fmu
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct FmuReplayArgs {
-    /// The FMU.
-    fmu: PathBuf,
-}
+use std::path::Path;
 
 /// What the binary of one platform did.
 #[derive(Serialize)]
@@ -36,13 +23,13 @@ struct PlatformReplay {
 }
 
 /// Runs the command.
-pub(super) fn run(args: &FmuReplayArgs, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(path: &Path, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("repeating the runs of the FMU");
-    let fmu = Fmu::open(&args.fmu)?;
+    let fmu = Fmu::open(path)?;
     if !fmu.entries().iter().any(|e| e == LS_REF_MANIFEST) {
         let expected =
             format!("reference runs in {LS_REF} (`fmu export` without --no-reference packs them)");
-        return Err(Error::input("archive", expected, "none").in_file(&args.fmu));
+        return Err(Error::input("archive", expected, "none").in_file(path));
     }
     let mut platforms = Vec::new();
     for platform in fmu.platforms() {
@@ -64,7 +51,7 @@ pub(super) fn run(args: &FmuReplayArgs, progress: &Progress) -> Result<Answer> {
         fmu.binary()?;
     }
     let same = platforms.iter().all(|p| !p.ran || p.same);
-    let file = args.fmu.display().to_string();
+    let file = path.display().to_string();
     let json =
         serde_json::json!({ "fmu": file, "as_the_exporter_meant": same, "platforms": platforms });
     Ok(Answer::new(text(&file, &platforms), &json)?.passed_if(same))
