@@ -1,7 +1,7 @@
 //! Range, ticks and tick labels of one axis.
 
 /// What an axis shows and how.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Axis {
     /// Name, symbol and unit.
     pub(super) label: String,
@@ -21,11 +21,7 @@ impl Axis {
     pub(super) fn new(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
-            range: None,
-            within: None,
-            tight: false,
-            zero_based: false,
-            logarithmic: false,
+            ..Self::default()
         }
     }
     pub(super) fn tight(mut self) -> Self {
@@ -34,6 +30,10 @@ impl Axis {
     }
     pub(super) fn zero_based(mut self) -> Self {
         self.zero_based = true;
+        self
+    }
+    pub(super) fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
         self
     }
 

@@ -5,7 +5,7 @@ use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
-use super::root_locus::RootLocus;
+use super::root_locus::root_locus;
 use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash, outcome_colour};
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -40,15 +40,13 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     let scale = [1.0, 1.0, half_width];
     let mut panels = Vec::with_capacity(bridge.modes.len());
     let columns = bridge.modes.len().min(3);
-    for (m, mode) in bridge.modes.iter().enumerate() {
+    for mode in &bridge.modes {
         let values = mode
             .shape
             .iter()
             .flat_map(|s| (0..3).map(|i| (s[i] * scale[i]).abs()));
         let greatest = values.fold(f64::MIN_POSITIVE, f64::max);
-        let lowest = m + columns >= bridge.modes.len();
-        let along = if lowest { "x (m)" } else { "" };
-        let mut panel = Panel::new(Axis::new(along).tight(), Axis::new(""));
+        let mut panel = Panel::new(Axis::new("x (m)").tight(), Axis::new(""));
         panel.title = Some(format!("mode {}: {:.4} Hz", mode.number, mode.frequency_hz));
         panel.y.range = Some((-1.1, 1.1));
         panel.level = Some(0.0);
@@ -69,6 +67,7 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
         axes: (300.0, 110.0),
         legend: vec![motion_legend()],
     }
+    .over_one_abscissa()
     .draw()
 }
 
@@ -222,12 +221,9 @@ fn of_crossing(modes: &[Drawn<'_>], flutters: &str, window: [f64; 2]) -> (f64, f
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
 pub(crate) fn bridge_roots_figure(of: &BridgeCurves<'_>, title: &str) -> Result<Figure> {
-    let mut roots = RootLocus::new();
     let (modes, legend) = of.drawn();
-    for mode in modes {
-        roots.add(mode.branch, mode.ink);
-    }
-    roots.draw(title, vec![legend])
+    let modes = modes.into_iter().map(|mode| (mode.branch, mode.ink));
+    root_locus(modes, title, legend)
 }
 
 /// The motion at flutter along the girder: real and imaginary part, a quarter of a period apart.
@@ -242,15 +238,8 @@ pub(crate) fn flutter_motion_figure(
     let scale = [1.0, 1.0, half_width_m];
     let panels = (0..2).map(|part| {
         let label = ["t = 0", "t = T/4"][part];
-        let mut panel = Panel::new(
-            Axis::new(if part == 1 {
-                "Along the girder x (m)"
-            } else {
-                ""
-            })
-            .tight(),
-            Axis::new(label),
-        );
+        let along = Axis::new("Along the girder x (m)").tight();
+        let mut panel = Panel::new(along, Axis::new(label));
         panel.y.range = Some((-1.1, 1.1));
         panel.level = Some(0.0);
         for i in 0..3 {
@@ -264,13 +253,6 @@ pub(crate) fn flutter_motion_figure(
         }
         panel
     });
-    Drawing {
-        name: "motion at flutter",
-        title: titled(title),
-        panels: panels.collect(),
-        columns: 1,
-        axes: (640.0, 150.0),
-        legend: vec![motion_legend()],
-    }
-    .draw()
+    let (panels, legend) = (panels.collect(), vec![motion_legend()]);
+    Drawing::stacked("motion at flutter", title, panels, 150.0, legend)
 }

@@ -5,7 +5,7 @@ use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
-use super::series::{PlottedSeries, index_of, labels_of};
+use super::series::{PlottedSeries, labels_of};
 use super::style::{BLACK, GREY, Ink, Marker, Shape, colour, dash};
 use crate::error::{Error, Result};
 
@@ -55,27 +55,19 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
     let columns = if all.len() <= 8 { 4 } else { 6 }.min(all.len());
     let range = velocity_range(all);
     let mut panels = Vec::with_capacity(all.len());
-    for (i, derivative) in all.iter().enumerate() {
-        let lowest = i + columns >= all.len();
-        let velocity = Axis::new(if lowest { &plot.velocity_label } else { "" });
+    for derivative in all {
+        let velocity = Axis::new(&plot.velocity_label);
         let mut panel = Panel::new(Axis { range, ..velocity }, Axis::new(""));
         panel.title = Some(starred(&derivative.name));
         panel.level = Some(0.0);
-        for series in &derivative.reference {
-            let ink = reference_ink(index_of(&reference, &series.label));
-            panel.add(&series.label, series.points.clone(), ink);
-        }
-        for series in &derivative.fitted {
-            let ink = fitted_ink(index_of(&fitted, &series.label))?;
-            panel.add(&series.label, series.points.clone(), ink);
-        }
+        panel.add_labelled(&derivative.reference, &reference, reference_ink)?;
+        panel.add_labelled(&derivative.fitted, &fitted, fitted_ink)?;
         for (at, low, high) in &derivative.bars {
             panel.add("interval", vec![(*at, *low), (*at, *high)], BAR);
         }
-        for series in &derivative.measured {
-            let ink = measured_ink(index_of(&measured, &series.label), measured.len())?;
-            panel.add(&series.label, series.points.clone(), ink);
-        }
+        panel.add_labelled(&derivative.measured, &measured, |i| {
+            measured_ink(i, measured.len())
+        })?;
         panels.push(panel);
     }
     Drawing {
@@ -90,6 +82,7 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
         },
         legend: vec![legend(plot, &measured, &fitted, &reference)?],
     }
+    .over_one_abscissa()
     .draw()
 }
 
@@ -105,7 +98,7 @@ fn legend(
     }
     all.extend(entries(measured, |i| measured_ink(i, measured.len()))?);
     all.extend(entries(fitted, fitted_ink)?);
-    all.extend(entries(reference, |i| Ok(reference_ink(i)))?);
+    all.extend(entries(reference, reference_ink)?);
     Ok(all)
 }
 
@@ -116,8 +109,8 @@ fn fitted_ink(i: usize) -> Result<Ink> {
     Ok(Ink::line(colour(PLACE, i)?, dash(i)))
 }
 
-fn reference_ink(i: usize) -> Ink {
-    Ink::stroke(BLACK, dash(i + 1), 1.1)
+fn reference_ink(i: usize) -> Result<Ink> {
+    Ok(Ink::stroke(BLACK, dash(i + 1), 1.1))
 }
 
 /// Black dots for one series; several in colours and shapes, from the far end of the palette, where no line is.

@@ -2,9 +2,9 @@
 
 use super::figure::Figure;
 use super::font::text_width;
-use super::geometry::Px;
+use super::geometry::{Area, Px};
 use super::legend::{Entry, LegendLayout, lay_out, shortened};
-use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
+use super::panel::{Frame, LABEL_SIZE, Panel};
 use super::scene::Scene;
 use super::style::BLACK;
 use crate::error::{Error, Result};
@@ -35,6 +35,34 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
+    /// Panels of this height above each other over one abscissa.
+    pub(super) fn stacked(
+        name: &'static str,
+        title: &str,
+        panels: Vec<Panel>,
+        height: f64,
+        legend: Vec<Vec<Entry>>,
+    ) -> Result<Figure> {
+        let drawing = Self {
+            name,
+            title: titled(title),
+            panels,
+            columns: 1,
+            axes: (640.0, height),
+            legend,
+        };
+        drawing.over_one_abscissa().draw()
+    }
+
+    /// The abscissa of all panels is named under the lowest of each column alone.
+    pub(super) fn over_one_abscissa(mut self) -> Self {
+        let above = self.panels.len().saturating_sub(self.columns);
+        for panel in &mut self.panels[..above] {
+            panel.x.label.clear();
+        }
+        self
+    }
+
     /// Draws everything.
     ///
     /// # Errors
@@ -45,12 +73,12 @@ impl Drawing {
         }
         let stacked = self.with_one_abscissa();
         let (frames, legend) = self.frames();
-        let Some(Frame { width, margins, .. }) = frames.first() else {
+        let Some(Frame { width, axes, .. }) = frames.first() else {
             return Err(Error::input(self.name, "data", "none"));
         };
         let grid_width = self.columns as f64 * width;
         let grid_height: f64 = frames.iter().map(|f| f.height).sum();
-        let left = margins.left;
+        let left = axes.left;
         let head = self.title.as_ref().map_or(EDGE, |_| TITLE_HEIGHT + EDGE);
         let foot = if legend.height > 0.0 {
             legend.height + 2.0 * EDGE
@@ -113,16 +141,18 @@ impl Drawing {
         let frame = |row: &[Panel]| {
             let titled = any(row, |p| p.title.is_some());
             let named = any(row, |p| !p.x.label.is_empty());
-            let margins = Margins {
+            let top = if titled { 26.0 } else { 8.0 };
+            let below = if named { 46.0 } else { 28.0 };
+            let axes = Area {
                 left,
-                right: RIGHT,
-                top: if titled { 26.0 } else { 8.0 },
-                bottom: if named { 46.0 } else { 28.0 },
+                top,
+                right: width - RIGHT,
+                bottom: top + self.axes.1,
             };
             Frame {
                 width,
-                height: self.axes.1 + margins.top + margins.bottom,
-                margins,
+                height: axes.bottom + below,
+                axes,
             }
         };
         (

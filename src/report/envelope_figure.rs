@@ -1,7 +1,7 @@
 //! Response of a bridge to turbulence along the span.
 
 use super::axis::Axis;
-use super::drawing::{Drawing, titled};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
@@ -27,8 +27,8 @@ pub(crate) fn envelope_figure(of: &BridgeBuffeting, title: &str) -> Result<Figur
         Ink::line(colour("envelope", 1)?, dash(1)),
     ];
     let panel = |(i, (name, factor)): (usize, (&str, f64))| {
-        let along = if i == 2 { "Along the girder x (m)" } else { "" };
-        let mut panel = Panel::new(Axis::new(along).tight(), Axis::new(name));
+        let along = Axis::new("Along the girder x (m)").tight();
+        let mut panel = Panel::new(along, Axis::new(name));
         panel.level = Some(0.0);
         for (sign, ink) in [(0.0, inks[0]), (1.0, inks[1]), (-1.0, inks[1])] {
             let value = |n: usize| {
@@ -40,16 +40,11 @@ pub(crate) fn envelope_figure(of: &BridgeBuffeting, title: &str) -> Result<Figur
         }
         panel
     };
-    Drawing {
-        name: "envelope along the span",
-        title: titled(title),
-        panels: MOTIONS.into_iter().enumerate().map(panel).collect(),
-        columns: 1,
-        axes: (640.0, 130.0),
-        legend: vec![vec![
-            Entry::new("mean", inks[0]),
-            Entry::new("mean ± expected peak", inks[1]),
-        ]],
-    }
-    .draw()
+    let panels = MOTIONS.into_iter().enumerate().map(panel).collect();
+    let legend = vec![
+        Entry::new("mean", inks[0]),
+        Entry::new("mean ± expected peak", inks[1]),
+    ];
+    let name = "envelope along the span";
+    Drawing::stacked(name, title, panels, 130.0, vec![legend])
 }

@@ -1,7 +1,7 @@
 //! Frequencies and damping ratios over wind speed, with the onsets.
 
 use super::axis::{Axis, significant};
-use super::drawing::{Drawing, titled};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
@@ -41,7 +41,7 @@ pub fn vf_vg_figure(
     }
     diagram.spread_bars();
     diagram.explain_kinds(onsets);
-    diagram.into_drawing(title).draw()
+    diagram.draw(title)
 }
 
 /// The panels of the diagrams, one below the other, and the groups of their legend.
@@ -222,17 +222,11 @@ impl VfVg {
     }
 
     /// The panel near zero is left out when no curve comes there.
-    fn into_drawing(self, title: &str) -> Drawing {
+    fn draw(self, title: &str) -> Result<Figure> {
         let mut panels = vec![self.frequency, self.damping];
         panels.extend(Some(self.close).filter(|p| !p.series.is_empty()));
-        Drawing {
-            name: PLACE,
-            title: titled(title),
-            panels,
-            columns: 1,
-            axes: (640.0, 210.0),
-            legend: vec![self.models, self.kinds, self.stated],
-        }
+        let legend = vec![self.models, self.kinds, self.stated];
+        Drawing::stacked(PLACE, title, panels, 210.0, legend)
     }
 }
 

@@ -33,10 +33,7 @@ pub fn growth_figure(
     y_label: &str,
     columns: usize,
 ) -> Result<Figure> {
-    let logarithmic = |label: &str| Axis {
-        logarithmic: true,
-        ..Axis::new(label)
-    };
+    let logarithmic = |label: &str| Axis::new(label).logarithmic();
     let inks = [
         Ink::dots(COLOURS[0], Shape::Circle),
         Ink::stroke(COLOURS[0], None, 1.3),

@@ -5,7 +5,7 @@ use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::entries;
 use super::panel::Panel;
-use super::series::{PlottedSeries, index_of, labels_of};
+use super::series::{PlottedSeries, labels_of};
 use super::style::{Ink, Shape, colour, dash};
 use crate::error::Result;
 
@@ -30,23 +30,15 @@ pub(crate) fn metrics_figure(
     const PLACE: &str = "metrics";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     let line = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
+    let dots = |i: usize| Ok(Ink::dots(colour(PLACE, i)?, SHAPES[i % SHAPES.len()]));
     let mut drawn = Vec::with_capacity(panels.len());
-    for (i, panel) in panels.iter().enumerate() {
-        let lowest = i + columns >= panels.len();
+    for panel in panels {
         let mut y = Axis::new("");
         y.range = Some((0.0, 1.05));
-        let x = Axis::new(if lowest { "Frequency (Hz)" } else { "" });
-        let mut drawing = Panel::new(x.zero_based(), y);
+        let mut drawing = Panel::new(Axis::new("Frequency (Hz)").zero_based(), y);
         drawing.title = Some(panel.title.clone());
-        for series in &panel.series {
-            let i = index_of(&labels, &series.label);
-            drawing.add(&series.label, series.points.clone(), line(i)?);
-        }
-        for series in &panel.series {
-            let i = index_of(&labels, &series.label);
-            let dots = Ink::dots(colour(PLACE, i)?, SHAPES[i % SHAPES.len()]);
-            drawing.add(&series.label, series.points.clone(), dots);
-        }
+        drawing.add_labelled(&panel.series, &labels, line)?;
+        drawing.add_labelled(&panel.series, &labels, dots)?;
         drawn.push(drawing);
     }
     Drawing {
@@ -57,6 +49,7 @@ pub(crate) fn metrics_figure(
         axes: (230.0, 160.0),
         legend: vec![entries(&labels, line)?],
     }
+    .over_one_abscissa()
     .draw()
 }
 

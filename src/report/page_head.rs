@@ -1,8 +1,10 @@
 //! The verdict at the head of a page, what stands at the edges of a printed one, and the list of what is in it.
 
 use super::style::outcome_colour;
+use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
 use crate::verdict::{Outcome, Severity, Verdict};
+use askama::Template;
 use std::fmt::Write as _;
 
 /// Where the list of contents goes.
@@ -102,8 +104,15 @@ fn quoted(text: &str) -> String {
     quoted + "\""
 }
 
+/// A page as HTML text, with its list of contents; the same page always gives the same bytes.
+pub(super) fn rendered(page: &impl Template) -> Result<String> {
+    let text = page.render();
+    let text = text.map_err(|e| Error::Numerical(format!("report: {e}")))?;
+    Ok(with_contents(&text))
+}
+
 /// The page with a name for every heading and the list of them where it is wanted; texts of users hold no `<`.
-pub(super) fn with_contents(page: &str) -> String {
+fn with_contents(page: &str) -> String {
     let mut parts = page.split(HEADING);
     let mut whole = parts.next().unwrap_or_default().to_owned();
     let mut list = String::new();

@@ -5,6 +5,7 @@ use super::font::text_width;
 use super::geometry::{Area, Px};
 use super::labels::Labels;
 use super::scene::{Anchor, Scene};
+use super::series::{PlottedSeries, index_of};
 use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, Stroke};
 use crate::error::{Error, Result};
 
@@ -40,7 +41,7 @@ pub(super) struct Note {
 }
 
 /// Content of one pair of axes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Panel {
     pub(super) title: Option<String>,
     pub(super) x: Axis,
@@ -60,29 +61,15 @@ pub(super) struct Panel {
 pub(super) struct Frame {
     pub(super) width: f64,
     pub(super) height: f64,
-    pub(super) margins: Margins,
-}
-
-/// Space around the axes, px.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Margins {
-    pub(super) left: f64,
-    pub(super) right: f64,
-    pub(super) top: f64,
-    pub(super) bottom: f64,
+    pub(super) axes: Area,
 }
 
 impl Panel {
     pub(super) fn new(x: Axis, y: Axis) -> Self {
         Self {
-            title: None,
             x,
             y,
-            series: Vec::new(),
-            notes: Vec::new(),
-            shaded: Vec::new(),
-            level: None,
-            uprights: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -92,6 +79,20 @@ impl Panel {
             points,
             ink,
         });
+    }
+
+    /// Adds every series with the ink of its label, by the place of that among `labels`.
+    pub(super) fn add_labelled(
+        &mut self,
+        all: &[PlottedSeries],
+        labels: &[String],
+        ink: impl Fn(usize) -> Result<Ink>,
+    ) -> Result<()> {
+        for series in all {
+            let ink = ink(index_of(labels, &series.label))?;
+            self.add(&series.label, series.points.clone(), ink);
+        }
+        Ok(())
     }
 
     /// Refuses what cannot be drawn.
@@ -135,7 +136,7 @@ impl Panel {
 
     /// Draws the panel, axes labels and title included.
     pub(super) fn draw(&self, scene: &mut Scene, frame: Frame) {
-        let area = frame.axes();
+        let area = frame.axes;
         let (x, y) = self.scales();
         let map = Map { area, x, y };
         map.draw_axes(scene);
@@ -203,7 +204,7 @@ impl Panel {
     }
 
     fn write_labels(&self, scene: &mut Scene, frame: Frame) {
-        let middle = frame.axes().middle();
+        let middle = frame.axes.middle();
         if !self.x.label.is_empty() {
             let at = Px::new(middle.x, frame.height - 8.0);
             scene.label(at, &self.x.label, LABEL_SIZE, Anchor::Middle);
@@ -212,20 +213,8 @@ impl Panel {
             scene.upright_label(Px::new(20.0, middle.y), &self.y.label, LABEL_SIZE);
         }
         if let Some(title) = &self.title {
-            let at = Px::new(middle.x, frame.margins.top - 8.0);
+            let at = Px::new(middle.x, frame.axes.top - 8.0);
             scene.label(at, title, LABEL_SIZE, Anchor::Middle);
-        }
-    }
-}
-
-impl Frame {
-    /// The rectangle within the axes.
-    fn axes(&self) -> Area {
-        Area {
-            left: self.margins.left,
-            top: self.margins.top,
-            right: self.width - self.margins.right,
-            bottom: self.height - self.margins.bottom,
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Time histories.
 
 use super::axis::Axis;
-use super::drawing::{Drawing, titled};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::entries;
 use super::panel::Panel;
-use super::series::{PlottedSeries, index_of, labels_of};
+use super::series::{PlottedSeries, labels_of};
 use super::style::{Ink, colour, dash};
 use crate::error::Result;
 
@@ -46,28 +46,16 @@ pub(crate) fn scaled_history_figure(
     // few distinct lines may lie exactly on each other: later ones are dashed, so that the first shows through
     let ink = |i: usize| -> Result<Ink> { Ok(Ink::stroke(colour(PLACE, i)?, dash(i), 1.3)) };
     let mut drawn = Vec::with_capacity(panels.len());
-    for (i, panel) in panels.iter().enumerate() {
-        let time = Axis::new(if i + 1 == panels.len() { t_label } else { "" });
-        let mut drawing = Panel::new(time.tight(), Axis::new(&panel.y_label));
+    for panel in panels {
+        let mut drawing = Panel::new(Axis::new(t_label).tight(), Axis::new(&panel.y_label));
         drawing.level = Some(0.0);
         if scale < panel.series.len() {
             let first = panel.series.iter().take(scale).flat_map(|s| &s.points);
             let greatest = first.map(|p| ROOM * p.1.abs()).fold(0.0, f64::max);
             drawing.y.within = Some((-greatest, greatest));
         }
-        for series in &panel.series {
-            let ink = ink(index_of(&labels, &series.label))?;
-            drawing.add(&series.label, series.points.clone(), ink);
-        }
+        drawing.add_labelled(&panel.series, &labels, ink)?;
         drawn.push(drawing);
     }
-    Drawing {
-        name: PLACE,
-        title: titled(title),
-        panels: drawn,
-        columns: 1,
-        axes: (640.0, 170.0),
-        legend: vec![entries(&labels, ink)?],
-    }
-    .draw()
+    Drawing::stacked(PLACE, title, drawn, 170.0, vec![entries(&labels, ink)?])
 }

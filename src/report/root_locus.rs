@@ -2,7 +2,7 @@
 //! grow.
 
 use super::axis::Axis;
-use super::drawing::{Drawing, titled};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::flutter_figures::branch_names;
 use super::legend::Entry;
@@ -14,52 +14,37 @@ use crate::flutter::{FlutterCurves, ModeBranch};
 
 const PLACE: &str = "root locus";
 
-/// The figure of a section or of a bridge in the making.
-pub(super) struct RootLocus(Panel);
-
-impl RootLocus {
-    pub(super) fn new() -> Self {
-        let mut panel = Panel::new(
-            Axis::new("Growth rate (1/s)"),
-            Axis::new("Frequency (Hz)").zero_based(),
-        );
-        panel.uprights.push((0.0, BLACK));
-        Self(panel)
+/// The figure of branches, each with an ink of its own.
+pub(super) fn root_locus<'a>(
+    branches: impl IntoIterator<Item = (&'a ModeBranch, Ink)>,
+    title: &str,
+    legend: Vec<Entry>,
+) -> Result<Figure> {
+    let mut panel = Panel::new(
+        Axis::new("Growth rate (1/s)"),
+        Axis::new("Frequency (Hz)").zero_based(),
+    );
+    panel.uprights.push((0.0, BLACK));
+    for (branch, ink) in branches {
+        let points = branch.points.iter();
+        let places = points.map(|p| (p.eigenvalue.re, p.frequency_hz));
+        panel.add(&branch.name, places.collect(), ink);
     }
-
-    pub(super) fn add(&mut self, branch: &ModeBranch, ink: Ink) {
-        let places = branch
-            .points
-            .iter()
-            .map(|p| (p.eigenvalue.re, p.frequency_hz));
-        self.0.add(&branch.name, places.collect(), ink);
-    }
-
-    pub(super) fn draw(self, title: &str, legend: Vec<Vec<Entry>>) -> Result<Figure> {
-        Drawing {
-            name: PLACE,
-            title: titled(title),
-            panels: vec![self.0],
-            columns: 1,
-            axes: (640.0, 260.0),
-            legend,
-        }
-        .draw()
-    }
+    Drawing::stacked(PLACE, title, vec![panel], 260.0, vec![legend])
 }
 
 /// That of a section: a colour per model, a width per branch.
 pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result<Figure> {
     let branches = branch_names(curves)?;
-    let mut roots = RootLocus::new();
+    let mut drawn = Vec::new();
     let mut models = Vec::new();
     for (i, model) in curves.iter().enumerate() {
         let colour = colour(PLACE, i)?;
         models.push(Entry::new(&model.model, Ink::line(colour, dash(i))));
         for branch in model.branches.iter().filter(|b| !b.points.is_empty()) {
             let width = branch_width(index_of(&branches, &branch.name));
-            roots.add(branch, Ink::stroke(colour, dash(i), width));
+            drawn.push((branch, Ink::stroke(colour, dash(i), width)));
         }
     }
-    roots.draw(title, vec![models])
+    root_locus(drawn, title, models)
 }

@@ -1,7 +1,7 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
-use super::page_head::{PageVerdict, at_edges, stated, with_contents};
-use crate::error::{Error, Result};
+use super::page_head::{PageVerdict, at_edges, rendered, stated};
+use crate::error::Result;
 use crate::files::report_block::ReportBlock;
 use askama::Template;
 
@@ -16,7 +16,8 @@ pub(crate) fn sections_of(page: &str, key: &str) -> Option<String> {
 }
 
 /// A page that loads nothing from elsewhere.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Template)]
+#[template(path = "sections.html")]
 pub(crate) struct SectionsPage {
     pub(crate) title: String,
     pub(crate) subtitle: String,
@@ -41,25 +42,9 @@ pub(crate) struct PageSection {
     pub(crate) figures: Vec<(String, String)>,
 }
 
-#[derive(Template)]
-#[template(path = "sections.html")]
-struct SectionsTemplate<'a> {
-    of: &'a SectionsPage,
-    generator: &'static str,
-    edges: String,
-    stated: Vec<(&'static str, &'a str)>,
-}
+const GENERATOR: &str = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));
 
 /// The page as HTML text; the same content always gives the same bytes.
 pub(crate) fn sections_page(page: &SectionsPage) -> Result<String> {
-    let generator = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));
-    let template = SectionsTemplate {
-        edges: at_edges(&page.of, &page.title, generator),
-        stated: stated(&page.of),
-        of: page,
-        generator,
-    };
-    let text = template.render();
-    let text = text.map_err(|e| Error::Numerical(format!("report: {e}")))?;
-    Ok(with_contents(&text))
+    rendered(page)
 }

@@ -1,9 +1,10 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
-use super::page_head::{PageVerdict, at_edges, stated, with_contents};
+use super::axes_sketch;
+use super::page_head::{PageVerdict, at_edges, rendered, stated};
 use super::sections_page::PageSection;
 use super::style::{COLOURS, branch_width, dash};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files::report_block::ReportBlock;
 use askama::Template;
 use serde_json::{Value, json};
@@ -49,7 +50,8 @@ pub(crate) struct PageCurve {
 }
 
 /// Everything on the page, in words.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Template)]
+#[template(path = "study_report.html")]
 pub(crate) struct StudyPage {
     pub(crate) title: String,
     /// What the flutter is of.
@@ -98,40 +100,9 @@ pub(crate) struct StudyPage {
     pub(crate) live: Option<String>,
 }
 
-#[derive(Template)]
-#[template(path = "study_report.html")]
-struct Page<'a> {
-    edges: String,
-    stated: Vec<(&'static str, &'a str)>,
-    uplot_css: &'static str,
-    uplot_js: &'static str,
-    uplot_licence: &'static str,
-    axes: String,
-    charts: String,
-    live: String,
-    of: &'a StudyPage,
-}
-
 /// The page as HTML text; the same content always gives the same bytes.
 pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
-    let charts = match of.curves.is_empty() {
-        true => String::new(),
-        false => charts(of),
-    };
-    let page = Page {
-        edges: at_edges(&of.of, &of.title, &of.generator),
-        stated: stated(&of.of),
-        uplot_css: UPLOT_CSS,
-        uplot_js: UPLOT_JS,
-        uplot_licence: UPLOT_LICENCE,
-        axes: super::axes_sketch().svg().to_owned(),
-        charts,
-        live: of.live.as_deref().map_or(String::new(), in_script),
-        of,
-    };
-    let page = page.render();
-    let page = page.map_err(|e| Error::Numerical(format!("report: {e}")))?;
-    Ok(with_contents(&page))
+    rendered(of)
 }
 
 /// JSON as it may stand in a script: `<` cannot end it.
@@ -139,17 +110,19 @@ fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
-/// The curves as a value of JavaScript.
-fn charts(of: &StudyPage) -> String {
-    let charts = json!({
-        "speeds": of.speeds,
-        "onset": of.onset,
-        "interval": of.interval,
-        "required": of.verdict.required_m_s,
-        "required_colour": of.verdict.colour,
-        "series": of.curves.iter().map(series).collect::<Vec<_>>(),
-    });
-    in_script(&charts.to_string())
+impl StudyPage {
+    /// The curves as a value of JavaScript.
+    fn charts(&self) -> String {
+        let charts = json!({
+            "speeds": self.speeds,
+            "onset": self.onset,
+            "interval": self.interval,
+            "required": self.verdict.required_m_s,
+            "required_colour": self.verdict.colour,
+            "series": self.curves.iter().map(series).collect::<Vec<_>>(),
+        });
+        in_script(&charts.to_string())
+    }
 }
 
 fn series(of: &PageCurve) -> Value {

@@ -48,10 +48,9 @@ pub(crate) fn transfer_figure(
     let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.label));
     let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
     let mut panels = Vec::with_capacity(2 * plots.len());
-    for (row, plot) in plots.iter().enumerate() {
-        let last = row + 1 == plots.len();
+    for plot in plots {
         for phase in [false, true] {
-            let mut panel = reference_panel(plot, phase, if last { x_label } else { "" });
+            let mut panel = reference_panel(plot, phase, x_label);
             for curve in &plot.models {
                 let points = points(curve, phase);
                 panel.add(&curve.label, points, ink(index_of(&labels, &curve.label))?);
@@ -76,6 +75,7 @@ pub(crate) fn transfer_figure(
         axes: (330.0, if plots.len() > 2 { 150.0 } else { 240.0 }),
         legend: vec![legend],
     }
+    .over_one_abscissa()
     .draw()
 }
 

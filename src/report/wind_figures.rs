@@ -1,7 +1,7 @@
 //! Static equilibria, spectra and root mean squares of the response to turbulence.
 
 use super::axis::Axis;
-use super::drawing::{Drawing, titled};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
@@ -35,12 +35,11 @@ pub(crate) fn equilibrium_figure(
 ) -> Result<Figure> {
     const PLACE: &str = "static equilibrium";
     let line = Ink::line(colour(PLACE, 0)?, None);
-    let last = dofs.len() - 1;
     let mut panels = Vec::with_capacity(dofs.len());
     for (i, dof) in dofs.iter().enumerate() {
         let (label, factor) = ordinate(*dof, "");
-        let speed = if i == last { "Wind speed V (m/s)" } else { "" };
-        let mut panel = Panel::new(Axis::new(speed).tight(), Axis::new(label));
+        let speed = Axis::new("Wind speed V (m/s)").tight();
+        let mut panel = Panel::new(speed, Axis::new(label));
         panel.level = Some(0.0);
         let points = path.points.iter();
         let points = points.map(|p| (p.speed_m_s, factor * p.displacement[i]));
@@ -55,7 +54,7 @@ pub(crate) fn equilibrium_figure(
         let upright = Ink::stroke(BLACK, Some("3 3"), 0.9);
         legend.push(Entry::new(end.explain(), upright));
     }
-    stacked(PLACE, title, panels, 150.0, legend)
+    Drawing::stacked(PLACE, title, panels, 150.0, vec![legend])
 }
 
 /// Root mean squares over wind speed, one panel per degree of freedom: in all, by each component of the turbulence, and in
@@ -72,13 +71,12 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
     ];
     let stepped = Ink::dots(BLACK, Shape::Diamond);
     let bar = Ink::stroke(BLACK, None, 1.2);
-    let last = study.dofs.len() - 1;
     let both = (0..2).all(|j| has_gust(study, j));
     let mut panels = Vec::with_capacity(study.dofs.len());
     for (i, dof) in study.dofs.iter().enumerate() {
         let (label, factor) = ordinate(*dof, "RMS ");
-        let speed = if i == last { "Wind speed V (m/s)" } else { "" };
-        let mut panel = Panel::new(Axis::new(speed).tight(), Axis::new(label).zero_based());
+        let speed = Axis::new("Wind speed V (m/s)").tight();
+        let mut panel = Panel::new(speed, Axis::new(label).zero_based());
         let line = |pick: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
             let speeds = study.responses.iter().enumerate();
             speeds
@@ -107,7 +105,7 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
     if !study.time.is_empty() {
         legend.push(Entry::new("time domain, ±2 standard errors", stepped));
     }
-    stacked(PLACE, title, panels, 170.0, legend)
+    Drawing::stacked(PLACE, title, panels, 170.0, vec![legend])
 }
 
 fn has_gust(study: &BuffetingStudy, j: usize) -> bool {
@@ -129,10 +127,7 @@ pub(crate) fn buffeting_spectra_figure(
     spectra: &SpectrumCurve,
 ) -> Result<Figure> {
     const PLACE: &str = "spectra";
-    let logarithmic = |label: &str| Axis {
-        logarithmic: true,
-        ..Axis::new(label)
-    };
+    let logarithmic = |label: &str| Axis::new(label).logarithmic();
     let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
     let labels: Vec<String> = nodes.iter().map(|n| format!("node {n}")).collect();
     let mut legend = entries(&labels, ink)?;
@@ -176,24 +171,5 @@ pub(crate) fn buffeting_spectra_figure(
         panels.push(panel);
     }
     panels.retain(|p| !p.series.is_empty());
-    stacked(PLACE, title, panels, 150.0, legend)
-}
-
-/// Panels of this height above each other, with one legend.
-fn stacked(
-    place: &'static str,
-    title: &str,
-    panels: Vec<Panel>,
-    height: f64,
-    legend: Vec<Entry>,
-) -> Result<Figure> {
-    Drawing {
-        name: place,
-        title: titled(title),
-        panels,
-        columns: 1,
-        axes: (640.0, height),
-        legend: vec![legend],
-    }
-    .draw()
+    Drawing::stacked(PLACE, title, panels, 150.0, vec![legend])
 }
