@@ -36,7 +36,7 @@ use super::resources::{GUST_FILE, OptionFiles, Resources};
 use super::variables::Listing;
 use super::xml::Element;
 use crate::aerodynamics::GustForce;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use serde::Serialize;
@@ -102,58 +102,39 @@ pub fn package(
     runtimes: &[Runtime],
     export: impl Into<Export>,
 ) -> Result<Vec<u8>> {
-    let Export {
-        growing,
-        force,
-        gusts,
-        bounds,
-        verdict,
-        listing,
-        label,
-        version,
-        reference_runs,
-    } = export.into();
-    check_listing(listing, version)?;
+    let export = export.into();
+    let Export { force, gusts, .. } = &export;
+    check_listing(export.listing, export.version)?;
     let further = force.iter().flat_map(|force| &force.further);
     for model in std::iter::once(model).chain(further.map(|f| &f.model)) {
-        growth::check(model, growing)?;
+        growth::check(model, export.growing)?;
     }
-    let force = force.map(|force| force.to_json()).transpose()?;
+    let force = force.as_ref().map(ForceOptions::to_json).transpose()?;
     let gusts = gusts.as_ref().map(as_json).transpose()?;
-    let bounds_json = bounds.as_ref().map(as_json).transpose()?;
-    if runtimes.is_empty() {
-        let expected = "a runtime for at least one platform";
-        return Err(Error::input("FMU", expected, "none"));
-    }
+    let bounds = export.bounds.as_ref().map(as_json).transpose()?;
+    check_runtimes(runtimes)?;
     let json = model.to_json()?;
     let files = OptionFiles {
         force: force.as_deref().map(str::as_bytes),
         gusts: gusts.as_deref().map(str::as_bytes),
-        bounds: bounds_json.as_deref().map(str::as_bytes),
+        bounds: bounds.as_deref().map(str::as_bytes),
     };
     let resources = Resources::from_bytes(json.as_bytes(), files)?;
-    let xml = description(&resources, listing, &label, version)?;
-    let described = Element::parse(&xml)?;
-    let page = documentation::documentation(&resources, runtimes, &described, verdict.as_ref())?;
     let options = [
+        (MODEL_FILE, Some(json)),
         (FORCE_FILE, force),
         (GUST_FILE, gusts),
-        (BOUNDS_FILE, bounds_json),
+        (BOUNDS_FILE, bounds),
     ];
-    let options = options
-        .into_iter()
-        .filter_map(|(name, text)| Some((name, text?)));
-    let parts = ArchiveParts {
-        resources,
-        bounds,
-        listing,
-        xml,
-        version,
-        page,
-        runtimes,
-        reference_runs,
-    };
-    assembled(parts, [(MODEL_FILE, json)].into_iter().chain(options))
+    let verdict = export.verdict.as_ref();
+    assembled(resources, options, runtimes, &export, |resources, xml| {
+        documentation::documentation(resources, runtimes, xml, verdict)
+    })
+}
+
+fn check_runtimes(runtimes: &[Runtime]) -> Result<()> {
+    let expected = "a runtime for at least one platform";
+    ensure(!runtimes.is_empty(), "FMU", expected, "none")
 }
 
 fn check_listing(listing: Listing, version: FmiVersion) -> Result<()> {
@@ -209,10 +190,7 @@ pub fn package_bridge(
     label: &Label,
     version: FmiVersion,
 ) -> Result<Vec<u8>> {
-    if runtimes.is_empty() {
-        let expected = "a runtime for at least one platform";
-        return Err(Error::input("FMU", expected, "none"));
-    }
+    check_runtimes(runtimes)?;
     check_listing(export.listing, version)?;
     let (json, options) = (export.model.to_json()?, export.bridge.to_json()?);
     let field = export.turbulence.as_ref().map(serde_json::to_string);
@@ -224,51 +202,35 @@ pub fn package_bridge(
         options.as_bytes(),
         field.as_deref().map(str::as_bytes),
     )?;
-    let xml = description(&resources, export.listing, label, version)?;
-    let (described, verdict) = (Element::parse(&xml)?, export.verdict.as_ref());
-    let page = bridge_page::documentation(&resources, &export.bridge, &described, verdict);
-    let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)].into_iter();
-    let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
-    let parts = ArchiveParts {
-        resources,
-        bounds: None,
+    let options = [
+        (MODEL_FILE, Some(json)),
+        (BRIDGE_FILE, Some(options)),
+        (TURBULENCE_FILE, field),
+    ];
+    let around = Export {
         listing: export.listing,
-        xml,
+        label: label.clone(),
         version,
-        page,
-        runtimes,
         reference_runs: export.reference_runs,
+        ..GrowthPolicy::Allow.into()
     };
-    assembled(parts, files)
+    let (bridge, verdict) = (&export.bridge, export.verdict.as_ref());
+    assembled(resources, options, runtimes, &around, |resources, xml| {
+        Ok(bridge_page::documentation(resources, bridge, xml, verdict))
+    })
 }
 
-/// What an archive is made of, beside the files of its resources.
-struct ArchiveParts<'a> {
-    resources: Resources,
-    bounds: Option<OnsetBounds>,
-    listing: Listing,
-    xml: String,
-    version: FmiVersion,
-    page: String,
-    runtimes: &'a [Runtime],
-    reference_runs: bool,
-}
-
-/// The archive of what has been made.
+/// The archive of `resources` and of the files that they are read from; the `page` that documents them follows its description.
 fn assembled(
-    parts: ArchiveParts<'_>,
-    options: impl IntoIterator<Item = (&'static str, String)>,
+    resources: Resources,
+    options: impl IntoIterator<Item = (&'static str, Option<String>)>,
+    runtimes: &[Runtime],
+    export: &Export,
+    page: impl FnOnce(&Resources, &Element) -> Result<String>,
 ) -> Result<Vec<u8>> {
-    let ArchiveParts {
-        resources,
-        bounds,
-        listing,
-        xml,
-        version,
-        page,
-        runtimes,
-        reference_runs,
-    } = parts;
+    let (listing, version) = (export.listing, export.version);
+    let xml = description(&resources, listing, &export.label, version)?;
+    let page = page(&resources, &Element::parse(&xml)?)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     let icon = match version {
@@ -280,7 +242,7 @@ fn assembled(
     let text = terminals::document(&listed, version);
     files.insert(terminals::FILE.into(), text.into_bytes());
     for (name, text) in options {
-        files.insert(format!("resources/{name}"), text.into_bytes());
+        files.extend(text.map(|text| (format!("resources/{name}"), text.into_bytes())));
     }
     files.insert("documentation/index.html".into(), page.into_bytes());
     let licences = "documentation/licenses";
@@ -292,7 +254,8 @@ fn assembled(
         files.insert(format!("{licences}/{name}"), text.into());
     }
     files.extend(binaries(runtimes, version)?);
-    if reference_runs {
+    if export.reference_runs {
+        let bounds = export.bounds.as_ref();
         files.extend(reference_runs::files(resources, bounds, listing, version)?);
     }
     archive(&files)

@@ -12,7 +12,7 @@ use crate::fmu::standard::{FmiVersion, each_once};
 use crate::fmu::variables::{Role, SectionParameter, Variable};
 use crate::fmu::xml::Element;
 use crate::plausibility::{self, Finding, of_model, of_trained};
-use crate::section::Dof;
+use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use crate::verdict::{Evidence, Phenomenon, Severity, Verdict};
@@ -48,14 +48,13 @@ pub(super) fn documentation(
             .map(|m| m.model.realize().states())
             .max()
             .unwrap_or(0),
-        initial_rotation_deg: digits(model.experiment.initial_rotation_rad.to_degrees()),
         lateral: resources.models().any(|m| m.section.lateral.is_some()),
         platforms: runtimes
             .iter()
             .map(|r| (r.path_in_archive(version), r.platform_words()))
             .collect(),
         groups: groups(&shown(resources, description), version),
-        models: resources.models().map(ModelText::new).collect(),
+        models: resources.models().collect(),
         judged: match (&resources.force, verdict) {
             (None, _) => "Stability of the section as exported",
             (Some(_), Some(_)) => "Stability of the bridge as exported",
@@ -68,7 +67,7 @@ pub(super) fn documentation(
         },
         force: resources.force.as_ref(),
         gusts: gusts(resources),
-        sampling: resources.models().find_map(SamplingText::new),
+        sampling: resources.models().find_map(sampling),
     };
     page.render()
         .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
@@ -85,16 +84,15 @@ struct DocumentationPage<'a> {
     guid: String,
     version: &'static str,
     filters: usize,
-    initial_rotation_deg: String,
     lateral: bool,
     platforms: Vec<(String, &'static str)>,
     groups: Vec<Group<'a>>,
-    models: Vec<ModelText<'a>>,
+    models: Vec<&'a TrainedModel>,
     judged: &'static str,
     stability: Vec<String>,
     force: Option<&'a ForceOptions>,
     gusts: Option<String>,
-    sampling: Option<SamplingText>,
+    sampling: Option<[String; 3]>,
 }
 
 /// What is said of gusts, where they are inputs.
@@ -117,23 +115,6 @@ pub(super) fn gust_words(what: &str, source: &str, admittance: RationalAdmittanc
         RationalAdmittance::Liepmann => "the admittance of Liepmann",
     };
     format!("{what}. The forces of gusts are those of {source}, with {behind}.")
-}
-
-/// Where a model holds, and how it was made.
-struct ModelText<'a> {
-    model: &'a TrainedModel,
-    range: Range,
-    speeds: Vec<Speeds>,
-}
-
-impl<'a> ModelText<'a> {
-    fn new(model: &'a TrainedModel) -> Self {
-        Self {
-            model,
-            range: Range::new(model),
-            speeds: speeds(model),
-        }
-    }
 }
 
 /// Variables of one role.
@@ -211,52 +192,12 @@ fn groups<'a>(rows: &[Row<'a>], version: FmiVersion) -> Vec<Group<'a>> {
     ]
 }
 
-/// The tested range in the three ways of writing it.
-struct Range {
-    k: [String; 2],
-    v_star: [String; 2],
-    v_hat: [String; 2],
+fn v_star(k: &ReducedFrequency) -> f64 {
+    ReducedVelocity::from(*k).v_star()
 }
 
-impl Range {
-    fn new(model: &TrainedModel) -> Self {
-        let (low, high) = (model.tested_range.min, model.tested_range.max);
-        let v_star = |k: ReducedFrequency| ReducedVelocity::from(k).v_star();
-        Self {
-            k: [low.full_width(), high.full_width()].map(digits),
-            v_star: [v_star(high), v_star(low)].map(digits),
-            v_hat: [high.v_hat(), low.v_hat()].map(digits),
-        }
-    }
-}
-
-/// Wind speeds of the tested range for a mode that vibrates at its frequency in still air.
-struct Speeds {
-    motion: &'static str,
-    frequency_hz: String,
-    from_m_s: String,
-    to_m_s: String,
-}
-
-fn speeds(model: &TrainedModel) -> Vec<Speeds> {
-    let section = &model.section;
-    let speed = |frequency_hz: f64, k: ReducedFrequency| {
-        let v_star = ReducedVelocity::from(k).v_star();
-        digits(v_star * frequency_hz * section.width_m)
-    };
-    section
-        .dofs()
-        .into_iter()
-        .map(|dof: Dof| {
-            let frequency_hz = SectionParameter::Frequency(dof).value_in(section);
-            Speeds {
-                motion: dof.name(),
-                frequency_hz: digits(frequency_hz),
-                from_m_s: speed(frequency_hz, model.tested_range.max),
-                to_m_s: speed(frequency_hz, model.tested_range.min),
-            }
-        })
-        .collect()
+fn still_air_hz(section: &SectionModel, dof: &Dof) -> f64 {
+    SectionParameter::Frequency(*dof).value_in(section)
 }
 
 /// Sentences on the section as exported: the verdict that goes with it, or what its own searches amount to.
@@ -334,25 +275,14 @@ fn motion(onset: &Onset) -> String {
     )
 }
 
-/// What the discrete model does between its samples.
-struct SamplingText {
-    delta_s: String,
-    speed_m_s: String,
-    step_s: String,
-}
-
-impl SamplingText {
-    fn new(model: &TrainedModel) -> Option<Self> {
-        let Model::DiscreteLaguerre(discrete) = &model.model else {
-            return None;
-        };
-        let speed = model.experiment.wind_speed_m_s;
-        Some(Self {
-            delta_s: digits(discrete.delta_s),
-            speed_m_s: digits(speed),
-            step_s: digits(discrete.delta_s * model.section.width_m / speed),
-        })
-    }
+/// Of a discrete model: Δs, the wind speed of the experiment, and Δt there.
+fn sampling(model: &TrainedModel) -> Option<[String; 3]> {
+    let Model::DiscreteLaguerre(discrete) = &model.model else {
+        return None;
+    };
+    let speed = model.experiment.wind_speed_m_s;
+    let step_s = discrete.delta_s * model.section.width_m / speed;
+    Some([discrete.delta_s, speed, step_s].map(digits))
 }
 
 /// Four significant digits.

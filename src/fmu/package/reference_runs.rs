@@ -25,43 +25,44 @@ type ArchiveFiles = BTreeMap<String, Vec<u8>>;
 /// The files of a unit; `listed` says which variables its description lists.
 pub(super) fn files(
     resources: Resources,
-    bounds: Option<OnsetBounds>,
+    bounds: Option<&OnsetBounds>,
     listing: Listing,
     version: FmiVersion,
 ) -> Result<ArchiveFiles> {
     let mut files = ArchiveFiles::new();
     let unit = ReferenceUnit::new(resources, listing, version)?;
-    let mut related = Vec::new();
-    let mut put = |files: &mut ArchiveFiles, entry: RelatedFile<'_>, text: String| {
-        files.insert(format!("{LS_REF}/{}", entry.source), text.into_bytes());
-        related.push(entry.element());
+    let mut entries = Vec::new();
+    let mut put = |entry: [&str; 4], text: String| {
+        files.insert(format!("{LS_REF}/{}", entry[0]), text.into_bytes());
+        entries.push(related(entry));
     };
-    let parameters = parameter_set("as_exported", &unit.parameters())?;
-    let entry = RelatedFile::new(PARAMETERS, "parameter", "application/x-ssp-parameter-set");
     put(
-        &mut files,
-        entry.saying("Every parameter as it was exported"),
-        parameters,
+        [
+            PARAMETERS,
+            "parameter",
+            "application/x-ssp-parameter-set",
+            "Every parameter as it was exported",
+        ],
+        parameter_set("as_exported", &unit.parameters())?,
     );
-    for set in unit.sets(bounds.as_ref())? {
+    let of_run = [
+        [
+            "in",
+            "other",
+            "Inputs, set at the beginning of each step and held",
+        ],
+        ["out", "result", "Outputs at the end of each step"],
+    ];
+    for set in unit.sets(bounds)? {
         let mut experiments = Vec::new();
         for planned in &set.runs {
-            let Some(run) = unit.run(planned)? else {
+            let Some(texts) = unit.run(planned)? else {
                 continue;
             };
             experiments.push(planned.element()?);
-            let entry = RelatedFile::new(&planned.file("in"), "other", "text/csv");
-            put(
-                &mut files,
-                entry.saying("Inputs, set at the beginning of each step and held"),
-                run.inputs,
-            );
-            let entry = RelatedFile::new(&planned.file("out"), "result", "text/csv");
-            put(
-                &mut files,
-                entry.saying("Outputs at the end of each step"),
-                run.outputs,
-            );
+            for ([part, role, meaning], text) in of_run.into_iter().zip(texts) {
+                put([&planned.file(part), role, "text/csv", meaning], text);
+            }
         }
         if experiments.is_empty() {
             continue;
@@ -70,42 +71,39 @@ pub(super) fn files(
             .with("name", set.title)
             .with("description", set.meaning)
             .containing(experiments);
-        let entry = RelatedFile::new(&format!("{}.exp", set.name), set.role, EXPERIMENTS);
-        put(&mut files, entry.saying(set.meaning), root.document());
+        let file = format!("{}.exp", set.name);
+        put([&file, set.role, EXPERIMENTS, set.meaning], root.document());
     }
-    let entry = RelatedFile::new("replay.py", "other", "text/x-python");
-    let entry = entry.saying("Runs all experiments in FMPy: python replay.py unit.fmu");
-    put(&mut files, entry, include_str!("replay.py").to_owned());
-    for (source, role, kind, meaning) in [
-        (
-            "../../resources/model.json",
-            "model",
-            "application/json",
-            "Force model and section, and where they come from",
-        ),
-        (
-            "../../documentation/index.html",
-            "document",
-            "text/html",
-            "What this unit is, and where it is valid",
-        ),
-    ] {
-        related.push(
-            RelatedFile::new(source, role, kind)
-                .saying(meaning)
-                .element(),
-        );
-    }
+    put(
+        [
+            "replay.py",
+            "other",
+            "text/x-python",
+            "Runs all experiments in FMPy: python replay.py unit.fmu",
+        ],
+        include_str!("replay.py").to_owned(),
+    );
+    entries.push(related([
+        "../../resources/model.json",
+        "model",
+        "application/json",
+        "Force model and section, and where they come from",
+    ]));
+    entries.push(related([
+        "../../documentation/index.html",
+        "document",
+        "text/html",
+        "What this unit is, and where it is valid",
+    ]));
     if bounds.is_some() {
-        let source = format!("../../resources/{}", BOUNDS_FILE);
-        let entry = RelatedFile::new(&source, "meta-data", "application/json");
-        related.push(
-            entry
-                .saying("95 % interval of the onset by the scatter of the data")
-                .element(),
-        );
+        entries.push(related([
+            &format!("../../resources/{BOUNDS_FILE}"),
+            "meta-data",
+            "application/json",
+            "95 % interval of the onset by the scatter of the data",
+        ]));
     }
-    files.insert(LS_REF_MANIFEST.to_owned(), manifest(related).into_bytes());
+    files.insert(LS_REF_MANIFEST.to_owned(), manifest(entries).into_bytes());
     files.insert(
         "documentation/fmi-ls-ref.txt".to_owned(),
         include_str!("fmi-ls-ref.txt").into(),
@@ -140,42 +138,18 @@ pub(super) fn wasm_manifest() -> String {
 }
 
 /// An entry of the manifest.
-struct RelatedFile<'a> {
-    source: String,
-    role: &'a str,
-    kind: &'a str,
-    meaning: &'a str,
-}
-
-impl<'a> RelatedFile<'a> {
-    fn new(source: &str, role: &'a str, kind: &'a str) -> Self {
-        let source = source.to_owned();
-        Self {
-            source,
-            role,
-            kind,
-            meaning: "",
-        }
-    }
-
-    fn saying(self, meaning: &'a str) -> Self {
-        Self { meaning, ..self }
-    }
-
-    fn element(&self) -> Element {
-        Element::new("Related")
-            .with("type", self.kind)
-            .with("source", &self.source)
-            .with("role", self.role)
-            .with("description", self.meaning)
-    }
+fn related([source, role, kind, meaning]: [&str; 4]) -> Element {
+    Element::new("Related")
+        .with("type", kind)
+        .with("source", source)
+        .with("role", role)
+        .with("description", meaning)
 }
 
 /// The manifest with a report of the study in which the unit was made.
 pub(super) fn manifest_with_report(manifest: &str, report: &str) -> Result<String> {
     let mut root = Element::parse(manifest)?;
-    let entry = RelatedFile::new(report, "report", "text/html");
-    root.children
-        .push(entry.saying("Report of the study").element());
+    let entry = [report, "report", "text/html", "Report of the study"];
+    root.children.push(related(entry));
     Ok(root.document())
 }

@@ -1,6 +1,6 @@
 //! Runtime binaries: the one embedded in this program, and others from a folder.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::fmu::identity::MODEL_IDENTIFIER;
 use crate::fmu::standard::FmiVersion;
 use std::borrow::Cow;
@@ -166,14 +166,13 @@ impl Runtime {
                 found.push(Self::new(platform, Cow::Owned(bytes)).map_err(|e| e.in_file(&file))?);
             }
         }
-        if found.is_empty() && !live_file(folder).is_file() {
-            return Err(Error::input(
-                RUNTIME_DIR_VARIABLE,
-                format!("a folder with, for example, linux64/{MODEL_IDENTIFIER}.so"),
-                "none of these",
-            )
-            .in_file(folder));
-        }
+        ensure(
+            !found.is_empty() || live_file(folder).is_file(),
+            RUNTIME_DIR_VARIABLE,
+            format_args!("a folder with, for example, linux64/{MODEL_IDENTIFIER}.so"),
+            "none of these",
+        )
+        .map_err(|e| e.in_file(folder))?;
         Ok(found)
     }
 
@@ -182,13 +181,12 @@ impl Runtime {
         let Some((platform, extension, beginnings, words)) = known else {
             return Err(Error::input("runtime", "a platform of FMI", platform));
         };
-        if !beginnings.iter().any(|b| bytes.starts_with(b)) {
-            return Err(Error::input(
-                format!("runtime for {platform}"),
-                format!("a shared library ({words})"),
-                format!("{} other bytes", bytes.len()),
-            ));
-        }
+        ensure(
+            beginnings.iter().any(|b| bytes.starts_with(b)),
+            format!("runtime for {platform}"),
+            format_args!("a shared library ({words})"),
+            format_args!("{} other bytes", bytes.len()),
+        )?;
         Ok(Self {
             words: match platform {
                 "linux64" if is_arm(&bytes) => "Linux, 64-bit ARM",

@@ -33,12 +33,6 @@ const AMPLITUDE: f64 = 0.01;
 /// Gusts over the mean wind.
 const INTENSITY: f64 = 0.05;
 
-/// Inputs and outputs of a run as text.
-pub(super) struct RecordedRun {
-    pub inputs: String,
-    pub outputs: String,
-}
-
 /// A unit to be run.
 pub(super) struct ReferenceUnit {
     /// As it is before the initialisation.
@@ -214,8 +208,8 @@ impl ReferenceUnit {
         known.then_some((speed, frequency))
     }
 
-    /// The run, or nothing where the unit refuses a step of it.
-    pub(super) fn run(&self, planned: &PlannedRun) -> Result<Option<RecordedRun>> {
+    /// Inputs and outputs of the run as text, or nothing where the unit refuses a step of it.
+    pub(super) fn run(&self, planned: &PlannedRun) -> Result<Option<[String; 2]>> {
         let inputs = self.stimuli(planned);
         let recorded = self.recorded();
         let mut instance = self.instance.borrow_mut();
@@ -228,10 +222,10 @@ impl ReferenceUnit {
         let named = |places: &mut dyn Iterator<Item = usize>| -> Vec<&str> {
             places.map(|place| self.listed[&place].as_str()).collect()
         };
-        Ok(Some(RecordedRun {
-            inputs: csv(&named(&mut inputs.iter().map(|s| s.place)), &set)?,
-            outputs: csv(&named(&mut recorded.iter().copied()), &read)?,
-        }))
+        Ok(Some([
+            csv(&named(&mut inputs.iter().map(|s| s.place)), &set)?,
+            csv(&named(&mut recorded.iter().copied()), &read)?,
+        ]))
     }
 
     /// Motion and forces, the same share of each kind, and the onset.
