@@ -38,7 +38,7 @@ pub(crate) use processed::{processed_study_text, read_section};
 pub use records::RecordSet;
 pub(crate) use reference_lines::derivative_lines;
 pub use routes::low_frequency_limit;
-pub(crate) use routes::{Route, RouteTable, route_table};
+pub(crate) use routes::{Route, RouteTable, route_table, without_lags};
 pub use speeds::{FlutterBlock, SpeedRange};
 pub use stepped::{SteppedAnswer, SteppedOnset, stepped_onset};
 pub(crate) use wind::{
@@ -252,13 +252,12 @@ impl Study {
         }
         for (i, model) in self.models.iter().enumerate() {
             model.validate(&format!("model[{i}]"))?;
-            if self.models[..i].iter().any(|m| m.slug() == model.slug()) {
-                return Err(Error::input(
-                    format!("model[{i}].name"),
-                    "a name of its own for every model",
-                    format!("`{}` a second time", model.name),
-                ));
-            }
+            ensure(
+                self.models[..i].iter().all(|m| m.slug() != model.slug()),
+                format!("model[{i}].name"),
+                "a name of its own for every model",
+                format_args!("`{}` a second time", model.name),
+            )?;
         }
         self.flutter.validate("flutter")?;
         if let Some(block) = &self.coefficients {
@@ -334,13 +333,12 @@ impl ModelBlock {
     }
 
     fn validate(&self, place: &str) -> Result<()> {
-        if self.slug().is_empty() {
-            return Err(Error::input(
-                format!("{place}.name"),
-                "a name with letters or digits",
-                format!("`{}`", self.name),
-            ));
-        }
+        ensure(
+            !self.slug().is_empty(),
+            format!("{place}.name"),
+            "a name with letters or digits",
+            format_args!("`{}`", self.name),
+        )?;
         let below = |key: &str, result: Result<()>| {
             result.map_err(|e| e.within(Place::from(place).key(key)))
         };

@@ -8,7 +8,7 @@ use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
 };
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::error::{Error, Result, ensure};
+use crate::error::{Result, ensure};
 use crate::files::derivatives::{
     ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
 };
@@ -29,7 +29,8 @@ const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 /// Where the aerodynamics of a study come from.
 #[derive(Debug, Clone)]
 pub struct Deck {
-    source: DeckData,
+    /// The whole table; none for the flat plate, which is known exactly.
+    whole: Option<DerivativeTable>,
     /// The part of the table at the speed groups of the deck, where it states some: a model may still be of another.
     chosen: Option<DerivativeTable>,
     interpolation: Interpolation,
@@ -42,27 +43,19 @@ pub struct Deck {
     dofs: Vec<Dof>,
 }
 
-#[derive(Debug, Clone)]
-enum DeckData {
-    Table(Box<DerivativeTable>),
-    FlatPlate,
-}
-
-impl DeckData {
-    /// The table cut to the speed groups that the study asks for; none where it asks for none. Groups that only the records of a
-    /// study have are those of the records.
-    fn at_speeds(&self, study: &Study) -> Result<Option<DerivativeTable>> {
-        let (Self::Table(table), Some(groups)) = (self, &study.deck.speed_groups) else {
-            return Ok(None);
-        };
-        let count = table.speed_groups().len().max(1);
-        let of_records = !study.deck.records.is_empty() && groups.iter().any(|g| *g > count);
-        if of_records {
-            return Ok(None);
-        }
-        let cut = chosen(Some(groups), count).and_then(|groups| table.at_speed_groups(&groups));
-        cut.map(Some).map_err(|e| e.at("deck.speed_groups"))
+/// The table cut to the speed groups that the study asks for; none where it asks for none. Groups that only the records of a
+/// study have are those of the records.
+fn at_speeds(whole: Option<&DerivativeTable>, study: &Study) -> Result<Option<DerivativeTable>> {
+    let (Some(table), Some(groups)) = (whole, &study.deck.speed_groups) else {
+        return Ok(None);
+    };
+    let count = table.speed_groups().len().max(1);
+    let of_records = !study.deck.records.is_empty() && groups.iter().any(|g| *g > count);
+    if of_records {
+        return Ok(None);
     }
+    let cut = chosen(Some(groups), count).and_then(|groups| table.at_speed_groups(&groups));
+    cut.map(Some).map_err(|e| e.at("deck.speed_groups"))
 }
 
 /// Width at which the flat plate is tested, m: speeds and frequencies of the tunnel are those of section models.
@@ -85,8 +78,8 @@ impl Deck {
         let dofs = study.section.dofs();
         let is_file = is_table_file(name);
         let mut convention = Convention::default();
-        let source = if name.eq_ignore_ascii_case(FLAT_PLATE) {
-            DeckData::FlatPlate
+        let whole = if name.eq_ignore_ascii_case(FLAT_PLATE) {
+            None
         } else if is_file {
             let options = ReadOptions {
                 convention: study.deck.convention,
@@ -100,40 +93,34 @@ impl Deck {
             table
                 .header
                 .state_angle("deck.angle_deg", study.deck.angle_deg)?;
-            DeckData::Table(Box::new(table))
+            Some(table)
         } else {
-            DeckData::Table(Box::new(
-                embedded::deck_where_files_are_taken(name).map_err(|e| e.at("deck.source"))?,
-            ))
+            let deck = embedded::deck_where_files_are_taken(name);
+            Some(deck.map_err(|e| e.at("deck.source"))?)
         };
-        if !is_file && !study.deck.convention.is_empty() {
-            return Err(Error::input(
-                "deck.convention",
-                "a table in a file (.csv, .xlsx) as deck.source",
-                format!("`{name}`, whose convention is known"),
-            ));
-        }
+        ensure(
+            is_file || study.deck.convention.is_empty(),
+            "deck.convention",
+            "a table in a file (.csv, .xlsx) as deck.source",
+            format_args!("`{name}`, whose convention is known"),
+        )?;
         let states = study.deck.width_m.is_some()
             || study.deck.angle_deg.is_some()
             || study.deck.missing.is_some();
-        if !is_file && states {
-            return Err(Error::input(
-                "deck",
-                "`width_m`, `angle_deg` and `missing` for a table in a file (.csv, .xlsx) only",
-                format!("source `{name}`"),
-            ));
-        }
-        if let DeckData::Table(table) = &source {
+        ensure(
+            is_file || !states,
+            "deck",
+            "`width_m`, `angle_deg` and `missing` for a table in a file (.csv, .xlsx) only",
+            format_args!("source `{name}`"),
+        )?;
+        if let Some(table) = &whole {
             table.require(&dofs)?;
-        } else if dofs != Dof::TWO {
-            return Err(Error::input(
-                "deck.source",
-                "a table, since the section has a lateral degree of freedom",
-                FLAT_PLATE,
-            ));
+        } else {
+            let expected = "a table, since the section has a lateral degree of freedom";
+            ensure(dofs == Dof::TWO, "deck.source", expected, FLAT_PLATE)?;
         }
         let (mut notes, mut findings) = (Vec::new(), Vec::new());
-        if let (DeckData::Table(table), true) = (&source, is_file) {
+        if let (Some(table), true) = (&whole, is_file) {
             // derivatives have no dimension: the width of an answer is that of the section, which is stated
             let of_answer = table.header.notes.iter();
             notes.extend(of_answer.filter(|n| !n.starts_with(WIDTH_ASSUMED)).cloned());
@@ -142,57 +129,53 @@ impl Deck {
                 notes.extend(study.tunnel.assumption(table));
             }
         }
-        let built_in = matches!(source, DeckData::Table(_)) && !is_file;
         Ok(Self {
-            chosen: source.at_speeds(study)?,
-            source,
+            chosen: at_speeds(whole.as_ref(), study)?,
+            built_in: whole.is_some() && !is_file,
+            whole,
             notes,
             findings,
             interpolation: study.deck.interpolation,
-            built_in,
             dofs,
         })
     }
 
     /// The deck in words.
     pub(crate) fn description(&self) -> String {
-        match &self.source {
-            DeckData::Table(table) => format!("{}: {}", table.name, table.header.source),
-            DeckData::FlatPlate => "flat plate, Theodorsen's theory, exact".to_owned(),
+        match &self.whole {
+            Some(table) => format!("{}: {}", table.name, table.header.source),
+            None => "flat plate, Theodorsen's theory, exact".to_owned(),
         }
     }
 
     /// Licence notice of the data.
     pub(crate) fn licence(&self) -> String {
-        match &self.source {
+        match &self.whole {
             // the notice has to go wherever the figures go
-            DeckData::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
-            DeckData::Table(table) => table.header.licence.clone(),
-            DeckData::FlatPlate => "none needed: a closed formula".to_owned(),
+            Some(_) if self.built_in => embedded::LICENCE.to_owned(),
+            Some(table) => table.header.licence.clone(),
+            None => "none needed: a closed formula".to_owned(),
         }
     }
 
     /// Name of its table; none for a closed formula.
     pub(crate) fn table_name(&self) -> Option<&str> {
-        match &self.source {
-            DeckData::Table(table) => Some(&table.name),
-            DeckData::FlatPlate => None,
-        }
+        self.whole.as_ref().map(|table| table.name.as_str())
     }
 
     /// Name of the deck's own model, searched by the determinant.
     pub(crate) fn own_model_name(&self) -> String {
-        match &self.source {
-            DeckData::Table(_) => "interpolated table".to_owned(),
-            DeckData::FlatPlate => "flat plate (exact)".to_owned(),
+        match &self.whole {
+            Some(_) => "interpolated table".to_owned(),
+            None => "flat plate (exact)".to_owned(),
         }
     }
 
     /// Records of the virtual tunnel, one per motion and speed.
     pub(crate) fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
-        match &self.source {
-            DeckData::Table(table) => study.tunnel.records_from_table(table, &self.dofs),
-            DeckData::FlatPlate => study.tunnel.records_from_model(
+        match &self.whole {
+            Some(table) => study.tunnel.records_from_table(table, &self.dofs),
+            None => study.tunnel.records_from_model(
                 &FlatPlate::default(),
                 FLAT_PLATE,
                 plate_width_m(study),
@@ -206,8 +189,8 @@ impl Deck {
         study: &Study,
         groups: Option<&[usize]>,
     ) -> Result<Vec<TransferSample>> {
-        match &self.source {
-            DeckData::Table(table) => {
+        match &self.whole {
+            Some(table) => {
                 let Some(groups) = groups else {
                     return Ok(table.samples(&self.dofs));
                 };
@@ -219,7 +202,7 @@ impl Deck {
                 }
                 Ok(samples)
             }
-            DeckData::FlatPlate => {
+            None => {
                 // groups are numbered from the lowest speed, as those of tables and records
                 let mut speeds = study.tunnel.speeds_m_s.clone();
                 speeds.sort_by(f64::total_cmp);
@@ -239,10 +222,7 @@ impl Deck {
 
     /// The measured table at the speeds of the deck; `None` for the flat plate.
     pub(crate) fn table(&self) -> Option<&DerivativeTable> {
-        match &self.source {
-            DeckData::Table(table) => Some(self.chosen.as_ref().unwrap_or(table)),
-            DeckData::FlatPlate => None,
-        }
+        self.chosen.as_ref().or(self.whole.as_ref())
     }
 
     /// What was assumed in reading the table, and what looks wrong in it.

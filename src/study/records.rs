@@ -67,14 +67,13 @@ impl RecordSet {
                 }
             }
         }
-        if needed && paths.is_empty() {
-            return Err(Error::input(
-                "",
-                "records (run `aerodeck tunnel` first, or name your own under `deck.records`)",
-                "none",
-            )
-            .in_file(folder));
-        }
+        ensure(
+            !needed || !paths.is_empty(),
+            "",
+            "records (run `aerodeck tunnel` first, or name your own under `deck.records`)",
+            "none",
+        )
+        .map_err(|e| e.in_file(folder))?;
         paths.sort();
         let own = deck.table_name().unwrap_or(FLAT_PLATE);
         for path in &paths {

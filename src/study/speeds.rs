@@ -1,6 +1,6 @@
 //! Wind speeds of curves and searches: stated in the file, else from the section.
 
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Error, Result, counted, ensure, positive};
 use crate::flutter::{OnsetSearch, curve_speeds_m_s};
 use crate::section::{Dof, SectionModel};
 use crate::verdict::RequiredSpeed;
@@ -106,22 +106,16 @@ impl FlutterBlock {
                 return Err(Error::input(key, expected, speed.to_string()));
             }
         }
-        if let (Some(low), Some(high)) = (self.speed_min_m_s, self.speed_max_m_s)
-            && low >= high
-        {
-            return Err(Error::input(
-                format!("{place}.speed_min_m_s"),
-                format!("a speed below speed_max_m_s, {high}"),
-                low.to_string(),
-            ));
+        if let (Some(low), Some(high)) = (self.speed_min_m_s, self.speed_max_m_s) {
+            let expected = format_args!("a speed below speed_max_m_s, {high}");
+            ensure(low < high, format!("{place}.speed_min_m_s"), expected, low)?;
         }
-        if !(2..=MOST_SPEEDS).contains(&self.speeds) {
-            return Err(Error::input(
-                format!("{place}.speeds"),
-                format!("a number from 2 to {MOST_SPEEDS}"),
-                self.speeds.to_string(),
-            ));
-        }
+        ensure(
+            (2..=MOST_SPEEDS).contains(&self.speeds),
+            format!("{place}.speeds"),
+            format_args!("a number from 2 to {MOST_SPEEDS}"),
+            self.speeds,
+        )?;
         Ok(())
     }
 }

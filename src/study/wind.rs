@@ -13,7 +13,7 @@ use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, Interpolation};
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
 use crate::buffeting::{TimePlan, Turbulence, check_plan};
-use crate::error::{Error, Result, finite, of_schema, positive};
+use crate::error::{Error, Result, ensure, finite, of_schema, positive};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::named_table;
 use crate::files::toml_lines;
@@ -315,13 +315,12 @@ impl CoefficientsBlock {
 
     /// Refuses arms from two sources; `place` is the key of the block.
     pub(in crate::study) fn validate(&self, place: &str) -> Result<()> {
-        if self.arms.is_some() && self.arms_from.is_some() {
-            return Err(Error::input(
-                format!("{place}.arms_from"),
-                "`arms` or `arms_from`",
-                "both",
-            ));
-        }
+        ensure(
+            self.arms.is_none() || self.arms_from.is_none(),
+            format!("{place}.arms_from"),
+            "`arms` or `arms_from`",
+            "both",
+        )?;
         self.arms.unwrap_or_default().validate(&format!("{place}."))
     }
 }

@@ -1,7 +1,8 @@
 //! Flutter and divergence of a bridge, with the modes behind them.
 
+use super::super::without_lags;
 use super::BridgeStudy;
-use crate::aerodynamics::{Lags, RationalModel, Transfer, TransferMatrix};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -220,15 +221,8 @@ fn table_divergence(study: &BridgeStudy) -> Result<Option<TableDivergence>> {
             continue;
         };
         let at_rest = static_part(group.forces.dofs(), &group.forces.transfer(range.min)?);
-        let [e0, zero] = [at_rest.map(|z| z.re), at_rest.map(|_| 0.0)];
-        group.forces = Arc::new(RationalModel {
-            dofs: group.forces.dofs().to_vec(),
-            a1: e0,
-            a2: zero.clone(),
-            a3: zero,
-            lags: Lags::Shared(Vec::new()),
-            lag_terms: Vec::new(),
-        });
+        let (e0, zero) = (at_rest.map(|z| z.re), at_rest.map(|_| 0.0));
+        group.forces = Arc::new(without_lags(group.forces.dofs(), e0, zero));
         lowest = Some(lowest.map_or(range.min, |k| if k > range.min { k } else { range.min }));
     }
     let Some(k) = lowest else { return Ok(None) };

@@ -5,7 +5,7 @@ use super::answers::coupled;
 use crate::aerodynamics::RationalAdmittance;
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::Admittance;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::bridge::FieldTable;
 use crate::flutter::{
     BridgeMotion, FlutterSearch, OnsetSearch, divergence_with_forces, unwanted_growth_below,
@@ -185,14 +185,12 @@ impl BridgeStudy {
         }
         let nodes = self.by_model.nodes.len();
         let count = wanted.gust_strips.unwrap_or(0);
-        if count > nodes || wanted.gust_strips == Some(0) {
-            let expected = format!("1 to {nodes}, the nodes of the bridge");
-            return Err(Error::input(
-                "strips with gusts",
-                expected,
-                count.to_string(),
-            ));
-        }
+        ensure(
+            count <= nodes && wanted.gust_strips != Some(0),
+            "strips with gusts",
+            format_args!("1 to {nodes}, the nodes of the bridge"),
+            count,
+        )?;
         let first = |strip: usize| (strip * nodes).div_ceil(count);
         let sections = self.file.sections.iter().map(|s| s.name.as_str());
         let names = sections.collect::<Vec<_>>().join(", ");

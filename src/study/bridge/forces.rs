@@ -1,12 +1,10 @@
 //! The self-excited forces of one section of a bridge file.
 
-use super::super::{KnownUncertainty, uncertainty_beside};
-use crate::aerodynamics::derivatives::{
-    DerivativeTable, Extrapolation, InterpolatedTable, TableHeader,
-};
+use super::super::{KnownUncertainty, uncertainty_beside, without_lags};
+use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
-use crate::error::{Error, Result};
+use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
+use crate::error::{Error, Result, ensure};
 use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
 use crate::files::derivatives::named_table_in;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
@@ -15,7 +13,6 @@ use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
-use nalgebra::DMatrix;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -87,86 +84,119 @@ impl SectionForceModels {
             let odd = of_model(&model.name, &model.model, model.tested_range, &[]);
             findings.extend(odd.into_iter().map(|f| of_block(block, f)));
         }
-        let of_table = block
-            .derivatives
-            .as_ref()
-            .map(|name| by_table(block, name, directory, trained.is_none(), findings));
-        let (table, fitted) = of_table.transpose()?.unzip();
-        let (angle_deg, rotation_amplitude_deg) = match &table {
-            Some(Tabulated { header, .. }) => (header.angle_deg, header.rotation_amplitude_deg),
-            None => (block.angle_deg, None),
+        let read = |name: &String| checked_table(block, name, directory, findings);
+        let table = block.derivatives.as_ref().map(read).transpose()?;
+        let (by, motions) = (block.interpolation, &block.motions);
+        let between =
+            |table| InterpolatedTable::by(by, table, motions, Extrapolation::Hold).map(Arc::new);
+        let between = table.as_ref().map(between).transpose()?;
+        let forces = match (trained, table.as_ref().zip(between.as_ref())) {
+            (Some((trained, known)), _) => Self::trained(trained, known),
+            (None, Some((table, between))) => Self::fitted(block, table, between.tested_range())?,
+            (None, None) => {
+                let statics = block.statics.as_ref();
+                let place = format!("section {}", block.name);
+                let expected = "one of `derivatives`, `model`, `static`";
+                let statics = statics.ok_or_else(|| Error::input(place, expected, "none"))?;
+                return Ok(Self::quasi_steady(block, statics));
+            }
         };
-        let table = table.map(|t: Tabulated| Arc::new(t.between) as Arc<dyn Transfer>);
-        if let Some((trained, known)) = trained {
-            let model = Arc::new(trained.model.clone());
-            return Ok(Self {
-                table,
-                model,
-                saved: Some(trained.model),
-                method: trained.provenance.method,
-                source: trained.provenance.source,
-                licence: trained.provenance.licence,
-                tested: Some(trained.tested_range),
-                angle_deg,
-                rotation_amplitude_deg,
-                notes: Vec::new(),
-                unconstrained: None,
-                degrees_of_freedom: known
-                    .as_ref()
-                    .ok()
-                    .and_then(|known| Some(known.onset.as_ref()?.degrees_of_freedom)),
-                uncertainty: known.map(|known| Some(known.coefficients)),
-            });
+        let header = table.map(|table| table.header);
+        let stated = header.as_ref();
+        Ok(Self {
+            table: between.map(|between| between as Arc<dyn Transfer>),
+            angle_deg: stated.map_or(block.angle_deg, |header| header.angle_deg),
+            rotation_amplitude_deg: stated.and_then(|header| header.rotation_amplitude_deg),
+            ..forces
+        })
+    }
+
+    /// A model as it was saved, with what is known of its scatter.
+    fn trained(trained: TrainedModel, known: KnownUncertainty) -> Self {
+        let onset = known.as_ref().ok().and_then(|known| known.onset.as_ref());
+        Self {
+            method: trained.provenance.method,
+            source: trained.provenance.source,
+            licence: trained.provenance.licence,
+            tested: Some(trained.tested_range),
+            degrees_of_freedom: onset.map(|onset| onset.degrees_of_freedom),
+            uncertainty: known.map(|known| Some(known.coefficients)),
+            ..Self::of(Arc::new(trained.model.clone()), trained.model)
         }
-        if let Some(Some(fitted)) = fitted {
-            return Ok(Self {
-                table,
-                angle_deg,
-                rotation_amplitude_deg,
-                ..fitted
-            });
-        }
-        let Some(statics) = &block.statics else {
-            return Err(Error::input(
-                format!("section {}", block.name),
-                "one of `derivatives`, `model`, `static`",
-                "none",
-            ));
+    }
+
+    /// The model fitted to a table.
+    fn fitted(
+        block: &BridgeSectionBlock,
+        table: &DerivativeTable,
+        tested: ReducedFrequencyRange,
+    ) -> Result<Self> {
+        let options = match &block.fit {
+            Some(stated) => stated.clone().try_into().map_err(|e: toml::de::Error| {
+                let place = format!("section {}: fit", block.name);
+                Error::input(place, "a fit to a table", e.message().replace('\n', " "))
+            })?,
+            None => FrequencyFit {
+                form: Form::Laguerre {
+                    filters: Some(block.filters),
+                    feed_through: FeedThrough::default(),
+                    pole_per_transfer_function: false,
+                },
+                ..FrequencyFit::default()
+            },
         };
-        Ok(Self::quasi_steady(block, statics))
+        let samples = table.samples(&block.motions);
+        let Fitted { model, report } = fit_table(&samples, &block.motions, &options)?;
+        let uncertainty = table_uncertainty(&samples, &block.motions, &options, &report);
+        let notes = report.notes.iter();
+        let alone = report.constraints.and_then(|held| held.unconstrained);
+        Ok(Self {
+            method: report.method,
+            source: table.header.source.clone(),
+            licence: table.header.licence.clone(),
+            tested: Some(tested),
+            notes: notes
+                .map(|n| format!("section {}: {n}", block.name))
+                .collect(),
+            unconstrained: alone.map(|model| Arc::from(model as Box<dyn Transfer>)),
+            uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
+            ..Self::of(Arc::new(model.clone()), model)
+        })
     }
 
     /// Theodorsen's plate where frequencies are asked for, Jones's rational functions where a realisation is.
     fn flat_plate(block: &BridgeSectionBlock) -> Result<Self> {
         let place = format!("section {}", block.name);
-        if block.motions != Dof::TWO {
-            let expected = "vertical and torsional motion with the flat plate";
-            return Err(Error::input(place, expected, Dof::names(&block.motions)));
-        }
-        if !block.convention.is_empty() {
-            let expected = "a table in a file (.csv, .xlsx)";
-            return Err(Error::input(
-                format!("{place}: convention"),
-                expected,
-                format!("`{FLAT_PLATE}`"),
-            ));
-        }
+        let expected = "vertical and torsional motion with the flat plate";
+        ensure(
+            block.motions == Dof::TWO,
+            place.as_str(),
+            expected,
+            Dof::names(&block.motions),
+        )?;
+        let expected = "a table in a file (.csv, .xlsx)";
+        ensure(
+            block.convention.is_empty(),
+            format!("{place}: convention"),
+            expected,
+            format_args!("`{FLAT_PLATE}`"),
+        )?;
         let jones = RationalModel::jones_flat_plate();
         Ok(Self {
             table: Some(Arc::new(FlatPlate::default())),
             method: "Jones's rational functions of the flat plate".to_owned(),
             source: "flat plate, Theodorsen's theory".to_owned(),
             licence: "none needed: a formula".to_owned(),
-            ..Self::stated(Arc::new(jones.clone()), jones)
+            ..Self::of(Arc::new(jones.clone()), Model::Rational(jones))
         })
     }
 
-    /// A model that is stated and not fitted: nothing was tested.
-    fn stated(model: Arc<dyn Transfer>, saved: RationalModel) -> Self {
+    /// A model of which no more is known: nothing was tested.
+    fn of(model: Arc<dyn Transfer>, saved: Model) -> Self {
         Self {
             table: None,
             model,
-            saved: Some(Model::Rational(saved)),
+            saved: Some(saved),
             method: String::new(),
             source: String::new(),
             licence: String::new(),
@@ -186,19 +216,12 @@ impl SectionForceModels {
             LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
         // rational functions without lags say the same in a form that is saved
         let (e0, e1) = theory.feed_through();
-        let saved = RationalModel {
-            dofs: block.motions.clone(),
-            a1: e0.clone(),
-            a2: e1.clone(),
-            a3: DMatrix::zeros(e0.nrows(), e0.ncols()),
-            lags: Lags::Shared(Vec::new()),
-            lag_terms: Vec::new(),
-        };
+        let saved = without_lags(&block.motions, e0.clone(), e1.clone());
         Self {
             method: "quasi-steady theory".to_owned(),
             source: format!("static coefficients of {}", block.name),
             licence: "that of the bridge file".to_owned(),
-            ..Self::stated(Arc::new(theory), saved)
+            ..Self::of(Arc::new(theory), Model::Rational(saved))
         }
     }
 
@@ -240,73 +263,17 @@ fn of_block(block: &BridgeSectionBlock, found: Finding) -> Finding {
     }
 }
 
-/// A table between its points, with what it says of its tests.
-struct Tabulated {
-    between: InterpolatedTable,
-    header: TableHeader,
-}
-
-/// The table between its points, and the model fitted to it.
-fn by_table(
+/// The table of a section, which states the angle of its tests as the bridge file does; what looks wrong in it is among the `findings`.
+fn checked_table(
     block: &BridgeSectionBlock,
     name: &str,
     directory: &Path,
-    fit: bool,
     findings: &mut Vec<Finding>,
-) -> Result<(Tabulated, Option<SectionForceModels>)> {
+) -> Result<DerivativeTable> {
     let mut table = block_table(block, name, directory)?;
     let key = format!("section {}: angle_deg", block.name);
     table.header.state_angle(&key, block.angle_deg)?;
-    let convention = block.convention.or_usual();
-    let odd = of_table(&table, &convention).into_iter();
+    let odd = of_table(&table, &block.convention.or_usual()).into_iter();
     findings.extend(odd.map(|f| of_block(block, f)));
-    let between = InterpolatedTable::by(
-        block.interpolation,
-        &table,
-        &block.motions,
-        Extrapolation::Hold,
-    )?;
-    let header = table.header.clone();
-    if !fit {
-        return Ok((Tabulated { between, header }, None));
-    }
-    let options = match &block.fit {
-        Some(stated) => stated.clone().try_into().map_err(|e: toml::de::Error| {
-            let place = format!("section {}: fit", block.name);
-            Error::input(place, "a fit to a table", e.message().replace('\n', " "))
-        })?,
-        None => FrequencyFit {
-            form: Form::Laguerre {
-                filters: Some(block.filters),
-                feed_through: FeedThrough::default(),
-                pole_per_transfer_function: false,
-            },
-            ..FrequencyFit::default()
-        },
-    };
-    let samples = table.samples(&block.motions);
-    let Fitted { model, report } = fit_table(&samples, &block.motions, &options)?;
-    let uncertainty = table_uncertainty(&samples, &block.motions, &options, &report);
-    let forces = SectionForceModels {
-        table: None,
-        model: Arc::new(model.clone()),
-        saved: Some(model),
-        method: report.method.clone(),
-        source: header.source.clone(),
-        licence: header.licence.clone(),
-        tested: Some(between.tested_range()),
-        angle_deg: None,
-        rotation_amplitude_deg: None,
-        notes: report
-            .notes
-            .iter()
-            .map(|n| format!("section {}: {n}", block.name))
-            .collect(),
-        unconstrained: report
-            .constraints
-            .and_then(|held| Some(Arc::from(held.unconstrained? as Box<dyn Transfer>))),
-        uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
-        degrees_of_freedom: None,
-    };
-    Ok((Tabulated { between, header }, Some(forces)))
+    Ok(table)
 }

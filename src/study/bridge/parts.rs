@@ -1,7 +1,8 @@
 //! A bridge in parts: its structure as one unit, the wind forces on the strips of its sections as another.
 
+use super::super::without_lags;
 use super::{BridgeExportOptions, BridgeStudy};
-use crate::aerodynamics::{GustForce, Lags, RationalAdmittance, RationalModel, Transfer};
+use crate::aerodynamics::{GustForce, RationalAdmittance, Transfer};
 use crate::bridge::{StripGroup, motion_index};
 use crate::error::{Error, Result};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
@@ -47,14 +48,7 @@ impl SectionForcePart {
 /// No forces of heave and rotation, whatever moves.
 fn no_forces() -> Model {
     let zero = || DMatrix::zeros(2, 2);
-    Model::Rational(RationalModel {
-        dofs: Dof::TWO.to_vec(),
-        a1: zero(),
-        a2: zero(),
-        a3: zero(),
-        lags: Lags::Shared(Vec::new()),
-        lag_terms: Vec::new(),
-    })
+    Model::Rational(without_lags(&Dof::TWO, zero(), zero()))
 }
 
 impl BridgeStudy {

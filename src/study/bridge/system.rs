@@ -15,30 +15,6 @@ use crate::verdict::Verdict;
 const STRUCTURE: &str = "structure";
 const FORCE: &str = "force";
 
-/// A degree of freedom in the names of variables: the motion that the forces follow, the force, and what it is to the structure.
-struct Names {
-    motion: [&'static str; 2],
-    force: &'static str,
-    external: &'static str,
-}
-
-fn names(dof: Dof) -> Names {
-    let (motion, force, external) = match dof {
-        Dof::Vertical => (["heave", "heave_rate"], "total_lift", "external_lift"),
-        Dof::Lateral => (["sway", "sway_rate"], "total_drag", "external_drag"),
-        Dof::Torsion => (
-            ["rotation", "rotation_rate"],
-            "total_moment",
-            "external_moment",
-        ),
-    };
-    Names {
-        motion,
-        force,
-        external,
-    }
-}
-
 impl SectionForcePart {
     /// What packs it. Whether the bridge grows below its onset has been judged before.
     pub fn packed(&self, label: &Label, version: FmiVersion) -> Export {
@@ -63,14 +39,23 @@ impl SectionForcePart {
             let node = self.options.nodes[strip];
             let at = |element: &str, of: &str| [element.to_owned(), format!("node[{node}].{of}")];
             for dof in model.model.dofs() {
-                let names = names(*dof);
-                motions.extend(names.motion.map(|of| Connection {
+                // the motion that the forces follow, the force, and what it is to the structure
+                let (motion, force, external) = match dof {
+                    Dof::Vertical => (["heave", "heave_rate"], "total_lift", "external_lift"),
+                    Dof::Lateral => (["sway", "sway_rate"], "total_drag", "external_drag"),
+                    Dof::Torsion => (
+                        ["rotation", "rotation_rate"],
+                        "total_moment",
+                        "external_moment",
+                    ),
+                };
+                motions.extend(motion.map(|of| Connection {
                     from: at(STRUCTURE, of),
                     to: at(FORCE, of),
                 }));
                 forces.push(Connection {
-                    from: at(FORCE, names.force),
-                    to: at(STRUCTURE, names.external),
+                    from: at(FORCE, force),
+                    to: at(STRUCTURE, external),
                 });
             }
         }

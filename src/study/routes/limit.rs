@@ -5,43 +5,41 @@ use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::find_onset;
-use crate::section::Structure;
+use crate::section::{Dof, Structure};
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
 /// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
 pub fn low_frequency_limit(model: &dyn Transfer, k: ReducedFrequency) -> Result<RationalModel> {
     let g = model.transfer(k)?;
-    let n = g.nrows();
-    Ok(RationalModel {
-        dofs: model.dofs().to_vec(),
-        a1: g.map(|z| z.re),
-        a2: g.map(|z| z.im / k.full_width()),
-        a3: DMatrix::zeros(n, n),
+    let (a1, a2) = (g.map(|z| z.re), g.map(|z| z.im / k.full_width()));
+    Ok(without_lags(model.dofs(), a1, a2))
+}
+
+/// Forces that follow displacements by `a1` and rates by `a2`, at once.
+pub(crate) fn without_lags(dofs: &[Dof], a1: DMatrix<f64>, a2: DMatrix<f64>) -> RationalModel {
+    RationalModel {
+        dofs: dofs.to_vec(),
+        a3: DMatrix::zeros(a1.nrows(), a1.ncols()),
+        a1,
+        a2,
         lags: Lags::Shared(Vec::new()),
         lag_terms: Vec::new(),
-    })
+    }
 }
 
 /// The flat plate with `C = 1` and without apparent mass; its own limit has a logarithm in `K`.
 pub(super) fn steady_flat_plate() -> RationalModel {
-    let mut plate = RationalModel::jones_flat_plate();
+    let plate = RationalModel::jones_flat_plate();
     let (pi, quarter) = (std::f64::consts::PI, 0.25);
     // the part of the rates that is apparent mass, and what the circulation gives at once
-    plate.a2 = DMatrix::from_row_slice(
-        2,
-        2,
-        &[
-            -2.0 * pi,
-            pi / 2.0 + 2.0 * pi * quarter,
-            -pi / 2.0,
-            -pi / 8.0 + pi / 2.0 * quarter,
-        ],
-    );
-    plate.a3 = DMatrix::zeros(2, 2);
-    plate.lags = Lags::Shared(Vec::new());
-    plate.lag_terms.clear();
-    plate
+    let rates = [
+        -2.0 * pi,
+        pi / 2.0 + 2.0 * pi * quarter,
+        -pi / 2.0,
+        -pi / 8.0 + pi / 2.0 * quarter,
+    ];
+    without_lags(&plate.dofs, plate.a1, DMatrix::from_row_slice(2, 2, &rates))
 }
 
 /// Onset of an affine model, m/s.
