@@ -22,6 +22,7 @@ use crate::error::{Error, Result};
 use crate::files::toml_lines;
 use crate::identification::{FrequencyFit, FrequencyWeights};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The files of `data/reference`.
 const FILES: [&str; 10] = [
@@ -178,12 +179,6 @@ struct ReferenceCase {
     figures: Vec<ReferenceFigure>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CaseFile {
-    case: Vec<ReferenceCase>,
-}
-
 /// One figure after the computation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseResult {
@@ -221,8 +216,9 @@ pub struct CaseResult {
 fn cases() -> Result<Vec<(ReferenceCase, Compute)>> {
     let mut read = Vec::new();
     for text in FILES {
-        let file: CaseFile = toml_lines::parse("a file of reference cases", text, |_| Ok(()))?;
-        read.extend(file.case);
+        let file: BTreeMap<String, Vec<ReferenceCase>> =
+            toml_lines::parse("a file of reference cases", text, |_| Ok(()))?;
+        read.extend(file.into_values().flatten());
     }
     let of = |(name, compute): &(&str, Compute)| {
         let place = read.iter().position(|case| case.name == *name);

@@ -3,7 +3,7 @@
 
 use super::spectrum::GustComponent;
 use crate::bridge::Node;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -41,14 +41,13 @@ impl Coherence {
     /// [`Error::Input`] naming the key below `place`.
     pub fn validate(&self, place: &str) -> Result<()> {
         for (key, value) in [("along", self.along), ("vertical", self.vertical)] {
-            if !(value > 0.0 && value.is_finite()) {
-                let expected = "a decay of the coherence in (0, ∞)";
-                return Err(Error::input(
-                    format!("{place}.{key}"),
-                    expected,
-                    value.to_string(),
-                ));
-            }
+            let expected = "a decay of the coherence in (0, ∞)";
+            ensure(
+                value > 0.0 && value.is_finite(),
+                format!("{place}.{key}"),
+                expected,
+                value,
+            )?;
         }
         Ok(())
     }

@@ -66,13 +66,12 @@ impl Turbulence {
     /// [`Error::Input`] naming the key below `place`; for no component at all.
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
         let parts = [("along", &self.along), ("vertical", &self.vertical)];
-        if parts.iter().all(|(_, gust)| gust.is_none()) {
-            return Err(Error::input(
-                place,
-                "`along`, `vertical` or both",
-                "neither",
-            ));
-        }
+        ensure(
+            parts.iter().any(|(_, gust)| gust.is_some()),
+            place,
+            "`along`, `vertical` or both",
+            "neither",
+        )?;
         for (key, gust) in parts {
             if let Some(gust) = gust {
                 gust.spectrum.validate(&format!("{place}.{key}.spectrum"))?;

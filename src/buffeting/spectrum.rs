@@ -1,6 +1,6 @@
 //! Spectra of the turbulence components, normalised to their variance.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use serde::{Deserialize, Serialize};
 
 /// Part by which the integral of a user's spectrum may differ from its variance.
@@ -121,16 +121,15 @@ impl SpectrumShape {
             ));
         }
         let integral = formula.integral();
-        if (integral - 1.0).abs() > NORMALISATION_TOLERANCE {
-            return Err(Error::input(
-                format!("{place}.a"),
-                format!(
-                    "a = {:.6}, so that the spectrum integrates to the variance",
-                    a / integral
-                ),
-                format!("{a}, which gives {integral:.4} of it"),
-            ));
-        }
+        ensure(
+            (integral - 1.0).abs() <= NORMALISATION_TOLERANCE,
+            format!("{place}.a"),
+            format_args!(
+                "a = {:.6}, so that the spectrum integrates to the variance",
+                a / integral
+            ),
+            format_args!("{a}, which gives {integral:.4} of it"),
+        )?;
         Ok(())
     }
 }
@@ -140,13 +139,12 @@ impl GustSpectrum {
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
         positive(format!("{place}.length_m"), self.length_m)?;
         positive(format!("{place}.intensity"), self.intensity)?;
-        if self.intensity >= 1.0 {
-            return Err(Error::input(
-                format!("{place}.intensity"),
-                "a ratio σ/V below 1, not per cent",
-                self.intensity.to_string(),
-            ));
-        }
+        ensure(
+            self.intensity < 1.0,
+            format!("{place}.intensity"),
+            "a ratio σ/V below 1, not per cent",
+            self.intensity,
+        )?;
         self.shape.validate(&format!("{place}.shape"))
     }
 

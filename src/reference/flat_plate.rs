@@ -8,8 +8,8 @@ use crate::buffeting::{
 };
 use crate::error::{Error, Result};
 use crate::flutter::{
-    ModeRatio, Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset, impedance,
-    pk_onset, quasi_pk_mode, sanity_lines,
+    FlutterSearch, ModeRatio, Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset,
+    impedance, pk_onset, quasi_pk_mode, sanity_lines,
 };
 use crate::section::{Rotation, SectionModel, Translation};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -31,10 +31,14 @@ pub(super) fn by_determinant(
     model: &dyn Transfer,
     range: ReducedFrequencyRange,
 ) -> Result<Onset> {
-    determinant_onset("", &section.structure()?, model, range, 300.0)?
-        .onset()
-        .cloned()
-        .ok_or_else(|| Error::Numerical("no onset up to 300 m/s".into()))
+    let highest_m_s = 300.0;
+    let found = determinant_onset("", &section.structure()?, model, range, highest_m_s)?;
+    onset_of(&found, highest_m_s)
+}
+
+fn onset_of(found: &FlutterSearch, highest_m_s: f64) -> Result<Onset> {
+    let none = || Error::Numerical(format!("no onset up to {highest_m_s} m/s"));
+    found.onset().cloned().ok_or_else(none)
 }
 
 pub(super) fn table_4_1() -> Result<Vec<f64>> {
@@ -51,9 +55,6 @@ pub(super) fn iabse_onset() -> Result<Vec<f64>> {
     let section = SectionModel::iabse_1_1a();
     let onset = by_determinant(&section, &WITHOUT_ROTARY, WIDE)?;
     let with_rotary = by_determinant(&section, &FlatPlate::default(), WIDE)?;
-    let steady = FlatPlate::default().transfer(ReducedFrequency::from_full_width(0.0))?;
-    let divergence = divergence_speed(&section.structure()?, &steady)?
-        .ok_or_else(|| Error::Numerical("no divergence".into()))?;
     let mode = with_rotation(&onset)?;
     Ok(vec![
         onset.at.speed_m_s,
@@ -64,7 +65,7 @@ pub(super) fn iabse_onset() -> Result<Vec<f64>> {
         onset.at.reduced_velocity.v_star(),
         with_rotary.at.speed_m_s,
         with_rotary.at.frequency_hz,
-        divergence,
+        divergence(&section)?,
     ])
 }
 
@@ -84,10 +85,8 @@ pub(super) fn iabse_by_iteration() -> Result<Vec<f64>> {
         speed_max_m_s: 100.0,
         speeds: 100,
     };
-    let onset = pk_onset("", &structure, &WITHOUT_ROTARY, &search, None)?
-        .onset()
-        .cloned()
-        .ok_or_else(|| Error::Numerical("no onset up to 100 m/s".into()))?;
+    let found = pk_onset("", &structure, &WITHOUT_ROTARY, &search, None)?;
+    let onset = onset_of(&found, search.speed_max_m_s)?;
     Ok(vec![onset.at.speed_m_s, onset.at.frequency_hz])
 }
 
@@ -175,16 +174,9 @@ pub(super) fn unbalanced() -> Result<Vec<f64>> {
         speed_max_m_s: 42.0,
         speeds: 84,
     };
-    let by_iteration = pk_onset(
-        "",
-        &section.structure()?,
-        &FlatPlate::default(),
-        &search,
-        None,
-    )?
-    .onset()
-    .cloned()
-    .ok_or_else(|| Error::Numerical("no onset up to 42 m/s".into()))?;
+    let structure = section.structure()?;
+    let found = pk_onset("", &structure, &FlatPlate::default(), &search, None)?;
+    let by_iteration = onset_of(&found, search.speed_max_m_s)?;
     Ok(vec![
         onset.at.speed_m_s,
         onset.at.frequency_hz,
@@ -217,10 +209,7 @@ pub(super) fn by_eigenvalues(
         speed_max_m_s,
         ..OnsetSearch::default()
     };
-    find_onset("", section, &search, tested)?
-        .onset()
-        .cloned()
-        .ok_or_else(|| Error::Numerical(format!("no onset up to {speed_max_m_s} m/s")))
+    onset_of(&find_onset("", section, &search, tested)?, speed_max_m_s)
 }
 
 pub(super) fn jones_onset() -> Result<Vec<f64>> {

@@ -3,7 +3,7 @@
 mod evaluate;
 
 use crate::aerodynamics::derivatives::Interpolation;
-use crate::error::{Error, Result, non_negative, of_schema, positive};
+use crate::error::{Error, Result, ensure, finite, non_negative, of_schema, positive};
 use crate::files::toml_lines;
 use crate::flutter::OnsetMethod;
 use crate::section::{Dof, SectionModel};
@@ -213,23 +213,15 @@ impl UserCase {
 
 impl UserFigure {
     fn validate(&self, place: &str) -> Result<()> {
-        if !self.expected.is_finite() {
-            let found = self.expected.to_string();
-            return Err(Error::input(
-                format!("{place}.expected"),
-                "a finite number",
-                found,
-            ));
-        }
+        finite(format!("{place}.expected"), self.expected)?;
         positive(format!("{place}.tolerance"), self.tolerance)?;
-        if self.route == Some(OnsetMethod::FmuStepping) {
-            let expected = "`eigenvalues`, `determinant` or `pk_iteration`";
-            return Err(Error::input(
-                format!("{place}.route"),
-                expected,
-                "`fmu_stepping`",
-            ));
-        }
+        let expected = "`eigenvalues`, `determinant` or `pk_iteration`";
+        ensure(
+            self.route != Some(OnsetMethod::FmuStepping),
+            format!("{place}.route"),
+            expected,
+            "`fmu_stepping`",
+        )?;
         let in_wind = (self.speed_m_s, self.dof);
         match (self.quantity.in_wind(), in_wind) {
             (true, (Some(speed), Some(_))) => {

@@ -5,7 +5,7 @@ use super::geometry::{Area, Px};
 use super::legend::shortened;
 use super::scene::{Anchor, Scene};
 use super::style::{BLACK, GREY, Stroke};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 
 /// Stops of a colour scale that rises evenly in lightness and is read by colour-blind readers (viridis, CC0).
 const SCALE: [[u8; 3]; 6] = [
@@ -30,7 +30,7 @@ const ROW: f64 = 22.0;
 const TICKS: usize = 7;
 
 /// One map.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct HeatMap {
     /// Line above it.
     pub title: String,
@@ -62,13 +62,12 @@ pub(crate) fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> 
         return Err(Error::input(PLACE, "at least one map", "none"));
     }
     for map in maps {
-        if map.x.is_empty() || map.values.len() != map.x.len() * map.rows {
-            return Err(Error::input(
-                format!("{PLACE} {}", map.title),
-                format!("{} values", map.x.len() * map.rows),
-                map.values.len().to_string(),
-            ));
-        }
+        ensure(
+            !map.x.is_empty() && map.values.len() == map.x.len() * map.rows,
+            format!("{PLACE} {}", map.title),
+            format_args!("{} values", map.x.len() * map.rows),
+            map.values.len(),
+        )?;
     }
     let height = |m: &HeatMap| TOP + ROW * m.rows as f64 + BOTTOM;
     let panel_width = LEFT + WIDTH + RIGHT;
@@ -116,13 +115,12 @@ impl HeatMap {
         let values = if chosen.is_empty() { values } else { chosen };
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if low > high {
-            return Err(Error::input(
-                format!("heat map {}", self.title),
-                "at least one finite value",
-                "none",
-            ));
-        }
+        ensure(
+            low <= high,
+            format!("heat map {}", self.title),
+            "at least one finite value",
+            "none",
+        )?;
         Ok((low, high))
     }
 

@@ -7,7 +7,7 @@ use super::labels::Labels;
 use super::scene::{Anchor, Scene};
 use super::series::{PlottedSeries, index_of};
 use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, Stroke};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 
 pub(super) const TICK_SIZE: u32 = 11;
 pub(super) const LABEL_SIZE: u32 = 12;
@@ -106,13 +106,12 @@ impl Panel {
                 return Err(Error::input(place(&series.name), "points", "none"));
             }
             for (i, (x, y)) in series.points.iter().enumerate() {
-                if !(x.is_finite() && y.is_finite()) {
-                    return Err(Error::input(
-                        place(&series.name),
-                        "finite numbers",
-                        format!("({x}, {y}) at point {}", i + 1),
-                    ));
-                }
+                ensure(
+                    x.is_finite() && y.is_finite(),
+                    place(&series.name),
+                    "finite numbers",
+                    format_args!("({x}, {y}) at point {}", i + 1),
+                )?;
             }
         }
         Ok(())

@@ -1,10 +1,11 @@
 //! Loads the forces of a case, computes its figures and judges them.
 
+use super::super::flat_plate::WIDE;
 use super::{FigureQuantity, UserCase, UserFigure};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::named_table;
 use crate::flutter::{
     FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
@@ -15,12 +16,6 @@ use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::TAU;
-
-/// Reduced frequencies in which the onset of a model without a tested range is searched.
-const WIDE: ReducedFrequencyRange = ReducedFrequencyRange::between(
-    ReducedFrequency::from_full_width(0.02),
-    ReducedFrequency::from_full_width(10.0),
-);
 
 impl UserCase {
     /// Computes every figure. A computation that fails is a result that has not passed.
@@ -116,16 +111,15 @@ impl LoadedCase {
         };
         let section = section.ok_or_else(|| Error::input("section", "a section", "none"))?;
         let structure = section.structure()?;
-        if model.dofs() != structure.dofs {
-            return Err(Error::input(
-                "section",
-                format!(
-                    "the degrees of freedom of the forces, {}",
-                    Dof::names(model.dofs())
-                ),
-                Dof::names(&structure.dofs),
-            ));
-        }
+        ensure(
+            model.dofs() == structure.dofs,
+            "section",
+            format_args!(
+                "the degrees of freedom of the forces, {}",
+                Dof::names(model.dofs())
+            ),
+            Dof::names(&structure.dofs),
+        )?;
         Ok(Self {
             structure,
             model,
