@@ -34,9 +34,8 @@ pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
 }
 
 fn response(study: &WindStudy, speeds: &[f64], progress: &Progress) -> Result<BuffetingStudy> {
-    let stage = progress.steps("records in the time domain");
-    buffeting_study(study, speeds, &|done, all| {
-        stage.at(done as u64, all as u64)
+    progress.counting("records in the time domain", |on_done| {
+        buffeting_study(study, speeds, on_done)
     })
 }
 

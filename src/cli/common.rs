@@ -43,6 +43,11 @@ where
     words.into().try_map(value)
 }
 
+/// A speed, or what is said where there is none.
+pub(crate) fn speed_or(otherwise: &str, speed_m_s: Option<f64>) -> String {
+    speed_m_s.map_or(otherwise.to_owned(), |v| format!("{v:.3} m/s"))
+}
+
 /// The folder of a file.
 pub(crate) fn folder_of(file: &Path) -> &Path {
     let parent = file.parent().filter(|p| !p.as_os_str().is_empty());

@@ -69,9 +69,7 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
             seed: args.seed,
             speeds_scatter: !args.no_speed_scatter,
         };
-        let stage = progress.steps("decks");
-        let report = family_coverage(&plan, &|done, all| stage.at(done as u64, all as u64))?;
-        drop(stage);
+        let report = progress.counting("decks", |on_done| family_coverage(&plan, on_done))?;
         return Answer::new(family(&report), &report);
     }
     let plan = CoveragePlan {
@@ -90,9 +88,7 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
         },
         ..CoveragePlan::default()
     };
-    let stage = progress.steps("repetitions");
-    let report = coverage(&plan, &|done, all| stage.at(done as u64, all as u64))?;
-    drop(stage);
+    let report = progress.counting("repetitions", |on_done| coverage(&plan, on_done))?;
     Answer::new(text(&report), &report)
 }
 

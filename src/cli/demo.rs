@@ -4,7 +4,6 @@ use super::answer::Answer;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::study::run_chain;
-use super::study_run::StudyRun;
 use crate::error::Result;
 use crate::fmu::package::GrowthPolicy;
 use crate::study::{Study, demo_study_text};
@@ -42,10 +41,6 @@ pub(crate) fn run(args: &DemoArgs, progress: &Progress) -> Result<Answer> {
     out.refuse_edited(STUDY_FILE, args.force, instead)?;
     // what differs is to be replaced from here on
     out.replace(STUDY_FILE);
-    let ran = StudyRun {
-        study: &study,
-        text: demo_study_text(),
-        file: None,
-    };
-    run_chain(&ran, out, GrowthPolicy::Refuse, progress)
+    let (text, growing) = (demo_study_text(), GrowthPolicy::Refuse);
+    run_chain(study, text, None, out, growing, progress)
 }

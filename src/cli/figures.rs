@@ -1,7 +1,7 @@
 //! Figures of results: an SVG each, a PNG beside it with `--png`, nothing with `--no-figures`.
 
 use super::output::OutputDir;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::report::Figure;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,13 +14,12 @@ static IMAGES: AtomicBool = AtomicBool::new(false);
 /// # Errors
 /// [`Error::Input`] for images where the program was built without the renderer.
 pub(super) fn want(figures: bool, images: bool) -> Result<()> {
-    if images && cfg!(not(feature = "png")) {
-        return Err(Error::input(
-            "--png",
-            "a program built with `--features png` (figures are written as SVG, which browsers and word processors show)",
-            "one without",
-        ));
-    }
+    ensure(
+        !images || cfg!(feature = "png"),
+        "--png",
+        "a program built with `--features png` (figures are written as SVG, which browsers and word processors show)",
+        "one without",
+    )?;
     WANTED.store(figures, Ordering::Relaxed);
     IMAGES.store(images, Ordering::Relaxed);
     Ok(())

@@ -1,5 +1,6 @@
 //! What stands around the verdict of a study: the onset it is about, and how the other models compare.
 
+use super::common::speed_or;
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetMethod};
 use crate::study::{FlutterStudy, SteppedOnset};
@@ -67,9 +68,7 @@ pub(super) fn comparisons(
     }
     lines.extend(results.deviations.iter().map(|d| d.explain()));
     for d in &results.divergence {
-        let speed = d
-            .speed_m_s
-            .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+        let speed = speed_or("none", d.speed_m_s);
         lines.push(format!("Divergence, {}: {speed}", d.model));
     }
     lines.extend(stepped.map(SteppedOnset::explain));

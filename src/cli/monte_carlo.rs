@@ -44,11 +44,7 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
     plan.samples = args.samples.unwrap_or(plan.samples);
     plan.seed = args.seed.unwrap_or(plan.seed);
     let model = stages::read_model(&plan.directory.join(&plan.model))?;
-    let stage = progress.steps("samples");
-    let result = monte_carlo(&plan, &model, &|done, total| {
-        stage.at(done as u64, total as u64);
-    });
-    drop(stage);
+    let result = progress.counting("samples", |on_done| monte_carlo(&plan, &model, on_done));
     let mut result =
         result.map_err(|e| MonteCarloPlan::locate(&plan_text, e).in_file(&args.plan))?;
     result.verdict = verdict(&plan, &model, &result.findings)?;

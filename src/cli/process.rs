@@ -11,7 +11,7 @@ use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
 use crate::files::text::file_name;
@@ -82,21 +82,17 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
-    let stage = progress.stage("reading the campaign");
-    let mut read = read_campaign(&args.campaign)?;
-    drop(stage);
+    let mut read = progress.during("reading the campaign", || read_campaign(&args.campaign))?;
     let raw = read.campaign;
-    let stage = progress.steps("processing");
-    let total = raw.runs.len() as u64;
-    let processed = process(&raw, &options, &|done| stage.at(done as u64, total))
-        .map_err(|e| e.in_file(&args.campaign))?;
-    drop(stage);
+    let total = raw.runs.len();
+    let processed = progress.counting("processing", |on_done| {
+        process(&raw, &options, &|done| on_done(done, total))
+    });
+    let processed = processed.map_err(|e| e.in_file(&args.campaign))?;
     read.doubts.extend(processed.report.doubts());
     let (mut notes, doubts) = (read.warnings, read.doubts);
     notes.extend(processed.report.warnings());
-    let stage = progress.stage("derivatives");
-    let derivatives = derivatives(&processed, &mut notes)?;
-    drop(stage);
+    let derivatives = progress.during("derivatives", || derivatives(&processed, &mut notes))?;
     let mut out = OutputDir::new(&args.out)?;
     outdate(&raw.section, args.force, &mut out);
     let names = write_records(&processed, &mut out)?;
@@ -233,7 +229,7 @@ fn derivatives(
 /// A figure of the stages of every run.
 fn draw_stages(processed: &Processed, out: &mut OutputDir, progress: &Progress) -> Result<()> {
     let stage = progress.steps("figures");
-    let count = processed.stages.len() as u64;
+    let count = processed.stages.len();
     let runs = processed.report.runs.iter().zip(&processed.stages);
     for ((run, stages), done) in runs.zip(1..) {
         let stem = format!("processing/{}", file_name(&run.run));
@@ -277,13 +273,12 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
     let mut names = Vec::with_capacity(processed.records.len());
     for record in &processed.records {
         let name = record_path(&record.header.name);
-        if names.contains(&name) {
-            return Err(Error::input(
-                "campaign",
-                "a name of its own for every run",
-                format!("`{}` a second time", record.header.name),
-            ));
-        }
+        ensure(
+            !names.contains(&name),
+            "campaign",
+            "a name of its own for every run",
+            format_args!("`{}` a second time", record.header.name),
+        )?;
         names.push(name);
     }
     out.write_records(names.iter().cloned().zip(&processed.records))?;

@@ -1,5 +1,6 @@
 //! Progress on standard error, only where somebody watches.
 
+use crate::numbered::OnDone;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
@@ -35,6 +36,18 @@ impl Progress {
         Stage(bar)
     }
 
+    /// What `work` comes to, with this stage shown as long as it lasts.
+    pub(crate) fn during<T>(&self, what: &str, work: impl FnOnce() -> T) -> T {
+        let _stage = self.stage(what);
+        work()
+    }
+
+    /// The same of work that says how many of how many steps are done.
+    pub(crate) fn counting<T>(&self, what: &str, work: impl FnOnce(OnDone<'_>) -> T) -> T {
+        let stage = self.steps(what);
+        work(&|done, total| stage.at(done, total))
+    }
+
     fn bar(&self, bar: ProgressBar, template: &str) -> ProgressBar {
         if !self.shown {
             return ProgressBar::hidden();
@@ -51,9 +64,9 @@ pub(crate) struct Stage(ProgressBar);
 
 impl Stage {
     /// `done` of `total` steps are done.
-    pub(crate) fn at(&self, done: u64, total: u64) {
-        self.0.set_length(total);
-        self.0.set_position(done);
+    pub(crate) fn at(&self, done: usize, total: usize) {
+        self.0.set_length(total as u64);
+        self.0.set_position(done as u64);
     }
 }
 

@@ -30,14 +30,12 @@ const TABLE_LINES: usize = 15;
 /// Runs the command.
 pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.open()?;
-    let stage = progress.stage("equilibria and modes over wind speed");
-    let results = quasi_steady_study(&study)?;
-    drop(stage);
-    let stage = progress.stage("nonlinear run");
+    let what = "equilibria and modes over wind speed";
+    let results = progress.during(what, || quasi_steady_study(&study))?;
+    let run = progress.during("nonlinear run", || simulated_motion(&study));
     let mut failed = Vec::new();
     // a run that leaves the tested angles takes neither equilibria nor onset with it
-    let run = attempt(&mut failed, "nonlinear run", simulated_motion(&study))?.flatten();
-    drop(stage);
+    let run = attempt(&mut failed, "nonlinear run", run)?.flatten();
     out.write_json("quasi_steady.json", "quasi-steady-results", &results)?;
     draw(&study, &results, &mut out)?;
     // gusts.csv may be the user's own

@@ -1,5 +1,6 @@
 //! The table of all routes and the onset cards, in words.
 
+use super::common::speed_or;
 use super::text::interval;
 use super::text_table::TextTable;
 use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
@@ -113,16 +114,12 @@ fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> Stri
             let _ = writeln!(text, "  {}", route.search.explain());
         }
     }
-    let speed = |v: Option<f64>| v.map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+    let none_below = format!("none below {speed_max_m_s:.3} m/s");
     let _ = write!(
         text,
         "  divergence {}; quasi-steady limit {}",
-        speed(route.divergence_m_s),
-        route
-            .quasi_steady_m_s
-            .map_or(format!("none below {speed_max_m_s:.3} m/s"), |v| format!(
-                "{v:.3} m/s"
-            )),
+        speed_or("none", route.divergence_m_s),
+        speed_or(&none_below, route.quasi_steady_m_s),
     );
     let _ = match sanity {
         Some(lines) => writeln!(text, "; Selberg {:.3} m/s", lines.selberg_m_s),

@@ -6,7 +6,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
 use crate::selection::{Selection, SelectionPlan, metric_grid, select};
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
@@ -96,9 +96,9 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         measured.select(study.deck.speed_groups.as_deref())?
     };
     let (grid, selection) = judge(&args.choice, &study, &records, progress)?;
-    let stage = progress.stage("comparing forces");
-    let metrics = metric_grid(&grid, &records, args.frequency)?;
-    drop(stage);
+    let metrics = progress.during("comparing forces", || {
+        metric_grid(&grid, &records, args.frequency)
+    })?;
     let mut out = OutputDir::new(&args.study.directory())?;
     for (stem, figure) in figures(&study, &selection, &metrics)? {
         super::figures::write(stem, &mut out, || Ok(figure))?;
@@ -130,19 +130,19 @@ fn judge(
     progress: &Progress,
 ) -> Result<(Grid, Selection)> {
     let axis = axis(choice, study, records)?;
-    let stage = progress.steps("fitting the grid");
-    let grid = Grid::new(records, axis, choice.filters, &|p| {
-        stage.at(p.records_done as u64, p.records as u64);
+    let grid = progress.counting("fitting the grid", |on_done| {
+        Grid::new(records, axis, choice.filters, &|p| {
+            on_done(p.records_done, p.records);
+        })
     })?;
-    drop(stage);
     let plan = SelectionPlan {
         structure: study.section.structure()?,
         search: study.speeds().search(),
     };
-    let stage = progress.steps("judging the cells");
-    let total = grid.values().len() as u64;
-    let selection = select(&grid, &plan, &|done| stage.at(done as u64, total))?;
-    drop(stage);
+    let total = grid.values().len();
+    let selection = progress.counting("judging the cells", |on_done| {
+        select(&grid, &plan, &|done| on_done(done, total))
+    })?;
     Ok((grid, selection))
 }
 
@@ -238,14 +238,13 @@ fn write_study(
     block: ModelBlock,
     name: &Path,
 ) -> Result<Vec<Written>> {
-    if name.components().count() != 1 {
-        let expected = "a name without a folder: paths in the study are read against its own";
-        return Err(Error::input(
-            "--write",
-            expected,
-            name.display().to_string(),
-        ));
-    }
+    let expected = "a name without a folder: paths in the study are read against its own";
+    ensure(
+        name.components().count() == 1,
+        "--write",
+        expected,
+        name.display(),
+    )?;
     let text =
         toml::to_string(&in_front(study, block)).map_err(|e| Error::Numerical(e.to_string()))?;
     let from = args.study.study.display();
@@ -260,13 +259,12 @@ fn write_study(
 
 /// Values of the pole, logarithmic over the range of the pole searches; or of the decay factor.
 fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result<GridAxis> {
-    if !(2..=MOST_VALUES).contains(&choice.values) {
-        return Err(Error::input(
-            "--values",
-            format!("a number from 2 to {MOST_VALUES}"),
-            choice.values.to_string(),
-        ));
-    }
+    ensure(
+        (2..=MOST_VALUES).contains(&choice.values),
+        "--values",
+        format_args!("a number from 2 to {MOST_VALUES}"),
+        choice.values,
+    )?;
     let last = choice.values as f64 - 1.0;
     if choice.kind == ModelKind::Discrete {
         let (low, high) = (choice.min.unwrap_or(0.2), choice.max.unwrap_or(0.98));
@@ -285,13 +283,12 @@ fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result
     let (low, high) = ks.fold((f64::INFINITY, 0.0_f64), |(a, b), k| (a.min(k), b.max(k)));
     let low = choice.min.unwrap_or(0.5 * low);
     let high = choice.max.unwrap_or(2.0 * high);
-    if !(low > 0.0 && high > low && high.is_finite()) {
-        return Err(Error::input(
-            "--min, --max",
-            "two poles, the lower one first (needed for records without segments)",
-            format!("{low} and {high}"),
-        ));
-    }
+    ensure(
+        low > 0.0 && high > low && high.is_finite(),
+        "--min, --max",
+        "two poles, the lower one first (needed for records without segments)",
+        format_args!("{low} and {high}"),
+    )?;
     let values = (0..choice.values).map(|i| low * (high / low).powf(i as f64 / last));
     Ok(GridAxis::Continuous(
         values.collect(),

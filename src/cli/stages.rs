@@ -109,8 +109,8 @@ pub(crate) fn train(
             deck,
             records.unwrap_or(&none),
             &|p: identification::FitProgress| {
-                let total = (p.passes * p.records) as u64;
-                let done = ((p.pass - 1) * p.records + p.records_done) as u64;
+                let total = p.passes * p.records;
+                let done = (p.pass - 1) * p.records + p.records_done;
                 stage.at(done, total);
             },
         );
@@ -237,14 +237,13 @@ pub(crate) fn read_models(
 
 /// Reads one trained model.
 pub(crate) fn read_model(path: &Path) -> Result<TrainedModel> {
-    if !path.exists() {
-        return Err(Error::input(
-            "",
-            "a trained model (run `aerodeck train` first)",
-            "no such file",
-        )
-        .in_file(path));
-    }
+    ensure(
+        path.exists(),
+        "",
+        "a trained model (run `aerodeck train` first)",
+        "no such file",
+    )
+    .map_err(|e| e.in_file(path))?;
     let what = "a trained model as written by `aerodeck train`";
     TrainedModel::read(path).map_err(|e| of_a_kind_of_ours(what, path).unwrap_or(e))
 }

@@ -6,11 +6,10 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::report;
 use super::report::folder::{REPORT, SUMMARY, today};
-use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
 use super::{
     buffeting, figures, headline, measured_forces, model_figures, result_files, select, stages,
-    text,
+    study_run, text,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
@@ -22,7 +21,7 @@ use crate::study::{
 };
 use crate::verdict::Verdict;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Run the whole chain of a study file: records, training, flutter, FMU, onset by stepping the FMU
 ///
@@ -51,26 +50,24 @@ pub(crate) fn run(args: &RunStudyArgs, progress: &Progress) -> Result<Answer> {
     if args.force {
         out.replace(study_run::STUDY);
     }
-    let ran = StudyRun {
-        study: &study,
-        text: &text,
-        file: args.study.file(),
-    };
-    run_chain(&ran, out, stages::growing(args.allow_unstable), progress)
+    let (file, growing) = (args.study.file(), stages::growing(args.allow_unstable));
+    run_chain(study, &text, file, out, growing, progress)
 }
 
-/// The whole chain into `out`. A stage that fails is reported in its place and leaves the others as they are; then the
+/// The whole chain of a study into `out`, with its text and the file that this stands in (none when it was read otherwise or changed). A stage that fails is reported in its place and leaves the others as they are; then the
 /// answer did not pass.
 pub(crate) fn run_chain(
-    ran: &StudyRun<'_>,
+    study: Study,
+    text: &str,
+    file: Option<&Path>,
     mut out: OutputDir,
     growing: GrowthPolicy,
     progress: &Progress,
 ) -> Result<Answer> {
-    let deck = Deck::load(ran.study)?;
-    let (study_file, study_text) = study_run::leave(ran, &mut out)?;
+    let deck = Deck::load(&study)?;
+    let (study_file, study_text) = study_run::leave(&study, text, file, &mut out)?;
     let mut chain = StudyStages {
-        study: ran.study.clone(),
+        study,
         deck,
         out,
         failed: Vec::new(),
@@ -185,9 +182,9 @@ impl StudyStages<'_> {
             return Ok(None);
         };
         let (model, known) = (&own.model, &own.uncertainty);
-        let stage = self.progress.stage(STEPPING);
-        let found = stepped_onset(model, &path, self.study.speeds().searched_to_m_s);
-        drop(stage);
+        let highest_m_s = self.study.speeds().searched_to_m_s;
+        let stepped = || stepped_onset(model, &path, highest_m_s);
+        let found = self.progress.during(STEPPING, stepped);
         let Some(answer) = self.attempt(STEPPING, found)? else {
             return Ok(None);
         };
@@ -282,6 +279,11 @@ impl StudyStages<'_> {
         let name = &study.exported()?.name;
         let failed = std::mem::take(&mut self.failed);
         let of_study = study_findings(study);
+        let fit = |trained: TrainedWithReport| FitSummary {
+            model: trained.model.name,
+            report: trained.report,
+            uncertainty: trained.uncertainty,
+        };
         Ok(Summary {
             model: name.clone(),
             verdict,
@@ -304,7 +306,7 @@ impl StudyStages<'_> {
             growth: results.growth,
             divergence: results.divergence,
             deviations: results.deviations,
-            fits: trained.into_iter().map(FitSummary::from).collect(),
+            fits: trained.into_iter().map(fit).collect(),
             stepped,
             buffeting: None,
             failed,

@@ -13,28 +13,23 @@ const BESIDE: &str = "study_as_run.toml";
 /// Folder of the files that it reads.
 const INPUTS: &str = "inputs";
 
-/// A study with the file it was read from.
-#[derive(Debug, Clone)]
-pub(crate) struct StudyRun<'a> {
-    pub(crate) study: &'a Study,
-    /// Text of the file.
-    pub(crate) text: &'a str,
-    /// The file that it stands in; none when it was read otherwise or changed.
-    pub(crate) file: Option<&'a Path>,
-}
-
 /// Leaves the study in the folder of results, with the files that it names; the name under which it stands there, and its text.
-pub(crate) fn leave(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<(String, String)> {
+pub(crate) fn leave(
+    study: &Study,
+    text: &str,
+    file: Option<&Path>,
+    out: &mut OutputDir,
+) -> Result<(String, String)> {
     let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => false,
     };
-    if let Some(name) = ran.file.and_then(Path::file_name)
-        && ran.file.is_some_and(|file| same(file, &out.target(name)))
+    if let Some(name) = file.and_then(Path::file_name)
+        && file.is_some_and(|file| same(file, &out.target(name)))
     {
-        return Ok((name.to_string_lossy().into_owned(), ran.text.to_owned()));
+        return Ok((name.to_string_lossy().into_owned(), text.to_owned()));
     }
-    let text = self_contained(ran, out)?;
+    let text = self_contained(study, text, file, out)?;
     out.write(STUDY, &text)?;
     if out.keep_edited(STUDY, false)? {
         out.write(BESIDE, &text)?;
@@ -44,15 +39,20 @@ pub(crate) fn leave(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<(String, 
 }
 
 /// The text, with copies of what it reads; as it is where it reads nothing.
-fn self_contained(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
-    let mut study = ran.study.clone();
+fn self_contained(
+    ran: &Study,
+    text: &str,
+    file: Option<&Path>,
+    out: &mut OutputDir,
+) -> Result<String> {
+    let mut study = ran.clone();
     let mut copied = 0;
     let mut copy = |path: &Path| -> Result<PathBuf> {
         copied += 1;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         // two folders may hold files of one name
         let at = Path::new(INPUTS).join(format!("{copied:02}_{name}"));
-        let from = ran.study.directory.join(path);
+        let from = ran.directory.join(path);
         let bytes = std::fs::read(&from).map_err(|e| Error::io(&from, e))?;
         out.write(&at, bytes)?;
         Ok(at)
@@ -77,10 +77,10 @@ fn self_contained(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
         *table = portable(copy(Path::new(table.as_str()))?);
     }
     if copied == 0 {
-        return Ok(ran.text.to_owned());
+        return Ok(text.to_owned());
     }
     let text = toml::to_string_pretty(&study).map_err(|e| Error::Numerical(e.to_string()))?;
-    let file = ran.file.unwrap_or(Path::new(STUDY)).display();
+    let file = file.unwrap_or(Path::new(STUDY)).display();
     Ok(format!(
         "# {file} as it was run, with copies of the files that it reads in {INPUTS}/\n{text}"
     ))

@@ -6,7 +6,7 @@ use crate::identification::FitReport;
 use crate::plausibility::Finding;
 use crate::study::{
     Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, SpeedRange, StageFailure,
-    SteppedOnset, TrainedWithReport,
+    SteppedOnset,
 };
 use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
@@ -89,14 +89,4 @@ pub(crate) struct FitSummary {
     pub report: FitReport,
     /// Uncertainty, or why it is not known.
     pub uncertainty: KnownUncertainty,
-}
-
-impl From<TrainedWithReport> for FitSummary {
-    fn from(trained: TrainedWithReport) -> Self {
-        Self {
-            model: trained.model.name,
-            report: trained.report,
-            uncertainty: trained.uncertainty,
-        }
-    }
 }

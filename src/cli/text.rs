@@ -1,5 +1,6 @@
 //! Results in words and tables, for people.
 
+use super::common::speed_or;
 use super::headline;
 use super::output::{Written, list};
 use super::summary::Summary;
@@ -192,7 +193,7 @@ fn held(constraints: &ConstraintReport) -> String {
         );
     }
     if let Some(onset) = &constraints.onset {
-        let speed = |v: Option<f64>| v.map_or("not found".to_owned(), |v| format!("{v:.3} m/s"));
+        let speed = |v| speed_or("not found", v);
         let _ = write!(
             text,
             "; onset {} without them, {} with them",
@@ -358,10 +359,7 @@ pub(crate) fn divergence(all: &[Divergence]) -> String {
         .collect();
     let speeds: Vec<String> = all
         .iter()
-        .map(|d| match d.speed_m_s {
-            Some(v) => format!("{} {v:.3} m/s", d.model),
-            None => format!("{} none", d.model),
-        })
+        .map(|d| format!("{} {}", d.model, speed_or("none", d.speed_m_s)))
         .collect();
     format!("Divergence: {}\n{assumed}", speeds.join(", "))
 }

@@ -26,13 +26,11 @@ pub(crate) struct ValidateArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &ValidateArgs, progress: &Progress) -> Result<Answer> {
-    let stage = progress.stage("reference cases");
-    let results = match &args.name {
-        Some(name) => run_case(name)?,
-        None if args.files.is_empty() => run_all()?,
-        None => user_cases(&args.files)?,
-    };
-    drop(stage);
+    let results = progress.during("reference cases", || match &args.name {
+        Some(name) => run_case(name),
+        None if args.files.is_empty() => run_all(),
+        None => user_cases(&args.files),
+    })?;
     let passed = results.iter().all(|r| r.passed);
     let value = serde_json::json!({ "cases": results });
     let answer = match args.markdown {

@@ -38,9 +38,9 @@ impl BridgeArgs {
 
 /// The bridge of a file, with what a reader should know of it on the terminal.
 pub(crate) fn read(file: &Path, progress: &Progress) -> Result<BridgeStudy> {
-    let stage = progress.stage("reading the bridge");
-    let study = BridgeStudy::new(BridgeFile::read(file)?)?;
-    drop(stage);
+    let study = progress.during("reading the bridge", || {
+        BridgeFile::read(file).and_then(BridgeStudy::new)
+    })?;
     warn(file, &study.warnings());
     Ok(study)
 }

@@ -119,7 +119,7 @@ fn responses(
     let mut unstable = Vec::new();
     for (i, speed) in speeds.iter().enumerate() {
         let found = study.buffeting(block, *speed, &|done, of| {
-            stage.at((i * of + done) as u64, (speeds.len() * of) as u64);
+            stage.at(i * of + done, speeds.len() * of);
         });
         match found {
             Ok(found) => all.push(found),

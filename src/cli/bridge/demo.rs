@@ -8,7 +8,7 @@ use super::super::text::ending;
 use super::files::BRIDGE_FMU;
 use super::flutter::computed;
 use super::page;
-use super::summary::BridgeRun;
+use super::summary::BridgeSummary;
 use super::text::{MORE, text};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
@@ -35,29 +35,24 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let file = BridgeFile::from_toml(demo_bridge_text(), directory.to_path_buf())?;
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
-    let stage = progress.stage("packing the FMU");
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    if let Err(e) = packed(&study, &verdict, &mut out) {
+    let fmu = || packed(&study, &verdict, &mut out);
+    if let Err(e) = progress.during("packing the FMU", fmu) {
         failed.push(format!("FMU: {e}"));
     }
-    drop(stage);
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text(&study, &results, &verdict, progress.verbose());
-    let ran = BridgeRun {
-        text: demo_bridge_text().to_owned(),
+    let mut summary = BridgeSummary {
+        bridge_file: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),
-        comparisons: Vec::new(),
         failed,
-        inputs: Vec::new(),
+        ..BridgeSummary::new(&study, &results, &verdict)?
     };
-    let summary = page::leave(&ran, &study, &results, &verdict, &mut out)?;
-    let answer_json =
-        serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
-    let passed = ran.failed.is_empty();
+    page::leave(&mut summary, &mut out)?;
     let written = out.commit()?;
     text.push_str(&ending(&written, MORE, progress.verbose()));
-    Ok(Answer::new(text, &answer_json)?
-        .passed_if(passed)
+    Ok(Answer::new(text, &summary)?
+        .passed_if(summary.failed.is_empty())
         .with_outcome_of(&verdict))
 }
 

@@ -12,7 +12,8 @@ use super::files::{
     CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, RESPONSE_FIGURE, ROOTS_FIGURE,
     shown_modes, taking_part,
 };
-use super::{inputs, page, response, summary, text};
+use super::summary::BridgeSummary;
+use super::{inputs, page, response, text};
 use crate::error::Result;
 use crate::files::text::csv_cell;
 use crate::flutter::BridgeMotion;
@@ -71,36 +72,35 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     });
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text::text(&study, &results, &verdict, progress.verbose());
-    let mut comparisons = Vec::new();
-    if let Some(s) = &scattered {
-        let line = scatter_line(s);
+    let scatter = scattered.as_ref().map(scatter_line);
+    if let Some(line) = &scatter {
         let _ = writeln!(text, "{line}");
-        comparisons.push(line);
     }
     let inputs = inputs::leave(&args.bridge.bridge, &study.file, &mut out)?;
-    let ran = summary::BridgeRun {
-        inputs,
-        text: args.bridge.text()?,
-        command: args.command(scattered.is_some()),
-        comparisons,
-        failed,
-    };
-    for failed in &ran.failed {
+    for failed in &failed {
         let _ = writeln!(text, "failed: {failed}");
     }
     if is_of_a_study(&out.target(SUMMARY)) {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
-        page::leave(&ran, &study, &results, &verdict, &mut out)?;
+        let mut summary = BridgeSummary {
+            bridge_file: args.bridge.text()?,
+            command: args.command(scattered.is_some()),
+            inputs,
+            failed: failed.clone(),
+            ..BridgeSummary::new(&study, &results, &verdict)?
+        };
+        summary.comparisons.extend(scatter);
+        page::leave(&mut summary, &mut out)?;
     }
     let mut json = serde_json::json!({
-        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": ran.failed
+        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
     });
     let written = out.commit()?;
     text.push_str(&ending(&written, text::MORE, progress.verbose()));
     json["files"] = serde_json::json!(written);
     Ok(Answer::new(text, &json)?
-        .passed_if(ran.failed.is_empty())
+        .passed_if(failed.is_empty())
         .with_outcome_of(&verdict))
 }
 
@@ -153,11 +153,9 @@ fn scattered(
     let (Some(scatter), Some(onset)) = (scatter, onset) else {
         return Ok(None);
     };
-    let stage = progress.steps("samples of the bridge");
-    let found = study.scattered_onset(onset, &scatter, &|done, all| {
-        stage.at(done as u64, all as u64);
+    let found = progress.counting("samples of the bridge", |on_done| {
+        study.scattered_onset(onset, &scatter, on_done)
     });
-    drop(stage);
     found.map(Some)
 }
 
@@ -180,10 +178,7 @@ pub(super) fn computed(
     out: &mut OutputDir,
     progress: &Progress,
 ) -> Result<(BridgeFlutter, Vec<String>)> {
-    let stage = progress.stage("flutter of the bridge");
-    let results = bridge_flutter(study);
-    drop(stage);
-    let results = results?;
+    let results = progress.during("flutter of the bridge", || bridge_flutter(study))?;
     let mut failed = results.failed.clone();
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     if let Err(e) = staged(study, &results, &verdict, out) {

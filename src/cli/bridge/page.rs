@@ -3,26 +3,17 @@
 use super::super::output::OutputDir;
 use super::super::report;
 use super::super::report::folder::{REPORT, SUMMARY};
-use super::summary::{BridgeRun, BridgeSummary};
+use super::summary::BridgeSummary;
 use crate::error::Result;
-use crate::study::bridge::{BridgeFlutter, BridgeStudy};
-use crate::verdict::Verdict;
 use std::path::Path;
 
-/// Leaves both.
-pub(super) fn leave(
-    ran: &BridgeRun,
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    verdict: &Verdict,
-    out: &mut OutputDir,
-) -> Result<BridgeSummary> {
+/// Leaves both, with the names of all files in the summary.
+pub(super) fn leave(summary: &mut BridgeSummary, out: &mut OutputDir) -> Result<()> {
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
-    let summary = BridgeSummary::new(ran, study, results, verdict, out.targets())?;
-    out.write_json(SUMMARY, "summary", &summary)?;
-    report::leave(out)?;
-    Ok(summary)
+    summary.files = out.targets();
+    out.write_json(SUMMARY, "summary", summary)?;
+    report::leave(out)
 }
 
 /// Writes the report of `folder` again where it is of the bridge file with this text: it takes up what was computed since.

@@ -11,20 +11,6 @@ use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What was run.
-pub(super) struct BridgeRun {
-    /// Text of the bridge file.
-    pub(super) text: String,
-    /// The command that makes the results again.
-    pub(super) command: String,
-    /// What was found beside the onset, in words.
-    pub(super) comparisons: Vec<String>,
-    /// Parts that failed, in words.
-    pub(super) failed: Vec<String>,
-    /// What was read.
-    pub(super) inputs: Vec<InputFile>,
-}
-
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InputFile {
@@ -101,34 +87,32 @@ pub(crate) struct ModeFacts {
 }
 
 impl BridgeSummary {
-    /// Of results beside which these files are written.
+    /// Of results; what was run and read, and what is written beside it, is for the caller to say.
     pub(super) fn new(
-        ran: &BridgeRun,
         study: &BridgeStudy,
         results: &BridgeFlutter,
         verdict: &Verdict,
-        files: Vec<PathBuf>,
     ) -> Result<Self> {
         Ok(Self {
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             date: Some(today()?),
             bridge: study.file.name.clone(),
-            bridge_file: ran.text.clone(),
-            command: ran.command.clone(),
+            bridge_file: String::new(),
+            command: String::new(),
             verdict: verdict.clone(),
-            comparisons: [beside_the_onset(results), ran.comparisons.clone()].concat(),
+            comparisons: beside_the_onset(results),
             nodes: study.by_model.nodes.len(),
             length_m: study.by_model.nodes.iter().map(|n| n.length_m).sum(),
             width_m: study.by_model.width_m(),
             sections: sections(study),
             modes: modes(study),
-            files,
-            inputs: ran.inputs.clone(),
+            files: Vec::new(),
+            inputs: Vec::new(),
             warnings: study.warnings(),
             findings: study.findings.clone(),
             onsets: results.onsets().cloned().collect(),
             flutter: results.clone(),
-            failed: ran.failed.clone(),
+            failed: Vec::new(),
         })
     }
 }

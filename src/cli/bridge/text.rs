@@ -1,5 +1,6 @@
 //! The onset card of a bridge, in words.
 
+use super::super::common::speed_or;
 use super::files::NAMED_SHARE;
 use crate::cli::headline;
 use crate::cli::text::{figures, of_onsets};
@@ -83,9 +84,7 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
         .last()
         .and_then(|a| a.search.critical_speed_m_s());
     for left in &results.left_out {
-        let onset = left
-            .onset_m_s
-            .map_or("no flutter".to_owned(), |v| format!("{v:.3} m/s"));
+        let onset = speed_or("no flutter", left.onset_m_s);
         let change = left.onset_m_s.zip(full).map_or(String::new(), |(v, full)| {
             format!(" ({:+.2} %)", 100.0 * (v / full - 1.0))
         });
@@ -104,20 +103,16 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
 
 /// Divergence, and rotation in the mean wind where it was computed.
 pub(super) fn beside_the_onset(results: &BridgeFlutter) -> Vec<String> {
-    let divergence = results
-        .divergence_m_s
-        .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
     let rotation = results.mean_rotation.map(|mean| {
         format!(
             "Greatest mean rotation at {:.2} m/s: {:.3}° (nose-up positive)",
             mean.speed_m_s, mean.rotation_deg
         )
     });
+    let divergence = speed_or("none", results.divergence_m_s);
     let divergence = format!("Divergence of the model: {divergence}");
     let of_tables = results.table_divergence.as_ref().map(|d| {
-        let speed = d
-            .speed_m_s
-            .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+        let speed = speed_or("none", d.speed_m_s);
         format!("Divergence of the tables: {speed}")
     });
     let all = std::iter::once(divergence).chain(of_tables);

@@ -11,9 +11,7 @@ use std::path::Path;
 /// Runs the command.
 pub(crate) fn run(file: &Path, progress: &Progress) -> Result<Answer> {
     let campaign = Campaign::read(file)?;
-    let stage = progress.stage("reading the recordings");
-    let reading = campaign.load()?;
-    drop(stage);
+    let reading = progress.during("reading the recordings", || campaign.load())?;
     Answer::new(
         text(&reading),
         &serde_json::json!({

@@ -63,9 +63,7 @@ fn formats() -> [PossibleValue; 2] {
 /// Runs the command.
 pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Answer> {
     let plan = plan(args)?;
-    let stage = progress.stage("virtual campaign");
-    let made = make(args, &plan)?;
-    drop(stage);
+    let made = progress.during("virtual campaign", || make(args, &plan))?;
     let mut out = OutputDir::new(&args.out)?;
     let stage = progress.stage("writing the recordings");
     out.write("plan.toml", plan.to_toml()?)?;

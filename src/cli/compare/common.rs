@@ -1,13 +1,11 @@
 //! What the comparisons of the thesis share: arguments, tables, figures of metrics, the section of a page.
 
-use crate::cli::progress::Progress;
 use crate::cli::text_table::TextTable;
 use crate::comparison::forces::{
     CompareOptions, ForceMetrics, Score, ScoreSummary, Scoring, Statement,
 };
 use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::numbered::OnDone;
 use crate::report::{Figure, MetricPanel, PageSection, PlottedSeries, metrics_figure};
 use crate::section::Dof;
 use std::fmt::Write as _;
@@ -15,7 +13,7 @@ use std::path::PathBuf;
 
 /// Arguments of both comparisons.
 #[derive(clap::Args)]
-pub(super) struct Common {
+pub(crate) struct Common {
     /// Train at the tested wind speed nearest to this one, m/s.
     #[arg(long, default_value_t = 8.0, allow_negative_numbers = true)]
     pub(super) speed: f64,
@@ -65,17 +63,6 @@ impl Common {
             },
         }
     }
-}
-
-/// The results of a comparison, with the records that are done shown as those of `what`.
-pub(super) fn compared<T>(
-    compare: fn(&CompareOptions, OnDone<'_>) -> Result<T>,
-    options: &CompareOptions,
-    progress: &Progress,
-    what: &'static str,
-) -> Result<T> {
-    let stage = progress.steps(what);
-    compare(options, &|done, of| stage.at(done as u64, of as u64))
 }
 
 /// The thesis's three metrics of every force over frequency, one line per label (Figures 3.20, 3.27 and 3.28).

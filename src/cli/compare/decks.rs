@@ -1,46 +1,24 @@
 //! `aerodeck compare decks`: one model on several girders.
 
-use super::common::{self, Common, beside_the_thesis, compared, metrics_of, metrics_table};
+use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::figures as drawn;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
-    CompareOptions, DecksComparison, Score, THESIS_DECKS, compare_decks, score_table,
+    CompareOptions, DecksComparison, Score, compare_decks, score_table,
 };
 use crate::error::Result;
 use crate::report::{Figure, PageSection};
 use std::fmt::Write as _;
+use std::path::Path;
 
-/// Several girders, a Laguerre model each: metrics of the predicted forces side by side (thesis, section 3.5.4)
-///
-/// Example: aerodeck compare decks --out decks
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct CompareDecksArgs {
-    /// Embedded decks to compare.
-    #[arg(
-        long,
-        value_delimiter = ',',
-        default_value = THESIS_DECKS.join(",")
-    )]
-    decks: Vec<String>,
-    /// Train on this deck only and predict the forces of all.
-    #[arg(long)]
-    trained_on: Option<String>,
-    #[command(flatten)]
-    common: Common,
-}
-
-/// Runs the command.
-pub(crate) fn run(args: &CompareDecksArgs, progress: &Progress) -> Result<Answer> {
-    let options = args
-        .common
-        .options(args.decks.clone(), args.trained_on.clone());
-    let mut out = OutputDir::new(&args.common.out)?;
-    let results = compared(compare_decks, &options, progress, "records")?;
+/// Runs the command, whose results stand in the folder `left_in`.
+pub(crate) fn run(options: &CompareOptions, left_in: &Path, progress: &Progress) -> Result<Answer> {
+    let mut out = OutputDir::new(left_in)?;
+    let results = progress.counting("records", |on_done| compare_decks(options, on_done))?;
     out.write("decks_metrics.csv", score_table(&results.scores))?;
-    for (stem, figure) in figures(&options, &results)? {
+    for (stem, figure) in figures(options, &results)? {
         drawn::write(&stem, &mut out, || Ok(figure))?;
     }
     let text = text(&results);
@@ -79,14 +57,11 @@ fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(S
 }
 
 /// The section of the page of the thesis.
-pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
-    let options = common.options(THESIS_DECKS.map(str::to_owned).to_vec(), None);
-    let results = compared(
-        compare_decks,
-        &options,
-        progress,
-        "records of several girders",
-    )?;
+pub(super) fn section(progress: &Progress) -> Result<PageSection> {
+    let options = CompareOptions::default();
+    let results = progress.counting("records of several girders", |on_done| {
+        compare_decks(&options, on_done)
+    })?;
     let drawn = figures(&options, &results)?.into_iter();
     let drawn = drawn.map(|(stem, figure)| (caption(&stem), figure));
     let title = "3.5.4 Several girders, on rebuilt records";

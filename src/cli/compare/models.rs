@@ -1,6 +1,6 @@
 //! `aerodeck compare models`: Laguerre models against rational functions on one girder.
 
-use super::common::{self, Common, beside_the_thesis, compared, metrics_of, metrics_table};
+use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::figures;
 use crate::cli::output::OutputDir;
@@ -17,32 +17,19 @@ use crate::report::{
 };
 use crate::section::Dof;
 use std::fmt::Write as _;
+use std::path::Path;
 
-/// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)
-///
-/// Example: aerodeck compare models --deck LN21-5200
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct CompareModelsArgs {
-    /// Embedded deck.
-    #[arg(long, default_value = "LN21-5200")]
-    deck: String,
-    #[command(flatten)]
-    common: Common,
-}
-
-/// Runs the command.
-pub(crate) fn run(args: &CompareModelsArgs, progress: &Progress) -> Result<Answer> {
-    let options = args.common.options(vec![args.deck.clone()], None);
-    let mut out = OutputDir::new(&args.common.out)?;
-    let results = compared(compare_models, &options, progress, "records")?;
+/// Runs the command, whose results stand in the folder `left_in`.
+pub(crate) fn run(options: &CompareOptions, left_in: &Path, progress: &Progress) -> Result<Answer> {
+    let mut out = OutputDir::new(left_in)?;
+    let results = progress.counting("records", |on_done| compare_models(options, on_done))?;
     out.write("models_metrics.csv", score_table(&results.scores))?;
     out.write("models_transfer.csv", transfer_table(&results))?;
     figures::write("models_transfer", &mut out, || transfer_functions(&results))?;
     figures::write("models_derivatives", &mut out, || derivatives(&results))?;
     for &motion in &options.dofs {
         let stem = format!("models_metrics_{}", motion.name());
-        figures::write(&stem, &mut out, || metrics(&options, &results, motion))?;
+        figures::write(&stem, &mut out, || metrics(options, &results, motion))?;
     }
     for (stem, figure) in histories(&results)? {
         figures::write(&stem, &mut out, || Ok(figure))?;
@@ -166,10 +153,14 @@ fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
 }
 
 /// The section of the page of the thesis.
-pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
-    let deck = "LN21-5200".to_owned();
-    let options = common.options(vec![deck], None);
-    let results = compared(compare_models, &options, progress, "records of one girder")?;
+pub(super) fn section(progress: &Progress) -> Result<PageSection> {
+    let options = CompareOptions {
+        decks: vec!["LN21-5200".to_owned()],
+        ..CompareOptions::default()
+    };
+    let results = progress.counting("records of one girder", |on_done| {
+        compare_models(&options, on_done)
+    })?;
     let (first, second) = (transfer_functions(&results)?, derivatives(&results)?);
     let mut figures = Vec::new();
     for (dof, caption) in [

@@ -115,9 +115,7 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
     let sampling_hz = sampling(args, &set).map_err(|e| e.in_file(&args.file))?;
     let pair = SignalPair::new(&reference.samples, &compared.samples, 1.0 / sampling_hz)
         .map_err(|e| e.in_file(&args.file))?;
-    let stage = progress.stage("metrics");
-    let lines = metrics(&pair, args)?;
-    drop(stage);
+    let lines = progress.during("metrics", || metrics(&pair, args))?;
     let missing = lines.iter().any(|l| l.problem.is_some());
     let value = serde_json::json!({ "metrics": lines });
     Ok(Answer::new(text(args, &pair, &lines), &value)?.passed_if(!missing))

@@ -9,13 +9,11 @@ use std::path::Path;
 
 /// Runs the command; none of the code in the archive with `no_run`.
 pub(super) fn run(path: &Path, no_run: bool, progress: &Progress) -> Result<Answer> {
-    let stage = progress.stage("checking the FMU");
     let fmu = Fmu::open(path)?;
-    let report = match no_run {
+    let report = progress.during("checking the FMU", || match no_run {
         true => fmu.check_without_running(),
         false => fmu.check(),
-    };
-    drop(stage);
+    });
     let passed = report.passed();
     Ok(Answer::new(text(&report), &report)?.passed_if(passed))
 }

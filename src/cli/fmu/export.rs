@@ -206,15 +206,13 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         let of_bridge = args.of_bridge(progress);
         return of_bridge.map_err(|e| in_input(&args.model, &[], e));
     }
-    if args.kind == ExportKind::Structure {
-        let expected =
-            "--bridge with it: the structure of a section is its mass, spring and damper";
-        return Err(Error::input(
-            "--kind structure",
-            expected,
-            "a trained model",
-        ));
-    }
+    let expected = "--bridge with it: the structure of a section is its mass, spring and damper";
+    ensure(
+        args.kind != ExportKind::Structure,
+        "--kind structure",
+        expected,
+        "a trained model",
+    )?;
     let model = stages::read_model(&args.model)?;
     let (default_name, evidence) = match args.kind {
         ExportKind::Section => {

@@ -121,9 +121,7 @@ pub(crate) fn parameter_maps(
         y_label: "Filters L".to_owned(),
         rows: filters,
         values,
-        logarithmic: false,
-        refused: Vec::new(),
-        chosen: None,
+        ..HeatMap::default()
     });
     heat_map_figure("Parameters of the discrete model", &maps, 3)
 }
@@ -142,11 +140,11 @@ fn map(selection: &Selection, title: String, values: Vec<Option<f64>>) -> HeatMa
         y_label: "Filters L".to_owned(),
         rows: filters,
         values,
-        logarithmic: false,
         refused: cells.map(|c| !c.rejected.is_empty()).collect(),
         chosen: selection
             .recommended
             .as_ref()
             .map(|r| (r.cell / filters, r.cell % filters)),
+        ..HeatMap::default()
     }
 }
