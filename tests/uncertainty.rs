@@ -244,8 +244,8 @@ fn every_onset_has_an_interval_or_a_reason() {
 }
 
 /// Standard errors of the fit's report are the roots of the diagonal of its covariance, and Monte Carlo with nothing but the
-/// aerodynamics random scatters as the stated standard error says. 4000 samples tell a standard deviation to 1.1 %; the
-/// onset is not quite linear in its parameters.
+/// aerodynamics random scatters as the stated standard error and its degrees of freedom say: `√(ν/(ν − 2))` of it is the standard
+/// deviation of Student's t. 4000 samples tell that to 2 %; the onset is not quite linear in its parameters.
 fn one_covariance(at: &std::path::Path, saved: &Value) {
     let text = std::fs::read_to_string(at.join("fits/laguerre.json")).unwrap();
     let report: Value = serde_json::from_str(&text).unwrap();
@@ -268,8 +268,18 @@ fn one_covariance(at: &std::path::Path, saved: &Value) {
     let drawn: Value = serde_json::from_str(&said).unwrap();
     let deviation = drawn["result"]["standard_deviation_m_s"].as_f64().unwrap();
     let stated = saved["onset"]["standard_error_m_s"].as_f64().unwrap();
+    let freedom = &saved["onset"]["degrees_of_freedom"];
+    let draws = &drawn["result"]["drawn_forces"];
+    assert_eq!(&draws["degrees_of_freedom"], freedom);
+    let of_students = (1.0 - 2.0 / freedom.as_f64().unwrap()).sqrt().recip();
     assert!(
-        (deviation / stated - 1.0).abs() < 0.1,
-        "{deviation} {stated}"
+        (deviation / (stated * of_students) - 1.0).abs() < 0.05,
+        "{deviation} {stated} {of_students}"
     );
+    // what is in no sample is said
+    assert!(draws["form_left_out_m_s"].as_f64().unwrap() > 0.0);
+    let text = succeeds(at, &["monte-carlo", "scatter.toml"]);
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("degrees of freedom of its covariance"), "{text}");
+    assert!(text.contains("between forms of model"), "{text}");
 }

@@ -119,6 +119,11 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
         Some(v) => format!("{v:.3} m/s"),
         None => format!("above {:.3} m/s", r.speed_max_m_s),
     };
+    if let Some(forces) = &r.drawn_forces {
+        lines.push(format!("Forces    {}", forces.in_words()));
+        let left_out = forces.left_out();
+        lines.extend(left_out.map(|what| format!("warning: left out: {what}")));
+    }
     lines.push(format!("Onset     of the model itself {or_below}{nominal}"));
     if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
         lines.push(format!(

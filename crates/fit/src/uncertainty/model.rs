@@ -14,8 +14,10 @@ use crate::flutter::{ErrorParts, Onset, OnsetInterval, OnsetMethod, OnsetSearch}
 use crate::identification::samples::part_of;
 use crate::json;
 use crate::section::Structure;
+use crate::state_space::boundary;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
 
 /// Replicates of each resampling.
 const REPLICATES: usize = 400;
@@ -25,6 +27,8 @@ const SEED: u64 = 1;
 const SAME_ONSET: f64 = 1e-9;
 /// How far above the onset of a model those of other forms are looked for.
 const REACH: f64 = 2.0;
+/// Degrees of freedom from which on an interval is that of the normal distribution.
+const MANY: f64 = 1e6;
 /// Reduced frequencies at which derivatives are stated.
 const DERIVATIVE_POINTS: usize = 9;
 
@@ -143,6 +147,21 @@ impl ModelUncertainty {
         };
         let forms = self.forms.as_ref();
         forms.map(|f| f.spread(structure, &search)).transpose()
+    }
+
+    /// Degrees of freedom with which draws of the parameters scatter: those of the onset's variance, and where training found no
+    /// onset the fewest of any derivative, which its interval shows; none where nothing here has an interval.
+    pub(super) fn degrees_of_freedom_of_draws(&self) -> Option<f64> {
+        if let Some(onset) = &self.onset {
+            return Some(onset.degrees_of_freedom);
+        }
+        let known = self.derivatives.iter().filter(|d| d.standard_error > 0.0);
+        let widest = known.map(|d| 0.5 * (d.high - d.low) / d.standard_error);
+        let widest = widest.filter(|w| w.is_finite()).reduce(f64::max)?;
+        let Ok(found) = boundary(0.5, MANY, 0.0, |nu| {
+            Ok::<_, Infallible>(two_sided_quantile(CONFIDENCE, nu) > widest)
+        });
+        Some(found.middle())
     }
 
     /// Interval of an onset of `model`, on any structure.
@@ -276,7 +295,7 @@ pub(crate) fn derivative_intervals(
                     let nu = estimate
                         .degrees_of_freedom(&gradient)
                         .unwrap_or(f64::INFINITY);
-                    let half = two_sided_quantile(CONFIDENCE, nu.min(1e6)) * standard_error;
+                    let half = two_sided_quantile(CONFIDENCE, nu.min(MANY)) * standard_error;
                     let value = at(&here.value);
                     intervals.push(DerivativeInterval {
                         derivative: Derivative::from_entry(force, motion, part),

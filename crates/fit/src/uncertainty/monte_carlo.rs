@@ -7,6 +7,7 @@
 
 mod coefficients;
 mod distribution;
+mod force_draws;
 mod plan;
 mod results;
 mod run;
@@ -14,6 +15,7 @@ mod sampler;
 mod scatter;
 
 pub use distribution::Distribution;
+pub use force_draws::DrawnForces;
 pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter, SectionProperty};
 pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile, Tally};
 pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo, summarise, tally};

@@ -1,5 +1,6 @@
 //! What a Monte Carlo analysis gives.
 
+use super::force_draws::DrawnForces;
 use super::plan::MonteCarloPlan;
 use crate::flutter::{SweepOutcome, SweptOnset};
 use crate::plausibility::Finding;
@@ -63,6 +64,9 @@ pub struct MonteCarloResult {
     pub histogram: Histogram,
     /// Probability of an onset below the design speed.
     pub design: Option<DesignCheck>,
+    /// How the coefficients of the force model were drawn; none where they are not random.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drawn_forces: Option<DrawnForces>,
     /// What is odd about the distributions: their means as a section, and against that of the model.
     #[serde(default)]
     pub findings: Vec<Finding>,
@@ -266,6 +270,7 @@ impl Tally {
                 })
                 .collect(),
             histogram: histogram(&self.onsets),
+            drawn_forces: None,
             findings: Vec::new(),
             verdict: None,
             design: plan

@@ -1,6 +1,7 @@
 //! Onsets of many sections over all cores: drawn from a plan, or given.
 
 use super::coefficients;
+use super::force_draws::DrawnForces;
 use super::plan::MonteCarloPlan;
 use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
@@ -97,7 +98,7 @@ pub fn summarise(
     model: &TrainedModel,
     tallies: impl IntoIterator<Item = Tally>,
 ) -> Result<MonteCarloResult> {
-    let (limit, model, _) = drawn(plan, model)?;
+    let (limit, model, covariance) = drawn(plan, model)?;
     let (values, _) = coefficients::list(&model.model);
     let (nominal, _) = Finder::new(&model, limit)?.onset(&model.section, &values)?;
     let total = Tally::joined(tallies.into_iter().collect());
@@ -109,6 +110,8 @@ pub fn summarise(
     )?;
     let mut found = total.summarise(plan, limit, &model.name, nominal);
     found.findings = plan.findings(&model.section)?;
+    let by_plan = || DrawnForces::of_plan(&plan.aerodynamics);
+    found.drawn_forces = covariance.map(|c| c.draws).or_else(by_plan);
     // nothing answers for what no sample had an answer for
     let answered = plan.samples > found.failed;
     let first = found.failures.first().map_or("", |f| f.reason.as_str());

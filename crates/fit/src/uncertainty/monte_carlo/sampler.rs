@@ -9,7 +9,7 @@ use crate::signal::random_stream;
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
+use rand_distr::{ChiSquared, StandardNormal};
 
 /// Draws samples. One stream of the generator per sample, so that neither threads nor their order matter.
 #[derive(Debug, Clone)]
@@ -23,6 +23,31 @@ pub(super) struct Sampler {
     /// Standard deviation of each coefficient over its value, which goes before the covariance.
     relative_scatter: Option<f64>,
     covariance: Option<CovarianceFactor>,
+    /// What makes Gaussian draws of a covariance those of Student's t; `None` where it has no degrees of freedom.
+    scale: Option<StudentScale>,
+}
+
+/// `√(ν/χ²_ν)`: Gaussian numbers times one of it are multivariate Student's t.
+#[derive(Debug, Clone, Copy)]
+struct StudentScale {
+    freedom: f64,
+    chi_squared: ChiSquared<f64>,
+}
+
+impl StudentScale {
+    fn new(freedom: f64) -> Result<Self> {
+        let chi_squared = ChiSquared::new(freedom).map_err(|e| {
+            Error::Numerical(format!("draws with {freedom} degrees of freedom: {e}"))
+        })?;
+        Ok(Self {
+            freedom,
+            chi_squared,
+        })
+    }
+
+    fn draw(&self, random: &mut ChaCha8Rng) -> f64 {
+        (self.freedom / random.sample(self.chi_squared)).sqrt()
+    }
 }
 
 /// One sample, kept from one to the next so that nothing is allocated anew.
@@ -48,6 +73,7 @@ impl Sampler {
             let place = format!("{key}.distribution");
             parameters.push((random.name, random.distribution.resolve(&place, nominal)?));
         }
+        let freedom = covariance.as_ref().and_then(|c| c.draws.degrees_of_freedom);
         Ok(Self {
             seed: plan.seed,
             section: section.clone(),
@@ -56,6 +82,7 @@ impl Sampler {
             parameters,
             relative_scatter: plan.aerodynamics.relative_scatter,
             covariance,
+            scale: freedom.map(StudentScale::new).transpose()?,
         })
     }
 
@@ -88,6 +115,10 @@ impl Sampler {
             }
         } else if let Some(covariance) = &self.covariance {
             fill(&mut sample.normal, covariance.factor.ncols(), &mut random);
+            if let Some(scale) = &self.scale {
+                let by = scale.draw(&mut random);
+                sample.normal.iter_mut().for_each(|z| *z *= by);
+            }
             for (row, place) in covariance.places.iter().enumerate() {
                 let terms = covariance.factor.row(row);
                 let change: f64 = terms.iter().zip(&sample.normal).map(|(s, z)| s * z).sum();

@@ -6,6 +6,7 @@
 //! the parameters, of which standard errors speak as well.
 
 use super::coefficients;
+use super::force_draws::DrawnForces;
 use super::plan::MonteCarloPlan;
 use crate::error::{Error, Place, Result, counted, ensure};
 use crate::identification::FitReport;
@@ -13,7 +14,7 @@ use crate::json;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::parameters::SEARCHED_POLES;
 use crate::uncertainty::statistics::covariance_root;
-use crate::uncertainty::{CoefficientUncertainty, ModelDraws, ModelUncertainty};
+use crate::uncertainty::{ModelDraws, ModelUncertainty};
 use nalgebra::DMatrix;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +27,7 @@ pub(super) struct CovarianceFactor {
     /// Places among the coefficients of the force model.
     pub(super) places: Vec<usize>,
     pub(super) factor: DMatrix<f64>,
+    pub(super) draws: DrawnForces,
 }
 
 /// The model in the form in which its draws are linear, and the factor of the covariance that the plan names.
@@ -39,7 +41,7 @@ pub(super) fn drawn_model(
     let path = plan.directory.join(path);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
     if let Some((file, saved)) = all_parameters(&path, &text)? {
-        let (model, factor) = follow(&saved.coefficients, trained).map_err(|e| e.in_file(&file))?;
+        let (model, factor) = follow(&saved, trained).map_err(|e| e.in_file(&file))?;
         return Ok((model, Some(factor)));
     }
     let (_, names) = coefficients::list(&trained.model);
@@ -69,10 +71,8 @@ fn all_parameters(path: &Path, text: &str) -> Result<Option<(PathBuf, ModelUncer
 }
 
 /// The linear model of an estimate, and the factor of its coefficients' covariance.
-fn follow(
-    estimate: &CoefficientUncertainty,
-    trained: &TrainedModel,
-) -> Result<(Model, CovarianceFactor)> {
+fn follow(saved: &ModelUncertainty, trained: &TrainedModel) -> Result<(Model, CovarianceFactor)> {
+    let estimate = &saved.coefficients;
     let (values, draws) = (estimate.values(), ModelDraws::new(estimate)?);
     let model = draws.model_at(&values)?;
     ensure(
@@ -95,6 +95,7 @@ fn follow(
     let factor = CovarianceFactor {
         places: (0..base.len()).collect(),
         factor: slopes * factor_of(&estimate.covariance)?,
+        draws: DrawnForces::of_fit(saved),
     };
     Ok((model, factor))
 }
@@ -206,6 +207,7 @@ fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<C
     Ok(CovarianceFactor {
         places,
         factor: factor_of(&matrix)?,
+        draws: DrawnForces::default(),
     })
 }
 
