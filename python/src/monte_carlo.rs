@@ -28,13 +28,13 @@ impl MonteCarlo {
         self.0.nominal_m_s
     }
 
-    /// Mean of all onsets, m/s.
+    /// Mean of the onsets, m/s: of the samples that have one (`counts["onsets"]` of `counts["samples"]`), the others are left out.
     #[getter]
     fn mean_m_s(&self) -> Option<f64> {
         self.0.mean_m_s
     }
 
-    /// Standard deviation of all onsets, m/s.
+    /// Standard deviation of the onsets, m/s, of the same samples.
     #[getter]
     fn standard_deviation_m_s(&self) -> Option<f64> {
         self.0.standard_deviation_m_s

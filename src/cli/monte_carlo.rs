@@ -126,8 +126,10 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
     }
     lines.push(format!("Onset     of the model itself {or_below}{nominal}"));
     if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
+        let of = r.averaged_in_words().map(|of| format!(" ({of})"));
         lines.push(format!(
-            "          mean {mean:.3} m/s, standard deviation {deviation:.3} m/s"
+            "          mean {mean:.3} m/s, standard deviation {deviation:.3} m/s{}",
+            of.unwrap_or_default()
         ));
     }
     lines.extend(r.quantiles.iter().map(|q| {

@@ -53,9 +53,9 @@ pub struct MonteCarloResult {
     pub nominal_m_s: Option<f64>,
     /// Whether the onset of the model itself lies at that speed or below.
     pub nominal_or_below: bool,
-    /// Mean of the onsets, m/s; samples without onset are left out.
+    /// Mean of the onsets, m/s; of the samples with one (`onsets` of `samples`), the others are left out.
     pub mean_m_s: Option<f64>,
-    /// Standard deviation of the onsets, m/s.
+    /// Standard deviation of the onsets, m/s; of the same samples.
     pub standard_deviation_m_s: Option<f64>,
     /// Quantiles of the onset speed; samples without onset count as above the highest speed, those that grow at the
     /// lowest speed that could be judged with that speed; those that failed may flutter anywhere.
@@ -75,6 +75,16 @@ pub struct MonteCarloResult {
 }
 
 impl MonteCarloResult {
+    /// Of which samples mean and standard deviation are, where not of all.
+    pub fn averaged_in_words(&self) -> Option<String> {
+        let (some, all) = (self.onsets, self.samples);
+        let others = (some < all).then(|| all - some)?;
+        Some(format!(
+            "of the {some} of {all} samples with an onset up to {:.3} m/s; the other {others} are in neither",
+            self.speed_max_m_s
+        ))
+    }
+
     /// How many samples have an onset, and what became of the others.
     pub fn counts_in_words(&self) -> String {
         let found = self.onsets + self.unstable_at_or_below;

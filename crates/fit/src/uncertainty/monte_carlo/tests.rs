@@ -72,6 +72,7 @@ fn one_parameter_maps_quantiles() {
         );
     }
     assert_eq!(result.histogram.counts.iter().sum::<u64>(), 4000);
+    assert_eq!(result.averaged_in_words(), None);
 }
 
 #[test]
@@ -247,6 +248,10 @@ fn impossible_samples_are_counted_and_named() {
         result.failures[0]
     );
     assert_eq!(result.onsets + result.stable + result.failed, 4000);
+    // mean and standard deviation are those of the rest
+    let of = result.averaged_in_words().unwrap();
+    let expected = format!("of the {} of 4000 samples with an onset", result.onsets);
+    assert!(of.starts_with(&expected), "{of}");
 }
 
 #[test]
