@@ -96,7 +96,9 @@ def sweep_html(sweep):
 
 def monte_carlo_html(result):
     rows = list(result.counts.items())
-    rows += [(f"{100 * p:g} % flutter at or below", f"{v:.2f} m/s" if v is not None else "not known") for p, v in result.quantiles]
+    unknown = {q["probability"]: f"{result.counts['samples']} samples do not tell" for q in result.to_dict()["quantiles"] if q["too_few_samples"]}
+    said = [(p, f"{v:.2f} m/s" if v is not None else unknown.get(p, "not known")) for p, v in result.quantiles]
+    rows += [(f"{100 * p:g} % flutter at or below", text) for p, text in said]
     if result.probability:
         p, low, high = result.probability
         rows.append(("below the design speed", f"{p:.3e} ({low:.3e} to {high:.3e})"))

@@ -55,7 +55,8 @@ impl MonteCarlo {
     }
 
     /// Speeds below which a part of all sections flutters, m/s, by that part; None where it is above the searched speeds
-    /// or depends on samples that failed or could not be judged so far (`ends_m_s` in `to_dict()`).
+    /// or depends on samples that failed or could not be judged so far (`ends_m_s` in `to_dict()`), and where the samples are too few
+    /// to tell (`too_few_samples` there).
     #[getter]
     fn quantiles(&self) -> Vec<(f64, Option<f64>)> {
         let one = |q: &analysis::Quantile| (q.probability, q.speed_m_s);

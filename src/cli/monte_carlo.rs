@@ -12,7 +12,7 @@ use crate::plausibility::Finding;
 use crate::report::onset_distribution_figure;
 use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
-use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
+use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, Quantile, monte_carlo};
 use crate::verdict::{RequiredSpeed, Verdict};
 use std::path::{Path, PathBuf};
 
@@ -110,21 +110,12 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
             r.unstable_at_or_below
         ));
     }
-    let or_below = if r.nominal_or_below {
-        "at or below "
-    } else {
-        ""
-    };
-    let nominal = match r.nominal_m_s {
-        Some(v) => format!("{v:.3} m/s"),
-        None => format!("above {:.3} m/s", r.speed_max_m_s),
-    };
     if let Some(forces) = &r.drawn_forces {
         lines.push(format!("Forces    {}", forces.in_words()));
         let left_out = forces.left_out();
         lines.extend(left_out.map(|what| format!("warning: left out: {what}")));
     }
-    lines.push(format!("Onset     of the model itself {or_below}{nominal}"));
+    lines.push(nominal(r));
     if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
         let of = r.averaged_in_words().map(|of| format!(" ({of})"));
         lines.push(format!(
@@ -132,17 +123,38 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
             of.unwrap_or_default()
         ));
     }
-    lines.extend(r.quantiles.iter().map(|q| {
-        let speed = match (q.speed_m_s, q.ends_m_s) {
-            (Some(v), _) => format!("{v:.3} m/s"),
-            // by what becomes of samples that failed or are not judged so far
-            (None, [Some(low), Some(high)]) => format!("a speed from {low:.3} to {high:.3} m/s"),
-            (None, [low, _]) => format!("a speed above {:.3} m/s", low.unwrap_or(r.speed_max_m_s)),
-        };
-        let percent = 100.0 * q.probability;
-        format!("          {percent:>6} % of all sections flutter at or below {speed}")
-    }));
+    lines.extend(r.quantiles.iter().map(|q| quantile(r, q)));
     lines
+}
+
+/// The onset of the model itself.
+fn nominal(r: &MonteCarloResult) -> String {
+    let or_below = if r.nominal_or_below {
+        "at or below "
+    } else {
+        ""
+    };
+    let speed = match r.nominal_m_s {
+        Some(v) => format!("{v:.3} m/s"),
+        None => format!("above {:.3} m/s", r.speed_max_m_s),
+    };
+    format!("Onset     of the model itself {or_below}{speed}")
+}
+
+/// The speed of a quantile, or why there is none.
+fn quantile(r: &MonteCarloResult, q: &Quantile) -> String {
+    let percent = 100.0 * q.probability;
+    if q.too_few_samples {
+        let samples = counted(r.samples, "sample");
+        return format!("          {percent:>6} %: {samples} do not tell");
+    }
+    let speed = match (q.speed_m_s, q.ends_m_s) {
+        (Some(v), _) => format!("{v:.3} m/s"),
+        // by what becomes of samples that failed or are not judged so far
+        (None, [Some(low), Some(high)]) => format!("a speed from {low:.3} to {high:.3} m/s"),
+        (None, [low, _]) => format!("a speed above {:.3} m/s", low.unwrap_or(r.speed_max_m_s)),
+    };
+    format!("          {percent:>6} % of all sections flutter at or below {speed}")
 }
 
 /// The probability of an onset below the design speed, where one is stated.
@@ -201,4 +213,37 @@ fn failures(r: &MonteCarloResult) -> Vec<String> {
         lines.push(format!("failed: {} more", r.failed - lines.len()));
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn result(changed: serde_json::Value) -> MonteCarloResult {
+        let mut all = serde_json::json!({
+            "model": "m", "seed": 1, "samples": 20, "onsets": 15, "unstable_at_or_below": 0, "unstable_up_to_m_s": null,
+            "stable": 5, "not_judged": 0, "judged_up_to_m_s": null, "failed": 0, "failures": [], "outside_tested_range": 0,
+            "with_spurious_crossings": 0, "searched_in_full": 0, "speed_max_m_s": 60.0, "nominal_m_s": 36.0,
+            "nominal_or_below": false, "mean_m_s": 36.0, "standard_deviation_m_s": 1.0, "quantiles": [],
+            "histogram": { "from_m_s": 30.0, "width_m_s": 1.0, "counts": [15] }, "design": null, "verdict": null
+        });
+        let changed = changed.as_object().cloned().unwrap_or_default();
+        all.as_object_mut().unwrap().extend(changed);
+        serde_json::from_value(all).unwrap()
+    }
+
+    /// What mean and quantiles are of stands beside them.
+    #[test]
+    fn figures_say_what_they_are_of() {
+        let some = onsets(&result(serde_json::json!({}))).concat();
+        let of = "deviation 1.000 m/s (of the 15 of 20 samples with an onset up to 60.000 m/s; the other 5 are in neither)";
+        assert!(some.contains(of), "{some}");
+        let all = onsets(&result(serde_json::json!({ "onsets": 20, "stable": 0 }))).concat();
+        assert!(all.contains("deviation 1.000 m/s") && !all.contains("neither"), "{all}");
+        let none = serde_json::json!({ "probability": 0.01, "speed_m_s": null, "ends_m_s": [null, null], "or_below": false,
+                                       "too_few_samples": true });
+        let few = onsets(&result(serde_json::json!({ "quantiles": [none] }))).concat();
+        assert!(few.contains("1 %: 20 samples do not tell"), "{few}");
+        assert!(!few.contains("flutter at or below"), "{few}");
+    }
 }

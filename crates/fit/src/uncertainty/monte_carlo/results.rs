@@ -116,13 +116,18 @@ pub struct FailedSample {
 pub struct Quantile {
     /// Probability of an onset at or below the speed.
     pub probability: f64,
-    /// m/s; `null` above the highest speed searched, and where it depends on samples that failed or could not be judged so far.
+    /// m/s; `null` above the highest speed searched, where it depends on samples that failed or could not be judged so far, and where
+    /// the samples are too few to tell.
     pub speed_m_s: Option<f64>,
-    /// Ends between which it lies whatever becomes of those samples, m/s; `null` above the highest speed searched.
+    /// Ends between which it lies whatever becomes of those samples, m/s; `null` above the highest speed searched, and where the
+    /// samples are too few to tell.
     #[serde(default)]
     pub ends_m_s: [Option<f64>; 2],
     /// Whether the quantile is that of samples whose onset lies there or below.
     pub or_below: bool,
+    /// Whether fewer than one sample is expected beyond it: samples as few do not tell where it lies.
+    #[serde(default)]
+    pub too_few_samples: bool,
 }
 
 /// Counts in bins of equal width.
@@ -270,12 +275,16 @@ impl Tally {
                 .quantiles
                 .iter()
                 .map(|p| {
-                    let ends = [&earliest, &unsafe_speeds].map(|s| sample_quantile(s, drawn, *p));
+                    let told = tells(drawn, *p);
+                    let of = |sorted: &[f64]| sample_quantile(sorted, drawn, *p).filter(|_| told);
+                    let ends = [of(&earliest), of(&unsafe_speeds)];
+                    let start = is_a_start(&unsafe_speeds, &self.starts, rank(drawn, *p));
                     Quantile {
                         probability: *p,
                         speed_m_s: ends[1].filter(|v| ends[0] == Some(*v)),
                         ends_m_s: ends,
-                        or_below: is_a_start(&unsafe_speeds, &self.starts, rank(drawn, *p)),
+                        or_below: told && start,
+                        too_few_samples: !told,
                     }
                 })
                 .collect(),
@@ -301,6 +310,14 @@ fn joined(sorted: &[f64], others: impl Iterator<Item = f64>) -> Cow<'_, [f64]> {
     let mut all: Vec<f64> = sorted.iter().copied().chain(others).collect();
     all.sort_unstable_by(f64::total_cmp);
     Cow::Owned(all)
+}
+
+/// Whether samples tell a quantile: one of them at least is expected beyond it, for otherwise it is the outermost sample, whatever
+/// the probability.
+fn tells(drawn: usize, probability: f64) -> bool {
+    // 1 − p is rounded: 10 samples tell 0.9
+    let one = 1.0 - 1e-9;
+    probability.min(1.0 - probability) * drawn as f64 >= one
 }
 
 /// Place at or below that of a quantile.

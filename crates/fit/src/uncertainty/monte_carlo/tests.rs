@@ -75,6 +75,25 @@ fn one_parameter_maps_quantiles() {
     assert_eq!(result.averaged_in_words(), None);
 }
 
+/// A quantile beyond which less than one sample is expected is not stated, whichever the outermost sample is.
+#[test]
+fn samples_too_few_for_a_quantile_do_not_tell_it() {
+    let mut plan = plan(
+        "quantiles = [0.09, 0.1, 0.9, 0.95]\n[[parameter]]\nname = \"air_density_kg_m3\"\n\
+         distribution = { kind = \"uniform\", lower = 1.175, upper = 1.275 }\n",
+    );
+    let too_few = |samples: usize, plan: &mut MonteCarloPlan| -> Vec<bool> {
+        plan.samples = samples;
+        let quantiles = run(plan).quantiles;
+        let alike = |q: &Quantile| q.too_few_samples == (q.ends_m_s == [None, None]);
+        assert!(quantiles.iter().all(|q| alike(q) && q.speed_m_s.is_none() == q.too_few_samples));
+        quantiles.iter().map(|q| q.too_few_samples).collect()
+    };
+    assert_eq!(too_few(1, &mut plan), [true; 4]);
+    assert_eq!(too_few(10, &mut plan), [true, false, false, true]);
+    assert_eq!(too_few(20, &mut plan), [false; 4]);
+}
+
 #[test]
 fn the_design_check_counts() {
     let plan = plan(
