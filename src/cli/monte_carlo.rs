@@ -7,10 +7,9 @@ use super::progress::Progress;
 use super::{figures, stages};
 use crate::error::{Result, counted};
 use crate::files::text::read_text;
-use crate::flutter::OnsetSearch;
 use crate::plausibility::Finding;
 use crate::report::onset_distribution_figure;
-use crate::study::saved_evidence;
+use crate::study::{FlutterBlock, saved_evidence};
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, Quantile, monte_carlo};
 use crate::verdict::{RequiredSpeed, Verdict};
@@ -80,14 +79,14 @@ fn verdict(
 ) -> Result<Option<Verdict>> {
     let file = plan.directory.join(&plan.model);
     let judge = |speed_m_s: f64| {
-        let required = RequiredSpeed { speed_m_s };
-        let limit = model.experiment.onset_search_limit_m_s;
-        let search = OnsetSearch {
-            speed_max_m_s: required.searched_to_m_s().max(limit),
-            ..OnsetSearch::default()
+        let block = FlutterBlock {
+            required_speed_m_s: Some(speed_m_s),
+            ..FlutterBlock::default()
         };
+        // as `flutter` and Python search: the speeds of a search are in the last digits of what was judged
+        let search = block.range(&model.section).search();
         let mut evidence = saved_evidence(&file, model, &model.section, &search)?;
-        evidence.required = Some(required);
+        evidence.required = Some(RequiredSpeed { speed_m_s });
         evidence.implausible.extend_from_slice(of_means);
         Ok(Verdict::judge(&evidence))
     };
