@@ -1,10 +1,14 @@
 //! What the repetitions of a virtual campaign came to.
 
 use super::plan::CoveragePlan;
+use crate::uncertainty::onset::CONFIDENCE;
+use crate::uncertainty::statistics::clopper_pearson;
 use serde::Serialize;
 
 /// Shares of held truths with which 95 % intervals count as reliable, percent.
 const KEPT_PERCENT: std::ops::RangeInclusive<f64> = 93.0..=97.0;
+/// Share that they promise.
+const PROMISED: f64 = 0.95;
 
 /// How often intervals held the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -26,6 +30,15 @@ impl IntervalCoverage {
             of,
             percent: 100.0 * inside as f64 / (of as f64).max(1.0),
         }
+    }
+
+    /// Whether it is not what 95 % intervals promise, by so many repetitions: another share, and one that chance does not explain (the
+    /// exact 95 % interval of the count excludes what is promised). `together` intervals of a repetition hold or miss alike, and
+    /// count as one.
+    fn contradicts(&self, together: usize) -> bool {
+        let [inside, of] = [self.inside, self.of].map(|n| (n as f64 / together as f64).round());
+        let (low, high) = clopper_pearson(inside as u64, of as u64, CONFIDENCE);
+        !KEPT_PERCENT.contains(&self.percent) && !(low..=high).contains(&PROMISED)
     }
 }
 
@@ -79,11 +92,13 @@ impl CoverageReport {
         } else {
             "the stated scatter is not that of the repetitions".to_owned()
         };
-        for (what, share) in [
-            ("the onset", &self.holds_truth),
-            ("the derivatives", &self.derivatives_hold_truth),
+        let derivatives = self.derivatives_hold_truth;
+        let of_each = (derivatives.of / self.holds_truth.of.max(1)).max(1);
+        for (what, share, together) in [
+            ("the onset", &self.holds_truth, 1),
+            ("the derivatives", &derivatives, of_each),
         ] {
-            if !KEPT_PERCENT.contains(&share.percent) {
+            if share.contradicts(together) {
                 self.warnings.push(format!(
                     "the 95 % intervals of {what} hold the truth in {:.1} %: {}",
                     share.percent,
@@ -95,5 +110,24 @@ impl CoverageReport {
                 ));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn share(inside: usize, of: usize) -> IntervalCoverage {
+        IntervalCoverage::count((0..of).map(|i| i < inside))
+    }
+
+    /// What chance explains is no contradiction: 2 of 2 is to be expected of 95 %, as are 18 of 20 (68.3 to 98.8 %, tables); 450 of 500
+    /// and all of 500 are not. Derivatives of one repetition say the same once.
+    #[test]
+    fn few_repetitions_contradict_nothing() {
+        for (inside, of, expected) in [(2, 2, false), (18, 20, false), (0, 2, true), (450, 500, true), (500, 500, true)] {
+            assert_eq!(share(inside, of).contradicts(1), expected, "{inside} of {of}");
+        }
+        assert!(share(128, 128).contradicts(1) && !share(128, 128).contradicts(64));
     }
 }
