@@ -150,7 +150,8 @@ impl MonteCarlo {
 /// progress : callable, optional
 ///     Called with (done, total), from any thread.
 /// **plan
-///     Further keys of the file of a Monte Carlo analysis: `correlation`, `quantiles`, `confidence`.
+///     Further keys of the file of a Monte Carlo analysis: `correlation`, `quantiles`, `confidence`, and `aerodynamics` in place of
+///     `aerodynamic_scatter`: `{"covariance": "fits/laguerre.uncertainty.json"}`.
 ///
 /// Returns
 /// -------
@@ -181,7 +182,9 @@ pub fn monte_carlo(
         ("speed_max_m_s", speed_max_m_s),
         ("aerodynamic_scatter", aerodynamic_scatter),
     ] {
-        if let Some(value) = value.filter(|v| !v.is_finite()) {
+        // what is left out is not there: `aerodynamics` may say the same
+        let Some(value) = value else { continue };
+        if !value.is_finite() {
             return Err(wrong(key, "a finite number", value.to_string()));
         }
         set_default(&plan, key, value)?;
@@ -239,8 +242,11 @@ fn plan_of(
         list.append(one)?;
     }
     plan.set_item("parameter", list)?;
-    if let Some(scatter) = plan.get_item("aerodynamic_scatter")? {
+    let scatter = plan.get_item("aerodynamic_scatter")?;
+    if plan.contains("aerodynamic_scatter")? {
         plan.del_item("aerodynamic_scatter")?;
+    }
+    if let Some(scatter) = scatter.filter(|s| !s.is_none()) {
         if plan.contains("aerodynamics")? {
             let expected = "`aerodynamics` or `aerodynamic_scatter`";
             return Err(wrong("aerodynamic_scatter", expected, "both".into()));

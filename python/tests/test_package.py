@@ -214,6 +214,11 @@ def test_monte_carlo_is_seeded_and_the_design_speed_counts(section, model):
     with pytest.warns(aerodeck.AerodeckWarning, match="where the model has"):
         odd = aerodeck.monte_carlo(section, model, other, samples=50, design_speed_m_s=20)
     assert any("where the model has" in doubt["text"] for doubt in odd.verdict["doubts"])
+    # scatter of the forces as a file states it is what the keyword states
+    stated, short = ({"aerodynamics": {"relative_scatter": 0.03}}, {"aerodynamic_scatter": 0.03})
+    by_file, by_keyword = (aerodeck.monte_carlo(section, model, scatter, samples=50, **how) for how in (stated, short))
+    assert by_file.to_dict() == by_keyword.to_dict() and by_file.mean_m_s != a.mean_m_s
+    assert by_file.to_dict()["drawn_forces"]["relative_scatter"] == 0.03
     for keywords, place in [
         ({"aerodynamic_scatter": 0.05, "aerodynamics": {"relative_scatter": 0.1}}, "aerodynamic_scatter"),
         ({"parameter": []}, "parameter"),
