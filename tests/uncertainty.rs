@@ -280,6 +280,9 @@ fn one_covariance(at: &std::path::Path, saved: &Value) {
     assert!(draws["form_left_out_m_s"].as_f64().unwrap() > 0.0);
     let text = succeeds(at, &["monte-carlo", "scatter.toml"]);
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(text.contains("degrees of freedom of its covariance"), "{text}");
+    assert!(
+        text.contains("degrees of freedom of its covariance"),
+        "{text}"
+    );
     assert!(text.contains("between forms of model"), "{text}");
 }

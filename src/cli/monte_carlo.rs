@@ -238,7 +238,10 @@ mod tests {
         let of = "deviation 1.000 m/s (of the 15 of 20 samples with an onset up to 60.000 m/s; the other 5 are in neither)";
         assert!(some.contains(of), "{some}");
         let all = onsets(&result(serde_json::json!({ "onsets": 20, "stable": 0 }))).concat();
-        assert!(all.contains("deviation 1.000 m/s") && !all.contains("neither"), "{all}");
+        assert!(
+            all.contains("deviation 1.000 m/s") && !all.contains("neither"),
+            "{all}"
+        );
         let none = serde_json::json!({ "probability": 0.01, "speed_m_s": null, "ends_m_s": [null, null], "or_below": false,
                                        "too_few_samples": true });
         let few = onsets(&result(serde_json::json!({ "quantiles": [none] }))).concat();

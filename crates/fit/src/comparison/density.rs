@@ -150,7 +150,10 @@ const SAME_VALUE: f64 = 1e-9;
 fn distinct(sample: &[f64]) -> usize {
     let mut sorted = sample.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let range = sorted.last().zip(sorted.first()).map_or(0.0, |(b, a)| b - a);
+    let range = sorted
+        .last()
+        .zip(sorted.first())
+        .map_or(0.0, |(b, a)| b - a);
     // from the first of a run, so that steps below the tolerance do not add up to one value
     sorted.dedup_by(|next, kept| *next - *kept <= SAME_VALUE * range);
     sorted.len()

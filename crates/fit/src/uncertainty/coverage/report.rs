@@ -125,8 +125,18 @@ mod tests {
     /// and all of 500 are not. Derivatives of one repetition say the same once.
     #[test]
     fn few_repetitions_contradict_nothing() {
-        for (inside, of, expected) in [(2, 2, false), (18, 20, false), (0, 2, true), (450, 500, true), (500, 500, true)] {
-            assert_eq!(share(inside, of).contradicts(1), expected, "{inside} of {of}");
+        for (inside, of, expected) in [
+            (2, 2, false),
+            (18, 20, false),
+            (0, 2, true),
+            (450, 500, true),
+            (500, 500, true),
+        ] {
+            assert_eq!(
+                share(inside, of).contradicts(1),
+                expected,
+                "{inside} of {of}"
+            );
         }
         assert!(share(128, 128).contradicts(1) && !share(128, 128).contradicts(64));
     }

@@ -86,7 +86,11 @@ fn samples_too_few_for_a_quantile_do_not_tell_it() {
         plan.samples = samples;
         let quantiles = run(plan).quantiles;
         let alike = |q: &Quantile| q.too_few_samples == (q.ends_m_s == [None, None]);
-        assert!(quantiles.iter().all(|q| alike(q) && q.speed_m_s.is_none() == q.too_few_samples));
+        assert!(
+            quantiles
+                .iter()
+                .all(|q| alike(q) && q.speed_m_s.is_none() == q.too_few_samples)
+        );
         quantiles.iter().map(|q| q.too_few_samples).collect()
     };
     assert_eq!(too_few(1, &mut plan), [true; 4]);
