@@ -124,7 +124,15 @@ pub fn dof_names(dofs: &[Dof]) -> Vec<&'static str> {
 /// The motions of these names.
 pub fn dofs(names: &[String]) -> PyResult<Vec<Dof>> {
     let one = |name: &String| word("dofs", "vertical, lateral or torsion", name);
-    names.iter().map(one).collect()
+    let twice = (0..names.len()).find(|&i| names[..i].contains(&names[i]));
+    match twice {
+        Some(i) => Err(wrong(
+            "dofs",
+            "every motion once",
+            format!("`{}` twice", names[i]),
+        )),
+        None => names.iter().map(one).collect(),
+    }
 }
 
 /// Numbers of an array or of any sequence; `place` is named where there are others.

@@ -293,6 +293,8 @@ def test_a_loaded_model_has_the_covariance_beside_it():
 
 def test_saved_models_and_records_come_back(tmp_path, table, section, model):
     model.save(tmp_path / "model.json", section)
+    with pytest.raises(aerodeck.InputError, match="dofs: expected every motion once, found `torsion` twice"):
+        aerodeck.Records.from_arrays(motion, force, dofs=("torsion", "torsion"), **plain)
     again = aerodeck.Model.load(tmp_path / "model.json")
     assert again.section == section
     np.testing.assert_array_equal(again.transfer([0.1, 1.0]), model.transfer([0.1, 1.0]))
