@@ -4,7 +4,7 @@ use crate::error::{raised, wrong};
 use aerodeck::section::Dof;
 use numpy::{AllowTypeChange, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::{PyBool, PyBytes, PyComplex, PyDict, PyList, PyString, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -164,25 +164,66 @@ pub fn table<'py>(
     })
 }
 
-/// What a mask marks as bad is not used as a number, nor is a real part alone.
-fn refuse_unreal(place: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    let kind = value
-        .getattr("dtype")
-        .and_then(|dtype| dtype.getattr("kind"));
-    if kind.is_ok_and(|kind| kind.eq("c").unwrap_or(false)) {
-        return Err(wrong(place, "real numbers", "complex ones".into()));
+/// What a mask marks as bad is not used as a number, nor is a real part alone, a truth value, a date or a text that holds one.
+pub fn refuse_unreal(place: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    if let Ok(entries) = value.cast::<PyList>() {
+        // masks and kinds of arrays in a list are gone in the array of all
+        let mut arrays = entries
+            .iter()
+            .filter(|e| e.hasattr("dtype").unwrap_or(false));
+        arrays.try_for_each(|array| refuse_unreal(place, &array))?;
     }
-    let Ok(mask) = value.getattr("mask") else {
+    let masked = value
+        .getattr("mask")
+        .and_then(|mask| mask.call_method0("any"));
+    if masked.is_ok_and(|any| any.is_truthy().unwrap_or(false)) {
+        let expected = "numbers without a mask";
+        return Err(wrong(place, expected, "masked entries".into()));
+    }
+    // rows of different lengths have no kind; what else they are is said where they are taken apart
+    let Ok(array) = value
+        .py()
+        .import("numpy")?
+        .call_method1("asarray", (value,))
+    else {
         return Ok(());
     };
-    match mask.call_method0("any").and_then(|any| any.is_truthy()) {
-        Ok(true) => Err(wrong(
-            place,
-            "numbers without a mask",
-            "masked entries".into(),
-        )),
-        _ => Ok(()),
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let found = match kind.as_str() {
+        "c" => return Err(wrong(place, "real numbers", "complex ones".into())),
+        "b" => "truth values",
+        "M" | "m" => "dates or times of NumPy",
+        "U" | "S" => "texts",
+        "O" => return refuse_objects(place, &array),
+        _ => return Ok(()),
+    };
+    Err(wrong(
+        place,
+        "numbers, in one dimension or in rows",
+        found.into(),
+    ))
+}
+
+/// An array of objects is one of numbers where each is a number.
+fn refuse_objects(place: &str, array: &Bound<'_, PyAny>) -> PyResult<()> {
+    let text = |one: &Bound<'_, PyAny>| {
+        one.is_instance_of::<PyString>()
+            || one.is_instance_of::<PyBytes>()
+            || one.is_instance_of::<PyBool>()
+            || one.is_instance_of::<PyComplex>()
+    };
+    for one in array
+        .call_method0("ravel")?
+        .call_method0("tolist")?
+        .try_iter()?
+    {
+        let one = one?;
+        if text(&one) {
+            let found = format!("a {}", one.get_type().name()?);
+            return Err(wrong(place, "numbers, in one dimension or in rows", found));
+        }
     }
+    Ok(())
 }
 
 /// Rows as an array.

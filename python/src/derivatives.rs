@@ -1,6 +1,8 @@
 //! `Derivatives`: a table of measured aerodynamic derivatives.
 
-use crate::convert::{Reduced, dof_names, framed, reduced, restored, rows, shown, word};
+use crate::convert::{
+    Reduced, dof_names, framed, reduced, refuse_unreal, restored, rows, shown, table, word,
+};
 use crate::error::{raised, warned, wrong};
 use aerodeck::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedPoint, Notation, StatedConvention,
@@ -10,7 +12,6 @@ use aerodeck::files::derivatives::{
     ReadOptions, embedded, parse_csv_in, read_table_with, write_csv, write_csv_in,
 };
 use aerodeck::plausibility::{Finding, of_table};
-use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::collections::BTreeMap;
@@ -289,12 +290,19 @@ impl Derivatives {
 /// The test points of one derivative, from columns or from a pair of arrays.
 fn expressed(name: &str, arrays: &Bound<'_, PyAny>) -> PyResult<Vec<ExpressedPoint>> {
     let numpy = arrays.py().import("numpy")?;
-    let columns = if arrays.cast::<PyTuple>().is_ok() {
-        numpy.call_method1("column_stack", (arrays,))
-    } else {
-        numpy.call_method1("asarray", (arrays, "float64"))
+    let columns = match arrays.cast::<PyTuple>() {
+        Ok(pair) => {
+            pair.iter()
+                .try_for_each(|column| refuse_unreal(name, &column))?;
+            numpy.call_method1("column_stack", (arrays,))
+        }
+        Err(_) => Ok(arrays.clone()),
     };
-    let array: PyReadonlyArray2<f64> = columns?.call_method1("astype", ("float64",))?.extract()?;
+    let columns = columns.map_err(|_| {
+        let found = "columns of different lengths".to_owned();
+        wrong(name, "a pair of arrays of one length", found)
+    })?;
+    let array = table(name, &columns)?;
     let array = array.as_array();
     let speeds = match array.ncols() {
         2 => 0,

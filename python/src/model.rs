@@ -1,6 +1,6 @@
 //! `Model`: a trained model of the self-excited forces.
 
-use crate::convert::{Reduced, dof_names, reduced, restored, shown, to_python};
+use crate::convert::{Reduced, dof_names, reduced, refuse_unreal, restored, shown, to_python};
 use crate::error::{raised, wrong};
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
@@ -118,6 +118,7 @@ impl Model {
         py: Python<'py>,
         K: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray3<Complex<f64>>>> {
+        refuse_unreal("K", K)?;
         let array = py
             .import("numpy")?
             .call_method1("asarray", (K, "float64"))?;

@@ -227,6 +227,37 @@ def test_monte_carlo_is_seeded_and_the_design_speed_counts(section, model):
             aerodeck.monte_carlo(section, model, scatter, samples=10, **keywords)
 
 
+def test_what_is_no_number_is_not_used_as_one(table, section, model):
+    v_hat, values = np.array([0.5, 1.0, 2.0]), np.ones(3)
+    names = ["H1", "H2", "H3", "H4", "A1", "A2", "A3", "A4"]
+    bad = [
+        (np.ma.array(values, mask=[0, 1, 0]), "without a mask"),
+        (values + 1j, "real numbers"),
+        (np.array(["1", "2", "3"]), "texts"),
+        (np.array(["1", "2", "3"], dtype=object), "a str"),
+        (np.array([True, False, True]), "truth values"),
+        (np.arange(3).astype("datetime64[D]"), "dates"),
+    ]
+    how = dict(notation="scanlan", argument="v_hat", width_m=0.5)
+    for array, said in bad:
+        for pair in ((v_hat, array), (array, v_hat)):
+            with pytest.raises(aerodeck.InputError, match=f"H1: .*{said}"):
+                aerodeck.Derivatives.from_arrays({n: pair if n == "H1" else (v_hat, values) for n in names}, **how)
+        with pytest.raises(aerodeck.InputError, match=f"K: .*{said}"):
+            model.transfer(array)
+        for given in (array, list(array)) if not np.ma.isMaskedArray(array) else (array,):
+            with pytest.raises(aerodeck.InputError, match="torsion.frequency_hz: expected"):
+                aerodeck.onsets(section, model, {"torsion.frequency_hz": given})
+    with pytest.raises(aerodeck.InputError, match="H1: .*without a mask"):
+        columns = np.ma.array(np.column_stack([v_hat, values]), mask=[[0, 0], [0, 1], [0, 0]])
+        aerodeck.Derivatives.from_arrays({n: columns if n == "H1" else (v_hat, values) for n in names}, **how)
+    with pytest.raises(aerodeck.InputError, match="H1: .*arrays of one length"):
+        aerodeck.Derivatives.from_arrays({n: (v_hat, values[:2]) for n in names}, **how)
+    # whole numbers and numbers among objects are numbers
+    whole = {n: (v_hat.astype(object), np.ones(3, dtype=int)) for n in names}
+    assert aerodeck.Derivatives.from_arrays(whole, **how).to_numpy()["H1"][0, 2] == 1.0
+
+
 def test_records_from_arrays_are_those_of_the_tunnel(table, section):
     records = aerodeck.Records.virtual_tunnel(table)
     direct = aerodeck.flutter(section, aerodeck.fit_laguerre(records))
@@ -251,6 +282,8 @@ def test_records_from_arrays_are_those_of_the_tunnel(table, section):
     turned = aerodeck.Records.from_arrays(motion[:, ::-1], force[:, ::-1], dofs=["torsion", "vertical"], **plain)
     assert turned.dofs == ["vertical", "torsion"]
     np.testing.assert_array_equal(turned.to_numpy(0)[2], force)
+    with pytest.raises(aerodeck.InputError, match="dofs: expected every motion once, found `torsion` twice"):
+        aerodeck.Records.from_arrays(motion, force, dofs=("torsion", "torsion"), **plain)
     for bad, expected in [(force + np.nan, "finite numbers"), (force + 1j, "real numbers")]:
         with pytest.raises(aerodeck.InputError, match=expected):
             aerodeck.Records.from_arrays(motion, bad, **plain)
@@ -293,8 +326,6 @@ def test_a_loaded_model_has_the_covariance_beside_it():
 
 def test_saved_models_and_records_come_back(tmp_path, table, section, model):
     model.save(tmp_path / "model.json", section)
-    with pytest.raises(aerodeck.InputError, match="dofs: expected every motion once, found `torsion` twice"):
-        aerodeck.Records.from_arrays(motion, force, dofs=("torsion", "torsion"), **plain)
     again = aerodeck.Model.load(tmp_path / "model.json")
     assert again.section == section
     np.testing.assert_array_equal(again.transfer([0.1, 1.0]), model.transfer([0.1, 1.0]))
