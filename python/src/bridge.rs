@@ -9,7 +9,7 @@ use crate::sweep::Sweep;
 use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
-use aerodeck::flutter::{find_onset, trace_modes};
+use aerodeck::flutter::{find_onset, trace_modes_watched};
 use aerodeck::fmu::package::{
     FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
 };
@@ -180,8 +180,10 @@ impl Bridge {
                 (1..=search.speeds).map(|i| step * i as f64).collect()
             }
         };
-        let curves = Work::new(None).run(py, || {
-            let curves = trace_modes("model", &self.coupled()?, &speeds)?;
+        let work = Work::new(None);
+        let curves = work.run(py, || {
+            let watch = || work.check();
+            let curves = trace_modes_watched("model", &self.coupled()?, &speeds, &watch)?;
             aerodeck::Result::Ok(curves.marked(study.by_model.width_m(), study.tested_range()))
         })?;
         let curves = curves.map_err(raised)?;

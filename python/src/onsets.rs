@@ -9,7 +9,6 @@ use aerodeck::section::SectionModel;
 use aerodeck::uncertainty::monte_carlo::{OnsetKind, SectionProperty, many_onsets};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 /// Onsets of many sections, one entry each.
 #[pyclass(frozen, module = "aerodeck", get_all)]
@@ -84,7 +83,7 @@ impl Onsets {
 /// section : Section
 ///     What is not varied.
 /// model : Model
-/// values : dict of str to array or sequence of n numbers
+/// values : dict of str to array or sequence of n numbers, or pandas.DataFrame of such columns
 ///     Numbers of the section by their names in a study file: `"vertical.mass_kg_m"`, `"torsion.frequency_hz"`, …
 /// speed_max_m_s : float, optional
 ///     Highest wind speed searched, m/s.
@@ -103,15 +102,24 @@ pub fn onsets(
     py: Python<'_>,
     section: &Bound<'_, Section>,
     model: &Bound<'_, Model>,
-    values: &Bound<'_, PyDict>,
+    values: &Bound<'_, PyAny>,
     speed_max_m_s: Option<f64>,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Onsets> {
     let trained = model.get().trained(Some(section.get()))?;
     let mut varied: Vec<(SectionProperty, Vec<f64>)> = Vec::new();
-    for (name, array) in values {
-        let name: String = name.extract()?;
+    // what has names and arrays: a dict, any other mapping, a DataFrame
+    let entries = values.call_method0("items").map_err(|_| {
+        let expected = "a dict or DataFrame: numbers of the section by their names";
+        wrong("values", expected, values.get_type().to_string())
+    })?;
+    for entry in entries.try_iter()? {
+        let (name, array): (Bound<'_, PyAny>, Bound<'_, PyAny>) = entry?.extract()?;
+        let name: String = name.extract().map_err(|_| {
+            let expected = "names of numbers of the section, such as \"torsion.frequency_hz\"";
+            wrong("values", expected, name.to_string())
+        })?;
         place(&name, &mut trained.section.clone())?;
         let parameter = SectionProperty::named(&name).map_err(raised)?;
         varied.push((parameter, list(&name, &array)?));

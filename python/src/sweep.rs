@@ -4,9 +4,9 @@ use crate::convert::{Parts, dof_names, framed, list, parts, rows, shown};
 use crate::error::raised;
 use crate::model::Model;
 use crate::section::{Section, usual_range};
-use crate::work::detached;
+use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
-use aerodeck::flutter::{FlutterCurves, ModePoint, trace_modes};
+use aerodeck::flutter::{FlutterCurves, ModePoint, trace_modes_watched};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -120,12 +120,14 @@ pub fn sweep(
         Some(speeds) => list("speeds_m_s", speeds)?,
         None => usual_range(section).curve_speeds_m_s(),
     };
-    let curves = detached(py, || {
+    let work = Work::new(None);
+    let curves = work.run(py, || {
         let structure = section.structure()?;
         let coupled = CoupledSection::with_model(&structure, &model.model)?;
-        let curves = trace_modes(&model.name, &coupled, &speeds)?;
+        let watch = || work.check();
+        let curves = trace_modes_watched(&model.name, &coupled, &speeds, &watch)?;
         aerodeck::Result::Ok(curves.marked(section.width_m, Some(model.tested)))
-    });
+    })?;
     let modes = dof_names(&section.dofs());
     let modes = modes.into_iter().map(str::to_owned).collect();
     Sweep::new(py, &curves.map_err(raised)?, speeds, modes)

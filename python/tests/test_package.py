@@ -258,6 +258,17 @@ def test_what_is_no_number_is_not_used_as_one(table, section, model):
     assert aerodeck.Derivatives.from_arrays(whole, **how).to_numpy()["H1"][0, 2] == 1.0
 
 
+def test_onsets_take_whatever_has_names_and_arrays(section, model):
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame({"torsion.frequency_hz": [4.5, 5.0], "vertical.mass_kg_m": [15.0, 16.0]})
+    by_dict = aerodeck.onsets(section, model, {name: frame[name].to_numpy() for name in frame})
+    np.testing.assert_array_equal(aerodeck.onsets(section, model, frame).speed_m_s, by_dict.speed_m_s)
+    with pytest.raises(aerodeck.InputError, match="values: expected a dict or DataFrame"):
+        aerodeck.onsets(section, model, [4.5, 5.0])
+    with pytest.raises(aerodeck.InputError, match="values: expected names of numbers of the section"):
+        aerodeck.onsets(section, model, {1: [4.5, 5.0]})
+
+
 def test_records_from_arrays_are_those_of_the_tunnel(table, section):
     records = aerodeck.Records.virtual_tunnel(table)
     direct = aerodeck.flutter(section, aerodeck.fit_laguerre(records))

@@ -42,7 +42,7 @@ pub use bridge_motion::{
     static_deflection,
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
-pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
+pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes, trace_modes_watched};
 pub use determinant::table_tested_from;
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::{AssumedAtRest, static_part};

@@ -138,11 +138,25 @@ pub fn trace_modes(
     section: &CoupledSection,
     speeds_m_s: &[f64],
 ) -> Result<FlutterCurves> {
+    trace_modes_watched(model, section, speeds_m_s, &|| ())
+}
+
+/// The same, with a look at `watch` before every speed: where work of minutes can be ended.
+///
+/// # Errors
+/// As [`trace_modes`].
+pub fn trace_modes_watched(
+    model: &str,
+    section: &CoupledSection,
+    speeds_m_s: &[f64],
+    watch: &dyn Fn(),
+) -> Result<FlutterCurves> {
     let tracker = Tracker::new(section);
     let mut modes = tracker.start()?;
     let mut branches = empty_branches(section.structure(), speeds_m_s.len());
     let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
+        watch();
         ensure(
             non_negative("wind speeds", speed)? >= last,
             "wind speeds",
