@@ -246,13 +246,17 @@ impl Records {
 impl Records {
     fn once_each(records: Vec<Record>, findings: Vec<Finding>) -> PyResult<Self> {
         for (i, record) in records.iter().enumerate() {
-            if records[..i].contains(record) {
+            // whatever they are called: noise never repeats
+            let same =
+                |other: &&Record| (&other.motion, &other.force) == (&record.motion, &record.force);
+            if let Some(other) = records[..i].iter().find(same) {
                 let expected = "each record once: what stands twice looks better known than it is";
-                return Err(wrong(
-                    "records",
-                    expected,
-                    format!("{} twice", record.header.name),
-                ));
+                let name = &record.header.name;
+                let found = match &other.header.name {
+                    first if first == name => format!("{name} twice"),
+                    first => format!("the samples of {first} again as {name}"),
+                };
+                return Err(wrong("records", expected, found));
             }
         }
         Ok(Self(records, findings))

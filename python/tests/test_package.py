@@ -80,6 +80,12 @@ def test_files_that_cannot_be_written_are_named(section, model, table, tmp_path)
         (records + again).write(tmp_path)
     with pytest.raises(aerodeck.InputError, match="each record once: what stands twice looks better known"):
         records + records
+    # also by another name
+    _, motion, force = records.to_numpy(0)
+    head = records.header(0)
+    plain = {key: head[key] for key in ("sampling_hz", "mean_speed_m_s", "width_m", "air_density_kg_m3")}
+    with pytest.raises(aerodeck.InputError, match="again as another"):
+        records + aerodeck.Records.from_arrays(motion, force, name="another", **plain)
 
 
 def test_what_is_exported_starts_below_the_onset(section, model, tmp_path):

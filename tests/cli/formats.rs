@@ -57,11 +57,19 @@ fn records_that_stand_twice_or_are_of_another_width_are_refused() {
     let first = fs::read_to_string(&paths[0]).unwrap();
     let line = first.lines().find(|l| l.starts_with("# width_m:")).unwrap();
     fs::write(at.join("wide.csv"), first.replace(line, "# width_m: 0.7")).unwrap();
+    // by another name, from another source and with other ends of lines it is the same
+    let name = first.lines().find(|l| l.starts_with("# name:")).unwrap();
+    let renamed = first.replacen(name, "# name: another", 1);
+    fs::write(at.join("renamed.csv"), renamed.replace('\n', "\r\n")).unwrap();
     let study = fs::read_to_string(at.join("study.toml")).unwrap();
     for (other, fragments) in [
         (
             "copy.csv",
             ["copy.csv: expected each record once", "the same as in"],
+        ),
+        (
+            "renamed.csv",
+            ["renamed.csv: expected each record once", "the same as in"],
         ),
         ("wide.csv", ["wide.csv: width_m: expected", "found 0.7 m"]),
     ] {
