@@ -55,7 +55,9 @@ class Study:
         options = ["--out", str(out)] + ["--no-figures"] * (not figures) + ["--quiet"] * (not progress)
         options += [a for key, value in (values or {}).items() for a in ("--set", f"{key}={value}")]
         with self._as_file() as file:
-            summary, code = _command(["study", str(file), *options])
+            _, code = _command(["study", str(file), *options])
+        # the file and not the answer in the terminal, which names itself otherwise
+        summary = json.loads((Path(out) / "summary.json").read_text(encoding="utf-8"))
         for sentence in summary["warnings"]:
             warnings.warn(sentence, AerodeckWarning, stacklevel=2)
         return StudyResult(Path(out), summary, code, temporary)

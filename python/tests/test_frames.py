@@ -1,5 +1,6 @@
 """Tables of pandas and xarray, plots on given axes, studies, and what is shown beside."""
 
+import json
 import copy
 import pickle
 import warnings
@@ -133,6 +134,7 @@ def test_a_study_runs_as_the_program_runs_it(tmp_path):
     study = aerodeck.Study.from_toml(tmp_path / "study.toml")
     found = study.run(tmp_path / "results", figures=False)
     assert found.headline == found.summary["verdict"]["headline"] and found.onsets
+    assert found.summary == json.loads((found.folder / "summary.json").read_text(encoding="utf-8"))
     assert (tmp_path / "results" / "report.html").exists() and not list((tmp_path / "results").glob("*.svg"))
     assert found.model().states > 0 and found.summary["model"] in found.models
     with pytest.raises(aerodeck.InputError, match="name: expected one of"):
