@@ -1,7 +1,7 @@
 """Tables of pandas and xarray, plots on given axes, studies, and what is shown beside."""
 
-import json
 import copy
+import json
 import pickle
 import warnings
 from pathlib import Path
