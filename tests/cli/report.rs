@@ -215,6 +215,11 @@ fn tests_that_end_before_the_required_speed_cannot_judge_it() {
     let words =
         "warning: of the model itself: Cannot be judged: The onset lies outside the tested range";
     assert!(said.contains(words), "{said}");
+    // judged as the study judges: to the last digit by the same search
+    let text = fs::read_to_string(at.join("monte_carlo.json")).unwrap();
+    let beside: Value = serde_json::from_str(&text).unwrap();
+    let from = |verdict: &Value| verdict["critical"]["judged_from_m_s"].as_f64().unwrap();
+    assert_eq!(from(&beside["verdict"]), from(&verdict));
     // as it does where a mean is in another unit
     let mass = "[[parameter]]\nname = \"vertical.mass_kg_m\"\ndistribution = { kind = \"normal\", mean = 15000.0, coefficient_of_variation = 0.03 }\n";
     fs::write(at.join("scatter.toml"), format!("{plan}{mass}")).unwrap();
