@@ -145,7 +145,8 @@ fn quantile(r: &MonteCarloResult, q: &Quantile) -> String {
     let percent = 100.0 * q.probability;
     if q.too_few_samples {
         let samples = counted(r.samples, "sample");
-        return format!("          {percent:>6} %: {samples} do not tell");
+        let tell = if r.samples == 1 { "does" } else { "do" };
+        return format!("          {percent:>6} %: {samples} {tell} not tell");
     }
     let speed = match (q.speed_m_s, q.ends_m_s) {
         (Some(v), _) => format!("{v:.3} m/s"),

@@ -12,6 +12,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 const SCATTER: &str = "schema = 1\nmodel = \"a/models/laguerre.json\"\nsamples = 300\ndesign_speed_m_s = 36.0\n\
+     [aerodynamics]\ncovariance = \"a/fits/laguerre.uncertainty.json\"\n\
      [[parameter]]\nname = \"torsion.damping_ratio\"\ndistribution = { kind = \"lognormal\", coefficient_of_variation = 0.4 }\n";
 
 const GUSTS: &str = "[buffeting]\nspeeds_m_s = [20.0]\n[buffeting.turbulence.vertical]\nspectrum = { shape = { kind = \"von_karman\" }, \
