@@ -345,7 +345,9 @@ fn unstable_samples_are_not_safe() {
         let result = monte_carlo(&plan, &model, &|_, _| ()).unwrap();
         assert_eq!((result.unstable_at_or_below, result.stable), (500, 0));
         assert!(result.nominal_or_below && result.nominal_m_s.is_some());
-        assert!(result.quantiles.iter().all(|q| q.or_below));
+        // 500 samples do not tell 0.1 %
+        let told = result.quantiles.iter().filter(|q| !q.too_few_samples);
+        assert!(told.clone().count() >= 5 && told.clone().all(|q| q.or_below));
         let check = result.design.unwrap();
         let counted = if known { (500, 0) } else { (0, 500) };
         assert_eq!((check.below, check.undecided), counted);
