@@ -171,7 +171,7 @@ fn vf_vg_of_the_iabse_deck() {
             "onset outside the tested range",
             "probably spurious crossing",
             "77.48 m/s",
-            "Onset flat plate (Theodorsen): V = 77.48 m/s, f = 0.1940 Hz, V/(fB) = 12.88, torsion mode (determinant)",
+            "Onset V = 77.48 m/s, f = 0.1940 Hz, V/(fB) = 12.88: flat plate (Theodorsen), torsion mode (determinant)",
         ],
     );
 }
