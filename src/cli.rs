@@ -5,6 +5,7 @@ mod bridge;
 mod buffeting;
 mod buffeting_page;
 mod campaign;
+mod command;
 mod common;
 mod compare;
 mod coverage;
@@ -53,8 +54,9 @@ pub use answer::Answer;
 
 use crate::error::{Error, Result};
 use answer::{FAILED, NOT_MET};
-use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser};
 use clap_complete::Shell;
+use command::Command;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
@@ -111,71 +113,6 @@ struct Cli {
     /// What is set in it.
     #[arg(skip)]
     set: Vec<String>,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    Demo(demo::DemoArgs),
-    New(new::NewArgs),
-    Study(study::RunStudyArgs),
-    Report(report::ReportArgs),
-    Plot(plot::PlotArgs),
-    /// Rebuild the forced-vibration records of a study's deck and write them as CSV
-    ///
-    /// Example: aerodeck tunnel study.toml
-    #[command(verbatim_doc_comment)]
-    Tunnel(common::StudyArgs),
-    #[command(subcommand)]
-    Campaign(campaign::CampaignCommand),
-    Process(process::ProcessArgs),
-    /// Train the models of a study from its records (see `tunnel`) and tables
-    ///
-    /// Example: aerodeck train study.toml
-    #[command(verbatim_doc_comment)]
-    Train(common::StudyArgs),
-    Flutter(flutter::FlutterArgs),
-    MonteCarlo(monte_carlo::MonteCarloArgs),
-    Simulate(simulate::SimulateArgs),
-    /// Static equilibrium over wind speed, linear quasi-steady model, its onset, and a nonlinear run in gusts
-    ///
-    /// Example: aerodeck quasi-steady wind.toml
-    #[command(verbatim_doc_comment)]
-    QuasiSteady(wind::WindArgs),
-    /// RMS response to turbulence over wind speed, in the frequency and in the time domain
-    ///
-    /// Example: aerodeck buffeting wind.toml
-    #[command(verbatim_doc_comment)]
-    Buffeting(wind::WindArgs),
-    #[command(subcommand)]
-    Bridge(bridge::BridgeCommand),
-    #[command(subcommand)]
-    Fmu(fmu::FmuCommand),
-    #[command(subcommand)]
-    Ssp(ssp::SspCommand),
-    #[command(subcommand)]
-    Derivatives(derivatives::Derivatives),
-    Validate(validate::ValidateArgs),
-    /// Repeat the thesis's headline: discrete Laguerre and rational functions on its own deck, 37.6 m/s
-    ///
-    /// Example: aerodeck thesis --out thesis
-    #[command(verbatim_doc_comment)]
-    Thesis {
-        /// Write thesis.html into this folder: every figure and table that can be computed, its numbers beside ours.
-        #[arg(long)]
-        out: Option<PathBuf>,
-    },
-    Select(select::SelectArgs),
-    Coverage(coverage::CoverageArgs),
-    #[command(subcommand)]
-    Compare(compare::Compare),
-    /// Print the completions of a shell
-    ///
-    /// Example: aerodeck completions bash > ~/.local/share/bash-completion/completions/aerodeck
-    #[command(verbatim_doc_comment)]
-    Completions {
-        /// The shell.
-        shell: Shell,
-    },
 }
 
 /// Every command with what it does, the options of all and the exit codes, in Markdown: `docs/commands.md`.

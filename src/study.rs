@@ -38,7 +38,7 @@ pub(crate) use processed::{processed_study_text, read_section};
 pub use records::RecordSet;
 pub(crate) use reference_lines::derivative_lines;
 pub use routes::low_frequency_limit;
-pub(crate) use routes::{Route, RouteTable, route_table, without_lags};
+pub(crate) use routes::{Route, RouteTable, route_table};
 pub use speeds::{FlutterBlock, SpeedRange};
 pub use stepped::{SteppedAnswer, SteppedOnset, stepped_onset};
 pub(crate) use wind::{

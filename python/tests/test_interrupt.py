@@ -33,9 +33,7 @@ except KeyboardInterrupt:
         "aerodeck.onsets(section, model, {'torsion.frequency_hz': np.linspace(4, 6, 50_000_000)}, progress=told)",
         "aerodeck.monte_carlo(section, model, {'torsion.frequency_hz': {'kind': 'lognormal', 'coefficient_of_variation': 0.05}},"
         " samples=50_000_000, progress=told)",
-        # the first call loads what the package needs of NumPy, which no signal may end half way
-        "aerodeck.sweep(section, model, [10.0]); os.write(1, b'working\\n');"
-        " aerodeck.sweep(section, model, np.linspace(1, 40, 3_000_000))",
+        "os.write(1, b'working\\n'); aerodeck.sweep(section, model, np.linspace(1, 40, 3_000_000))",
     ],
     ids=["onsets", "monte_carlo", "sweep"],
 )

@@ -54,8 +54,8 @@ pub(crate) fn run(args: &RunStudyArgs, progress: &Progress) -> Result<Answer> {
     run_chain(study, &text, file, out, growing, progress)
 }
 
-/// The whole chain of a study into `out`, with its text and the file that this stands in (none when it was read otherwise or changed). A stage that fails is reported in its place and leaves the others as they are; then the
-/// answer did not pass.
+/// The whole chain of a study into `out`, with its text and the file that this stands in (none when it was read otherwise or
+/// changed). A stage that fails is reported in its place and leaves the others as they are; then the answer did not pass.
 pub(crate) fn run_chain(
     study: Study,
     text: &str,

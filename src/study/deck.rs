@@ -72,7 +72,8 @@ impl Deck {
     /// The deck that the study names.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::Error::Input) for a name that is none and a table that is wrong; [`Error::Io`](crate::Error::Io) for a file that cannot be read.
+    /// [`Error::Input`](crate::Error::Input) for a name that is none and a table that is wrong;
+    /// [`Error::Io`](crate::Error::Io) for a file that cannot be read.
     pub fn load(study: &Study) -> Result<Self> {
         let name = study.deck.source.trim();
         let dofs = study.section.dofs();

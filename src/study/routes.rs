@@ -9,7 +9,6 @@ mod limit;
 mod steady;
 
 pub use limit::low_frequency_limit;
-pub(crate) use limit::without_lags;
 
 use super::{Deck, Study};
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Transfer};

@@ -127,44 +127,6 @@ fn a_bridge_without_one_of_its_modes_is_judged_with_all() {
     assert_eq!(left_out["severity"], "severe");
 }
 
-/// A response to turbulence, made or of a file, begins with the verdict that the flutter of the bridge has.
-#[test]
-fn a_requirement_is_judged_beside_the_response_of_a_bridge() {
-    let folder = folder();
-    let file = folder.path().join("bridge.toml");
-    let text = fs::read_to_string(&file)
-        .unwrap()
-        .replace(
-            "motions =",
-            "static = { drag = 0.08, lift_slope = 4.0, moment_slope = 1.1 }\nmotions =",
-        )
-        .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 90.0");
-    let block = "[buffeting]\nnodes = [\"1081\"]\n\
-         vertical = { spectrum = { shape = { kind = \"kaimal\" }, length_m = 15.0, intensity = 0.06 } }\n\
-         time = { records = 2, duration_s = 20.0, step_s = 0.1, seed = 3 }\n";
-    fs::write(&file, text + block).unwrap();
-    let run = ["bridge", "buffeting", "bridge.toml", "--speed", "30"];
-    for more in [&["--field"][..], &["--turbulence", "turbulence.csv"]] {
-        let (code, said, error) = aerodeck(folder.path(), &[&run[..], more].concat());
-        assert!(
-            said.contains(": ✗ NOT MET, required 90 m/s"),
-            "{said}{error}"
-        );
-        assert_eq!(code, 3);
-    }
-    let page = fs::read_to_string(folder.path().join("buffeting.html")).unwrap();
-    for part in [
-        "<section class=\"card not-met\">",
-        "✗ NOT MET, required 90 m/s",
-        "With any of these nothing is met",
-        "variance inside the tested range of K: ",
-        "their RMS differs from that of the tables by up to",
-        "time domain: 2 records of 20 s, every 0.1 s, seed 3",
-    ] {
-        assert!(page.contains(part), "`{part}` is not on the page");
-    }
-}
-
 /// Nodes that no section takes have no forces, and that is said.
 #[test]
 fn nodes_in_no_section_are_doubted() {

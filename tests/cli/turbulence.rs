@@ -1,5 +1,6 @@
 //! Turbulence that a study states.
 
+use crate::bridge::folder;
 use crate::command::{aerodeck, flowing, succeeds};
 use serde_json::Value;
 use std::fs;
@@ -43,4 +44,75 @@ fn a_study_states_its_turbulence() {
     assert_eq!(plain["onsets"], fast["onsets"]);
     assert_eq!(plain["verdict"], fast["verdict"]);
     assert_eq!(fast["failed"][0]["stage"], "buffeting");
+}
+
+/// A response to turbulence, made or of a file, begins with the verdict that the flutter of the bridge has.
+#[test]
+fn a_requirement_is_judged_beside_the_response_of_a_bridge() {
+    let folder = folder();
+    let file = folder.path().join("bridge.toml");
+    let text = fs::read_to_string(&file)
+        .unwrap()
+        .replace(
+            "motions =",
+            "static = { drag = 0.08, lift_slope = 4.0, moment_slope = 1.1 }\nmotions =",
+        )
+        .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 90.0");
+    let block = "[buffeting]\nnodes = [\"1081\"]\n\
+         vertical = { spectrum = { shape = { kind = \"kaimal\" }, length_m = 15.0, intensity = 0.06 }, admittance = { kind = \"liepmann\" } }\n\
+         time = { records = 2, duration_s = 20.0, step_s = 0.1, seed = 3 }\n";
+    fs::write(&file, text + block).unwrap();
+    let run = ["bridge", "buffeting", "bridge.toml", "--speed", "30"];
+    for more in [&["--field"][..], &["--turbulence", "turbulence.csv"]] {
+        let (code, said, error) = aerodeck(folder.path(), &[&run[..], more].concat());
+        assert!(
+            said.contains(": ✗ NOT MET, required 90 m/s"),
+            "{said}{error}"
+        );
+        assert_eq!(code, 3);
+    }
+    // the record is a part of one period of the slowest mode, here also in km/h, and an FMU of it has another admittance
+    let field = fs::read_to_string(folder.path().join("turbulence.csv")).unwrap();
+    let in_km_h = |line: &str| match line.split_once(',') {
+        Some((time, gusts)) if time.parse::<f64>().is_ok() => {
+            let each = gusts.split(',').map(|x| 3.6 * x.parse::<f64>().unwrap());
+            let each: Vec<String> = each.map(|x| x.to_string()).collect();
+            format!("{time},{}\n", each.join(","))
+        }
+        _ => format!("{line}\n"),
+    };
+    let fast: String = field.lines().map(in_km_h).collect();
+    fs::write(folder.path().join("km_h.csv"), fast).unwrap();
+    let told = [&run[..], &["--turbulence", "km_h.csv", "--json"]].concat();
+    let (_, said, _) = aerodeck(folder.path(), &told);
+    for part in ["does not come into motion in it", "in km/h it would be"] {
+        assert!(said.contains(part), "`{part}` is not in {said}");
+    }
+    let export = [
+        "fmu",
+        "export",
+        "bridge.toml",
+        "--bridge",
+        "--turbulence",
+        "turbulence.csv",
+    ];
+    let (_, _, warned) = aerodeck(folder.path(), &export);
+    let part = "the admittance none on u and w, where [buffeting] states liepmann for w";
+    assert!(warned.contains(part), "{warned}");
+    let (_, _, warned) = aerodeck(
+        folder.path(),
+        &[&export[..], &["--admittance", "liepmann", "--force"]].concat(),
+    );
+    assert!(!warned.contains("where [buffeting] states"), "{warned}");
+    let page = fs::read_to_string(folder.path().join("buffeting.html")).unwrap();
+    for part in [
+        "<section class=\"card not-met\">",
+        "✗ NOT MET, required 90 m/s",
+        "With any of these nothing is met",
+        "variance inside the tested range of K: ",
+        "their RMS differs from that of the tables by up to",
+        "time domain: 2 records of 20 s, every 0.1 s, seed 3",
+    ] {
+        assert!(page.contains(part), "`{part}` is not on the page");
+    }
 }

@@ -38,6 +38,7 @@ mod speed_onsets;
 mod speed_prior;
 mod speed_scatter;
 mod statistics;
+mod student_scale;
 mod table_covariance;
 mod with_data;
 
@@ -56,6 +57,7 @@ pub use sampling::SampledOnsets;
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
 pub use statistics::sample_quantile;
+pub use student_scale::StudentScale;
 pub use table_covariance::table_uncertainty;
 pub use with_data::UncertaintyWithData;
 

@@ -1,8 +1,7 @@
 //! Flutter and divergence of a bridge, with the modes behind them.
 
-use super::super::without_lags;
 use super::BridgeStudy;
-use crate::aerodynamics::{Transfer, TransferMatrix};
+use crate::aerodynamics::{RationalModel, Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -222,7 +221,7 @@ fn table_divergence(study: &BridgeStudy) -> Result<Option<TableDivergence>> {
         };
         let at_rest = static_part(group.forces.dofs(), &group.forces.transfer(range.min)?);
         let (e0, zero) = (at_rest.map(|z| z.re), at_rest.map(|_| 0.0));
-        group.forces = Arc::new(without_lags(group.forces.dofs(), e0, zero));
+        group.forces = Arc::new(RationalModel::without_lags(group.forces.dofs(), e0, zero));
         lowest = Some(lowest.map_or(range.min, |k| if k > range.min { k } else { range.min }));
     }
     let Some(k) = lowest else { return Ok(None) };

@@ -1,6 +1,6 @@
 //! The self-excited forces of one section of a bridge file.
 
-use super::super::{KnownUncertainty, uncertainty_beside, without_lags};
+use super::super::{KnownUncertainty, uncertainty_beside};
 use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
@@ -216,7 +216,7 @@ impl SectionForceModels {
             LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
         // rational functions without lags say the same in a form that is saved
         let (e0, e1) = theory.feed_through();
-        let saved = without_lags(&block.motions, e0.clone(), e1.clone());
+        let saved = RationalModel::without_lags(&block.motions, e0.clone(), e1.clone());
         Self {
             method: "quasi-steady theory".to_owned(),
             source: format!("static coefficients of {}", block.name),

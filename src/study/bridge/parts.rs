@@ -1,8 +1,7 @@
 //! A bridge in parts: its structure as one unit, the wind forces on the strips of its sections as another.
 
-use super::super::without_lags;
 use super::{BridgeExportOptions, BridgeStudy};
-use crate::aerodynamics::{GustForce, RationalAdmittance, Transfer};
+use crate::aerodynamics::{GustForce, RationalAdmittance, RationalModel, Transfer};
 use crate::bridge::{StripGroup, motion_index};
 use crate::error::{Error, Result};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
@@ -48,7 +47,7 @@ impl SectionForcePart {
 /// No forces of heave and rotation, whatever moves.
 fn no_forces() -> Model {
     let zero = || DMatrix::zeros(2, 2);
-    Model::Rational(without_lags(&Dof::TWO, zero(), zero()))
+    Model::Rational(RationalModel::without_lags(&Dof::TWO, zero(), zero()))
 }
 
 impl BridgeStudy {

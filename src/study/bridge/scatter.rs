@@ -7,10 +7,10 @@ use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, ensure, non_negative};
 use crate::files::bridge::BridgeSectionBlock;
-use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
+use crate::flutter::{NearbyOnset, Onset, OnsetInterval, find_onset_of_modes};
 use crate::numbered::{OnDone, numbered};
 use crate::signal::random_stream;
-use crate::uncertainty::{ModelDraws, SampledOnsets};
+use crate::uncertainty::{ModelDraws, SampledOnsets, StudentScale};
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -58,7 +58,8 @@ impl Scatter {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DerivativeScatter {
-    /// As far as the tests leave the coefficients of the models open: normal, by the covariance of each section's fit.
+    /// As far as the tests leave the coefficients of the models open: by the covariance of each section's fit, Student's t with the
+    /// degrees of freedom of the onset's interval.
     Measured,
     /// Standard deviation over the mean of each entry of the matrix of self-excited forces, normal: the derivatives of one
     /// force by one motion together.
@@ -117,6 +118,7 @@ impl BridgeStudy {
             study: self,
             scatter,
             forces: self.drawn_forces(scatter.derivatives)?,
+            scale: self.student_scale(onset, scatter.derivatives)?,
             nearby: NearbyOnset::new(&self.by_model, &onset.at)?,
         };
         let found = numbered(scatter.samples, progress, |i| sampler.onset(i as u64))?;
@@ -130,6 +132,27 @@ impl BridgeStudy {
             scatter: *scatter,
             onsets,
         })
+    }
+
+    /// What makes Gaussian draws of a covariance those of Student's t; none for factors that are stated.
+    fn student_scale(
+        &self,
+        onset: &Onset,
+        scatter: DerivativeScatter,
+    ) -> Result<Option<StudentScale>> {
+        if scatter != DerivativeScatter::Measured {
+            return Ok(None);
+        }
+        match self.onset_interval(onset)? {
+            OnsetInterval::Known {
+                degrees_of_freedom, ..
+            }
+            | OnsetInterval::Undetermined {
+                degrees_of_freedom, ..
+            } => StudentScale::new(degrees_of_freedom).map(Some),
+            // stated without errors
+            OnsetInterval::Spread { .. } | OnsetInterval::None { .. } => Ok(None),
+        }
     }
 
     /// What the forces of every section are drawn from.
@@ -196,6 +219,8 @@ struct OnsetSampler<'a> {
     scatter: &'a Scatter,
     /// In the order of the sections.
     forces: Vec<ForceDraws<'a>>,
+    /// One for the forces of all sections of a sample.
+    scale: Option<StudentScale>,
     nearby: NearbyOnset,
 }
 
@@ -248,6 +273,8 @@ impl OnsetSampler<'_> {
 
     /// Groups of one section share what was measured on it; given factors are drawn for each group by itself.
     fn scatter_forces(&self, bridge: &mut Bridge, random: &mut impl Rng, part: f64) -> Result<()> {
+        let scale = self.scale.map_or(1.0, |scale| scale.draw(random));
+        let part = part * scale;
         let mut models = vec![None; self.forces.len()];
         for (group, &section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
             group.forces = match (&self.forces[section], &models[section]) {
@@ -286,6 +313,7 @@ mod tests {
             study: &study,
             scatter: &scatter,
             forces: study.drawn_forces(scatter.derivatives).unwrap(),
+            scale: None,
             nearby: NearbyOnset::new(&study.by_model, &mean.onset().unwrap().at).unwrap(),
         };
         let mut searched = 0;

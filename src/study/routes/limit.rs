@@ -1,11 +1,11 @@
 //! Forces in slow motion, as affine functions of `iK`: the limit of a model, and the flat plate without lag.
 
 use super::super::Study;
-use crate::aerodynamics::{Lags, RationalModel, Transfer};
+use crate::aerodynamics::{RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::find_onset;
-use crate::section::{Dof, Structure};
+use crate::section::Structure;
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
@@ -13,19 +13,7 @@ use nalgebra::DMatrix;
 pub fn low_frequency_limit(model: &dyn Transfer, k: ReducedFrequency) -> Result<RationalModel> {
     let g = model.transfer(k)?;
     let (a1, a2) = (g.map(|z| z.re), g.map(|z| z.im / k.full_width()));
-    Ok(without_lags(model.dofs(), a1, a2))
-}
-
-/// Forces that follow displacements by `a1` and rates by `a2`, at once.
-pub(crate) fn without_lags(dofs: &[Dof], a1: DMatrix<f64>, a2: DMatrix<f64>) -> RationalModel {
-    RationalModel {
-        dofs: dofs.to_vec(),
-        a3: DMatrix::zeros(a1.nrows(), a1.ncols()),
-        a1,
-        a2,
-        lags: Lags::Shared(Vec::new()),
-        lag_terms: Vec::new(),
-    }
+    Ok(RationalModel::without_lags(model.dofs(), a1, a2))
 }
 
 /// The flat plate with `C = 1` and without apparent mass; its own limit has a logarithm in `K`.
@@ -39,7 +27,7 @@ pub(super) fn steady_flat_plate() -> RationalModel {
         -pi / 2.0,
         -pi / 8.0 + pi / 2.0 * quarter,
     ];
-    without_lags(&plate.dofs, plate.a1, DMatrix::from_row_slice(2, 2, &rates))
+    RationalModel::without_lags(&plate.dofs, plate.a1, DMatrix::from_row_slice(2, 2, &rates))
 }
 
 /// Onset of an affine model, m/s.

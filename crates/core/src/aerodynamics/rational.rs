@@ -123,6 +123,18 @@ fn check_square(place: &str, n: usize, terms: &[&DMatrix<f64>]) -> Result<()> {
 }
 
 impl RationalModel {
+    /// Forces that follow displacements by `a1` and rates by `a2`, at once.
+    pub fn without_lags(dofs: &[Dof], a1: DMatrix<f64>, a2: DMatrix<f64>) -> Self {
+        Self {
+            dofs: dofs.to_vec(),
+            a3: DMatrix::zeros(a1.nrows(), a1.ncols()),
+            a1,
+            a2,
+            lags: Lags::Shared(Vec::new()),
+            lag_terms: Vec::new(),
+        }
+    }
+
     /// Checks that shapes agree and lags are positive.
     pub fn validate(&self) -> Result<()> {
         let n = self.dofs.len();

@@ -6,10 +6,11 @@ use super::scatter::CovarianceFactor;
 use crate::error::{Error, Result};
 use crate::section::SectionModel;
 use crate::signal::random_stream;
+use crate::uncertainty::StudentScale;
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{ChiSquared, StandardNormal};
+use rand_distr::StandardNormal;
 
 /// Draws samples. One stream of the generator per sample, so that neither threads nor their order matter.
 #[derive(Debug, Clone)]
@@ -25,29 +26,6 @@ pub(super) struct Sampler {
     covariance: Option<CovarianceFactor>,
     /// What makes Gaussian draws of a covariance those of Student's t; `None` where it has no degrees of freedom.
     scale: Option<StudentScale>,
-}
-
-/// `√(ν/χ²_ν)`: Gaussian numbers times one of it are multivariate Student's t.
-#[derive(Debug, Clone, Copy)]
-struct StudentScale {
-    freedom: f64,
-    chi_squared: ChiSquared<f64>,
-}
-
-impl StudentScale {
-    fn new(freedom: f64) -> Result<Self> {
-        let chi_squared = ChiSquared::new(freedom).map_err(|e| {
-            Error::Numerical(format!("draws with {freedom} degrees of freedom: {e}"))
-        })?;
-        Ok(Self {
-            freedom,
-            chi_squared,
-        })
-    }
-
-    fn draw(&self, random: &mut ChaCha8Rng) -> f64 {
-        (self.freedom / random.sample(self.chi_squared)).sqrt()
-    }
 }
 
 /// One sample, kept from one to the next so that nothing is allocated anew.
