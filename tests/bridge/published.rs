@@ -368,16 +368,22 @@ fn scatter_as_measured_is_the_interval() {
         .scattered_onset(&found, &measured, &|_, _| ())
         .unwrap();
     let OnsetInterval::Known {
-        standard_error_m_s, ..
+        standard_error_m_s,
+        degrees_of_freedom,
+        ..
     } = study.onset_interval(&found).unwrap()
     else {
         panic!("no interval");
     };
-    println!("{scattered:?} beside a standard error of {standard_error_m_s} m/s");
+    println!(
+        "{scattered:?} beside a standard error of {standard_error_m_s} m/s, {degrees_of_freedom}"
+    );
+    // the deviation of Student's t
+    let of_students = (degrees_of_freedom / (degrees_of_freedom - 2.0)).sqrt();
     assert_eq!(scattered.onsets.without_onset, 0);
     // 400 samples know a standard deviation to 3.5 %, a mean to a twentieth of it; the rest is the curvature
     near(
-        scattered.onsets.standard_deviation_m_s / standard_error_m_s,
+        scattered.onsets.standard_deviation_m_s / (standard_error_m_s * of_students),
         1.0,
         0.12,
     );
