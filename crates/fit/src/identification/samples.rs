@@ -305,3 +305,45 @@ pub(super) fn shares(entries: &[&EntrySamples]) -> Vec<f64> {
     };
     entries.iter().map(share).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::FlatPlate;
+
+    #[test]
+    fn weights_are_those_of_the_formulae() {
+        let ks = [0.1, 0.5].map(ReducedFrequency::from_full_width);
+        let samples = sample_model(&FlatPlate::default(), &ks).unwrap();
+        assert_eq!(samples.len(), 16);
+        let g = FlatPlate::default().transfer(ks[1]).unwrap();
+        for (weights, expected) in [
+            (FrequencyWeights::None, 1.0),
+            (FrequencyWeights::Derivatives, 4.0),
+            (FrequencyWeights::Relative, 1.0 / g[(0, 1)].norm()),
+        ] {
+            let (entries, notes) = sort_by_entry(&samples, &Dof::TWO, weights).unwrap();
+            assert!(notes.is_empty());
+            let row = entries[1].rows.iter().find(|r| r.k == 0.5).unwrap();
+            assert!((row.weight / expected - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn missing_entries_and_bad_numbers_are_named() {
+        let ks = [0.1, 0.5].map(ReducedFrequency::from_full_width);
+        let mut samples = sample_model(&FlatPlate::default(), &ks).unwrap();
+        let message = |s: &[TransferSample]| {
+            sort_by_entry(s, &Dof::TWO, FrequencyWeights::None)
+                .unwrap_err()
+                .to_string()
+        };
+        samples[3].value = f64::NAN;
+        assert_eq!(
+            message(&samples),
+            "sample 3: expected a finite value, found NaN"
+        );
+        samples.retain(|s| s.motion == Dof::Vertical);
+        assert!(message(&samples).contains("vertical force due to torsion motion"));
+    }
+}
