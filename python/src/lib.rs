@@ -31,6 +31,8 @@ use pyo3::prelude::*;
 fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     // loads NumPy's interface, which must not be interrupted half way by a Ctrl-C in the first call
+    // (imported first, so that one that cannot be imported is an error and no panic)
+    m.py().import("numpy")?;
     numpy::PyArray1::<f64>::from_slice(m.py(), &[]);
     m.add_class::<derivatives::Derivatives>()?;
     m.add_class::<records::Records>()?;

@@ -112,8 +112,8 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 88_921),
-        ("code lines of the core", core, 18_486),
+        ("code lines", found.line_count(), 88_999),
+        ("code lines of the core", core, 18_514),
         ("types", found.type_count(), 1_038),
         ("names of several types", found.names_used_twice(), 0),
         (

@@ -9,6 +9,7 @@
 //! differential expression in microarray experiments", *Stat. Appl. Genet. Mol. Biol.* 3, 2004).
 
 use super::statistics::incomplete_beta;
+use crate::signal::mean;
 use statrs::function::gamma::digamma;
 
 /// Test points at each speed and motion of the measured decks: `φ − 1` goes with their number, since it is measured against the
@@ -31,6 +32,16 @@ pub(super) const MEASURED: [(&str, [f64; 4]); 5] = [
     ("LN21-6100", [1.16, 2.16, 2.63, 3.01]),
 ];
 
+/// Standard deviations between speeds of the same decks and forces, in per cent of the transfer functions (in phase: hundredths of a
+/// radian), as they were counted. The same test computes them anew.
+pub(super) const MEASURED_PERCENT: [(&str, [f64; 4]); 5] = [
+    ("LN20-5500", [3.33, 2.02, 0.59, 0.95]),
+    ("LN21-5200", [1.41, 1.01, 0.31, 0.40]),
+    ("LN21-5500", [3.02, 2.30, 1.32, 1.69]),
+    ("LN21-5800", [5.76, 2.74, 1.23, 1.39]),
+    ("LN21-6100", [16.15, 71.34, 6.70, 6.54]),
+];
+
 /// Distribution of the ratio of the variance between speeds to that of independent test runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SpeedPrior {
@@ -38,6 +49,10 @@ pub(super) struct SpeedPrior {
     pub ratio: f64,
     /// Its degrees of freedom `ν₀`.
     pub degrees_of_freedom: f64,
+    /// Geometric means of the standard deviations between speeds over the measured decks, relative to the transfer functions: lift in
+    /// size and in phase, moment in size and in phase. A ratio to the scatter of runs says nothing where runs hardly scatter (long
+    /// records, a table without noise): with tests at one speed no force is taken to scatter less than this.
+    pub least: [f64; 4],
 }
 
 impl SpeedPrior {
@@ -45,7 +60,17 @@ impl SpeedPrior {
     pub(super) fn measured(without: Option<&str>) -> Self {
         let decks = MEASURED.iter().filter(|(name, _)| Some(*name) != without);
         let ratios: Vec<f64> = decks.flat_map(|(_, ratios)| *ratios).collect();
-        Self::from_ratios(&ratios, MEASURED_FREEDOM)
+        let least = [0, 1, 2, 3].map(|column| {
+            let others = MEASURED_PERCENT
+                .iter()
+                .filter(|(name, _)| Some(*name) != without);
+            let logs: Vec<f64> = others.map(|(_, percent)| percent[column].ln()).collect();
+            0.01 * mean(&logs).exp()
+        });
+        Self {
+            least,
+            ..Self::from_ratios(&ratios, MEASURED_FREEDOM)
+        }
     }
 
     /// From ratios that were estimated with `freedom` degrees of freedom each.
@@ -57,6 +82,7 @@ impl SpeedPrior {
         Self {
             ratio: (mean - bias(freedom) + bias(PRIOR_FREEDOM)).exp(),
             degrees_of_freedom: PRIOR_FREEDOM,
+            least: [0.0; 4],
         }
     }
 
@@ -88,6 +114,15 @@ impl SpeedPrior {
         Self {
             ratio: sum / degrees_of_freedom,
             degrees_of_freedom,
+            ..self
+        }
+    }
+
+    /// The same for a force whose variance between speeds, over that of its blocks, is not taken to be below `beyond`.
+    pub(super) fn at_least(self, beyond: f64) -> Self {
+        Self {
+            ratio: self.ratio.max(1.0 + beyond),
+            ..self
         }
     }
 }

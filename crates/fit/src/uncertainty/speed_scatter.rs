@@ -10,7 +10,7 @@
 //! therefore pooled over its motions, in absolute size: on measured decks lift due to heave and lift due to rotation, whose
 //! transfer functions differ fivefold, scatter by the same amount per unit of dimensionless motion, and so do the moments, at a
 //! tenth of it. And its ratio to the variance that independent blocks would give is drawn towards what measured decks
-//! show ([`super::speed_prior`]); with tests at one speed it is theirs.
+//! show ([`super::speed_prior`]); with tests at one speed it is theirs, and no force is taken to scatter less than theirs do.
 //!
 //! What each speed says alone is [`CoefficientUncertainty::at_each_speed`].
 
@@ -179,8 +179,14 @@ pub(super) fn between_speeds(
     for (i, (&force, units)) in dofs.iter().zip(units).enumerate() {
         let size: f64 = (0..n).map(|j| judge.mean_square(i, j)).sum::<f64>() / n as f64;
         let [size_ratio, phase_ratio] = [0, 1].map(|t| units[t].as_ref().and_then(|u| u.ratio));
+        let least = match force {
+            Dof::Torsion => [of_deck.least[2], of_deck.least[3]],
+            Dof::Lateral | Dof::Vertical => [of_deck.least[0], of_deck.least[1]],
+        };
+        let mut least = least.into_iter().map(|relative| relative * relative * size);
         let [size, phase] = units.map(|unit| {
-            let effect = unit.and_then(|u| u.drawn(of_deck, spare));
+            let least = least.next().unwrap_or(0.0);
+            let effect = unit.and_then(|u| u.drawn(of_deck, spare, least));
             let Some((variance, effect)) = effect.filter(|_| size > 0.0) else {
                 return 0.0;
             };
@@ -226,11 +232,12 @@ struct UnitEffect {
 }
 
 impl UnitEffect {
-    /// Its variance and the effect, drawn towards a prior; none where the speeds scatter no more than the blocks.
-    fn drawn(self, prior: SpeedPrior, spare: f64) -> Option<(f64, Effect)> {
+    /// Its variance and the effect, drawn towards a prior; none where the speeds scatter no more than the blocks. With tests at one
+    /// speed the variance is not below `least`.
+    fn drawn(self, prior: SpeedPrior, spare: f64, least: f64) -> Option<(f64, Effect)> {
         let known = match self.ratio {
             Some(ratio) => prior.after(ratio, spare),
-            None => prior,
+            None => prior.at_least(least / self.of_blocks),
         };
         let variance = (known.ratio - 1.0) * self.of_blocks;
         (variance > 0.0).then(|| {
@@ -380,7 +387,8 @@ impl SpeedScatter {
             ),
             None => format!(
                 "one mean speed{speeds}: what another speed would change is taken from measured decks, not from these tests \
-                 (variance {prior:.1} times that of independent blocks; standard deviations: {forces})"
+                 (variance {prior:.1} times that of independent blocks, and no force less than those decks do; standard deviations: \
+                 {forces})"
             ),
         }
     }

@@ -10,10 +10,20 @@ const UNTURNED: f64 = 0.1;
 const JUMP: f64 = 0.6;
 /// Greatest distance of neighbours over the half wave of a mode.
 const SPACING: f64 = 0.5;
+/// Motion at an end over the greatest of a mode: of one that ends where it moves most, and of one that is held.
+const ENDS_HIGH: f64 = 0.9;
+const ENDS_HELD: f64 = 0.2;
+/// Slope at an end times the length, over the greatest motion.
+const ENDS_LEVEL: f64 = 0.5;
 
 /// What is odd about the shapes of the modes: of each kind the first.
 pub(super) fn of_shapes(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
-    let found = [unturned(bridge), jump(bridge), sparse(bridge, length_m)];
+    let found = [
+        unturned(bridge),
+        jump(bridge),
+        sparse(bridge, length_m),
+        cut(bridge, length_m),
+    ];
     found.into_iter().flatten().collect()
 }
 
@@ -83,6 +93,29 @@ fn sparse(bridge: &Bridge, length_m: f64) -> Option<Finding> {
         place(mode)
     );
     Some(contradiction("nodes", text).otherwise("more nodes have to be exported".to_owned()))
+}
+
+/// A vertical mode that ends where it moves most, level: half of a girder. The free end of a cantilever slopes by 1.38 of its motion over
+/// the length or more, and the other end of either is held.
+fn cut(bridge: &Bridge, length_m: f64) -> Option<Finding> {
+    let last = bridge.nodes.len().checked_sub(2)?;
+    let is_cut = |mode: &&BridgeMode| {
+        let (at, largest) = (|i: usize| mode.shape[i][0], greatest(mode, 0));
+        [(0, 1, last + 1), (last + 1, last, 0)]
+            .into_iter()
+            .any(|(end, next, other)| {
+                let gap = (bridge.nodes[end].along_m - bridge.nodes[next].along_m).abs();
+                let slope = (at(end) - at(next)).abs() / gap * length_m;
+                bridge.main_motion(mode) == Some(0)
+                    && at(end).abs() > ENDS_HIGH * largest
+                    && at(other).abs() < ENDS_HELD * largest
+                    && slope < ENDS_LEVEL * largest
+            })
+    };
+    let mode = bridge.modes.iter().find(is_cut)?;
+    let text = "it ends at the last node of the girder level and where it moves most".to_owned();
+    let otherwise = "are these the nodes of half a girder, with masses of the whole?".to_owned();
+    Some(contradiction(place(mode), text).otherwise(otherwise))
 }
 
 pub(super) fn place(mode: &BridgeMode) -> String {

@@ -85,7 +85,7 @@ fn intervals_hold_a_truth_that_differs_between_speeds() {
     assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
 }
 
-/// The stored ratios of the prior are what the embedded decks give; where they are not, the message is what to store.
+/// The stored ratios and deviations of the prior are what the embedded decks give; where they are not, the message is what to store.
 #[test]
 fn ratios_are_those_of_the_embedded_decks() {
     let fit = FrequencyFit {
@@ -97,19 +97,24 @@ fn ratios_are_those_of_the_embedded_decks() {
         let table = embedded::deck(name).unwrap();
         let (_, estimate) = fitted(&table.samples(&Dof::TWO), &fit);
         let forces = estimate.speeds.unwrap().forces;
-        let of_force = |i: usize| {
-            [
-                forces[i].size_ratio.unwrap(),
-                forces[i].phase_ratio.unwrap(),
-            ]
-        };
-        let ([a, b], [c, d]) = (of_force(0), of_force(1));
-        [a, b, c, d]
+        let ratios = forces
+            .iter()
+            .flat_map(|f| [f.size_ratio.unwrap(), f.phase_ratio.unwrap()]);
+        let percent = forces
+            .iter()
+            .flat_map(|f| [100.0 * f.size, 100.0 * f.phase]);
+        ratios.chain(percent).collect::<Vec<f64>>()
     });
-    let stored = speed_prior::MEASURED.map(|(_, ratios)| ratios);
-    let mut pairs = found.iter().flatten().zip(stored.iter().flatten());
-    // two decimals are stored
-    assert!(pairs.all(|(a, b)| (a - b).abs() < 0.006), "{found:.2?}");
+    let ratios = speed_prior::MEASURED.map(|(_, ratios)| ratios);
+    let percent = speed_prior::MEASURED_PERCENT.map(|(_, percent)| percent);
+    for (deck, found) in found.iter().enumerate() {
+        let stored = ratios[deck].iter().chain(&percent[deck]);
+        // two decimals are stored
+        assert!(
+            found.len() == 8 && found.iter().zip(stored).all(|(a, b)| (a - b).abs() < 0.006),
+            "{found:.2?}"
+        );
+    }
 }
 
 /// What the prior is worth on decks that it was not made of: every deck is judged by the other four. The joint interval holds

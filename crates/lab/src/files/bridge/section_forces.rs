@@ -31,18 +31,38 @@ pub fn read_section_forces(path: &Path) -> Result<ModalSectionForces> {
     parsed(&text).map_err(|e| e.in_file(path))
 }
 
+/// What the name of a force may end with.
+const UNITS: [&str; 12] = [
+    "n", "kn", "mn", "nm", "knm", "mnm", "pa", "kpa", "mpa", "m", "mm", "rad",
+];
+
+/// The unit that a name ends with.
+fn unit(name: &str) -> Option<&'static str> {
+    let (_, last) = name.rsplit_once('_')?;
+    UNITS
+        .into_iter()
+        .find(|unit| last.eq_ignore_ascii_case(unit))
+}
+
 fn parsed(text: &str) -> Result<ModalSectionForces> {
     let wrong = |line: usize, expected: &str, found: &str| {
         Error::input(format!("line {line}"), expected, format!("`{found}`"))
     };
     let lines = text.lines().enumerate();
     let mut lines = lines.filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
-    let (_, header) = lines.next().unwrap_or_default();
+    let (first, header) = lines.next().unwrap_or_default();
     let cells = |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().into()).collect() };
     let header = cells(header);
     if header.len() < 3 || header[..2] != ["mode", "element"] {
         let expected = "columns mode, element and one a force";
-        return Err(wrong(1, expected, &header.join(",")));
+        return Err(wrong(first + 1, expected, &header.join(",")));
+    }
+    if let Some(bare) = header[2..].iter().find(|name| unit(name).is_none()) {
+        let expected = format!(
+            "names that end with their unit, as my_nm ({})",
+            UNITS.join(", ")
+        );
+        return Err(wrong(first + 1, &expected, bare));
     }
     let mut all = ModalSectionForces {
         names: header[2..].to_vec(),
@@ -86,8 +106,9 @@ mod tests {
         assert_eq!(all.elements[0].by_mode[&2], [-1.0]);
         for wrong in [
             "mode,element\n",
-            "mode,element,n\n1,a,x\n",
-            "mode,element,n\n1,a,1\n1,a,1\n",
+            "mode,element,my\n1,a,1\n",
+            "mode,element,n_kn\n1,a,x\n",
+            "mode,element,n_kn\n1,a,1\n1,a,1\n",
         ] {
             let said = parsed(wrong).unwrap_err().to_string();
             assert!(said.contains("line"), "{said}");
