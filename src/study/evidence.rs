@@ -76,10 +76,9 @@ pub(crate) fn section_evidence(
     let divergence = results.divergence.iter().filter(|d| of_answer(&d.model));
     evidence.divergence = divergence
         .map(|d| DivergenceReading {
-            forces: forces(&d.model, &table),
-            speed_m_s: d.speed_m_s,
             lower_m_s: d.lower_m_s,
             assumed: d.assumed.clone(),
+            ..DivergenceReading::at(&forces(&d.model, &table), d.speed_m_s)
         })
         .collect();
     if let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) {
@@ -258,8 +257,10 @@ pub(super) fn add_coefficients(
     }
     match found.equilibrium_end {
         Some(EquilibriumEnd::Divergence(last)) => {
-            let at = DivergenceReading::at(&forces, Some(last.speed_m_s));
-            evidence.divergence.push(at);
+            evidence.divergence.push(DivergenceReading {
+                measured: true,
+                ..DivergenceReading::at(&forces, Some(last.speed_m_s))
+            });
         }
         Some(end @ EquilibriumEnd::OutsideTable(_)) => {
             evidence

@@ -29,10 +29,9 @@ impl BridgeStudy {
         }
         let mut divergence = vec![DivergenceReading::at(MODELS, results.divergence_m_s)];
         divergence.extend(results.table_divergence.iter().map(|d| DivergenceReading {
-            forces: TABLES.to_owned(),
-            speed_m_s: d.speed_m_s,
             lower_m_s: d.lower_m_s,
             assumed: Some(d.assumed.clone()),
+            ..DivergenceReading::at(TABLES, d.speed_m_s)
         }));
         let mut remarks = self.notes.clone();
         let stated = self.sections.iter().all(|s| s.angle_deg.is_some());

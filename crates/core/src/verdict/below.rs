@@ -3,11 +3,16 @@
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{FlutterReading, ForceBasis};
 use super::words::speed;
-use crate::flutter::{FastMotion, the_mode};
+use crate::flutter::{FastMotion, GrowthBand, the_mode};
 
 /// What to say of wind slower than `from_m_s`, where the fastest motion has a reduced frequency above the tests. There the forces
 /// come close to those in still air; that they feed no motion is known only of forces that damp each of them.
-pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
+/// `growth` is what a scan found, also of motions out of phase with each other.
+pub(super) fn not_judged_below(
+    first: &FlutterReading,
+    from_m_s: f64,
+    growth: &[GrowthBand],
+) -> Doubt {
     let kind = DoubtKind::NotJudgedBelow {
         speed_m_s: from_m_s,
     };
@@ -17,7 +22,10 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };
     let k = range.max.full_width();
-    let open = tested.below.why_open();
+    let open = match growth.iter().any(|b| b.reduced_frequency > range.max) {
+        true => Some("a coupled motion grows there"),
+        false => tested.below.why_open(),
+    };
     let lose = "heave with rotation, and sway by itself where it moves, lose energy at";
     let what = match (open, tested.below) {
         (Some(open), _) => format!("by {} {open}", first.forces),

@@ -1,5 +1,6 @@
 //! What limits trust in a verdict: a kind with its numbers, a sentence, how much it weighs, and what would settle it.
 
+use super::critical::Phenomenon;
 use serde::{Deserialize, Serialize};
 
 /// How much a doubt weighs.
@@ -108,6 +109,8 @@ pub enum DoubtKind {
     },
     /// Two readings of the same data differ by more than their intervals.
     Contradiction {
+        /// What begins.
+        phenomenon: Phenomenon,
         /// The one.
         first: String,
         /// Its speed, m/s; `None` without growth.

@@ -11,6 +11,9 @@ use super::words::{k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
 
+/// Motions slower than this, as `K`, are no test of a moving deck: what acts on them are the forces of steady flow.
+const STEADY_K: f64 = 0.01;
+
 /// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: codes ask for tests
 /// at 0 and ±3°, and beyond half of that step those of the next angle would be nearer.
 const ROTATION_DEG: (f64, f64) = (1.0, 1.5);
@@ -150,7 +153,9 @@ impl Weighed<'_> {
             found.push(remark(why));
         }
         if from > 0.0 && !matches!(first.search, FlutterSearch::UnstableAtOrBelow(_)) {
-            found.push(not_judged_below(first, from));
+            let growth = self.evidence.growth.as_ref();
+            let bands = growth.map_or(&[][..], |g| &g.bands);
+            found.push(not_judged_below(first, from, bands));
         }
         found
     }
@@ -261,7 +266,10 @@ impl Weighed<'_> {
             k,
         };
         let text = format!("The model {}", growth.explain());
-        let settled = format!("tests at K {k:.2}, or a fit that feeds no energy there");
+        let settled = match k < STEADY_K {
+            true => "static coefficients, or tests at lower K".to_owned(),
+            false => format!("tests at K {k:.2}, or a fit that feeds no energy there"),
+        };
         Some(Doubt::new(Severity::Severe, kind, text).settled_by(settled))
     }
 
@@ -297,10 +305,8 @@ impl Weighed<'_> {
                 .settled_by(format!("{} confirmed or corrected", finding.place))
         }));
         all.extend(rotation(evidence));
-        all.extend(
-            self.asked_m_s()
-                .and_then(|asked| of_divergence(evidence, asked)),
-        );
+        let contradicted = of_divergence(evidence).zip(self.asked_m_s());
+        all.extend(contradicted.and_then(|(readings, asked)| readings.doubt(asked)));
         let assumed = evidence.divergence.iter().filter_map(|d| {
             let text = format!("Divergence of {}: {}", d.forces, d.assumed.as_ref()?);
             Some(Doubt::new(

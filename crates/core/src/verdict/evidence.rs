@@ -190,6 +190,8 @@ pub struct DivergenceReading {
     pub lower_m_s: Option<f64>,
     /// What was assumed about steady flow.
     pub assumed: Option<String>,
+    /// Whether the forces were measured in steady flow on a deck at rest.
+    pub measured: bool,
 }
 
 impl DivergenceReading {
@@ -200,6 +202,7 @@ impl DivergenceReading {
             speed_m_s,
             lower_m_s: None,
             assumed: None,
+            measured: false,
         }
     }
 }

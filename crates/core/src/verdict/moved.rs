@@ -11,6 +11,9 @@ const MOVES_AT_MOST: f64 = 0.01;
 /// Least onset of a fit without constraints that is believed, relative to the one with them.
 const BELIEVABLE: f64 = 0.5;
 
+/// How near to the end of a search an onset says nothing of one that constraints have moved, relative to the end.
+const NEAR_THE_END: f64 = 0.05;
+
 /// What to say where the data alone give another onset than the fit under its constraints; `clears` tells whether a speed is known to
 /// lie above what is required.
 pub(super) fn constraints(
@@ -36,6 +39,16 @@ pub(super) fn constraints(
             );
             // where the search ends stands for an onset that lies above
             let (_, searched_to) = first.judged_m_s();
+            if without > (1.0 - NEAR_THE_END) * searched_to {
+                // with them it may lie just beyond
+                let severity = Severity::severe_if(!clears((1.0 - NEAR_THE_END) * without));
+                let text = format!(
+                    "By the data alone, without constraints, the onset is {}, near {}, where the search ends",
+                    speed(without),
+                    speed(searched_to)
+                );
+                return doubt(severity, text);
+            }
             let severity = Severity::severe_if(without >= BELIEVABLE * searched_to);
             return doubt(severity, gone);
         }

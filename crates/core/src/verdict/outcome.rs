@@ -46,11 +46,24 @@ impl Outcome {
         let found = || critical.all();
         let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
         let undetermined = doubts.iter().any(open);
+        // forces of steady flow that another reading does not find
+        let contradicted = |c: &CriticalSpeed| {
+            doubts.iter().any(|d| match &d.kind {
+                DoubtKind::Contradiction {
+                    phenomenon: Phenomenon::Divergence,
+                    first,
+                    second_m_s,
+                    ..
+                } => *first == c.forces && second_m_s.is_none_or(|v| v >= required.speed_m_s),
+                _ => false,
+            })
+        };
         // growth that forces make up where nothing was tested, and an onset that the data do not determine, say neither
         let backed = |c: &&CriticalSpeed| match c.phenomenon {
             Phenomenon::Growth => false,
             Phenomenon::Flutter => !undetermined,
-            Phenomenon::Divergence | Phenomenon::Galloping => true,
+            Phenomenon::Divergence => !contradicted(c),
+            Phenomenon::Galloping => true,
         };
         let least = |c: &CriticalSpeed| c.least_m_s() < required.speed_m_s;
         let best = |c: &CriticalSpeed| c.best_m_s < required.speed_m_s;

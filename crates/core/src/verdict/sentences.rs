@@ -1,5 +1,6 @@
 //! The sentences of a verdict.
 
+use super::contradiction::of_divergence;
 use super::critical::{Critical, CriticalSpeed, Phenomenon, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Evidence, FlutterReading, RequiredSpeed};
@@ -26,9 +27,19 @@ pub(super) fn headline(judgement: &Judgement, evidence: &Evidence) -> String {
 /// known.
 fn what(critical: &Critical, evidence: &Evidence) -> String {
     let flutter = flutter(evidence);
+    let against = of_divergence(evidence);
     let says = |c: &CriticalSpeed| {
         let (name, best) = (c.phenomenon.name(), speed(c.best_m_s));
-        format!("{name} at {best} ({})", c.forces)
+        let lower = c.lower_m_s.filter(|l| *l < c.best_m_s);
+        let lower = lower.map_or_else(String::new, |l| format!(", lower end {}", speed(l)));
+        let against = against
+            .as_ref()
+            .filter(|a| a.doubted.forces == c.forces && c.phenomenon == Phenomenon::Divergence);
+        let against = against.map_or_else(String::new, |a| {
+            let at = a.other.speed_m_s.map_or("none".to_owned(), speed);
+            format!(", CONTRADICTED by {}: {at}", a.other.forces)
+        });
+        format!("{name} at {best}{lower} ({}){against}", c.forces)
     };
     match &critical.governs {
         Some(c) if c.phenomenon != Phenomenon::Flutter => {

@@ -98,20 +98,24 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
     assert_eq!(words(&one), "MET");
 }
 
-#[test]
-fn growth_where_nothing_was_tested_cannot_be_judged() {
-    let mut evidence = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
-    evidence.growth.as_mut().unwrap().bands.push(GrowthBand {
+fn band(reduced_frequency: ReducedFrequency) -> GrowthBand {
+    GrowthBand {
         from_m_s: 3.1,
         to_m_s: 3.4,
         from_start: false,
         fastest_growth_per_s: 0.02,
         fastest_at_m_s: 3.2,
         frequency_hz: 2.0,
-        reduced_frequency: k(6.5),
+        reduced_frequency,
         tested_from_m_s: None,
         branch: "vertical".to_owned(),
-    });
+    }
+}
+
+#[test]
+fn growth_where_nothing_was_tested_cannot_be_judged() {
+    let mut evidence = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
+    evidence.growth.as_mut().unwrap().bands.push(band(k(6.5)));
     let verdict = Verdict::judge(&evidence);
     assert_eq!(words(&evidence), "CANNOT BE JUDGED");
     assert_eq!(
@@ -174,6 +178,9 @@ fn constraints_that_moved_the_onset_are_weighed() {
         Verdict::judge(&evidence).doubts[0].severity,
         Severity::Severe
     );
+    // the search ends where the data alone flutter: with constraints it may be just beyond
+    let mut short = scanned(30.0, vec![stable("the model", 36.9)]);
+    assert_eq!(weight(&mut short, Some(36.89), None), Some(Severity::Minor));
     // nothing was found up to 70 m/s, and the data alone grow from nearly no wind: that is no onset
     let mut none = scanned(60.0, vec![stable("the model", 70.0)]);
     assert_eq!(weight(&mut none, Some(1.7), None), Some(Severity::Minor));
@@ -289,6 +296,21 @@ fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
         open.doubts[0].settled_by.as_deref(),
         Some("tests at K above 0.97")
     );
+    // nor where motions out of phase grow all the same; a slow one is not settled by tests of a moving deck
+    let mut evidence = scanned(10.0, vec![evidence.flutter.remove(0)]);
+    let bands = &mut evidence.growth.as_mut().unwrap().bands;
+    bands.extend([band(k(6.5)), band(k(0.001))]);
+    let doubts = Verdict::judge(&evidence).doubts;
+    assert!(doubts.iter().any(|d| {
+        d.text
+            .ends_with("by the model a coupled motion grows there")
+    }));
+    let bands = &mut evidence.growth.as_mut().unwrap().bands;
+    bands.remove(0);
+    let doubts = Verdict::judge(&evidence).doubts;
+    let slow = Some("static coefficients, or tests at lower K".to_owned());
+    assert!(doubts.iter().any(|d| d.settled_by == slow));
+    evidence.growth.as_mut().unwrap().bands.clear();
     // above, it is a note
     evidence.required = Some(RequiredSpeed { speed_m_s: 30.0 });
     let from = TestedFrom {
@@ -365,6 +387,21 @@ fn divergence_that_another_reading_contradicts_is_a_doubt() {
         said(&evidence).unwrap(),
         "Contradiction: static divergence at 9.24 m/s by the model, 61.8 m/s by the table"
     );
+    let verdict = Verdict::judge(&evidence);
+    assert!(
+        verdict.headline.starts_with(
+            "? CANNOT BE JUDGED, required 40 m/s: static divergence at 9.24 m/s (the model), CONTRADICTED by the table: 61.8 m/s"
+        ),
+        "{}",
+        verdict.headline
+    );
+    // both lie below, or coefficients measured at rest say so
+    evidence.required = Some(RequiredSpeed { speed_m_s: 70.0 });
+    assert_eq!(words(&evidence), "NOT MET");
+    evidence.required = Some(RequiredSpeed { speed_m_s: 40.0 });
+    evidence.divergence[0].measured = true;
+    assert_eq!(words(&evidence), "NOT MET");
+    evidence.divergence[0].measured = false;
     evidence.divergence[1] = table(None);
     assert!(said(&evidence).unwrap().ends_with("none by the table"));
     evidence.divergence[1] = table(Some(11.0));
