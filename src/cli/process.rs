@@ -90,9 +90,14 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     });
     let processed = processed.map_err(|e| e.in_file(&args.campaign))?;
     read.doubts.extend(processed.report.doubts());
-    let (mut notes, doubts) = (read.warnings, read.doubts);
+    let (mut notes, mut doubts) = (read.warnings, read.doubts);
     notes.extend(processed.report.warnings());
     let derivatives = progress.during("derivatives", || derivatives(&processed, &mut notes))?;
+    doubts.extend(
+        derivatives
+            .iter()
+            .flat_map(IdentifiedDerivatives::contradictions),
+    );
     let mut out = OutputDir::new(&args.out)?;
     outdate(&raw.section, args.force, &mut out);
     let names = write_records(&processed, &mut out)?;

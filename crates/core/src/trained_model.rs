@@ -241,6 +241,7 @@ impl TrainedModel {
         for (key, text) in texts.into_iter().chain(notes) {
             without_control_characters(key, text)?;
         }
+        ensure(!self.name.trim().is_empty(), "name", "a name", "none")?;
         self.section.structure()?;
         self.model.validate()?;
         ensure(
@@ -272,7 +273,13 @@ impl Experiment {
     fn validate(&self) -> Result<()> {
         positive("experiment.wind_speed_m_s", self.wind_speed_m_s)?;
         positive("experiment.stop_time_s", self.stop_time_s)?;
-        positive("experiment.step_size_s", self.step_size_s)?;
+        let step_size_s = positive("experiment.step_size_s", self.step_size_s)?;
+        ensure(
+            step_size_s <= self.stop_time_s,
+            "experiment.step_size_s",
+            format_args!("at most experiment.stop_time_s, {} s", self.stop_time_s),
+            step_size_s,
+        )?;
         let limit = self.onset_search_limit_m_s;
         positive("experiment.onset_search_limit_m_s", limit)?;
         finite("experiment.initial_vertical_m", self.initial_vertical_m)?;

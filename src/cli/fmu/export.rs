@@ -184,7 +184,7 @@ impl FmuExportArgs {
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<()> {
         let overwrite = Overwrite::replacing(self.force);
         write_archive(path, bytes, overwrite).map_err(|e| match e {
-            Error::Input(mut input) => {
+            Error::Input(mut input) if !self.force => {
                 input.expected.push_str(" (or --force)");
                 Error::Input(input)
             }

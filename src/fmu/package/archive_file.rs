@@ -32,13 +32,20 @@ impl Overwrite {
 /// Writes the bytes of an archive as [`super::write_fmu`] does.
 ///
 /// # Errors
-/// [`Error::Input`] when the file is there and is not to be replaced; [`Error::Io`].
+/// [`Error::Input`] when the file is there and is not to be replaced, or is no archive; [`Error::Io`].
 pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
     let failed = |e| Error::io(path, e);
+    if overwrite == Overwrite::Replace && is_of_another_kind(path) {
+        let (expected, found) = (
+            "no file there yet, or an archive",
+            "a file of another kind, which was left as it is",
+        );
+        return Err(Error::input("archive", expected, found).in_file(path));
+    }
     let mut file = tempfile::Builder::new()
         .prefix(".aerodeck-")
         .suffix(".fmu")
@@ -62,6 +69,13 @@ pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<
         })?,
     };
     Ok(())
+}
+
+/// Whether a file is there that is no archive: the model, bridge or table that an archive is made from is never replaced by it.
+fn is_of_another_kind(path: &Path) -> bool {
+    let mut first = Vec::new();
+    let read = std::fs::File::open(path).map(|file| file.take(2).read_to_end(&mut first));
+    read.is_ok() && !first.is_empty() && first != *b"PK"
 }
 
 /// Temporary files are for their owner alone; an FMU is not.

@@ -72,6 +72,13 @@ fn damaged_files_are_refused_with_their_place() {
     assert!(refusal(&text[..text.len() / 2]).contains("line"));
     let negative = text.replace("\"mass_kg_m\": 15.0", "\"mass_kg_m\": -15.0");
     assert!(refusal(&negative).contains("mass_kg_m"));
+    // what no description of an FMU may say
+    let nameless = text.replace("flat plate", "");
+    assert_eq!(refusal(&nameless), "name: expected a name, found none");
+    let mut long = jones();
+    long.experiment.step_size_s = 2.0 * long.experiment.stop_time_s;
+    let said = long.validate().unwrap_err().to_string();
+    assert!(said.starts_with("experiment.step_size_s: expected at most experiment.stop_time_s"));
     // a name goes to files and pages
     let said = "expected a text without control characters, found one with them";
     for (key, from) in [("name", "flat plate"), ("provenance.source", "R. T. Jones")] {

@@ -71,6 +71,55 @@ pub struct DerivativeEstimate {
     pub residual: f64,
 }
 
+impl DerivativeEstimate {
+    fn is_of_one_point(&self, other: &Self) -> bool {
+        self.derivative == other.derivative
+            && self.v_hat == other.v_hat
+            && self.mean_speed_m_s == other.mean_speed_m_s
+    }
+}
+
+/// Two runs of one test point.
+#[derive(Clone, Copy)]
+struct RunContradiction<'a> {
+    first: &'a DerivativeEstimate,
+    second: &'a DerivativeEstimate,
+    /// Their difference over what runs may differ by.
+    apart: f64,
+}
+
+impl<'a> RunContradiction<'a> {
+    fn new(first: &'a DerivativeEstimate, second: &'a DerivativeEstimate, largest: f64) -> Self {
+        let error = first.standard_error.hypot(second.standard_error);
+        let allowed = (RUNS_DIFFER * largest).max(4.0 * error);
+        let apart = (first.value - second.value).abs() / allowed;
+        Self {
+            first,
+            second,
+            apart,
+        }
+    }
+
+    fn explain(&self) -> String {
+        let (a, b) = (self.first, self.second);
+        format!(
+            "runs {} and {} are of one test point and contradict each other: {} at {:.3} Hz is {:.4} ± {:.4} and {:.4} ± {:.4}; the table has \
+             their mean",
+            a.run,
+            b.run,
+            a.derivative.name(),
+            a.frequency_hz,
+            a.value,
+            a.standard_error,
+            b.value,
+            b.standard_error
+        )
+    }
+}
+
+/// What two runs of one test point may differ by, of the greatest magnitude of a derivative.
+const RUNS_DIFFER: f64 = 0.03;
+
 /// Derivatives of a deck from its records.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct IdentifiedDerivatives {
@@ -115,12 +164,7 @@ impl IdentifiedDerivatives {
     /// that was run again at the speed it states.
     pub fn points(&self) -> BTreeMap<Derivative, Vec<DerivativePoint>> {
         let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
-        let alike = |a: &DerivativeEstimate, b: &DerivativeEstimate| {
-            a.derivative == b.derivative
-                && a.v_hat == b.v_hat
-                && a.mean_speed_m_s == b.mean_speed_m_s
-        };
-        for same in self.estimates.chunk_by(alike) {
+        for same in self.estimates.chunk_by(DerivativeEstimate::is_of_one_point) {
             let value = same.iter().map(|e| e.value).sum::<f64>() / same.len() as f64;
             let of_derivative = points.entry(same[0].derivative).or_default();
             of_derivative.push(DerivativePoint {
@@ -130,6 +174,32 @@ impl IdentifiedDerivatives {
             });
         }
         points
+    }
+
+    /// Runs of one test point that contradict each other, of each pair what differs most: their mean is no better than the worse of them.
+    pub fn contradictions(&self) -> Vec<String> {
+        let mut worst = BTreeMap::<[&str; 2], RunContradiction<'_>>::new();
+        for same in self.estimates.chunk_by(DerivativeEstimate::is_of_one_point) {
+            for (i, a) in same.iter().enumerate() {
+                for b in &same[i + 1..] {
+                    let found = RunContradiction::new(a, b, self.largest(a.derivative));
+                    if found.apart > 1.0 {
+                        let pair = worst.entry([&a.run, &b.run]).or_insert(found);
+                        if found.apart > pair.apart {
+                            *pair = found;
+                        }
+                    }
+                }
+            }
+        }
+        worst.values().map(RunContradiction::explain).collect()
+    }
+
+    /// Greatest magnitude of a derivative.
+    fn largest(&self, derivative: Derivative) -> f64 {
+        self.each(derivative)
+            .map(|e| e.value.abs())
+            .fold(0.0, f64::max)
     }
 
     pub(super) fn sort(&mut self) {

@@ -46,6 +46,19 @@ fn a_known_transfer_matrix_comes_back() {
     let again = identify_derivatives(&sources(&twice), &DerivativeOptions::default()).unwrap();
     assert_eq!(again.estimates.len(), 2 * found.estimates.len());
     assert_eq!(again.points(), found.points());
+    assert!(again.contradictions().is_empty());
+    // another test of the same point with other forces is named with both runs
+    let mut other = records.clone();
+    other[0].header.name = "again".to_owned();
+    let forces = other[0].force.iter_mut().flatten();
+    forces.for_each(|x| *x *= 1.1);
+    let both = [&records[..], &other[..1]].concat();
+    let both = identify_derivatives(&sources(&both), &DerivativeOptions::default()).unwrap();
+    let [said] = &both.contradictions()[..] else {
+        panic!("{:?}", both.contradictions());
+    };
+    let names = [records[0].header.name.as_str(), "again"];
+    assert!(names.iter().all(|name| said.contains(name)), "{said}");
     // the table says how far the section was turned
     let amplitude = table.header.rotation_amplitude_deg.unwrap();
     assert!(

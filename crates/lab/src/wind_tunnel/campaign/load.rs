@@ -6,7 +6,7 @@ use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
 use super::recording::{LoadedRecording, SAME_RATE};
 use super::section_forces::SectionForces;
-use crate::error::{Result, all_or_errors, ensure, positive};
+use crate::error::{Error, Result, all_or_errors, ensure, positive};
 use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::signal::mean;
@@ -118,6 +118,7 @@ impl Campaign {
             runs: Vec::new(),
             findings: file_hints(self),
         };
+        each_once(read.iter().map(|(run, ..)| run))?;
         for (run, summary, findings) in read {
             reading.raw.runs.push(run);
             reading.runs.push(summary);
@@ -199,6 +200,24 @@ impl Campaign {
         };
         Air::over(run.air, common).density(&place)
     }
+}
+
+/// Refuses samples that stand twice, under whatever name: noise never repeats.
+fn each_once<'a>(runs: impl Iterator<Item = &'a RawRun>) -> Result<()> {
+    let runs: Vec<&RawRun> = runs.collect();
+    for (i, run) in runs.iter().enumerate() {
+        let same = |other: &&&RawRun| {
+            let (a, b) = (&other.in_wind, &run.in_wind);
+            a.motion == b.motion && a.cells == b.cells
+        };
+        if let Some(first) = runs[..i].iter().find(same) {
+            let expected = "each recording once: what stands twice looks better known than it is";
+            let found = format!("the samples of run `{}`", first.name);
+            let place = format!("run `{}`, in wind", run.name);
+            return Err(Error::input(place, expected, found).in_file(&run.in_wind.source));
+        }
+    }
+    Ok(())
 }
 
 fn summary(recording: &RawRecording, channels: Vec<String>) -> RecordingSummary {

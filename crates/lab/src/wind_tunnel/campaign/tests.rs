@@ -254,6 +254,23 @@ fn a_wrong_campaign_file_is_refused_by_line() {
         refused.contains("run[1].in_wind: expected a recording of its own for every run, found a.csv, that of run `two`"),
         "{refused}"
     );
+    // the same samples under another name
+    let folder = tempfile::tempdir().unwrap();
+    let copied = renamed.replacen("in_wind = \"a.csv\"", "in_wind = \"c.csv\"", 1);
+    for (name, text) in [
+        ("campaign.toml", &copied),
+        ("a.csv", &a),
+        ("b.csv", &b),
+        ("c.csv", &a),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let campaign = Campaign::read(folder.path().join("campaign.toml")).unwrap();
+    let refused = campaign.load().unwrap_err().to_string();
+    assert!(
+        refused.contains("expected each recording once: what stands twice looks better known than it is, found the samples of run `"),
+        "{refused}"
+    );
     assert!(said("fz = \"none\"", "").contains("channels.cells.near: expected fx, fy, fz, mx, my, mz (`\"none\"` for one not measured), found no `fz`"));
     assert!(
         said("[channels.cells.near]", "[channels.cells.far]")

@@ -8,7 +8,7 @@ use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
-use super::signals::{HarmonicSegment, SectionSignals};
+use super::signals::{HarmonicSegment, SectionSignals, index};
 use super::spikes::{CLIPPED, Replaced};
 use super::still_air::{Alignment, RemovedInertia};
 use crate::error::{Result, ensure};
@@ -181,10 +181,33 @@ const LAG_OFF: (f64, f64) = (5.0, 0.02);
 /// Phase by which a lag may turn the highest frequency of a run, degrees: beyond the one it is a doubt, beyond the other it is
 /// refused, unless the lag is stated.
 const LAG_TURNS: (f64, f64) = (2.0, 5.0);
-/// Amplitudes in wind and in still air may differ by this fraction without a warning.
-const SAME_AMPLITUDE: f64 = 0.01;
+/// What is left of the inertia because the motion in still air was another one, over the force that is left: from the first on it is said,
+/// from the second on it is a doubt.
+const INERTIA_LEFT: [f64; 2] = [0.002, 0.01];
 
 impl RunReport {
+    /// Says where still air moved otherwise than wind, in amplitude or because its clock went otherwise.
+    fn say_what_inertia_is_left(&mut self) {
+        let [told, grave] = INERTIA_LEFT;
+        let left = self.inertia.left_of_it(index(self.dof));
+        if left <= told {
+            return;
+        }
+        let what = format!(
+            "the motion in still air differs by {:.2} % from that in wind (in wind {:.4} times the amplitude): inertia of {:.1} % of the force is \
+             left in it",
+            100.0 * self.inertia.motion_mismatch,
+            self.alignment.map_or(1.0, |a| a.amplitude_ratio),
+            100.0 * left
+        );
+        let said = if left > grave {
+            &mut self.doubts
+        } else {
+            &mut self.warnings
+        };
+        said.push(what);
+    }
+
     /// Says what the lag that the inertia of this run shows is: nothing where it is the one that was corrected.
     fn say_lag(&mut self, found: &StillAirInertia, is_stated: bool) -> Result<()> {
         let off = (found.lag_s - self.lag_corrected_s).abs();
@@ -238,12 +261,7 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) -> Resul
             .push("the inertia in still air is too small to tell the lag of the channels".into()),
         _ => {}
     }
-    let ratio = report.alignment.map_or(1.0, |a| a.amplitude_ratio);
-    if (ratio - 1.0).abs() > SAME_AMPLITUDE {
-        warnings.push(format!(
-            "the motion in wind is {ratio:.4} times that in still air: inertia is not removed exactly"
-        ));
-    }
+    report.say_what_inertia_is_left();
     warnings.extend(report.low_pass.as_ref().and_then(|l| l.warning()));
     // what is clipped is said of its channel
     let others = report.replaced.iter().filter(|r| r.reason != CLIPPED);

@@ -45,7 +45,7 @@ pub(super) fn process_run(
 ) -> Result<ProcessedRun> {
     let mut run = RunInProgress::in_step(prepared, &campaign.rig, lag_s, options)?;
     run.remove_means();
-    run.subtract_still_air();
+    run.subtract_still_air()?;
     run.clean_and_filter()?;
     run.still_the_rest();
     report::warn(&mut run.report, options)?;
@@ -188,9 +188,22 @@ impl<'a> RunInProgress<'a> {
     }
 
     /// Stage 8.
-    fn subtract_still_air(&mut self) {
-        self.report.inertia = still_air::subtract(&mut self.signals, &self.still_air);
+    fn subtract_still_air(&mut self) -> Result<()> {
+        let motion_mismatch = match self.report.alignment {
+            Some(_) => still_air::motion_mismatch(
+                &self.signals,
+                &self.still_air,
+                &self.report.segments,
+                index(self.prepared.dof),
+            )?,
+            None => 0.0,
+        };
+        self.report.inertia = RemovedInertia {
+            motion_mismatch,
+            ..still_air::subtract(&mut self.signals, &self.still_air)
+        };
         self.done("still air subtracted");
+        Ok(())
     }
 
     /// Stages 9 and 10, with what follows the motion over what is left on either side of the filter.

@@ -9,10 +9,10 @@
 //! after both are in global axes, about the centre of rotation and in step. The mass of the air that moves with the model in
 //! still air leaves with it: the derivatives are those of wind against still air, as in every such test.
 
-use super::signals::SectionSignals;
+use super::signals::{HarmonicSegment, SectionSignals};
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
-use crate::signal::{delay, delayed, root_mean_square};
+use crate::signal::{delay, delayed, fit_sine, root_mean_square};
 use crate::wind_tunnel::RawRecording;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -36,8 +36,6 @@ pub struct Alignment {
     pub correlation: f64,
     /// Amplitude of the motion in wind over that in still air.
     pub amplitude_ratio: f64,
-    /// RMS of the difference of the aligned motions over that of the motion in wind.
-    pub motion_difference: f64,
 }
 
 /// A still-air recording in step with the one in wind.
@@ -87,7 +85,6 @@ pub(crate) fn align(
         format_args!("the motion of the recording in wind, correlation at least {ALIKE}"),
         format_args!("correlation {correlation:.3}"),
     )?;
-    let difference: f64 = a.iter().zip(&b).map(|(p, q)| (p - q).powi(2)).sum();
     Ok(Aligned {
         still_air: moved_still,
         covered,
@@ -97,7 +94,6 @@ pub(crate) fn align(
             parabolic_samples: found.parabolic_samples,
             correlation,
             amplitude_ratio: dot(&a, &b) / dot(&b, &b),
-            motion_difference: (difference / dot(&a, &a)).sqrt(),
         },
     })
 }
@@ -125,6 +121,47 @@ pub struct RemovedInertia {
     pub removed_rms: [f64; 3],
     /// RMS of what is left.
     pub left_rms: [f64; 3],
+    /// Greatest difference of the motion in still air from that in wind, over the segments: of the complex amplitude, relative. As much
+    /// of the inertia is left.
+    #[serde(default)]
+    pub motion_mismatch: f64,
+}
+
+impl RemovedInertia {
+    /// What is left of the inertia over what is left of the force in all, `dof` of both.
+    pub(crate) fn left_of_it(&self, dof: usize) -> f64 {
+        let left = self.left_rms[dof];
+        if left > 0.0 {
+            self.motion_mismatch * self.removed_rms[dof] / left
+        } else {
+            0.0
+        }
+    }
+}
+
+/// How far the motion in still air is from that in wind, where both are steady, relative.
+pub(crate) fn motion_mismatch(
+    in_wind: &SectionSignals,
+    still_air: &SectionSignals,
+    segments: &[HarmonicSegment],
+    dof: usize,
+) -> Result<f64> {
+    let amplitude = |signals: &SectionSignals, at: &HarmonicSegment| {
+        let (motion, frequency_hz) = (&signals.motion[dof], at.segment.frequency_hz);
+        let fit = fit_sine(
+            motion,
+            at.plateau.range(),
+            signals.sampling_hz,
+            frequency_hz,
+        )?;
+        Ok::<_, Error>(fit.fundamental())
+    };
+    let mut greatest = 0.0_f64;
+    for at in segments {
+        let (wind, still) = (amplitude(in_wind, at)?, amplitude(still_air, at)?);
+        greatest = greatest.max((still / wind - 1.0).norm());
+    }
+    Ok(greatest)
 }
 
 /// `in_wind − still_air`.
@@ -136,5 +173,6 @@ pub(crate) fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals)
     RemovedInertia {
         removed_rms: rms(still_air),
         left_rms: rms(in_wind),
+        ..RemovedInertia::default()
     }
 }

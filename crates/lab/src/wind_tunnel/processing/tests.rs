@@ -80,6 +80,30 @@ fn a_campaign_without_disturbances_gives_the_truth_back() {
     assert!(processed.report.lag_s.abs() < 1e-5);
 }
 
+/// Still air with 0.95 of the amplitude (A3* wrong by up to 19 %), or by a clock that is slow by 3e-4 (A2* by up to 65 %), at half the
+/// speed of these tests, had a note or none.
+#[test]
+fn still_air_that_moves_otherwise_is_a_doubt() {
+    let doubts = |change: fn(&[f64]) -> Vec<f64>| {
+        let mut raw = campaign(&short(VirtualCampaignPlan::default())).raw;
+        let still = raw.runs[1].still_air.as_mut().unwrap();
+        *still = still.map(change);
+        done(&raw, &ProcessingOptions::default()).report.doubts()
+    };
+    assert!(doubts(<[f64]>::to_vec).is_empty());
+    for change in [
+        |x: &[f64]| x.iter().map(|v| 0.95 * v).collect(),
+        |x: &[f64]| crate::signal::resampled(x, 1.0 + 3e-4),
+    ] {
+        let said = doubts(change);
+        assert!(
+            said.iter()
+                .any(|d| d.contains("the motion in still air differs by")),
+            "{said:?}"
+        );
+    }
+}
+
 #[test]
 fn lag_offset_drift_and_spike_are_found() {
     let plan = short(VirtualCampaignPlan::realistic());
