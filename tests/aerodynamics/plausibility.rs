@@ -236,6 +236,12 @@ fn slips_to_the_unsafe_side_are_doubts() {
             let by = |d| if d == halved { 0.5 } else { 1.0 };
             doubted(&scaled(&deck, by), &[slopes]);
         }
+        let nose_down = |d: Derivative| if d.force() == Dof::Torsion { -1.0 } else { 1.0 };
+        let words = [
+            "read as moments nose-down beside rotations nose-up",
+            those_of,
+        ];
+        doubted(&scaled(&deck, nose_down), &words);
         let about_edge = rewritten(&deck, |d| {
             let mut points = deck.points(d).to_vec();
             if d.force() == Dof::Torsion {

@@ -17,7 +17,7 @@ pub use bridge::{
 };
 pub use coefficients::of_coefficients;
 pub use limits::{
-    DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
+    DECK_WIDTH, Limits, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
     ratio_hint, significant,
 };
 pub use model::{of_model, of_trained};

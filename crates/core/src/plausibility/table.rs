@@ -142,6 +142,14 @@ fn candidates(
         "read as numbers per degree of rotation".to_owned(),
         per_degree,
     );
+    let nose_down = by_point(table, |d, p| match d.force() {
+        Dof::Torsion => times(p, -1.0),
+        _ => *p,
+    });
+    let nose_down = (
+        "read as moments nose-down beside rotations nose-up".to_owned(),
+        nose_down,
+    );
     let by_semi_chord = by_point(table, move |d, p| {
         let mut point = label.express_point(d, p);
         point.argument *= 0.5;
@@ -152,7 +160,7 @@ fn candidates(
     let by_velocity = matches!(label.argument, Argument::VHat | Argument::VStar);
     let by_semi_chord = by_velocity.then(|| (words.to_owned(), by_semi_chord));
     conventions
-        .chain([per_degree, about_mid_chord(table)])
+        .chain([per_degree, nose_down, about_mid_chord(table)])
         .chain(by_semi_chord)
 }
 

@@ -5,7 +5,7 @@ use super::file::Campaign;
 use super::wind_speed::other_than_one_wind;
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{
-    DECK_WIDTH, FindingSeverity, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond,
+    DECK_WIDTH, FindingSeverity, Limits, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond,
     ratio_hint,
 };
 use crate::section::Dof;
@@ -16,6 +16,12 @@ use std::fmt;
 
 /// A motion that should not be there may have this part of the one that should, both dimensionless.
 const OTHER_MOTION_AT_MOST: f64 = 0.05;
+/// Air of a laboratory, from 3500 m above the sea to frost at its level.
+const AIR_OF_A_LABORATORY: Limits = Limits {
+    unit: "kg/m³",
+    usual: (0.75, 1.33),
+    meant: &[("g/m³", 1e-3)],
+};
 /// Stated and measured mean speed may differ by this part.
 const SPEED_OFF_AT_MOST: f64 = 0.05;
 /// Beyond this part one of them is not the speed of the run: derivatives go with its square.
@@ -132,6 +138,8 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
     let mut found = Vec::new();
     let mut say = |severity, what| found.push(RunFinding::of_run(&run.name, severity, what));
     let measured = &run.in_wind.wind_speed_m_s;
+    let air = beyond("air density", run.air_density_kg_m3, &AIR_OF_A_LABORATORY);
+    air.into_iter().for_each(|odd| say(Doubt, odd.to_string()));
     if let Some(still) = &run.still_air {
         let (in_wind, still_air) = (run.in_wind.sample_count(), still.sample_count());
         if in_wind != still_air {
