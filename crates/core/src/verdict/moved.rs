@@ -39,7 +39,7 @@ pub(super) fn constraints(
             );
             // where the search ends stands for an onset that lies above
             let (_, searched_to) = first.judged_m_s();
-            if without > (1.0 - NEAR_THE_END) * searched_to {
+            if (without / searched_to - 1.0).abs() < NEAR_THE_END {
                 // with them it may lie just beyond
                 let severity = Severity::severe_if(!clears((1.0 - NEAR_THE_END) * without));
                 let text = format!(

@@ -137,6 +137,15 @@ impl Form {
         }
     }
 
+    /// Lower bound of a search over the lowest tested `K`. Several filters of one pole below all tests can follow nothing there but scatter,
+    /// which they carry on into forces of steady flow that no deck has.
+    pub(crate) fn least_pole(&self) -> f64 {
+        match self {
+            Self::Laguerre { .. } if self.filters() >= LEAST_CHOSEN => 1.0,
+            _ => 0.5,
+        }
+    }
+
     /// Whether every transfer function has poles of its own.
     pub(crate) fn pole_per_transfer_function(&self) -> bool {
         match self {
@@ -293,7 +302,7 @@ pub struct PoleSearch {
     pub fixed: Option<Vec<f64>>,
     /// Where the nonlinear step starts; left out, the best point of a grid.
     pub start: Option<Vec<f64>>,
-    /// Lower bound; left out, half the lowest tested `K`.
+    /// Lower bound; left out, half the lowest tested `K`, and the lowest itself for three Laguerre filters or more, which share a pole.
     pub min: Option<f64>,
     /// Upper bound; left out, twice the highest tested `K`.
     pub max: Option<f64>,

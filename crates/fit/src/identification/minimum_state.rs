@@ -64,7 +64,7 @@ pub(super) fn fit_minimum_state(
         feed: fit.form.feed_through(),
         lags: match &fit.poles.fixed {
             Some(fixed) => SearchedLags::Given(fixed.clone()),
-            None => SearchedLags::Within(Bounds::resolve(&fit.poles, tested, states)?),
+            None => SearchedLags::Within(Bounds::resolve(&fit.poles, tested, &fit.form)?),
         },
         requirements: None,
     };

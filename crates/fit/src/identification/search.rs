@@ -6,7 +6,7 @@
 //! neighbours leaves, and the shares are a softmax of free numbers — from the best points of a grid. Points that do not wait for
 //! one another are evaluated on all cores.
 
-use super::form::PoleSearch;
+use super::form::{Form, PoleSearch};
 use super::report::{SearchPoint, SearchReport};
 use crate::error::{Error, Result, ensure};
 use crate::numbered::numbered;
@@ -31,19 +31,28 @@ pub(crate) struct Bounds {
     pub min: f64,
     pub max: f64,
     pub min_ratio: f64,
+    /// The least that a pole may be: `min`, or more.
+    pub least: f64,
 }
 
 impl Bounds {
-    /// Stated bounds, or half the lowest to twice the highest tested `K`.
+    /// Stated bounds, or those of the form to twice the highest tested `K`.
     pub(crate) fn resolve(
         options: &PoleSearch,
         tested: ReducedFrequencyRange,
-        count: usize,
+        form: &Form,
     ) -> Result<Self> {
+        let count = form.free_poles();
+        let lowest = tested.min.full_width();
+        let min = options.min.unwrap_or(0.5 * lowest);
+        let max = options.max.unwrap_or(2.0 * tested.max.full_width());
+        let least = options.min.unwrap_or(form.least_pole() * lowest);
         let bounds = Self {
-            min: options.min.unwrap_or(0.5 * tested.min.full_width()),
-            max: options.max.unwrap_or(2.0 * tested.max.full_width()),
+            min,
+            max,
             min_ratio: options.min_ratio,
+            // a stated upper bound may leave no room above it
+            least: if least < max { least } else { min },
         };
         ensure(
             bounds.slack(count) > 0.0,
@@ -100,9 +109,8 @@ impl Bounds {
     /// `points` values from bound to bound, logarithmic.
     fn axis(&self, points: usize) -> Vec<f64> {
         let step = (self.max / self.min).ln() / (points as f64 - 1.0);
-        (0..points)
-            .map(|i| self.min * (step * i as f64).exp())
-            .collect()
+        let all = (0..points).map(|i| self.min * (step * i as f64).exp());
+        all.filter(|p| *p >= self.least * (1.0 - 1e-12)).collect()
     }
 
     /// Ordered sets of `count` poles from a logarithmic grid that keep the least ratio.
@@ -135,7 +143,7 @@ impl Bounds {
 
     /// Whether the poles are ordered, apart and inside.
     pub(crate) fn admits(&self, poles: &[f64]) -> bool {
-        let inside = |p: &f64| *p >= self.min * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
+        let inside = |p: &f64| *p >= self.least * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
         poles.iter().all(inside)
             && poles
                 .windows(2)
@@ -171,7 +179,7 @@ pub(crate) fn search_poles(
     Ok(SearchReport {
         entry,
         force: None,
-        min: bounds.min,
+        min: bounds.least,
         max: bounds.max,
         points: search.points,
         chosen,
@@ -214,7 +222,7 @@ impl Search<'_> {
         } else {
             (high - low) / (grid_points as f64 - 1.0)
         };
-        let ends = (centre - step).max(low)..(centre + step).min(high);
+        let ends = (centre - step).max(bounds.least.ln())..(centre + step).min(high);
         let at = |x: f64| self.evaluate(&[x.exp()]);
         golden_section(ends, at, f64::lt, |width, _, _| width <= GOLDEN_TOLERANCE)?;
         self.best()
@@ -307,6 +315,7 @@ mod tests {
         min: 0.05,
         max: 2.0,
         min_ratio: 1.5,
+        least: 0.05,
     };
 
     #[test]

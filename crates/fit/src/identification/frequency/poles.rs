@@ -106,7 +106,7 @@ fn search_group(
     residuals: PoleResiduals<'_>,
 ) -> Result<SearchReport> {
     let form = &of.form;
-    let bounds = Bounds::resolve(options, tested, form.free_poles())?;
+    let bounds = Bounds::resolve(options, tested, form)?;
     let name = of.alone.then(|| (group[0].force, group[0].motion));
     let mut report = search_poles(form.free_poles(), options, bounds, name, residuals)?;
     report.force = form.poles_per_force().then_some(group[0].force);

@@ -160,7 +160,7 @@ impl PoleGroup {
     ) -> Result<Self> {
         let first = &entries[members[0]];
         let options = search_for(poles, &first.form);
-        let bounds = Bounds::resolve(&options, tested, first.form.free_poles())?;
+        let bounds = Bounds::resolve(&options, tested, &first.form)?;
         let n = entries.len().isqrt();
         let range = (bounds.max / bounds.min).ln();
         Ok(Self {
@@ -241,7 +241,7 @@ impl PoleGroup {
                 .flat_map(|set| {
                     offsets.iter().map(|o| {
                         let moved = pole * (o * self.step).exp();
-                        let inside = moved.clamp(bounds.min, bounds.max);
+                        let inside = moved.clamp(bounds.least, bounds.max);
                         set.iter().copied().chain([inside]).collect()
                     })
                 })
@@ -256,12 +256,12 @@ impl PoleGroup {
         let bounds = self.bounds;
         let mut chosen = best_of(&self.points)?;
         if let Some(vertex) = self.vertex(&chosen) {
-            chosen.poles = vec![vertex.clamp(bounds.min, bounds.max)];
+            chosen.poles = vec![vertex.clamp(bounds.least, bounds.max)];
         }
         Ok(SearchReport {
             entry: self.entry.map(|(i, j)| (dofs[i], dofs[j])),
             force: None,
-            min: bounds.min,
+            min: bounds.least,
             max: bounds.max,
             points: self.points,
             chosen,
