@@ -360,16 +360,37 @@ fn instances_live_side_by_side_and_in_threads() {
     });
 }
 
-/// FMPy and others sum their steps: the clock is theirs, so that 10⁶ steps of 0.1 s do not drift out of tolerance.
+/// FMPy and others sum their steps: the clock is theirs. At all times sums and products of steps are one clock; a point a step away
+/// is another, and a step behind the stop time is too late.
 #[test]
-fn the_importers_clock_counts() {
-    let unit = Unit::started("rational");
-    let mut time = 0.0;
-    for _ in 0..20_000 {
-        unit.ok(unit.step(time, 0.1));
-        time += 0.1;
+fn a_clock_is_off_by_roundings_alone() {
+    let (count, step) = (2000, 0.0125);
+    for start in [0.0, 1e7, 1.76e9] {
+        for sum in [false, true] {
+            for (ahead, words) in [
+                (0.0, "stop time"),
+                (-step, "communication point"),
+                (0.48, "communication point"),
+            ] {
+                let unit = Unit::new("rational");
+                let stop = start + f64::from(count) * step;
+                unit.ok(unsafe { fmi2SetupExperiment(unit.handle, 0, 0.0, start, 1, stop) });
+                unit.ok(unit.enter());
+                unit.ok(unit.exit());
+                let mut time = start;
+                for i in 1..=count {
+                    unit.ok(unit.step(time, step));
+                    let product = start + f64::from(i) * step;
+                    time = if sum { time + step } else { product };
+                }
+                unit.refused(
+                    unit.step(time + ahead, step),
+                    fmi2Status::fmi2Error,
+                    &[words],
+                );
+            }
+        }
     }
-    assert_ne!(time, 2000.0);
 }
 
 /// One step of h is two of h/2: steps are exact.

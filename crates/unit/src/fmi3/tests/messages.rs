@@ -40,6 +40,16 @@ fn event_mode_of_co_simulation_is_not_taken_silently() {
     }
 }
 
+/// However late it is.
+#[test]
+fn a_step_is_not_taken_twice() {
+    let (unit, start) = (Unit::new("rational", None, false), 1.76e9);
+    unit.ok(unsafe { fmi3EnterInitializationMode(unit.handle, 0, 0.0, start, 1, start + 1.0) });
+    unit.ok(unsafe { fmi3ExitInitializationMode(unit.handle) });
+    unit.ok(unit.step(start, 0.01));
+    unit.refused(unit.step(start, 0.01), "fmi3DoStep: communication point");
+}
+
 /// No number of three hundred digits.
 #[test]
 fn numbers_are_short() {
