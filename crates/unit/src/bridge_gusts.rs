@@ -107,6 +107,8 @@ pub(super) struct GustRecord {
 
 /// A sample closer than this part of the step is the next one: times are sums of steps.
 const SAME_SAMPLE: f64 = 1e-9;
+/// So is one closer than this part of the time, a few roundings: a piece of less would not move the time on.
+const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
 impl GustRecord {
     /// Adds `factor` times the channels at a time, and their rates from there on.
@@ -135,7 +137,7 @@ impl GustRecord {
         let steps = time / self.step_s;
         let mut whole = steps.floor();
         let mut part = steps - whole;
-        if part > 1.0 - SAME_SAMPLE * steps.abs().max(1.0) {
+        if part > 1.0 - SAME_SAMPLE.max(SAME_TIME * steps.abs()) {
             (whole, part) = (whole + 1.0, 0.0);
         }
         let sample = whole.rem_euclid(self.samples.len() as f64);
