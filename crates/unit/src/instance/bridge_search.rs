@@ -6,7 +6,6 @@ use super::section::OnsetCard;
 use crate::bridge::Bridge;
 use crate::flutter::{
     FastMotion, FlutterSearch, FoundOnset, OnsetSearch, bridge_damps_fast_motion,
-    divergence_with_forces,
 };
 use crate::onset_start::simulated_onset;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
@@ -28,17 +27,9 @@ pub(super) fn slow_wind(
 }
 
 impl OnsetCard {
-    /// With the divergence of a bridge and nothing else.
-    fn with_divergence(built: &BuiltBridge, limit: f64) -> Self {
-        let mut card = Self::nothing_found(limit, Vec::new());
-        match divergence_with_forces(
-            built.stepper.section().structure(),
-            &built.own.bridge.forces(),
-        ) {
-            Ok(speed) => card.set_divergence(speed, limit),
-            Err(why) => card.divergence_unknown(&why),
-        }
-        card
+    fn of_divergence(built: &BuiltBridge, limit: f64) -> Result<Self, Self> {
+        let structure = built.stepper.section().structure();
+        Self::with_divergence(structure, &built.own.bridge.forces(), limit)
     }
 
     /// With an onset up to `limit`, m/s, that was followed from one nearby; `None` outside the tested range, where a search has more
@@ -55,7 +46,7 @@ impl OnsetCard {
         if tested.is_some_and(|range| !range.contains(k)) {
             return None;
         }
-        let mut card = Self::with_divergence(built, limit);
+        let mut card = Self::of_divergence(built, limit).ok()?;
         card.set_onset(speed, hertz, ReducedVelocity::from(k), tested.is_some());
         card.numbers.stable_below = true;
         card.judge(slow_wind);
@@ -70,7 +61,10 @@ impl OnsetCard {
         slow_wind: Option<&str>,
         limit: f64,
     ) -> (Self, Option<SearchedOnset>) {
-        let mut card = Self::with_divergence(built, limit);
+        let mut card = match Self::of_divergence(built, limit) {
+            Ok(card) => card,
+            Err(unknown) => return (unknown, None),
+        };
         let mut searched = None;
         let search = OnsetSearch {
             speed_max_m_s: limit,

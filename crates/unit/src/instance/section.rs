@@ -9,7 +9,7 @@ use crate::flutter::{
     unwanted_growth,
 };
 use crate::onset_start::simulated_onset;
-use crate::section::{Dof, SectionModel};
+use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
@@ -168,14 +168,28 @@ impl OnsetCard {
         plain: Option<SweptOnset>,
         slow_wind: Option<&str>,
     ) -> Self {
-        let mut card = Self::nothing_found(limit, Vec::new());
-        match divergence_with_forces(section.structure(), &model.model) {
-            Ok(speed) => card.set_divergence(speed, limit),
-            Err(why) => card.divergence_unknown(&why),
-        }
+        let mut card = match Self::with_divergence(section.structure(), &model.model, limit) {
+            Ok(card) => card,
+            Err(unknown) => return unknown,
+        };
         card.search_onset(model, section, limit, plain);
         card.judge(slow_wind);
         card
+    }
+
+    /// With divergence up to `limit`, m/s, and nothing else. Where that cannot be searched for, as without stiffness, no onset can.
+    pub(super) fn with_divergence(
+        structure: &Structure,
+        forces: &dyn Transfer,
+        limit: f64,
+    ) -> std::result::Result<Self, Self> {
+        let speed = divergence_with_forces(structure, forces).map_err(|why| Self::unknown(&why))?;
+        let mut card = Self::nothing_found(limit, Vec::new());
+        if let Some(speed) = speed.filter(|v| *v <= limit) {
+            card.numbers.divergence_m_s = speed.into();
+            card.numbers.divergence_found = true;
+        }
+        Ok(card)
     }
 
     fn search_onset(
@@ -303,29 +317,11 @@ impl OnsetCard {
         };
     }
 
-    /// Enters a speed of divergence below the limit.
-    pub(super) fn set_divergence(&mut self, speed: Option<f64>, limit: f64) {
-        if let Some(speed) = speed.filter(|v| *v <= limit) {
-            self.numbers.divergence_m_s = speed.into();
-            self.numbers.divergence_found = true;
-        }
-    }
-
     /// An onset that could not be searched for is zero, and nothing is stable below it.
     pub(super) fn onset_unknown(&mut self, why: &Error) {
         self.numbers.speed_m_s = 0.0.into();
         self.numbers.stable_below = false;
-        self.say_unknown("flutter onset", why);
-    }
-
-    /// So is divergence.
-    pub(super) fn divergence_unknown(&mut self, why: &Error) {
-        self.numbers.divergence_m_s = 0.0.into();
-        self.say_unknown("divergence", why);
-    }
-
-    fn say_unknown(&mut self, what: &str, why: &Error) {
-        let warning = format!("{what} is not known for these parameters: {why}");
+        let warning = format!("flutter onset is not known for these parameters: {why}");
         self.warnings.push(warning);
     }
 }

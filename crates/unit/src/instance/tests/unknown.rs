@@ -45,6 +45,23 @@ fn an_onset_that_is_not_known_is_no_stable_one() {
     assert!(card.warnings[0].contains("onset is not known"));
 }
 
+/// Without stiffness nothing is known, whatever the model and the motion.
+#[test]
+fn without_stiffness_nothing_is_stable() {
+    for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
+        for frequency in ["heave_frequency", "torsion_frequency"] {
+            let mut unit = instance(Kind::Section(kind), false).unwrap();
+            unit.enter_initialization();
+            let own = index(&unit, frequency);
+            unit.set_reals(&[own], &[0.0]).unwrap();
+            let speeds = read(&mut unit, ["onset_speed", "divergence_speed"]);
+            assert_eq!(speeds, [0.0, 0.0], "{kind} {frequency}");
+            let stable = flag(&mut unit, "stable_below_onset");
+            assert!(!stable, "{kind} {frequency}");
+        }
+    }
+}
+
 /// What runs away without oscillating is growth below the onset, and is said.
 #[test]
 fn what_diverges_below_its_onset_is_not_stable() {
