@@ -17,6 +17,7 @@ use super::slave::{Slave, find};
 use super::status::Status;
 use crate::error::{Error, Result, positive};
 use crate::flutter::StableRange;
+use std::f64::consts::TAU;
 
 /// Names of displacement and rate of the motions that a section may have.
 const MOTIONS: [(&str, &str, &str); 3] = [
@@ -26,7 +27,8 @@ const MOTIONS: [(&str, &str, &str); 3] = [
 ];
 /// Release in each of them, m and rad; the section is linear, so that the size does not matter.
 const RELEASE: f64 = 0.01;
-/// Two estimates from windows of which one lies twice as late must agree within this part of the frequency.
+/// Two estimates from windows of which one lies twice as late must agree within this part of the frequency; of a motion
+/// that does not oscillate, of that of the released section.
 const AGREEMENT: f64 = 1e-6;
 /// The first estimate takes this many periods, each further one twice as many as the one before.
 const FIRST_PERIODS: f64 = 24.0;
@@ -36,6 +38,8 @@ const MAX_PERIODS: f64 = 3072.0;
 const DOWNWARDS: f64 = 1.0 / 128.0;
 /// Halvings to the speed of a divergence, which only bounds what could be judged.
 const DIVERGENCE_HALVINGS: usize = 8;
+/// Below this, m and rad, a motion has died away: what is left is soon no number any more.
+const DIED: f64 = 1e-250;
 /// Most steps of one run.
 const MAX_STEPS: usize = 2_000_000;
 
@@ -116,7 +120,7 @@ fn point(speed_m_s: f64, growth: &Growth) -> GrowthPoint {
     GrowthPoint {
         speed_m_s,
         growth_rate_per_s: growth.rate_per_s,
-        frequency_hz: growth.frequency_rad_s / std::f64::consts::TAU,
+        frequency_hz: growth.frequency_rad_s / TAU,
     }
 }
 
@@ -188,18 +192,31 @@ impl Run {
         self.extend(&mut samples, 64)?;
         let mut periods = FIRST_PERIODS;
         let mut last: Option<Growth> = None;
+        let released = TAU / estimate::rough_period(&samples, self.references.len());
         while periods <= MAX_PERIODS {
             let period = estimate::rough_period(&samples, self.references.len());
-            let wanted = (periods * period / self.step).ceil();
+            let mut wanted = (periods * period / self.step).ceil();
+            if wanted >= MAX_STEPS as f64 && last.is_some() {
+                // near a divergence the section is nearly at rest, and its period says nothing
+                wanted = 2.0 * (samples.len() / self.references.len()) as f64;
+            }
             if !(wanted.is_finite() && wanted < MAX_STEPS as f64) {
                 break;
             }
             self.extend(&mut samples, wanted as usize)?;
-            let now = growth_of_samples(&samples, self.references.len(), self.step)?;
-            let scale = now.frequency_rad_s.max(now.rate_per_s.abs());
-            if let Some(last) = &last
-                && (now.rate_per_s - last.rate_per_s).abs() <= AGREEMENT * scale
-            {
+            let moving = estimate::before_rest(&samples, self.references.len(), DIED);
+            let now = growth_of_samples(moving, self.references.len(), self.step)?;
+            let oscillates = now.frequency_rad_s > 0.0;
+            let scale = now.rate_per_s.abs().max(match oscillates {
+                true => now.frequency_rad_s,
+                false => released,
+            });
+            let steady = last
+                .as_ref()
+                .is_some_and(|last| (now.rate_per_s - last.rate_per_s).abs() <= AGREEMENT * scale);
+            // no later window holds more of a motion that has died away
+            let died = moving.len() < samples.len() && now.rate_per_s < 0.0;
+            if steady || died {
                 self.points.push(point(speed, &now));
                 return Ok((speed, now));
             }
@@ -309,7 +326,7 @@ impl Run {
             .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
         Ok(GrowthOnset {
             speed_m_s: speed,
-            frequency_hz: growth.frequency_rad_s / std::f64::consts::TAU,
+            frequency_hz: growth.frequency_rad_s / TAU,
             mode_ratio: relative.zip(width).map(|(r, b)| r.norm() / b),
             phase_deg: relative.map_or(0.0, |r| r.arg().to_degrees()),
             communication_step_s: self.step,

@@ -41,6 +41,12 @@ pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
     TAU / slowest
 }
 
+/// The rows up to the last in which something is at least `rest`.
+pub(super) fn before_rest(samples: &[f64], width: usize, rest: f64) -> &[f64] {
+    let last = samples.iter().rposition(|x| x.is_nan() || x.abs() >= rest);
+    &samples[..last.map_or(0, |i| (i / width + 1) * width)]
+}
+
 /// Growth of the dominant mode in samples a step of `step_s` apart: rows of `width` values, displacement and rate of each
 /// motion in turn.
 ///
@@ -228,6 +234,16 @@ mod tests {
             assert!((found.rate_per_s - 0.5).abs() < 1e-8, "{found:?}");
             assert!((rough_period(&samples, 4) - TAU / 12.6).abs() < 0.01);
         }
+    }
+
+    #[test]
+    fn a_motion_that_died_away_has_its_rate_from_before() {
+        let modes = [(c(-60.0, 12.6), [c(1.0, 0.0), c(0.02, 0.0)])];
+        let samples = motion(&modes, 0.02, 60.0);
+        assert!(growth_of_samples(&samples, 4, 0.02).is_err());
+        let found = growth_of_samples(before_rest(&samples, 4, 1e-250), 4, 0.02).unwrap();
+        assert!((found.rate_per_s + 60.0).abs() < 1e-6, "{found:?}");
+        assert!(before_rest(&[0.0; 8], 4, 1e-250).is_empty());
     }
 
     #[test]
