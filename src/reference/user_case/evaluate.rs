@@ -44,8 +44,11 @@ impl UserCase {
             Err(problem) => (None, Some(problem)),
         };
         let deviation = found.map(|found| found - figure.expected);
-        // as many digits as the tolerance makes sense of
-        let decimals = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
+        // as many digits as the tolerance makes sense of, and those of what was expected
+        let meant = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
+        let written = figure.expected.to_string();
+        let written = written.split_once('.').map_or(0, |(_, part)| part.len());
+        let decimals = meant.max(written.min(12));
         CaseResult {
             name: self.name.clone(),
             what: self.what.clone(),

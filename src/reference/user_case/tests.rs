@@ -27,6 +27,16 @@ fn a_wrong_figure_does_not_pass() {
 }
 
 #[test]
+fn expected_figures_keep_their_digits_under_a_wide_tolerance() {
+    let wide = EXAMPLE.replace(
+        "expected = 0.03115\ntolerance = 0.000005",
+        "expected = 0.03115\ntolerance = 0.1",
+    );
+    let results = UserCase::from_toml(&wide, "".into()).unwrap().run();
+    assert_eq!(results.last().unwrap().decimals, 5);
+}
+
+#[test]
 fn a_case_that_cannot_be_computed_says_why() {
     let text = EXAMPLE.replace(
         "flat_plate = { rotary_inertia = false }",
