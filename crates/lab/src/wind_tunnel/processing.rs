@@ -82,27 +82,15 @@ pub fn process(
         .map(|run| PreparedRun::new(run, &campaign.rig, options))
         .collect();
     let mut prepared = all_or_errors(prepared)?;
+    let mut judged = Vec::new();
     for dof in Dof::THREE {
-        let of_dof = prepared.iter_mut().filter(|p| p.dof == dof);
-        let mut of_dof: Vec<_> = of_dof.collect();
-        let bodies = of_dof
-            .iter()
-            .filter_map(|p| Some((&p.run.name[..], p.still_air.as_ref()?)));
-        let doubt = body::compare_runs(dof, bodies.collect())?;
-        if let Some(first) = of_dof.first_mut() {
-            first.findings.doubts.extend(doubt);
-        }
+        let mut of_dof: Vec<_> = prepared.iter_mut().filter(|p| p.dof == dof).collect();
+        judged.extend(prepare::judge_still_air(dof, &campaign.rig, &mut of_dof));
     }
+    all_or_errors(judged)?;
     let stated = options.dofs.clone();
     let dofs = stated.unwrap_or_else(|| dofs_of(campaign, &prepared));
-    let inertia = prepared.iter().filter_map(|p| p.still_air.clone());
-    let inertia: Vec<_> = inertia.collect();
-    let estimated = lag::common_lag(&inertia, campaign.runs[0].in_wind.sampling_hz);
-    let (lag_s, lag_standard_error_s) = match (options.lag_s, estimated) {
-        (Some(stated), _) => (stated, None),
-        (None, Some(found)) => (found.lag_s, Some(found.standard_error_s)),
-        (None, None) => (0.0, None),
-    };
+    let (lag_s, lag_standard_error_s) = prepare::common_lag(&mut prepared, options);
     let done = AtomicUsize::new(0);
     let runs = prepared
         .into_par_iter()

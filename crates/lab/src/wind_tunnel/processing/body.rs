@@ -36,16 +36,21 @@ pub struct StillAirInertia {
     pub inertia: f64,
     /// Standard error of the inertia.
     pub inertia_standard_error: f64,
-    /// Stiffness κ of gravity: N/m, N·m/rad.
-    pub stiffness: f64,
-    /// Damping c in still air: N·s/m, N·m·s/rad.
-    pub damping: f64,
+    /// Stiffness κ of gravity: N/m, N·m/rad; `None` where all runs of the motion have one frequency, which does not tell it from μ.
+    pub stiffness: Option<f64>,
+    /// Damping c in still air: N·s/m, N·m·s/rad; `None` likewise, since one frequency does not tell it from the lag.
+    pub damping: Option<f64>,
 }
 
 impl StillAirInertia {
     /// Whether the inertia is no chance.
     pub(crate) fn is_certain(&self) -> bool {
         self.inertia.abs() > CERTAIN * self.inertia_standard_error
+    }
+
+    /// Whether the inertia holds what gravity does to the turning model.
+    pub(super) fn hides_weight(&self) -> bool {
+        self.dof == Dof::Torsion && self.stiffness.is_none()
     }
 
     /// Whether there is inertia enough to tell the lag to a fifth of a sample.
@@ -127,6 +132,9 @@ pub(super) fn compare(
     let (key, Some(stated), unit) = stated(rig, found.dof) else {
         return Ok(None);
     };
+    if found.hides_weight() {
+        return Ok(None);
+    }
     let air = match found.dof {
         Dof::Torsion => PI / 128.0 * width.powi(4),
         _ => PI / 4.0 * width.powi(2),

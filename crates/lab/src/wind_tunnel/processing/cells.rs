@@ -32,15 +32,24 @@ pub(crate) fn sum_about_centre(
     let count = cells.first().map_or(0, |c| c[0].len());
     let mut sum: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; count]);
     for (place, cell) in rig.cells.iter().zip(cells) {
-        let mut about_centre = cell.clone();
-        move_moment(&mut about_centre, place, rotation_rad, 1.0);
-        for k in 0..count {
-            sum[0][k] += about_centre[1][k];
-            sum[1][k] += about_centre[0][k];
-            sum[2][k] -= about_centre[5][k];
+        for (sum, force) in sum.iter_mut().zip(about_centre(cell, place, rotation_rad)) {
+            sum.iter_mut().zip(force).for_each(|(s, f)| *s += f);
         }
     }
     sum
+}
+
+/// Of one cell: lift (N), drag (N) and nose-up moment about the centre of rotation (N·m).
+pub(crate) fn about_centre(
+    cell: &GlobalCell,
+    place: &LoadCell,
+    rotation_rad: &[f64],
+) -> [Vec<f64>; 3] {
+    let mut moved = cell.clone();
+    move_moment(&mut moved, place, rotation_rad, 1.0);
+    let [drag, lift, _, _, _, mut moment] = moved;
+    moment.iter_mut().for_each(|m| *m = -*m);
+    [lift, drag, moment]
 }
 
 /// Means of every cell, for the report.

@@ -3,10 +3,11 @@
 //! In still air the force on the cells by a model that moves as `x = X e^{iωt}` is `F = (μω² − κ − icω) X`: inertia in antiphase
 //! with the acceleration, a stiffness of gravity, a little damping. Channels that are late by τ say `F e^{−iωτ}`. Over the test
 //! frequencies weighted least squares of `Im(F/X)/ω` on `Re(F/X)` and a constant gives τ and c, repeated until the turned-back
-//! ratio gives none; of one or two frequencies c is left out. μ and κ then follow from the real part.
+//! ratio gives none. μ and κ then follow from the real part. Runs of one or two frequencies take c and κ from all runs of their
+//! motion together; where these have one frequency, c and κ are left out: τ may be damping, and μ of a rotation holds the weight.
 
 use super::body::{self, StillAirInertia};
-use super::cells::sum_about_centre;
+use super::cells::{about_centre, sum_about_centre};
 use super::signals::HarmonicSegment;
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
@@ -24,69 +25,115 @@ struct Ratio {
 
 /// Inertia of a cell up to this part of that of the model is rounding, which has no scatter to be judged by.
 const ROUNDING: f64 = 1e-9;
+/// Frequencies that differ by less are one, met twice.
+const ONE_FREQUENCY: f64 = 0.02;
 
-/// Lag and inertia of `still` in `dof`, the one that moves; `None` without harmonic segments.
-///
-/// # Errors
-/// [`Error::Input`] naming `run` when the inertia says that a channel has the wrong sign or that two are exchanged.
-pub(crate) fn still_air_inertia(
-    run: &str,
-    still: &RawRecording,
-    rig: &Rig,
-    dof: Dof,
-    segments: &[HarmonicSegment],
-) -> Result<Option<StillAirInertia>> {
-    let motion = &still.motion[super::index(dof)];
-    let rates = still.sampling_hz;
-    // a lag of the axes behind the model would be of second order here
-    let at_rest = vec![0.0; still.sample_count()];
-    let cells = super::cells::to_global(still, rig, &at_rest);
-    let total = sum_about_centre(&cells, rig, &at_rest);
-    let of = |force: &[f64]| Ok(solve(dof, &ratios(motion, force, rates, segments)?));
-    let Some(result) = of(&total[super::index(dof)])? else {
-        return Ok(None);
-    };
-    let others: &[Dof] = match dof {
-        Dof::Torsion => &[Dof::Vertical, Dof::Lateral],
-        _ => &[Dof::Torsion],
-    };
-    for other in others {
-        let force = &total[super::index(*other)];
-        if let Some(across) = solve(*other, &ratios(motion, force, rates, segments)?) {
-            body::check_motion(run, rig, &result, &across)?;
-        }
-    }
-    if result.is_certain() && result.inertia < 0.0 {
-        return Err(wrong_sign(run, "sum of the cells", dof, &result));
-    }
-    // of a translation the other force, and the channel of each cell that measures it
-    let (other, channel) = match dof {
-        Dof::Vertical => (Dof::Lateral, 1),
-        Dof::Lateral => (Dof::Vertical, 0),
-        Dof::Torsion => return Ok(Some(result)),
-    };
-    if let Some(across) = of(&total[super::index(other)])? {
-        refuse_exchanged(run, &result, &across, other)?;
-    }
-    // a cell of which one channel is turned round takes from the sum what it should add
-    for (place, cell) in rig.cells.iter().zip(&cells) {
-        if let Some(one) = of(&cell[channel])?
-            && one.is_certain()
-            && one.inertia < -ROUNDING * result.inertia.abs()
-        {
-            return Err(wrong_sign(run, &format!("cell {}", place.name), dof, &one));
-        }
-    }
-    Ok(Some(result))
+/// Forces over the motion of a run in still air at each frequency: on the model, about its centre of rotation, and of each cell the
+/// one in the direction of the motion.
+pub(super) struct Ratios {
+    run: String,
+    total: [Vec<Ratio>; 3],
+    cells: Vec<Vec<Ratio>>,
 }
 
-/// Refuses more inertia `across`, in the force of `other`, than in that of the motion itself.
-fn refuse_exchanged(
+impl Ratios {
+    /// Those of `still`, in which `dof` moves.
+    ///
+    /// # Errors
+    /// [`Error::Input`] of a segment to which no sine can be fitted.
+    pub(super) fn new(
+        run: &str,
+        still: &RawRecording,
+        rig: &Rig,
+        dof: Dof,
+        segments: &[HarmonicSegment],
+    ) -> Result<Self> {
+        let motion = &still.motion[super::index(dof)];
+        // a lag of the axes behind the model would be of second order here
+        let at_rest = vec![0.0; still.sample_count()];
+        let cells = super::cells::to_global(still, rig, &at_rest);
+        let of = |force: &[f64]| ratios(motion, force, still.sampling_hz, segments);
+        let [lift, drag, moment] = sum_about_centre(&cells, rig, &at_rest);
+        let places = rig.cells.iter().zip(&cells);
+        let cells =
+            places.map(|(place, cell)| of(&about_centre(cell, place, &at_rest)[super::index(dof)]));
+        Ok(Self {
+            run: run.to_owned(),
+            total: [of(&lift)?, of(&drag)?, of(&moment)?],
+            cells: cells.collect::<Result<_>>()?,
+        })
+    }
+}
+
+/// Lag and inertia of each of the `runs` in which `dof` moves; `None` without harmonic segments, an error naming the run when the
+/// inertia says that a channel has the wrong sign or that two are exchanged.
+pub(super) fn still_air_inertia(
+    rig: &Rig,
+    dof: Dof,
+    runs: &[&Ratios],
+) -> Vec<Result<Option<StillAirInertia>>> {
+    let total = Dof::THREE.map(|force| {
+        let of_force = runs.iter().map(|r| &r.total[super::index(force)][..]);
+        solve_together(force, &of_force.collect::<Vec<_>>())
+    });
+    let cells = (0..rig.cells.len()).map(|cell| {
+        let of_cell = runs.iter().map(|r| &r.cells[cell][..]);
+        solve_together(dof, &of_cell.collect::<Vec<_>>())
+    });
+    let cells: Vec<_> = cells.collect();
+    let judged = runs.iter().enumerate().map(|(k, run)| {
+        let total = total.each_ref().map(|force| force[k].as_ref());
+        let Some(own) = total[super::index(dof)] else {
+            return Ok(None);
+        };
+        let cells = cells.iter().map(|cell| cell[k].as_ref());
+        judge(&run.run, rig, own, total, cells)?;
+        Ok(Some(own.clone()))
+    });
+    judged.collect()
+}
+
+/// Refuses what no body shows on the `total` and on the `cells`.
+fn judge<'a>(
     run: &str,
+    rig: &Rig,
     own: &StillAirInertia,
-    across: &StillAirInertia,
-    other: Dof,
+    total: [Option<&StillAirInertia>; 3],
+    cells: impl Iterator<Item = Option<&'a StillAirInertia>>,
 ) -> Result<()> {
+    // the weight of the model may be all that one frequency of rotation shows
+    if own.hides_weight() {
+        return Ok(());
+    }
+    for across in total.into_iter().flatten() {
+        body::check_motion(run, rig, own, across)?;
+    }
+    if own.is_certain() && own.inertia < 0.0 {
+        return Err(wrong_sign(run, "sum of the cells", own));
+    }
+    // of a translation the other force
+    let other = match own.dof {
+        Dof::Vertical => total[super::index(Dof::Lateral)],
+        Dof::Lateral => total[super::index(Dof::Vertical)],
+        Dof::Torsion => return Ok(()),
+    };
+    if let Some(across) = other {
+        refuse_exchanged(run, own, across)?;
+    }
+    // a cell of which one channel is turned round takes from the sum what it should add
+    for (place, one) in rig.cells.iter().zip(cells) {
+        if let Some(one) = one
+            && one.is_certain()
+            && one.inertia < -ROUNDING * own.inertia.abs()
+        {
+            return Err(wrong_sign(run, &format!("cell {}", place.name), one));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses more inertia `across` than in the force of the motion itself.
+fn refuse_exchanged(run: &str, own: &StillAirInertia, across: &StillAirInertia) -> Result<()> {
     let name = own.dof.name();
     ensure(
         !across.is_certain() || across.inertia.abs() <= own.inertia.abs(),
@@ -96,17 +143,17 @@ fn refuse_exchanged(
             "{:.4} kg there and {:.4} kg in the {} force: force or motion channels are exchanged",
             own.inertia,
             across.inertia,
-            other.name()
+            across.dof.name()
         ),
     )
 }
 
-fn wrong_sign(run: &str, what: &str, dof: Dof, found: &StillAirInertia) -> Error {
+fn wrong_sign(run: &str, what: &str, found: &StillAirInertia) -> Error {
     Error::input(
         format!("run {run}, still air, {what}"),
         format!(
             "a {} force in antiphase with the acceleration, as inertia is",
-            dof.name()
+            found.dof.name()
         ),
         format!(
             "one in phase (inertia {:.4} ± {:.4}): the sign of a force or motion channel is reversed, or channels are swapped",
@@ -140,36 +187,72 @@ fn ratios(
         .collect()
 }
 
-fn solve(dof: Dof, ratios: &[Ratio]) -> Option<StillAirInertia> {
-    if ratios.is_empty() {
-        return None;
-    }
-    let full = ratios.len() > 2;
-    let (mut lag, mut damping, mut variance) = (0.0, 0.0, 0.0);
+/// The inertia of each of the `runs` of one motion in the force of `dof`. Runs of less than three frequencies do not tell stiffness
+/// and damping by themselves: they take those of all runs together.
+fn solve_together(dof: Dof, runs: &[&[Ratio]]) -> Vec<Option<StillAirInertia>> {
+    let all = solve(dof, runs.iter().copied().flatten(), None);
+    let tells = |run: &[Ratio]| distinct(run.iter()) > 2;
+    let sharing = runs.iter().filter(|run| !tells(run)).count() as f64;
+    let solved = runs.iter().map(|run| {
+        if tells(run) {
+            return solve(dof, run.iter(), None);
+        }
+        let (all, mut own) = (all.as_ref()?, solve(dof, run.iter(), all.as_ref())?);
+        if all.stiffness.is_some() {
+            // what they share scatters in all of them: their mean is no better than the fit of all
+            let wider = |own: f64, all: f64| own.hypot(all * sharing.sqrt());
+            own.lag_standard_error_s = wider(own.lag_standard_error_s, all.lag_standard_error_s);
+            own.inertia_standard_error =
+                wider(own.inertia_standard_error, all.inertia_standard_error);
+        }
+        Some(own)
+    });
+    solved.collect()
+}
+
+/// Number of different frequencies.
+fn distinct<'a>(ratios: impl Iterator<Item = &'a Ratio>) -> usize {
+    let mut omegas: Vec<f64> = ratios.map(|r| r.omega).collect();
+    omegas.sort_by(f64::total_cmp);
+    omegas.dedup_by(|next, kept| *next <= *kept * (1.0 + ONE_FREQUENCY));
+    omegas.len()
+}
+
+/// Lag and inertia with stiffness and damping, which are those of `known` if there is one; one frequency alone tells neither.
+fn solve<'a>(
+    dof: Dof,
+    ratios: impl Iterator<Item = &'a Ratio> + Clone,
+    known: Option<&StillAirInertia>,
+) -> Option<StillAirInertia> {
+    let both = known.is_none() && distinct(ratios.clone()) > 1;
+    let (stiffness, damping) = known.map_or((None, None), |k| (k.stiffness, k.damping));
+    let (mut lag, mut found, mut variance) = (0.0, 0.0, 0.0);
     for _ in 0..6 {
-        let rows = ratios.iter().map(|r| {
+        let rows = ratios.clone().map(|r| {
             let turned = r.value * Complex::from_polar(1.0, r.omega * lag);
             let weight = r.omega * r.omega / r.variance;
-            ([-turned.re, -1.0], turned.im / r.omega, weight)
+            let value = turned.im / r.omega + damping.unwrap_or(0.0);
+            ([-turned.re, -1.0], value, weight)
         });
-        let (step, covariance) = weighted_fit(rows, full)?;
+        let (step, covariance) = weighted_fit(rows, both)?;
         lag += step[0];
-        damping = step[1];
+        found = step[1];
         variance = covariance;
     }
-    let rows = ratios.iter().map(|r| {
+    let rows = ratios.map(|r| {
         let turned = r.value * Complex::from_polar(1.0, r.omega * lag);
-        ([r.omega * r.omega, -1.0], turned.re, 1.0 / r.variance)
+        let value = turned.re + stiffness.unwrap_or(0.0);
+        ([r.omega * r.omega, -1.0], value, 1.0 / r.variance)
     });
-    let (real, inertia_variance) = weighted_fit(rows, ratios.len() > 1)?;
+    let (real, inertia_variance) = weighted_fit(rows, both)?;
     Some(StillAirInertia {
         dof,
         lag_s: lag,
         lag_standard_error_s: variance.sqrt(),
         inertia: real[0],
         inertia_standard_error: inertia_variance.sqrt(),
-        stiffness: real[1],
-        damping,
+        stiffness: if both { Some(real[1]) } else { stiffness },
+        damping: if both { Some(found) } else { damping },
     })
 }
 
@@ -205,17 +288,25 @@ fn weighted_fit(
 /// Lag of the force channels of a campaign behind its motion.
 pub(crate) struct CommonLag {
     pub lag_s: f64,
-    pub standard_error_s: f64,
+    /// `None` where it may be damping as well.
+    pub standard_error_s: Option<f64>,
 }
 
-/// One lag for a campaign: the mean of its runs by inverse variance; `None` when no run tells it.
+/// One lag for a campaign: the mean of its runs by inverse variance; `None` when no run tells it. Runs that cannot tell it from
+/// damping are asked where there are no others.
 pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<CommonLag> {
-    let telling = || runs.iter().filter(|r| r.tells_lag(sampling_hz));
+    let told = |r: &&StillAirInertia| r.tells_lag(sampling_hz);
+    let is_known = runs.iter().filter(told).any(|r| r.damping.is_some());
+    let telling = || {
+        runs.iter()
+            .filter(told)
+            .filter(|r| !is_known || r.damping.is_some())
+    };
     let weight = |r: &StillAirInertia| r.lag_standard_error_s.max(1e-12).powi(-2);
     let sum: f64 = telling().map(weight).sum();
     let mean = telling().map(|r| weight(r) * r.lag_s).sum::<f64>() / sum;
     (sum > 0.0).then(|| CommonLag {
         lag_s: mean,
-        standard_error_s: sum.sqrt().recip(),
+        standard_error_s: is_known.then(|| sum.sqrt().recip()),
     })
 }

@@ -2,15 +2,18 @@
 
 use super::body::StillAirInertia;
 use super::check::{RunCheck, check_run};
-use super::lag::still_air_inertia;
+use super::lag::{Ratios, still_air_inertia};
 use super::options::ProcessingOptions;
 use super::segmentation::{find_segments, moving_dof, whole_periods};
 use super::signals::HarmonicSegment;
-use super::{body, index, still_air};
+use super::{body, index, lag, still_air};
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::wind_tunnel::{RawRecording, RawRun, Rig};
 use std::ops::Range;
+
+const WEIGHT_IS_HIDDEN: &str = "the runs of the torsion motion have one frequency, which cannot tell the weight of the model from its \
+                                inertia: signs and units of their channels are not judged by it";
 
 /// A run that has been checked, with its test points and its lag.
 pub(super) struct PreparedRun<'a> {
@@ -22,12 +25,15 @@ pub(super) struct PreparedRun<'a> {
     pub segments: Vec<HarmonicSegment>,
     /// In samples of the recording in still air; empty without one.
     pub still_segments: Vec<HarmonicSegment>,
+    /// Forces over the motion in still air.
+    ratios: Option<Ratios>,
+    /// What they say, with those of the other runs of the motion.
     pub still_air: Option<StillAirInertia>,
 }
 
 impl<'a> PreparedRun<'a> {
     pub(crate) fn new(run: &'a RawRun, rig: &Rig, options: &ProcessingOptions) -> Result<Self> {
-        let mut findings = check_run(run, rig)?;
+        let findings = check_run(run, rig)?;
         let width = rig.model_width_m;
         let moving = |r: &RawRecording, what: &str| {
             let place = format!("run {}, {what}", run.name);
@@ -44,7 +50,7 @@ impl<'a> PreparedRun<'a> {
             whole_periods(&format!("run {}, in wind", run.name), &run.in_wind, dof)?;
         }
         let mut still_segments = Vec::new();
-        let mut still_air = None;
+        let mut ratios = None;
         if let Some(still) = &run.still_air {
             let in_still_air = moving(still, "still air")?;
             ensure(
@@ -55,13 +61,7 @@ impl<'a> PreparedRun<'a> {
             )?;
             body::check_force(&run.name, rig, still, dof)?;
             still_segments = find(still);
-            still_air = still_air_inertia(&run.name, still, rig, dof, &still_segments)?;
-            if let Some(inertia) = &still_air {
-                let density = run.air_density_kg_m3;
-                findings
-                    .doubts
-                    .extend(body::compare(&run.name, rig, inertia, density)?);
-            }
+            ratios = Some(Ratios::new(&run.name, still, rig, dof, &still_segments)?);
         }
         Ok(Self {
             run,
@@ -69,7 +69,8 @@ impl<'a> PreparedRun<'a> {
             findings,
             segments,
             still_segments,
-            still_air,
+            ratios,
+            still_air: None,
         })
     }
 
@@ -116,4 +117,77 @@ impl<'a> PreparedRun<'a> {
             .filter(|r| !r.is_empty())
             .collect()
     }
+}
+
+/// Asks the `runs` in which `dof` moves what still air says of the model, and judges each of them and all together.
+pub(super) fn judge_still_air(
+    dof: Dof,
+    rig: &Rig,
+    runs: &mut [&mut PreparedRun<'_>],
+) -> Vec<Result<()>> {
+    let ratios: Vec<_> = runs.iter().filter_map(|p| p.ratios.as_ref()).collect();
+    let found = still_air_inertia(rig, dof, &ratios);
+    let with_still_air = runs.iter_mut().filter(|p| p.ratios.is_some());
+    let judged = with_still_air.zip(found).map(|(p, found)| {
+        p.still_air = found?;
+        let Some(found) = &p.still_air else {
+            return Ok(());
+        };
+        let doubt = body::compare(&p.run.name, rig, found, p.run.air_density_kg_m3)?;
+        p.findings.doubts.extend(doubt);
+        Ok(())
+    });
+    let mut judged: Vec<_> = judged.collect();
+    if judged.iter().all(Result::is_ok) {
+        let bodies = runs
+            .iter()
+            .filter_map(|p| Some((&p.run.name[..], p.still_air.as_ref()?)));
+        let doubt = body::compare_runs(dof, bodies.collect());
+        if let Some(first) = runs.first_mut() {
+            let hidden = first.still_air.as_ref().filter(|s| s.hides_weight());
+            let said =
+                hidden.map(|s| format!("{WEIGHT_IS_HIDDEN} ({:.4} kg·m² in all)", s.inertia));
+            // the weight of a model that hangs low, or a sign that is reversed
+            match hidden.is_some_and(|s| s.inertia < 0.0) {
+                true => first.findings.doubts.extend(said),
+                false => first.findings.warnings.extend(said),
+            }
+            judged.push(doubt.map(|doubt| first.findings.doubts.extend(doubt)));
+        }
+    }
+    judged
+}
+
+/// The lag to be corrected in all `runs` and its standard error, s, both from their inertia unless it is stated.
+pub(super) fn common_lag(
+    runs: &mut [PreparedRun<'_>],
+    options: &ProcessingOptions,
+) -> (f64, Option<f64>) {
+    if let Some(stated) = options.lag_s {
+        return (stated, None);
+    }
+    let inertia: Vec<_> = runs.iter().filter_map(|p| p.still_air.clone()).collect();
+    let Some(found) = lag::common_lag(&inertia, runs[0].run.in_wind.sampling_hz) else {
+        return (0.0, None);
+    };
+    let unknown =
+        |p: &&mut PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| s.damping.is_none());
+    let mut unknown = runs.iter_mut().filter(unknown);
+    if found.standard_error_s.is_some() {
+        // what is more than the lag of the others is damping
+        unknown
+            .filter_map(|p| p.still_air.as_mut())
+            .for_each(|s| s.lag_s = found.lag_s);
+    } else if let Some(first) = unknown.next() {
+        let frequencies = first.segments.iter().map(|s| s.segment.frequency_hz);
+        let highest = frequencies.fold(0.0, f64::max);
+        first.findings.warnings.push(format!(
+            "the runs of a motion have one frequency, which cannot tell a lag of the force channels from damping: {:.3} ms are taken \
+             for lag; were it damping, the lag would be 0 and the forces are turned by {:.1}° too much at {highest:.3} Hz (a stated \
+             `lag_s`, or another frequency, tells)",
+            1e3 * found.lag_s,
+            360.0 * highest * found.lag_s
+        ));
+    }
+    (found.lag_s, found.standard_error_s)
 }

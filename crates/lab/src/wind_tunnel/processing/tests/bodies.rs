@@ -158,6 +158,94 @@ fn exchanged_motions_show_in_the_inertia() {
     }
 }
 
+/// Heave and rotation at 8 m/s, a run for each frequency; the centre of gravity is 1 cm below the axis. A damper of `damping` N·s/m
+/// at the heaving model.
+fn one_frequency_each(frequencies_hz: &[f64], damping: f64) -> RawCampaign {
+    let of = |f: &f64| {
+        let mut plan = short(VirtualCampaignPlan::default());
+        plan.tunnel.frequencies_hz = vec![*f];
+        let mut raw = campaign(&plan).raw;
+        raw.runs
+            .iter_mut()
+            .for_each(|run| run.name += &format!(" {f} Hz"));
+        raw
+    };
+    let mut all: Vec<_> = frequencies_hz.iter().map(of).collect();
+    let mut raw = all.remove(0);
+    raw.runs
+        .extend(all.into_iter().flat_map(|other| other.runs));
+    everywhere(&mut raw, |r| {
+        let y = r.motion[0].clone();
+        let rate = y.windows(3).map(|y| 0.5 * (y[2] - y[0]) * r.sampling_hz);
+        let lift = r.cells[0][0][1..].iter_mut();
+        lift.zip(rate)
+            .for_each(|(lift, rate)| *lift -= damping * rate);
+    });
+    raw
+}
+
+/// The frequency of each file tells neither the weight from the inertia nor damping from a lag: all files together do.
+#[test]
+fn runs_of_one_frequency_each_are_judged_together() {
+    // a damping force of 3 % of the inertia at 1.5 Hz
+    let mut raw = one_frequency_each(
+        &[0.5, 1.1, 2.0],
+        0.03 * 5.36 * 2.0 * std::f64::consts::PI * 1.5,
+    );
+    for stated in [true, false] {
+        if !stated {
+            (raw.rig.model_mass_kg, raw.rig.model_inertia_kg_m2) = (None, None);
+        }
+        let report = done(&raw, &ProcessingOptions::default()).report;
+        assert!(
+            report.warnings().is_empty() && report.doubts().is_empty(),
+            "{report:?}"
+        );
+        // the ramps in the steady part: 5e-6 s as with all frequencies in one file
+        assert!(report.lag_s.abs() < 1e-5, "{}", report.lag_s);
+        for run in &report.runs {
+            let found = run.still_air.as_ref().unwrap();
+            let truth = if run.dof == Dof::Torsion {
+                0.040_232 * 2.68
+            } else {
+                5.36
+            };
+            assert!((found.inertia / truth - 1.0).abs() < 2e-3, "{found:?}");
+        }
+    }
+    let run = raw.runs.last_mut().unwrap();
+    for recording in [Some(&mut run.in_wind), run.still_air.as_mut()] {
+        let cells = recording.unwrap().cells.iter_mut().flatten();
+        cells.flatten().for_each(|x| *x *= 2.0);
+    }
+    assert!(refused(&raw).contains("the inertia of one model in all of them"));
+}
+
+/// Of one frequency in all, nothing is judged that it does not tell, and the lag has no error.
+#[test]
+fn one_frequency_alone_tells_no_lag_from_damping() {
+    let raw = one_frequency_each(&[0.5], 1.0);
+    let report = done(&raw, &ProcessingOptions::default()).report;
+    let said = report.warnings();
+    assert_eq!(report.lag_standard_error_s, None);
+    assert!(
+        said[0].contains("cannot tell a lag")
+            && said[0].contains("were it damping, the lag would be 0"),
+        "{said:?}"
+    );
+    assert!(
+        said.iter().any(|w| w.contains("cannot tell the weight")),
+        "{said:?}"
+    );
+    // what a rotation measured nose-down would show as well
+    let low = one_frequency_each(&[0.25], 0.0);
+    let doubts = done(&low, &ProcessingOptions::default()).report.doubts();
+    assert!(
+        doubts.iter().any(|d| d.contains("cannot tell the weight")),
+        "{doubts:?}"
+    );
+}
+
 #[test]
 fn a_record_shorter_than_its_periods_is_refused() {
     let mut raw = made().raw;
