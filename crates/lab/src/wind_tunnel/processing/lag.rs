@@ -23,8 +23,10 @@ struct Ratio {
     variance: f64,
 }
 
-/// Inertia of a cell up to this part of that of the model is rounding, which has no scatter to be judged by.
+/// Inertia of a cell up to this part of that of the model is rounding, which has no scatter to be judged by …
 const ROUNDING: f64 = 1e-9;
+/// … and in rotation up to this part what a force at the arm of a cell gives, of either sign, where another cell takes the moment.
+const OF_LEVERS: f64 = 0.05;
 /// Frequencies that differ by less are one, met twice.
 const ONE_FREQUENCY: f64 = 0.02;
 
@@ -115,16 +117,20 @@ fn judge<'a>(
     let other = match own.dof {
         Dof::Vertical => total[super::index(Dof::Lateral)],
         Dof::Lateral => total[super::index(Dof::Vertical)],
-        Dof::Torsion => return Ok(()),
+        Dof::Torsion => None,
     };
     if let Some(across) = other {
         refuse_exchanged(run, own, across)?;
     }
     // a cell of which one channel is turned round takes from the sum what it should add
+    let least = match own.dof {
+        Dof::Torsion => OF_LEVERS,
+        _ => ROUNDING,
+    };
     for (place, one) in rig.cells.iter().zip(cells) {
         if let Some(one) = one
             && one.is_certain()
-            && one.inertia < -ROUNDING * own.inertia.abs()
+            && one.inertia < -least * own.inertia.abs()
         {
             return Err(wrong_sign(run, &format!("cell {}", place.name), one));
         }

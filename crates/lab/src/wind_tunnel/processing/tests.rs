@@ -240,6 +240,12 @@ fn channels_of_the_wrong_sign_or_place_are_named() {
         message.contains("still air, cell far: expected a vertical force in antiphase"),
         "{message}"
     );
+    // the moment of one cell turned round
+    let message = with(&|raw| both(raw, |r| r.cells[1][5].iter_mut().for_each(|x| *x = -*x)));
+    assert!(
+        message.contains("still air, cell far: expected a torsion force in antiphase"),
+        "{message}"
+    );
     // all of it
     let message = with(&|raw| {
         both(raw, |r| {
