@@ -12,6 +12,8 @@ use crate::section::Dof;
 use crate::wind_tunnel::{RawRecording, RawRun, Rig};
 use std::ops::Range;
 
+/// Of the steady periods at a frequency, still air covers at least this part.
+const COVERED: f64 = 0.75;
 const WEIGHT_IS_HIDDEN: &str = "the runs of the torsion motion have one frequency, which cannot tell the weight of the model from its \
                                 inertia: signs and units of their channels are not judged by it";
 
@@ -74,7 +76,7 @@ impl<'a> PreparedRun<'a> {
         })
     }
 
-    /// Segments counted from the first covered sample.
+    /// Segments counted from the first covered sample, their steady parts cut to the whole periods that are covered.
     pub(crate) fn covered_segments(&self, covered: &Range<usize>) -> Result<Vec<HarmonicSegment>> {
         let rate = self.run.in_wind.sampling_hz;
         let shift_s = covered.start as f64 / rate;
@@ -83,8 +85,16 @@ impl<'a> PreparedRun<'a> {
             .iter()
             .map(|s| {
                 let p = s.plateau.range();
+                let mut moved = *s;
+                let common = p.start.max(covered.start)..p.end.min(covered.end);
+                if common != p {
+                    let period = rate / s.segment.frequency_hz;
+                    moved.plateau.periods = (common.len() as f64 / period) as usize;
+                    moved.plateau.samples =
+                        (moved.plateau.periods as f64 * period).round() as usize;
+                }
                 ensure(
-                    p.start >= covered.start && p.end <= covered.end,
+                    moved.plateau.periods as f64 >= COVERED * s.plateau.periods as f64,
                     format_args!("run {}, still air", self.run.name),
                     format_args!(
                         "a recording as long as the motion at {:.3} Hz (samples {} to {})",
@@ -95,8 +105,7 @@ impl<'a> PreparedRun<'a> {
                         covered.start, covered.end
                     ),
                 )?;
-                let mut moved = *s;
-                moved.plateau.first -= covered.start;
+                moved.plateau.first = common.start - covered.start;
                 moved.segment.start_s = (s.segment.start_s - shift_s).max(0.0);
                 moved.segment.end_s = (s.segment.end_s - shift_s).min(last_s);
                 Ok(moved)

@@ -115,6 +115,15 @@ impl<'a> RunInProgress<'a> {
                 ..signals.clone()
             },
         };
+        let segments = prepared.covered_segments(&covered)?;
+        let mut warnings = findings.warnings.clone();
+        let pairs = || segments.iter().zip(&prepared.segments);
+        if pairs().any(|(used, all)| used.plateau.samples < all.plateau.samples) {
+            let Range { start, end } = covered;
+            warnings.push(format!(
+                "still air covers samples {start} to {end} of the motion in wind: only the whole periods in these are used"
+            ));
+        }
         let offset = alignment.map_or(0.0, |a: Alignment| a.offset_samples);
         let clipped = [&findings.clipped_in_wind, &findings.clipped_still_air];
         let report = RunReport {
@@ -124,7 +133,7 @@ impl<'a> RunInProgress<'a> {
             samples: run.in_wind.sample_count(),
             cut: [covered.start, run.in_wind.sample_count() - covered.end],
             clipped: clipped.into_iter().flatten().cloned().collect(),
-            segments: prepared.covered_segments(&covered)?,
+            segments,
             still_air: prepared.still_air.clone(),
             lag_corrected_s: lag_s,
             alignment,
@@ -139,7 +148,7 @@ impl<'a> RunInProgress<'a> {
             signal_to_noise: SignalToNoise::default(),
             dimensionless: DimensionlessFactors::new(run, rig),
             levels: Vec::new(),
-            warnings: findings.warnings.clone(),
+            warnings,
             doubts: findings.doubts.clone(),
         };
         let mut under_way = Self {

@@ -220,6 +220,30 @@ fn recordings_of_unequal_length() {
     assert!(refused(&made.raw).contains("samples, as the first force channel"));
 }
 
+/// Recordings of the steady part alone, still air from 37 samples later on.
+#[test]
+fn steady_recordings_use_the_periods_that_both_cover() {
+    let mut plan = short(VirtualCampaignPlan::default());
+    plan.tunnel.frequencies_hz = vec![0.5];
+    let mut raw = campaign(&plan).raw;
+    for run in &mut raw.runs {
+        run.in_wind = run.in_wind.map(|x| x[2400..5600].to_vec());
+        run.still_air = run
+            .still_air
+            .as_ref()
+            .map(|r| r.map(|x| x[2437..5637].to_vec()));
+    }
+    let report = done(&raw, &ProcessingOptions::default()).report;
+    // eight periods of 400 samples in wind
+    assert_eq!(report.runs[0].segments[0].plateau.periods, 7);
+    let said = report.warnings();
+    assert!(
+        said.iter()
+            .any(|w| w.contains("still air covers samples 37 to 3200")),
+        "{said:?}"
+    );
+}
+
 #[test]
 fn channels_of_the_wrong_sign_or_place_are_named() {
     let made = campaign(&short(VirtualCampaignPlan::default()));
