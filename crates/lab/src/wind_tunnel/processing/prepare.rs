@@ -4,6 +4,7 @@ use super::body::StillAirInertia;
 use super::check::{RunCheck, check_run};
 use super::lag::{Ratios, still_air_inertia};
 use super::options::ProcessingOptions;
+use super::report::LAG_TURNS;
 use super::segmentation::{find_segments, moving_dof, whole_periods};
 use super::signals::HarmonicSegment;
 use super::{body, index, lag, still_air};
@@ -190,13 +191,17 @@ pub(super) fn common_lag(
     } else if let Some(first) = unknown.next() {
         let frequencies = first.segments.iter().map(|s| s.segment.frequency_hz);
         let highest = frequencies.fold(0.0, f64::max);
-        first.findings.warnings.push(format!(
+        let turned = 360.0 * highest * found.lag_s;
+        let said = format!(
             "the runs of a motion have one frequency, which cannot tell a lag of the force channels from damping: {:.3} ms are taken \
-             for lag; were it damping, the lag would be 0 and the forces are turned by {:.1}° too much at {highest:.3} Hz (a stated \
-             `lag_s`, or another frequency, tells)",
-            1e3 * found.lag_s,
-            360.0 * highest * found.lag_s
-        ));
+             for lag; were it damping, the lag would be 0 and the forces are turned by {turned:.1}° too much at {highest:.3} Hz (a \
+             stated `lag_s`, or another frequency, tells)",
+            1e3 * found.lag_s
+        );
+        match turned.abs() > LAG_TURNS.0 {
+            true => first.findings.doubts.push(said),
+            false => first.findings.warnings.push(said),
+        }
     }
     (found.lag_s, found.standard_error_s)
 }

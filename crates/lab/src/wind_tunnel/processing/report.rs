@@ -180,7 +180,7 @@ impl ProcessingReport {
 const LAG_OFF: (f64, f64) = (5.0, 0.02);
 /// Phase by which a lag may turn the highest frequency of a run, degrees: beyond the one it is a doubt, beyond the other it is
 /// refused, unless the lag is stated.
-const LAG_TURNS: (f64, f64) = (2.0, 5.0);
+pub(super) const LAG_TURNS: (f64, f64) = (2.0, 5.0);
 /// What is left of the inertia because the motion in still air was another one, over the force that is left: from the first on it is said,
 /// from the second on it is a doubt.
 const INERTIA_LEFT: [f64; 2] = [0.002, 0.01];

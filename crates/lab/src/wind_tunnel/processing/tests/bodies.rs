@@ -224,7 +224,7 @@ fn runs_of_one_frequency_each_are_judged_together() {
 /// Of one frequency in all, nothing is judged that it does not tell, and the lag has no error.
 #[test]
 fn one_frequency_alone_tells_no_lag_from_damping() {
-    let raw = one_frequency_each(&[0.5], 1.0);
+    let raw = one_frequency_each(&[0.5], 0.3);
     let report = done(&raw, &ProcessingOptions::default()).report;
     let said = report.warnings();
     assert_eq!(report.lag_standard_error_s, None);
@@ -237,6 +237,10 @@ fn one_frequency_alone_tells_no_lag_from_damping() {
         said.iter().any(|w| w.contains("cannot tell the weight")),
         "{said:?}"
     );
+    // by more than 2° of phase it is a doubt
+    let damped = one_frequency_each(&[2.0], 7.0);
+    let doubts = done(&damped, &ProcessingOptions::default()).report.doubts();
+    assert!(doubts[0].contains("cannot tell a lag"), "{doubts:?}");
     // what a rotation measured nose-down would show as well
     let low = one_frequency_each(&[0.25], 0.0);
     let doubts = done(&low, &ProcessingOptions::default()).report.doubts();
