@@ -112,9 +112,9 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 88_999),
-        ("code lines of the core", core, 18_514),
-        ("types", found.type_count(), 1_038),
+        ("code lines", found.line_count(), 89_446),
+        ("code lines of the core", core, 18_601),
+        ("types", found.type_count(), 1_041),
         ("names of several types", found.names_used_twice(), 0),
         (
             "functions with a tuple parameter",

@@ -165,12 +165,12 @@ pub(super) fn compare(
     )))
 }
 
-/// Compares the inertia of the runs in which `dof` moves, by their names, which is that of one model: a doubt with the figures, or
-/// nothing.
+/// Compares the inertia of the runs in which `dof` moves, by their names, which is that of one model: the run with the lowest and
+/// a doubt with the figures, or nothing.
 pub(super) fn compare_runs(
     dof: Dof,
     mut runs: Vec<(&str, &StillAirInertia)>,
-) -> Result<Option<String>> {
+) -> Result<Option<(String, String)>> {
     runs.retain(|(_, found)| found.is_certain());
     runs.sort_by(|a, b| a.1.inertia.total_cmp(&b.1.inertia));
     let [(lowest, low), .., (highest, high)] = runs[..] else {
@@ -202,7 +202,6 @@ pub(super) fn compare_runs(
         ),
     )?;
     let name = dof.name();
-    Ok(Some(format!(
-        "still air shows another inertia in {name} motion: {found}"
-    )))
+    let doubt = format!("still air shows another inertia in {name} motion: {found}");
+    Ok(Some((lowest.to_owned(), doubt)))
 }

@@ -162,8 +162,13 @@ pub(super) fn judge_still_air(
                 true => first.findings.doubts.extend(said),
                 false => first.findings.warnings.extend(said),
             }
-            judged.push(doubt.map(|doubt| first.findings.doubts.extend(doubt)));
         }
+        judged.push(doubt.map(|doubt| {
+            if let Some((lowest, doubt)) = doubt {
+                let named = runs.iter_mut().filter(|p| p.run.name == lowest);
+                named.for_each(|p| p.findings.doubts.push(doubt.clone()));
+            }
+        }));
     }
     judged
 }
