@@ -191,7 +191,7 @@ fn tests_that_end_before_the_required_speed_cannot_judge_it() {
     );
     let verdict = summary(&at.join("r"))["verdict"].clone();
     let settled = verdict["outcome"]["settled_by"].to_string();
-    assert!(settled.contains("tests at K 0.27–0.49"), "{settled}");
+    assert!(settled.contains("tests at K 0.26–0.49"), "{settled}");
     let kinds: Vec<&str> = verdict["doubts"]
         .as_array()
         .unwrap()

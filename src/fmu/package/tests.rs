@@ -227,15 +227,24 @@ fn files_are_replaced_only_on_request() {
     )
     .unwrap_err();
     assert!(refusal.to_string().contains("left as it is"), "{refusal}");
+    let replace = || {
+        write_fmu(
+            &path,
+            &model,
+            &embedded(),
+            Overwrite::Replace,
+            GrowthPolicy::Refuse,
+        )
+    };
+    // an archive is replaced on request, a model or a table never
+    let refusal = replace().unwrap_err().to_string();
+    assert!(
+        refusal.contains("no file there yet, or an archive"),
+        "{refusal}"
+    );
     assert_eq!(std::fs::read(&path).unwrap(), b"mine");
-    write_fmu(
-        &path,
-        &model,
-        &embedded(),
-        Overwrite::Replace,
-        GrowthPolicy::Refuse,
-    )
-    .unwrap();
+    std::fs::write(&path, "PK of yesterday").unwrap();
+    replace().unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), first);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     let nowhere = folder.path().join("missing").join("a.fmu");
