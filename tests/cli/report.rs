@@ -203,6 +203,7 @@ fn tests_that_end_before_the_required_speed_cannot_judge_it() {
         "outside_tested_range",
         "not_judged_above",
         "not_judged_below",
+        "interval_undetermined",
     ];
     assert_eq!(kinds, expected);
     let page = fs::read_to_string(at.join("r/report.html")).unwrap();
