@@ -103,6 +103,7 @@ pub fn process(
             .collect();
         doubts.extend(processed.report.doubts());
         let found = identify_derivatives(&sources, &DerivativeOptions::default())?;
+        doubts.extend(found.contradictions());
         let header = TableHeader {
             source: raw.source.clone(),
             licence: raw.licence.clone(),

@@ -73,9 +73,17 @@ pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<
 
 /// Whether a file is there that is no archive: the model, bridge or table that an archive is made from is never replaced by it.
 fn is_of_another_kind(path: &Path) -> bool {
-    let mut first = Vec::new();
-    let read = std::fs::File::open(path).map(|file| file.take(2).read_to_end(&mut first));
-    read.is_ok() && !first.is_empty() && first != *b"PK"
+    let Ok(file) = std::fs::File::open(path) else {
+        return false;
+    };
+    let is_empty = file.metadata().is_ok_and(|m| m.len() == 0);
+    let described = ZipArchive::new(file).is_ok_and(|zip| {
+        let described = |name| zip.index_for_name(name).is_some();
+        ["modelDescription.xml", "SystemStructure.ssd"]
+            .into_iter()
+            .any(described)
+    });
+    !is_empty && !described
 }
 
 /// Temporary files are for their owner alone; an FMU is not.

@@ -243,7 +243,7 @@ fn files_are_replaced_only_on_request() {
         "{refusal}"
     );
     assert_eq!(std::fs::read(&path).unwrap(), b"mine");
-    std::fs::write(&path, "PK of yesterday").unwrap();
+    std::fs::write(&path, &first).unwrap();
     replace().unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), first);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);

@@ -22,8 +22,11 @@ pub(super) fn not_judged_below(
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };
     let k = range.max.full_width();
-    let open = match growth.iter().any(|b| b.reduced_frequency > range.max) {
-        true => Some("a coupled motion grows there"),
+    let open = match growth
+        .iter()
+        .any(|b| b.reduced_frequency > range.max && b.from_m_s < from_m_s)
+    {
+        true => Some("a motion grows there"),
         false => tested.below.why_open(),
     };
     let lose = "heave with rotation, and sway by itself where it moves, lose energy at";

@@ -72,6 +72,15 @@ pub struct DerivativeEstimate {
 }
 
 impl DerivativeEstimate {
+    /// Whether another run tested the same point once more, as near as it is set.
+    fn is_tested_again(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < SAME_SETTING;
+        self.derivative == other.derivative
+            && self.run != other.run
+            && near(self.v_hat, other.v_hat)
+            && near(self.mean_speed_m_s, other.mean_speed_m_s)
+    }
+
     fn is_of_one_point(&self, other: &Self) -> bool {
         self.derivative == other.derivative
             && self.v_hat == other.v_hat
@@ -92,7 +101,9 @@ impl<'a> RunContradiction<'a> {
     fn new(first: &'a DerivativeEstimate, second: &'a DerivativeEstimate, largest: f64) -> Self {
         let error = first.standard_error.hypot(second.standard_error);
         let allowed = (RUNS_DIFFER * largest).max(4.0 * error);
-        let apart = (first.value - second.value).abs() / allowed;
+        // forces per motion, for a derivative goes with the square of the reduced velocity
+        let second_value = second.value * (first.v_hat / second.v_hat).powi(2);
+        let apart = (first.value - second_value).abs() / allowed;
         Self {
             first,
             second,
@@ -104,7 +115,7 @@ impl<'a> RunContradiction<'a> {
         let (a, b) = (self.first, self.second);
         format!(
             "runs {} and {} are of one test point and contradict each other: {} at {:.3} Hz is {:.4} ± {:.4} and {:.4} ± {:.4}; the table has \
-             their mean",
+             both, as they are or as their mean",
             a.run,
             b.run,
             a.derivative.name(),
@@ -116,6 +127,9 @@ impl<'a> RunContradiction<'a> {
         )
     }
 }
+
+/// Reduced velocities and mean speeds of one test point differ by less than this part.
+const SAME_SETTING: f64 = 0.01;
 
 /// What two runs of one test point may differ by, of the greatest magnitude of a derivative.
 const RUNS_DIFFER: f64 = 0.03;
@@ -179,19 +193,19 @@ impl IdentifiedDerivatives {
     /// Runs of one test point that contradict each other, of each pair what differs most: their mean is no better than the worse of them.
     pub fn contradictions(&self) -> Vec<String> {
         let mut worst = BTreeMap::<[&str; 2], RunContradiction<'_>>::new();
-        for same in self.estimates.chunk_by(DerivativeEstimate::is_of_one_point) {
-            for (i, a) in same.iter().enumerate() {
-                for b in &same[i + 1..] {
-                    let found = RunContradiction::new(a, b, self.largest(a.derivative));
-                    if found.apart > 1.0 {
-                        let pair = worst.entry([&a.run, &b.run]).or_insert(found);
-                        if found.apart > pair.apart {
-                            *pair = found;
-                        }
-                    }
+        for (i, a) in self.estimates.iter().enumerate() {
+            for b in self.estimates[i + 1..]
+                .iter()
+                .filter(|b| a.is_tested_again(b))
+            {
+                let found = RunContradiction::new(a, b, self.largest(a.derivative));
+                let pair = worst.entry([&a.run, &b.run]).or_insert(found);
+                if found.apart > pair.apart {
+                    *pair = found;
                 }
             }
         }
+        worst.retain(|_, found| found.apart > 1.0);
         worst.values().map(RunContradiction::explain).collect()
     }
 

@@ -52,6 +52,9 @@ fn a_known_transfer_matrix_comes_back() {
     other[0].header.name = "again".to_owned();
     let forces = other[0].force.iter_mut().flatten();
     forces.for_each(|x| *x *= 1.1);
+    // no motion is set twice to the last bit
+    let motion = other[0].motion.iter_mut().flatten().enumerate();
+    motion.for_each(|(i, x)| *x *= 1.0 + 1e-6 * (i % 7) as f64);
     let both = [&records[..], &other[..1]].concat();
     let both = identify_derivatives(&sources(&both), &DerivativeOptions::default()).unwrap();
     let [said] = &both.contradictions()[..] else {

@@ -187,15 +187,15 @@ pub(super) fn common_lag(
     };
     let unknown =
         |p: &&mut PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| s.damping.is_none());
-    let mut unknown = runs.iter_mut().filter(unknown);
-    if found.standard_error_s.is_some() {
-        // what is more than the lag of the others is damping
-        unknown
-            .filter_map(|p| p.still_air.as_mut())
-            .for_each(|s| s.lag_s = found.lag_s);
-    } else if let Some(first) = unknown.next() {
-        let frequencies = first.segments.iter().map(|s| s.segment.frequency_hz);
-        let highest = frequencies.fold(0.0, f64::max);
+    let highest_hz = |p: &PreparedRun<'_>| {
+        let frequencies = p.segments.iter().map(|s| s.segment.frequency_hz);
+        frequencies.fold(0.0, f64::max)
+    };
+    let unknown = runs.iter_mut().filter(unknown);
+    let fastest = unknown.max_by(|a, b| highest_hz(a).total_cmp(&highest_hz(b)));
+    // with a standard error the other motion tells the lag, and each run is asked what its own says
+    if let (None, Some(fastest)) = (found.standard_error_s, fastest) {
+        let highest = highest_hz(fastest);
         let turned = 360.0 * highest * found.lag_s;
         let said = format!(
             "the runs of a motion have one frequency, which cannot tell a lag of the force channels from damping: {:.3} ms are taken \
@@ -204,8 +204,8 @@ pub(super) fn common_lag(
             1e3 * found.lag_s
         );
         match turned.abs() > LAG_TURNS.0 {
-            true => first.findings.doubts.push(said),
-            false => first.findings.warnings.push(said),
+            true => fastest.findings.doubts.push(said),
+            false => fastest.findings.warnings.push(said),
         }
     }
     (found.lag_s, found.standard_error_s)

@@ -8,7 +8,7 @@ use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
-use super::signals::{HarmonicSegment, SectionSignals, index};
+use super::signals::{HarmonicSegment, SectionSignals};
 use super::spikes::{CLIPPED, Replaced};
 use super::still_air::{Alignment, RemovedInertia};
 use crate::error::{Result, ensure};
@@ -183,13 +183,13 @@ const LAG_OFF: (f64, f64) = (5.0, 0.02);
 pub(super) const LAG_TURNS: (f64, f64) = (2.0, 5.0);
 /// What is left of the inertia because the motion in still air was another one, over the force that is left: from the first on it is said,
 /// from the second on it is a doubt.
-const INERTIA_LEFT: [f64; 2] = [0.002, 0.01];
+const INERTIA_LEFT: [f64; 2] = [0.005, 0.02];
 
 impl RunReport {
     /// Says where still air moved otherwise than wind, in amplitude or because its clock went otherwise.
     fn say_what_inertia_is_left(&mut self) {
         let [told, grave] = INERTIA_LEFT;
-        let left = self.inertia.left_of_it(index(self.dof));
+        let left = self.inertia.left_in_force;
         if left <= told {
             return;
         }
@@ -224,18 +224,27 @@ impl RunReport {
             "a lag of {:.3} ms, {turned:.1}° of phase off at {highest:.3} Hz",
             1e3 * found.lag_s
         );
+        // of one frequency, damping looks like a lag
+        let may_be_damping = found.damping.is_none();
+        if may_be_damping && turned <= grave {
+            return Ok(());
+        }
         ensure(
-            is_stated || turned <= most,
+            is_stated || may_be_damping || turned <= most,
             format_args!("run {}, still air", self.run),
             format_args!(
                 "the {corrected:.3} ms by which the force channels of all runs lag, to {most}° of phase (or a stated `lag_s`)"
             ),
             &own,
         )?;
-        let what = format!("its own inertia says {own}; {corrected:.3} ms were corrected");
-        match turned > grave {
+        let (or, unless) = match may_be_damping {
+            true => (", or damping", "unless that is damping, "),
+            false => ("", ""),
+        };
+        let what = format!("its own inertia says {own}{or}; {corrected:.3} ms were corrected");
+        match turned > grave && !(is_stated && may_be_damping) {
             true => {
-                let doubt = format!("{what}: its derivatives are wrong by as much");
+                let doubt = format!("{what}: {unless}its derivatives are wrong by as much");
                 self.doubts.push(doubt);
             }
             false => self.warnings.push(what),

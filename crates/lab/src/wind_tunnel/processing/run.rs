@@ -198,18 +198,20 @@ impl<'a> RunInProgress<'a> {
 
     /// Stage 8.
     fn subtract_still_air(&mut self) -> Result<()> {
-        let motion_mismatch = match self.report.alignment {
-            Some(_) => still_air::motion_mismatch(
+        let mismatch = match self.report.alignment {
+            Some(_) => still_air::mismatch(
                 &self.signals,
                 &self.still_air,
                 &self.report.segments,
                 index(self.prepared.dof),
             )?,
-            None => 0.0,
+            None => RemovedInertia::default(),
         };
+        let removed = still_air::subtract(&mut self.signals, &self.still_air);
         self.report.inertia = RemovedInertia {
-            motion_mismatch,
-            ..still_air::subtract(&mut self.signals, &self.still_air)
+            removed_rms: removed.removed_rms,
+            left_rms: removed.left_rms,
+            ..mismatch
         };
         self.done("still air subtracted");
         Ok(())

@@ -121,47 +121,58 @@ pub struct RemovedInertia {
     pub removed_rms: [f64; 3],
     /// RMS of what is left.
     pub left_rms: [f64; 3],
-    /// Greatest difference of the motion in still air from that in wind, over the segments: of the complex amplitude, relative. As much
-    /// of the inertia is left.
+    /// Greatest difference of the motion in still air from that in wind, over the segments: of the complex amplitude, relative.
     #[serde(default)]
     pub motion_mismatch: f64,
+    /// What of the inertia is left for that, over the force that is left, of the degree of freedom that moves: the greatest of the segments.
+    #[serde(default)]
+    pub left_in_force: f64,
 }
 
-impl RemovedInertia {
-    /// What is left of the inertia over what is left of the force in all, `dof` of both.
-    pub(crate) fn left_of_it(&self, dof: usize) -> f64 {
-        let left = self.left_rms[dof];
-        if left > 0.0 {
-            self.motion_mismatch * self.removed_rms[dof] / left
-        } else {
-            0.0
-        }
-    }
-}
-
-/// How far the motion in still air is from that in wind, where both are steady, relative.
-pub(crate) fn motion_mismatch(
+/// How far still air moved otherwise than wind, and what that leaves of the inertia in the force, `dof` of both; where no segment is
+/// harmonic by root mean squares.
+pub(crate) fn mismatch(
     in_wind: &SectionSignals,
     still_air: &SectionSignals,
     segments: &[HarmonicSegment],
     dof: usize,
-) -> Result<f64> {
-    let amplitude = |signals: &SectionSignals, at: &HarmonicSegment| {
-        let (motion, frequency_hz) = (&signals.motion[dof], at.segment.frequency_hz);
+) -> Result<RemovedInertia> {
+    let mut found = RemovedInertia::default();
+    let mut enter = |mismatch: f64, removed: f64, left: f64| {
+        found.motion_mismatch = found.motion_mismatch.max(mismatch);
+        if left > 0.0 {
+            found.left_in_force = found.left_in_force.max(mismatch * removed / left);
+        }
+    };
+    let amplitude = |signal: &[f64], at: &HarmonicSegment| {
+        let frequency_hz = at.segment.frequency_hz;
         let fit = fit_sine(
-            motion,
+            signal,
             at.plateau.range(),
-            signals.sampling_hz,
+            in_wind.sampling_hz,
             frequency_hz,
         )?;
         Ok::<_, Error>(fit.fundamental())
     };
-    let mut greatest = 0.0_f64;
     for at in segments {
-        let (wind, still) = (amplitude(in_wind, at)?, amplitude(still_air, at)?);
-        greatest = greatest.max((still / wind - 1.0).norm());
+        let of = |signals: &[Vec<f64>; 3]| amplitude(&signals[dof], at);
+        let motion = of(&still_air.motion)? / of(&in_wind.motion)?;
+        let (wind, still) = (of(&in_wind.force)?, of(&still_air.force)?);
+        enter((motion - 1.0).norm(), still.norm(), (wind - still).norm());
     }
-    Ok(greatest)
+    if segments.is_empty() {
+        let apart = |a: &[Vec<f64>; 3], b: &[Vec<f64>; 3]| {
+            let difference: Vec<f64> = a[dof].iter().zip(&b[dof]).map(|(a, b)| a - b).collect();
+            root_mean_square(&difference)
+        };
+        let moved = root_mean_square(&in_wind.motion[dof]);
+        if moved > 0.0 {
+            let removed = root_mean_square(&still_air.force[dof]);
+            let mismatch = apart(&in_wind.motion, &still_air.motion) / moved;
+            enter(mismatch, removed, apart(&in_wind.force, &still_air.force));
+        }
+    }
+    Ok(found)
 }
 
 /// `in_wind − still_air`.

@@ -80,8 +80,7 @@ fn a_campaign_without_disturbances_gives_the_truth_back() {
     assert!(processed.report.lag_s.abs() < 1e-5);
 }
 
-/// Still air with 0.95 of the amplitude (A3* wrong by up to 19 %), or by a clock that is slow by 3e-4 (A2* by up to 65 %), at half the
-/// speed of these tests, had a note or none.
+/// Still air with 0.9 of the amplitude (A3* wrong by up to 37 % in a campaign of lower speeds), or by another clock, had a note or none.
 #[test]
 fn still_air_that_moves_otherwise_is_a_doubt() {
     let doubts = |change: fn(&[f64]) -> Vec<f64>| {
@@ -92,8 +91,8 @@ fn still_air_that_moves_otherwise_is_a_doubt() {
     };
     assert!(doubts(<[f64]>::to_vec).is_empty());
     for change in [
-        |x: &[f64]| x.iter().map(|v| 0.95 * v).collect(),
-        |x: &[f64]| crate::signal::resampled(x, 1.0 + 3e-4),
+        |x: &[f64]| x.iter().map(|v| 0.9 * v).collect(),
+        |x: &[f64]| crate::signal::resampled(x, 1.0 + 1e-3),
     ] {
         let said = doubts(change);
         assert!(

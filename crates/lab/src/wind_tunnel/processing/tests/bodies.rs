@@ -229,8 +229,8 @@ fn one_frequency_alone_tells_no_lag_from_damping() {
     let said = report.warnings();
     assert_eq!(report.lag_standard_error_s, None);
     assert!(
-        said[0].contains("cannot tell a lag")
-            && said[0].contains("were it damping, the lag would be 0"),
+        said.iter().any(|w| w.contains("cannot tell a lag")
+            && w.contains("were it damping, the lag would be 0")),
         "{said:?}"
     );
     assert!(
@@ -240,7 +240,10 @@ fn one_frequency_alone_tells_no_lag_from_damping() {
     // by more than 2° of phase it is a doubt
     let damped = one_frequency_each(&[2.0], 7.0);
     let doubts = done(&damped, &ProcessingOptions::default()).report.doubts();
-    assert!(doubts[0].contains("cannot tell a lag"), "{doubts:?}");
+    assert!(
+        doubts.iter().any(|d| d.contains("cannot tell a lag")),
+        "{doubts:?}"
+    );
     // what a rotation measured nose-down would show as well
     let low = one_frequency_each(&[0.25], 0.0);
     let doubts = done(&low, &ProcessingOptions::default()).report.doubts();
