@@ -141,6 +141,14 @@ impl Bounds {
         sets
     }
 
+    /// A start, brought between the bounds.
+    pub(crate) fn inside(&self, start: &[f64]) -> Vec<f64> {
+        start
+            .iter()
+            .map(|p| p.clamp(self.least, self.max))
+            .collect()
+    }
+
     /// Whether the poles are ordered, apart and inside.
     pub(crate) fn admits(&self, poles: &[f64]) -> bool {
         let inside = |p: &f64| *p >= self.least * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
@@ -167,7 +175,7 @@ pub(crate) fn search_poles(
         points: Vec::new(),
     };
     let starts = match &options.start {
-        Some(start) => vec![start.clone()],
+        Some(start) => vec![bounds.inside(start)],
         None => bounds.grid(count, options.grid_points),
     };
     search.evaluate_all(starts)?;

@@ -182,7 +182,7 @@ impl PoleGroup {
     /// Poles to be tried in a pass.
     fn wanted(&mut self, pass: usize) -> Result<Vec<Vec<f64>>> {
         match (&self.options.start, pass) {
-            (Some(start), 1) => Ok(vec![start.clone()]),
+            (Some(start), 1) => Ok(vec![self.bounds.inside(start)]),
             (None, 1) => Ok(self.bounds.grid(self.form.free_poles(), FIRST_POINTS)),
             _ => self.refine(),
         }

@@ -105,10 +105,8 @@ fn ratios_are_those_of_the_embedded_decks() {
             .flat_map(|f| [100.0 * f.size, 100.0 * f.phase]);
         ratios.chain(percent).collect::<Vec<f64>>()
     });
-    let ratios = speed_prior::MEASURED.map(|(_, ratios)| ratios);
-    let percent = speed_prior::MEASURED_PERCENT.map(|(_, percent)| percent);
-    for (deck, found) in found.iter().enumerate() {
-        let stored = ratios[deck].iter().chain(&percent[deck]);
+    for (found, (_, rows)) in found.iter().zip(speed_prior::MEASURED) {
+        let stored = rows.as_flattened();
         // two decimals are stored
         assert!(
             found.len() == 8 && found.iter().zip(stored).all(|(a, b)| (a - b).abs() < 0.006),

@@ -36,12 +36,9 @@ const UNITS: [&str; 12] = [
     "n", "kn", "mn", "nm", "knm", "mnm", "pa", "kpa", "mpa", "m", "mm", "rad",
 ];
 
-/// The unit that a name ends with.
-fn unit(name: &str) -> Option<&'static str> {
-    let (_, last) = name.rsplit_once('_')?;
-    UNITS
-        .into_iter()
-        .find(|unit| last.eq_ignore_ascii_case(unit))
+fn states_its_unit(name: &str) -> bool {
+    name.rsplit_once('_')
+        .is_some_and(|(_, last)| UNITS.iter().any(|unit| last.eq_ignore_ascii_case(unit)))
 }
 
 fn parsed(text: &str) -> Result<ModalSectionForces> {
@@ -57,7 +54,7 @@ fn parsed(text: &str) -> Result<ModalSectionForces> {
         let expected = "columns mode, element and one a force";
         return Err(wrong(first + 1, expected, &header.join(",")));
     }
-    if let Some(bare) = header[2..].iter().find(|name| unit(name).is_none()) {
+    if let Some(bare) = header[2..].iter().find(|name| !states_its_unit(name)) {
         let expected = format!(
             "names that end with their unit, as my_nm ({})",
             UNITS.join(", ")

@@ -266,6 +266,8 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) -> Resul
         Some(s) if s.tells_lag(report.sampling_hz) => {
             report.say_lag(&s, options.lag_s.is_some())?;
         }
+        // what hides the weight has its own words
+        Some(s) if s.hides_weight() => {}
         _ if options.lag_s.is_none() && report.alignment.is_some() => warnings
             .push("the inertia in still air is too small to tell the lag of the channels".into()),
         _ => {}

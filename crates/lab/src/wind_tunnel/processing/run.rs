@@ -207,12 +207,7 @@ impl<'a> RunInProgress<'a> {
             )?,
             None => RemovedInertia::default(),
         };
-        let removed = still_air::subtract(&mut self.signals, &self.still_air);
-        self.report.inertia = RemovedInertia {
-            removed_rms: removed.removed_rms,
-            left_rms: removed.left_rms,
-            ..mismatch
-        };
+        self.report.inertia = still_air::subtract(&mut self.signals, &self.still_air, mismatch);
         self.done("still air subtracted");
         Ok(())
     }

@@ -12,7 +12,7 @@
 use super::signals::{HarmonicSegment, SectionSignals};
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
-use crate::signal::{delay, delayed, fit_sine, root_mean_square};
+use crate::signal::{delay, delayed, fit_sine, mean_and_deviation, root_mean_square};
 use crate::wind_tunnel::RawRecording;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -130,7 +130,7 @@ pub struct RemovedInertia {
 }
 
 /// How far still air moved otherwise than wind, and what that leaves of the inertia in the force, `dof` of both; where no segment is
-/// harmonic by root mean squares.
+/// harmonic by standard deviations.
 pub(crate) fn mismatch(
     in_wind: &SectionSignals,
     still_air: &SectionSignals,
@@ -161,13 +161,15 @@ pub(crate) fn mismatch(
         enter((motion - 1.0).norm(), still.norm(), (wind - still).norm());
     }
     if segments.is_empty() {
+        // about the means: where a gauge stands is no motion
+        let deviation = |x: &[f64]| mean_and_deviation(x.iter().copied()).1;
         let apart = |a: &[Vec<f64>; 3], b: &[Vec<f64>; 3]| {
             let difference: Vec<f64> = a[dof].iter().zip(&b[dof]).map(|(a, b)| a - b).collect();
-            root_mean_square(&difference)
+            deviation(&difference)
         };
-        let moved = root_mean_square(&in_wind.motion[dof]);
+        let moved = deviation(&in_wind.motion[dof]);
         if moved > 0.0 {
-            let removed = root_mean_square(&still_air.force[dof]);
+            let removed = deviation(&still_air.force[dof]);
             let mismatch = apart(&in_wind.motion, &still_air.motion) / moved;
             enter(mismatch, removed, apart(&in_wind.force, &still_air.force));
         }
@@ -176,7 +178,11 @@ pub(crate) fn mismatch(
 }
 
 /// `in_wind − still_air`.
-pub(crate) fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals) -> RemovedInertia {
+pub(crate) fn subtract(
+    in_wind: &mut SectionSignals,
+    still_air: &SectionSignals,
+    mismatch: RemovedInertia,
+) -> RemovedInertia {
     for (wind, still) in in_wind.force.iter_mut().zip(&still_air.force) {
         wind.iter_mut().zip(still).for_each(|(w, s)| *w -= s);
     }
@@ -184,6 +190,6 @@ pub(crate) fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals)
     RemovedInertia {
         removed_rms: rms(still_air),
         left_rms: rms(in_wind),
-        ..RemovedInertia::default()
+        ..mismatch
     }
 }
