@@ -112,8 +112,8 @@ fn the_house_does_not_grow() {
     let found = figures();
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 89_488),
-        ("code lines of the core", core, 18_604),
+        ("code lines", found.line_count(), 89_508),
+        ("code lines of the core", core, 18_612),
         ("types", found.type_count(), 1_041),
         ("names of several types", found.names_used_twice(), 0),
         (
