@@ -83,9 +83,10 @@ pub use aerodeck_lab::{files, signal, wind_tunnel};
 pub use aerodeck_live as live;
 
 pub use aerodeck_core::{
-    Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, json, plausibility, response,
-    section, state_space, trained_model, units, verdict,
+    Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, json, response, section,
+    state_space, trained_model, units,
 };
+pub use aerodeck_judgement::{plausibility, verdict};
 
 /// The program in the README is compiled and run with the tests.
 #[cfg(doctest)]

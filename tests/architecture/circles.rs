@@ -1,7 +1,7 @@
 //! No circles between the files of a room: who reads a file need not know those that use it.
 
 use crate::rules::{mentions, module_of};
-use crate::source::{Mention, Source};
+use crate::source::{Mention, SourceFile};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A name may be passed on so many times.
@@ -13,9 +13,10 @@ struct Tree<'a> {
 }
 
 /// Groups of files each of which needs all others, in order.
-pub fn circles<'a>(files: impl Iterator<Item = (&'a str, &'a Source)>) -> Vec<String> {
-    let entry =
-        |(path, source): (&'a str, &'a Source)| (module_of(path), (path, mentions(path, source)));
+pub fn circles<'a>(files: impl Iterator<Item = (&'a str, &'a SourceFile)>) -> Vec<String> {
+    let entry = |(path, source): (&'a str, &'a SourceFile)| {
+        (module_of(path), (path, mentions(path, source)))
+    };
     let tree = Tree {
         files: files.map(entry).collect(),
     };

@@ -15,6 +15,8 @@ struct Figures {
     types: BTreeMap<String, usize>,
     /// Functions of which a parameter is taken apart as a tuple, or is one.
     with_tuples: Vec<String>,
+    /// Whether tests count.
+    with_tests: bool,
 }
 
 impl Figures {
@@ -54,7 +56,7 @@ impl Figures {
 
 impl<'ast> Visit<'ast> for Figures {
     fn visit_item(&mut self, item: &'ast Item) {
-        if crate::source::is_for_tests(item) {
+        if !self.with_tests && crate::source::is_for_tests(item) {
             return;
         }
         match item {
@@ -89,7 +91,7 @@ fn figures() -> Figures {
         let files: Vec<(String, String)> = rust_files(directory);
         let tests: BTreeSet<String> = files
             .iter()
-            .flat_map(|(path, text)| test_modules(path, &crate::source::Source::new(text)))
+            .flat_map(|(path, text)| test_modules(path, &crate::source::SourceFile::new(text)))
             .collect();
         for (path, text) in &files {
             let stem = path.trim_end_matches(".rs");
@@ -106,19 +108,44 @@ fn figures() -> Figures {
     found
 }
 
+/// The same names and signatures of every Rust file, tests, benches and the Python package included.
+fn of_every_file() -> Figures {
+    let mut found = Figures {
+        with_tests: true,
+        ..Figures::default()
+    };
+    let beside = ["tests", "benches", "examples", "python/src", "fmu_build"];
+    for directory in SOURCES.iter().copied().chain(beside) {
+        for (_, text) in rust_files(directory) {
+            found.visit_file(&syn::parse_file(&text).unwrap());
+        }
+    }
+    found
+}
+
 /// Figure by figure: what it is now, and the ceiling.
 #[test]
 fn the_house_does_not_grow() {
-    let found = figures();
+    let (found, whole) = (figures(), of_every_file());
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 89_508),
-        ("code lines of the core", core, 18_612),
+        ("code lines", found.line_count(), 89_517),
+        ("code lines of the core", core, 15_328),
         ("types", found.type_count(), 1_041),
         ("names of several types", found.names_used_twice(), 0),
         (
             "functions with a tuple parameter",
             found.with_tuples.len(),
+            0,
+        ),
+        (
+            "names of several types, with tests and Python",
+            whole.names_used_twice(),
+            8,
+        ),
+        (
+            "functions with a tuple parameter, with tests and Python",
+            whole.with_tuples.len(),
             0,
         ),
     ];
@@ -128,10 +155,10 @@ fn the_house_does_not_grow() {
     for (what, count, ceiling) in table {
         println!("{count:>7}  {what} (at most {ceiling})");
     }
-    let several = found.types.iter().filter(|(_, count)| **count > 1);
+    let several = whole.types.iter().filter(|(_, count)| **count > 1);
     let names: Vec<String> = several.map(|(n, count)| format!("{n} {count}")).collect();
     println!("names of several types: {}", names.join(", "));
-    println!("tuple parameters: {}", found.with_tuples.join(", "));
+    println!("tuple parameters: {}", whole.with_tuples.join(", "));
     for (what, count, ceiling) in table {
         assert!(count <= ceiling, "{count} {what}, at most {ceiling}");
     }

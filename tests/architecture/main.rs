@@ -8,7 +8,7 @@ mod rules;
 mod source;
 
 use rules::{ARROWS, LINES_AT_MOST, breaches};
-use source::Source;
+use source::SourceFile;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,7 @@ const SOURCES: &[&str] = &[
     "crates/core/src",
     "crates/fit/src",
     "crates/fmu-host/src",
+    "crates/judgement/src",
     "crates/lab/src",
     "crates/component/src",
     "crates/live/src",
@@ -52,7 +53,7 @@ fn entries(directory: &Path) -> Vec<PathBuf> {
 }
 
 /// Paths (without `.rs`) of the modules that `source` at `path` declares for tests only.
-fn test_modules(path: &str, source: &Source) -> Vec<String> {
+fn test_modules(path: &str, source: &SourceFile) -> Vec<String> {
     let stem = path.trim_end_matches(".rs");
     let own = match stem.rsplit_once('/') {
         Some((folder, "lib" | "main")) => folder,
@@ -68,10 +69,10 @@ fn report(breaches: &[String]) {
 
 #[test]
 fn the_tree_keeps_the_rules() {
-    let files: Vec<(String, Source)> = SOURCES
+    let files: Vec<(String, SourceFile)> = SOURCES
         .iter()
         .flat_map(|directory| rust_files(directory))
-        .map(|(path, text)| (path, Source::new(&text)))
+        .map(|(path, text)| (path, SourceFile::new(&text)))
         .collect();
     assert!(files.len() > 20, "the sources were not found");
     let tests: BTreeSet<String> = files.iter().flat_map(|(p, s)| test_modules(p, s)).collect();
@@ -158,7 +159,7 @@ mod the_checker {
     #[track_caller]
     fn check(cases: &[Case<'_>]) {
         for (path, text, expected) in cases {
-            let found = breaches(path, &Source::new(text));
+            let found = breaches(path, &SourceFile::new(text));
             assert_eq!(found.len(), expected.len(), "{text}: {found:?}");
             for (found, expected) in found.iter().zip(*expected) {
                 assert!(found.contains(expected), "{found} lacks {expected}");
@@ -274,7 +275,7 @@ mod the_checker {
                 &[],
             ),
         ]);
-        let names = |path: &str, text: &str| test_modules(path, &Source::new(text));
+        let names = |path: &str, text: &str| test_modules(path, &SourceFile::new(text));
         assert_eq!(
             names("src/a.rs", "#[cfg(test)]\nmod checks;"),
             ["src/a/checks"]
@@ -290,7 +291,7 @@ mod the_checker {
         let room = "mod b; mod c;\npub use b::B;";
         let found = |b: &str, c: &str| {
             let files = [("src/a.rs", room), ("src/a/b.rs", b), ("src/a/c.rs", c)];
-            let files = files.map(|(path, text)| (path, Source::new(text)));
+            let files = files.map(|(path, text)| (path, SourceFile::new(text)));
             circles::circles(files.iter().map(|(path, source)| (*path, source)))
         };
         assert_eq!(

@@ -1,9 +1,9 @@
 //! The rules of the house: who may import whom, how long a file may be.
 
-use crate::source::{Mention, Source};
+use crate::source::{Mention, SourceFile};
 
 /// One module and what it may import besides itself and `error`.
-pub struct Row {
+pub struct ArrowRow {
     /// The module, from the crate root.
     pub module: &'static str,
     /// Modules with a row of their own, `module+` for one and all that it may use, or longer paths
@@ -13,8 +13,8 @@ pub struct Row {
     pub types_only: bool,
 }
 
-const fn row(module: &'static str, may_use: &'static [&'static str]) -> Row {
-    Row {
+const fn row(module: &'static str, may_use: &'static [&'static str]) -> ArrowRow {
+    ArrowRow {
         module,
         may_use,
         types_only: false,
@@ -22,7 +22,7 @@ const fn row(module: &'static str, may_use: &'static [&'static str]) -> Row {
 }
 
 /// Direction of all imports. A module without a row is refused: write down what it may use.
-pub const ARROWS: &[Row] = &[
+pub const ARROWS: &[ArrowRow] = &[
     row("error", &[]),
     row("threads", &[]),
     row("numbered", &[]),
@@ -108,7 +108,7 @@ pub const ARROWS: &[Row] = &[
     ),
     row("reference", BELOW_STUDY),
     row("study", BELOW_STUDY),
-    Row {
+    ArrowRow {
         module: "report",
         may_use: &["study+", "reference+", "bridge"],
         types_only: true,
@@ -173,7 +173,7 @@ fn room_of_crate(path: &str) -> Option<&'static [&'static str]> {
 
 /// What a file mentions, by the paths that the root package has for it. In a crate that is one room, `crate::a` is a part of that
 /// room, unless it is the name of another.
-pub fn mentions(path: &str, source: &Source) -> Vec<Mention> {
+pub fn mentions(path: &str, source: &SourceFile) -> Vec<Mention> {
     let mut found = source.mentions(&module_of(path));
     let Some(room) = room_of_crate(path) else {
         return found;
@@ -196,7 +196,7 @@ pub fn mentions(path: &str, source: &Source) -> Vec<Mention> {
 }
 
 /// All breaches in one file of `src` that is not test code. `path` is relative to the package, with `/`.
-pub fn breaches(path: &str, source: &Source) -> Vec<String> {
+pub fn breaches(path: &str, source: &SourceFile) -> Vec<String> {
     let module = module_of(path);
     // the root declares the modules and re-exports; it is no module of the house
     if module.is_empty() {
@@ -218,7 +218,7 @@ pub fn breaches(path: &str, source: &Source) -> Vec<String> {
 }
 
 /// Why a module may not use a path; `None` when it may.
-fn refusal(own: &Row, target: &[String]) -> Option<String> {
+fn refusal(own: &ArrowRow, target: &[String]) -> Option<String> {
     // `crate::Error`, `crate::Result`: re-exports of `error` at the root
     let at_root = target
         .first()
@@ -243,7 +243,7 @@ fn refusal(own: &Row, target: &[String]) -> Option<String> {
 }
 
 /// Whether the list of `own` names the module `theirs`, or the path in it.
-fn permits(own: &Row, theirs: &Row, path: &str) -> bool {
+fn permits(own: &ArrowRow, theirs: &ArrowRow, path: &str) -> bool {
     own.may_use.iter().any(|entry| {
         if let Some(start) = entry.strip_suffix('*') {
             return path.starts_with(start);
@@ -259,7 +259,7 @@ fn permits(own: &Row, theirs: &Row, path: &str) -> bool {
 }
 
 /// The row with the longest module path that holds `path`.
-fn row_of(path: &[String]) -> Option<&'static Row> {
+fn row_of(path: &[String]) -> Option<&'static ArrowRow> {
     let path = path.join("::");
     let holds = |module: &str| {
         path.strip_prefix(module)

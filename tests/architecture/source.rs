@@ -8,18 +8,18 @@ use syn::{Attribute, Expr, ImplItem, Item, ItemMod, ItemUse, Macro, Meta, Path, 
 
 /// A source file.
 #[derive(Default)]
-pub struct Source {
+pub struct SourceFile {
     /// Modules that stand in files of their own: `mod name;`.
     children: Vec<String>,
     /// Those of them that are compiled for tests only.
     pub test_files: Vec<String>,
-    written: Vec<Written>,
+    written: Vec<QuotedName>,
     /// Names of the modules around what is being read, within the file.
     inside: Vec<String>,
 }
 
 /// A path as it is written.
-struct Written {
+struct QuotedName {
     inside: Vec<String>,
     segments: Vec<String>,
     /// What a `use` calls it here; none where the path is used on the spot.
@@ -41,7 +41,7 @@ pub struct Mention {
     pub line: usize,
 }
 
-impl Source {
+impl SourceFile {
     /// Reads a file.
     pub fn new(text: &str) -> Self {
         let file = syn::parse_file(text).expect("Rust");
@@ -74,7 +74,7 @@ impl Source {
     }
 
     fn write(&mut self, segments: Vec<String>, line: usize) {
-        self.written.push(Written {
+        self.written.push(QuotedName {
             inside: self.inside.clone(),
             segments,
             name: None,
@@ -115,7 +115,7 @@ impl Source {
     }
 }
 
-impl Written {
+impl QuotedName {
     /// The path from the root of the crate; none where it does not start in it.
     fn absolute(&self, module: &[String], children: &[String]) -> Option<Vec<String>> {
         let mut base = [module, &self.inside].concat();
@@ -148,7 +148,7 @@ impl Written {
     }
 }
 
-impl<'ast> Visit<'ast> for Source {
+impl<'ast> Visit<'ast> for SourceFile {
     fn visit_item(&mut self, item: &'ast Item) {
         if !are_for_tests(attributes(item)) {
             return visit::visit_item(self, item);
@@ -205,7 +205,7 @@ impl<'ast> Visit<'ast> for Source {
         // what follows an argument that is none is left out
         let _ = call.parse_body_with(read);
         for argument in arguments {
-            Source::visit_expr(self, &argument);
+            SourceFile::visit_expr(self, &argument);
         }
     }
 

@@ -52,7 +52,7 @@ pub use growth_band::GrowthBand;
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
 pub use judged::{JudgedSpeeds, bridge_damps_fast_motion, damps_fast_motion};
-pub(crate) use mode_words::the_mode;
+pub use mode_words::the_mode;
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, ModeRatio, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};

@@ -3,7 +3,7 @@
 //! Every aerodynamic model is a transfer matrix `q̂(K) = G(K) r̂(K)` ([`aerodynamics`]) and, where it has one, a state-space
 //! realisation. A structure is `(M, R, K)` ([`section`], [`bridge`]). Their coupling at a wind speed is one linear system
 //! ([`aeroelastic`]), whose modes and onsets [`flutter`] finds and whose exact steps [`response`] takes. [`trained_model`] is what is
-//! saved, in the [`json`] that says what it is, [`plausibility`] judges what is given, [`verdict`] what was found.
+//! saved, in the [`json`] that says what it is.
 #![deny(unsafe_code)]
 
 // the macro in it is known to what stands below
@@ -16,12 +16,10 @@ pub mod bridge;
 pub mod error;
 pub mod flutter;
 pub mod json;
-pub mod plausibility;
 pub mod response;
 pub mod section;
 pub mod state_space;
 pub mod trained_model;
 pub mod units;
-pub mod verdict;
 
 pub use error::{Error, Result};

@@ -3,9 +3,9 @@
 #![deny(unsafe_code)]
 
 use aerodeck_core::{
-    aerodynamics, aeroelastic, error, flutter, json, plausibility, section, state_space,
-    trained_model, units, verdict,
+    aerodynamics, aeroelastic, error, flutter, json, section, state_space, trained_model, units,
 };
+use aerodeck_judgement::{plausibility, verdict};
 use aerodeck_lab::{files, signal, wind_tunnel};
 use error::Error;
 

@@ -2,7 +2,8 @@
 //! signals ([`signal`]), campaigns, load cells and the virtual wind tunnel ([`wind_tunnel`]).
 #![deny(unsafe_code)]
 
-use aerodeck_core::{aerodynamics, bridge, error, json, plausibility, section, units};
+use aerodeck_core::{aerodynamics, bridge, error, json, section, units};
+use aerodeck_judgement::plausibility;
 use error::Error;
 
 pub mod files;

@@ -9,7 +9,7 @@ pub(super) fn mode_in_words(branch: &str) -> String {
 }
 
 /// The same in a sentence: "the torsion mode", "mode 17".
-pub(crate) fn the_mode(branch: &str) -> String {
+pub fn the_mode(branch: &str) -> String {
     match branch.starts_with("mode ") {
         true => branch.to_owned(),
         false => format!("the {branch} mode"),
