@@ -1,9 +1,9 @@
 //! Instructions by valgrind and peaks by the operating system, against what is stored.
 
-use crate::entry::Entry;
+use crate::entry::BenchEntry;
 use crate::peak;
 use crate::registry;
-use crate::stored::{Figure, Stored, compiler};
+use crate::stored::{StoredCounts, StoredFigure, compiler};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -36,8 +36,8 @@ struct Used {
 }
 
 /// Counts again and fails where more is used than is stored.
-pub(crate) fn judge(entries: &[&Entry]) -> Result<(), String> {
-    let stored = Stored::read()?;
+pub(crate) fn judge(entries: &[&BenchEntry]) -> Result<(), String> {
+    let stored = StoredCounts::read()?;
     let found = measured(entries)?;
     // another compiler makes another program
     let comparable = stored.compiler == compiler();
@@ -93,7 +93,7 @@ pub(crate) fn judge(entries: &[&Entry]) -> Result<(), String> {
     ))
 }
 
-fn line(entry: &Entry, unit: &str, now: f64, before: Option<&Figure>) -> String {
+fn line(entry: &BenchEntry, unit: &str, now: f64, before: Option<&StoredFigure>) -> String {
     let against = match before {
         None => "nothing stored".to_owned(),
         Some(f) => {
@@ -110,12 +110,12 @@ fn line(entry: &Entry, unit: &str, now: f64, before: Option<&Figure>) -> String 
 
 /// Writes what is used now; reasons stay beside the figures that they belong to.
 pub(crate) fn store() -> Result<(), String> {
-    let all: Vec<&Entry> = registry::all().collect();
+    let all: Vec<&BenchEntry> = registry::all().collect();
     let found = measured(&all)?;
-    let before = Stored::read()?;
-    let mut stored = Stored {
+    let before = StoredCounts::read()?;
+    let mut stored = StoredCounts {
         compiler: compiler(),
-        ..Stored::default()
+        ..StoredCounts::default()
     };
     for (entry, used) in all.iter().zip(&found) {
         let name = entry.name;
@@ -131,19 +131,19 @@ pub(crate) fn store() -> Result<(), String> {
 }
 
 fn keep(
-    into: &mut BTreeMap<String, Figure>,
-    before: &BTreeMap<String, Figure>,
+    into: &mut BTreeMap<String, StoredFigure>,
+    before: &BTreeMap<String, StoredFigure>,
     name: &str,
     value: Option<f64>,
 ) {
     let reason = before.get(name).and_then(|f| f.reason.clone());
     if let Some(value) = value {
-        into.insert(name.to_owned(), Figure { value, reason });
+        into.insert(name.to_owned(), StoredFigure { value, reason });
     }
 }
 
 /// What each entry uses, as far as it is counted; as many at once as there are cores.
-fn measured(entries: &[&Entry]) -> Result<Vec<Used>, String> {
+fn measured(entries: &[&BenchEntry]) -> Result<Vec<Used>, String> {
     if !cfg!(target_arch = "x86_64") {
         return Err("instructions are stored for x86-64".to_owned());
     }
@@ -181,13 +181,13 @@ fn measured(entries: &[&Entry]) -> Result<Vec<Used>, String> {
     Ok(found)
 }
 
-fn next_of<'a>(next: &AtomicUsize, entries: &[&'a Entry]) -> Option<(usize, &'a Entry)> {
+fn next_of<'a>(next: &AtomicUsize, entries: &[&'a BenchEntry]) -> Option<(usize, &'a BenchEntry)> {
     let i = next.fetch_add(1, Ordering::Relaxed);
     entries.get(i).map(|e| (i, *e))
 }
 
 /// Instructions of a unit: the difference of two runs, free of what comes before.
-fn instructions(entry: &Entry) -> Result<Option<f64>, String> {
+fn instructions(entry: &BenchEntry) -> Result<Option<f64>, String> {
     let Some([few, many]) = entry.count else {
         return Ok(None);
     };
@@ -197,7 +197,7 @@ fn instructions(entry: &Entry) -> Result<Option<f64>, String> {
 }
 
 /// The dearest of many single steps over their median, each from one call of `fmi2DoStep` to the next.
-fn dearest_step(entry: &Entry) -> Result<Option<f64>, String> {
+fn dearest_step(entry: &BenchEntry) -> Result<Option<f64>, String> {
     if !entry.is_step {
         return Ok(None);
     }
@@ -225,7 +225,7 @@ fn out_file(path: &Path) -> String {
 }
 
 /// Instructions of a process that does the job so often.
-fn of_whole_run(entry: &Entry, times: u32) -> Result<f64, String> {
+fn of_whole_run(entry: &BenchEntry, times: u32) -> Result<f64, String> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let said = under_valgrind(entry, times, &[out_file(&folder.path().join("counts"))])?;
     let line = said.lines().find(|line| line.contains("Collected :"));
@@ -234,7 +234,7 @@ fn of_whole_run(entry: &Entry, times: u32) -> Result<f64, String> {
 }
 
 /// What callgrind says about it.
-fn under_valgrind(entry: &Entry, times: u32, options: &[String]) -> Result<String, String> {
+fn under_valgrind(entry: &BenchEntry, times: u32, options: &[String]) -> Result<String, String> {
     let own = entry.process("--do")?;
     let output = Command::new("valgrind")
         .arg("--tool=callgrind")

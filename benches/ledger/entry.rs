@@ -7,7 +7,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::rc::Rc;
 
 /// A line of the ledger.
-pub(crate) struct Entry {
+pub(crate) struct BenchEntry {
     /// Under which it is run and stored.
     pub(crate) name: &'static str,
     /// What is done, in words.
@@ -100,7 +100,7 @@ pub(crate) struct Script {
     pub(crate) tolerance: f64,
 }
 
-impl Entry {
+impl BenchEntry {
     /// This program as a process that does `word` with the entry, prepared.
     pub(crate) fn process(&self, word: &str) -> Result<std::process::Command, String> {
         if let Some(prepare) = self.prepare {

@@ -6,7 +6,7 @@ mod curves;
 use crate::performance;
 use crate::table::time_in_words;
 use aerodeck::report::{GrowthPanel, growth_figure};
-use curves::{CURVES, Curve, Kind};
+use curves::{CURVES, CurveKind, GrowthCurve};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 0.15;
 
 /// One point, as its process finds it.
 #[derive(Serialize, Deserialize)]
-struct Point {
+struct Measurement {
     size: u64,
     seconds: f64,
     peak_mib: Option<f64>,
@@ -32,12 +32,12 @@ struct Point {
 
 /// A curve, measured.
 struct Measured<'a> {
-    curve: &'a Curve,
-    points: Vec<Point>,
+    curve: &'a GrowthCurve,
+    points: Vec<Measurement>,
     left_out: Vec<u64>,
 }
 
-/// Does the job of a curve at one size and prints what it takes, for [`Curve::point`].
+/// Does the job of a curve at one size and prints what it takes, for [`GrowthCurve::point`].
 pub(crate) fn print_point(name: &str, size: &str) -> Result<(), String> {
     let named = CURVES.iter().find(|c| c.name == name);
     let curve = named.ok_or_else(|| format!("no curve `{name}`"))?;
@@ -50,7 +50,7 @@ pub(crate) fn print_point(name: &str, size: &str) -> Result<(), String> {
     };
     let mut seconds = timed(1);
     // the first of many calls prepares the others
-    if seconds < 1.0 || curve.kind == Kind::Call {
+    if seconds < 1.0 || curve.kind == CurveKind::Call {
         let mut times = 1;
         while timed(times) < AT_LEAST_S {
             times *= 2;
@@ -58,7 +58,7 @@ pub(crate) fn print_point(name: &str, size: &str) -> Result<(), String> {
         let rounds = (0..3).map(|_| timed(times) / f64::from(times));
         seconds = rounds.fold(f64::INFINITY, f64::min);
     }
-    let point = Point {
+    let point = Measurement {
         size,
         seconds,
         peak_mib: crate::peak::peak_mib(),
@@ -68,12 +68,12 @@ pub(crate) fn print_point(name: &str, size: &str) -> Result<(), String> {
     Ok(())
 }
 
-impl Curve {
-    fn point(&self, size: u64) -> Result<Point, String> {
+impl GrowthCurve {
+    fn point(&self, size: u64) -> Result<Measurement, String> {
         let program = std::env::current_exe().map_err(|e| e.to_string())?;
         let mut command = Command::new(program);
         command.args(["--point", self.name, &size.to_string()]);
-        if self.kind == Kind::Threads {
+        if self.kind == CurveKind::Threads {
             command.env("RAYON_NUM_THREADS", size.to_string());
         }
         let output = command.stderr(Stdio::inherit()).output();
@@ -85,12 +85,13 @@ impl Curve {
     fn measured(&self) -> Result<Measured<'_>, String> {
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
         let sizes = match self.kind {
-            Kind::Threads => (1..=threads).collect(),
+            CurveKind::Threads => (1..=threads).collect(),
             _ => self.sizes.to_vec(),
         };
-        let (mut points, mut left_out) = (Vec::<Point>::new(), Vec::new());
+        let (mut points, mut left_out) = (Vec::<Measurement>::new(), Vec::new());
         for size in sizes {
-            let expected = |p: &Point| p.seconds * self.ratio(size, p.size).powf(self.exponent);
+            let expected =
+                |p: &Measurement| p.seconds * self.ratio(size, p.size).powf(self.exponent);
             if points.last().map_or(0.0, expected) > LONGEST_S {
                 left_out.push(size);
                 continue;
@@ -110,15 +111,15 @@ impl Curve {
 }
 
 impl Measured<'_> {
-    fn last(&self) -> &Point {
+    fn last(&self) -> &Measurement {
         &self.points[self.points.len() - 1]
     }
 
     /// Slope of the logarithms by least squares, in the upper decades.
     fn exponent(&self) -> f64 {
-        let near = |p: &&Point| self.curve.ratio(self.last().size, p.size) <= DECADES;
+        let near = |p: &&Measurement| self.curve.ratio(self.last().size, p.size) <= DECADES;
         let places = self.points.iter().filter(near);
-        let logarithm = |p: &Point| ((self.curve.measure)(p.size).ln(), p.seconds.ln());
+        let logarithm = |p: &Measurement| ((self.curve.measure)(p.size).ln(), p.seconds.ln());
         let places: Vec<(f64, f64)> = places.map(logarithm).collect();
         let count = places.len() as f64;
         let (x, y) = places
@@ -133,7 +134,7 @@ impl Measured<'_> {
     fn findings(&self) -> Vec<String> {
         let (curve, found) = (self.curve, self.exponent());
         let mut findings = Vec::new();
-        if curve.kind != Kind::Threads && found > curve.exponent + TOLERANCE {
+        if curve.kind != CurveKind::Threads && found > curve.exponent + TOLERANCE {
             let why = Some(curve.beyond).filter(|why| !why.is_empty());
             let why = why.map_or(String::new(), |why| format!(": {why}"));
             findings.push(format!("grows faster than its theory{why}"));
@@ -142,17 +143,17 @@ impl Measured<'_> {
         let most = peaks.iter().copied().fold(0.0, f64::max);
         let grown = most > 2.0 * peaks.first().copied().unwrap_or(most);
         match curve.kind {
-            Kind::Streamed if grown => {
+            CurveKind::Streamed if grown => {
                 findings.push(format!(
                     "memory grows by {:.1} bytes each",
                     self.bytes_each()
                 ));
             }
-            Kind::Streamed => findings.push(format!("memory at most {most:.0} MiB")),
-            Kind::Threads if self.points.iter().any(|p| p.answer != self.last().answer) => {
+            CurveKind::Streamed => findings.push(format!("memory at most {most:.0} MiB")),
+            CurveKind::Threads if self.points.iter().any(|p| p.answer != self.last().answer) => {
                 findings.push("other bits for another number of threads".to_owned());
             }
-            Kind::Threads if !self.last().answer.is_empty() => {
+            CurveKind::Threads if !self.last().answer.is_empty() => {
                 findings.push("the same bits for each".to_owned());
             }
             _ => {}
@@ -167,12 +168,12 @@ impl Measured<'_> {
         findings
     }
 
-    /// Growth of the peak between the two largest sizes, over that of the size.
+    /// CurveKind of the peak between the two largest sizes, over that of the size.
     fn bytes_each(&self) -> f64 {
         let [.., before, last] = &self.points[..] else {
             return f64::NAN;
         };
-        let mib = |p: &Point| p.peak_mib.unwrap_or(f64::NAN);
+        let mib = |p: &Measurement| p.peak_mib.unwrap_or(f64::NAN);
         (mib(last) - mib(before)) * 1024.0 * 1024.0 / (last.size - before.size) as f64
     }
 
@@ -181,9 +182,9 @@ impl Measured<'_> {
         let (curve, last) = (self.curve, self.last());
         let more = seconds / last.seconds;
         match curve.kind {
-            Kind::Call => format!("{} at {} {}", power(more), last.size, unit(curve)),
-            Kind::Threads => "–".to_owned(),
-            Kind::Whole | Kind::Streamed => {
+            CurveKind::Call => format!("{} at {} {}", power(more), last.size, unit(curve)),
+            CurveKind::Threads => "–".to_owned(),
+            CurveKind::Whole | CurveKind::Streamed => {
                 let exponent = self.exponent().max(curve.exponent);
                 let measure = (curve.measure)(last.size) * more.powf(1.0 / exponent);
                 format!("{} {}", power(measure), short(curve.of))
@@ -209,7 +210,7 @@ impl Measured<'_> {
     fn panel(&self) -> GrowthPanel {
         let (curve, last) = (self.curve, self.last());
         let found = self.exponent();
-        let place = |p: &Point| ((curve.measure)(p.size), p.seconds);
+        let place = |p: &Measurement| ((curve.measure)(p.size), p.seconds);
         let line = |exponent: f64| {
             let end = place(last);
             let start = (curve.measure)(self.points[0].size);
@@ -236,7 +237,7 @@ fn power(x: f64) -> String {
 }
 
 /// What the sizes themselves count.
-fn unit(curve: &Curve) -> &str {
+fn unit(curve: &GrowthCurve) -> &str {
     if curve.of.contains("nodes") {
         "modes"
     } else {
@@ -267,7 +268,7 @@ pub(crate) fn run(names: &[&str], write: bool) -> Result<(), String> {
     let mut text = format!("| {} |\n|{}\n", HEAD.join(" | "), "---|".repeat(HEAD.len()));
     print!("{text}");
     let mut panels = Vec::new();
-    let wanted = |c: &&Curve| names.is_empty() || names.iter().any(|n| c.name.starts_with(n));
+    let wanted = |c: &&GrowthCurve| names.is_empty() || names.iter().any(|n| c.name.starts_with(n));
     for curve in CURVES.iter().filter(wanted) {
         let measured = curve.measured()?;
         let row = measured.row();

@@ -31,7 +31,7 @@ mod timing;
 #[path = "../../tests/common/trained.rs"]
 mod trained;
 
-use entry::Entry;
+use entry::BenchEntry;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -79,7 +79,7 @@ fn run(words: &[&str]) -> Result<(), String> {
 }
 
 /// The entries of these names, or whose names begin so; all where there is none.
-fn chosen(names: &[&str]) -> Result<Vec<&'static Entry>, String> {
+fn chosen(names: &[&str]) -> Result<Vec<&'static BenchEntry>, String> {
     if names.is_empty() {
         return Ok(registry::all().collect());
     }

@@ -1,10 +1,10 @@
 //! Peak memory, by the operating system's own maximum.
 
-use crate::entry::Entry;
+use crate::entry::BenchEntry;
 use std::process::Stdio;
 
 /// Largest resident memory of a process that does the job once, MiB; `None` where the system does not say.
-pub(crate) fn measured(entry: &Entry) -> Result<Option<f64>, String> {
+pub(crate) fn measured(entry: &BenchEntry) -> Result<Option<f64>, String> {
     let output = entry
         .process("--peak")?
         // the same on every machine, and every time
@@ -19,7 +19,7 @@ pub(crate) fn measured(entry: &Entry) -> Result<Option<f64>, String> {
 }
 
 /// Does the job once and prints the maximum of this process and of those that it started, for [`measured`].
-pub(crate) fn print(entry: &Entry) -> Result<(), String> {
+pub(crate) fn print(entry: &BenchEntry) -> Result<(), String> {
     (entry.job)().run(1);
     if let Some(mib) = peak_mib() {
         println!("{mib:.1}");

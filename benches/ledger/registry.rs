@@ -5,10 +5,10 @@ mod onsets;
 mod records;
 mod steps;
 
-use crate::entry::{Baseline, Entry, Threads};
+use crate::entry::{Baseline, BenchEntry, Threads};
 
 /// All entries.
-pub(crate) fn all() -> impl Iterator<Item = &'static Entry> {
+pub(crate) fn all() -> impl Iterator<Item = &'static BenchEntry> {
     let lists = [
         steps::ENTRIES,
         onsets::ENTRIES,
@@ -19,13 +19,13 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Entry> {
 }
 
 /// The entry of this name.
-pub(crate) fn named(name: &str) -> Result<&'static Entry, String> {
+pub(crate) fn named(name: &str) -> Result<&'static BenchEntry, String> {
     let found = all().find(|e| e.name == name);
     found.ok_or_else(|| format!("no entry `{name}`"))
 }
 
 /// One thread, once, nothing counted: what an entry does not state.
-const PLAIN: Entry = Entry {
+const PLAIN: BenchEntry = BenchEntry {
     name: "",
     what: "",
     size: "",

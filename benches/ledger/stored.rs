@@ -8,18 +8,18 @@ use std::process::Command;
 /// The file.
 #[derive(Serialize, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Stored {
+pub(crate) struct StoredCounts {
     /// Of the program that was counted: another compiler counts otherwise.
     pub(crate) compiler: String,
     /// Instructions of a unit of each entry, x86-64 with AVX2.
-    pub(crate) instructions: BTreeMap<String, Figure>,
+    pub(crate) instructions: BTreeMap<String, StoredFigure>,
     /// Largest resident memory, MiB.
-    pub(crate) peak_mib: BTreeMap<String, Figure>,
+    pub(crate) peak_mib: BTreeMap<String, StoredFigure>,
 }
 
 #[derive(Serialize, Deserialize, Default, Clone)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Figure {
+pub(crate) struct StoredFigure {
     pub(crate) value: f64,
     /// Why it rose, where it was meant to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -30,7 +30,7 @@ fn path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/instructions.json")
 }
 
-impl Stored {
+impl StoredCounts {
     /// Empty where there is no file yet.
     pub(crate) fn read() -> Result<Self, String> {
         match std::fs::read_to_string(path()) {

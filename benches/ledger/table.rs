@@ -1,8 +1,8 @@
 //! The table: on the screen as it comes, and as Markdown.
 
-use crate::entry::{Baseline, Entry, Threads};
+use crate::entry::{Baseline, BenchEntry, Threads};
 use crate::peak;
-use crate::stored::Stored;
+use crate::stored::StoredCounts;
 use crate::timing::{Rival, Seconds, timed};
 
 const HEAD: [&str; 8] = [
@@ -17,8 +17,8 @@ const HEAD: [&str; 8] = [
 ];
 
 /// Runs the entries, prints each as it is done, and gives the table as Markdown.
-pub(crate) fn print(entries: &[&Entry]) -> Result<String, String> {
-    let stored = Stored::read()?;
+pub(crate) fn print(entries: &[&BenchEntry]) -> Result<String, String> {
+    let stored = StoredCounts::read()?;
     let mut text = format!("| {} |\n|{}\n", HEAD.join(" | "), "---|".repeat(HEAD.len()));
     print!("{text}");
     let mut failed = Vec::new();
@@ -40,7 +40,7 @@ pub(crate) fn print(entries: &[&Entry]) -> Result<String, String> {
     }
 }
 
-fn cells(entry: &Entry, stored: &Stored) -> Result<[String; 8], String> {
+fn cells(entry: &BenchEntry, stored: &StoredCounts) -> Result<[String; 8], String> {
     let found = timed(entry)?;
     let (baseline, ratio, theirs) = match (&found.baseline, &entry.baseline) {
         (

@@ -1,7 +1,7 @@
 //! Interleaved rounds of ours and of the baseline.
 
 use crate::baseline::Running;
-use crate::entry::{Baseline, Entry, Job, Threads};
+use crate::entry::{Baseline, BenchEntry, Job, Threads};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -45,7 +45,7 @@ pub(crate) struct Rival {
 }
 
 /// The entry in a process of its own.
-pub(crate) fn timed(entry: &Entry) -> Result<Timed, String> {
+pub(crate) fn timed(entry: &BenchEntry) -> Result<Timed, String> {
     let mut command = entry.process("--time")?;
     if entry.threads == Threads::One {
         command.env("RAYON_NUM_THREADS", "1");
@@ -59,7 +59,7 @@ pub(crate) fn timed(entry: &Entry) -> Result<Timed, String> {
 }
 
 /// Times the entry and prints what it finds, for [`timed`].
-pub(crate) fn print(entry: &Entry) -> Result<(), String> {
+pub(crate) fn print(entry: &BenchEntry) -> Result<(), String> {
     let mut job = (entry.job)();
     let mut rival = Opponent::new(entry)?;
     let (mut ours, mut theirs) = (vec![], vec![]);
@@ -105,7 +105,7 @@ enum Opponent {
 }
 
 impl Opponent {
-    fn new(entry: &Entry) -> Result<Self, String> {
+    fn new(entry: &BenchEntry) -> Result<Self, String> {
         Ok(match &entry.baseline {
             Baseline::Here {
                 name,

@@ -75,14 +75,14 @@ impl BridgeScatter {
         speeds_m_s: Py<PyArray1<f64>>,
         mean_m_s: f64,
         standard_deviation_m_s: f64,
-        interval_m_s: (f64, f64),
+        interval_m_s: [f64; 2],
         without_onset: usize,
     ) -> Self {
         Self {
             speeds_m_s,
             mean_m_s,
             standard_deviation_m_s,
-            interval_m_s,
+            interval_m_s: interval_m_s.into(),
             without_onset,
         }
     }

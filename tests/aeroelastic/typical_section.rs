@@ -28,7 +28,7 @@ const OFFSETS: [(f64, f64); 5] = [
     (-0.1, 0.25),
 ];
 
-fn unbalanced(mut section: SectionModel, (axis, mass): (f64, f64)) -> SectionModel {
+fn unbalanced(mut section: SectionModel, [axis, mass]: [f64; 2]) -> SectionModel {
     section.axis_offset_m = Some(axis * section.width_m);
     section.mass_offset_m = Some(mass * section.width_m);
     section
@@ -90,7 +90,7 @@ fn theodorsen_about(
 #[test]
 fn the_flat_plate_about_an_axis_is_the_textbooks() {
     for (axis, mass) in OFFSETS {
-        let section = unbalanced(SectionModel::table_4_1(), (axis, mass));
+        let section = unbalanced(SectionModel::table_4_1(), [axis, mass]);
         let s = section.structure().unwrap();
         let b = 0.5 * s.width_m;
         for (speed, omega) in [(5.0, 12.0), (20.0, 25.0), (40.0, 9.0)] {
@@ -116,7 +116,7 @@ fn the_flat_plate_about_an_axis_is_the_textbooks() {
 /// Twice the kinetic energy `m (ẏ − e θ̇)² + J_cg θ̇²`, and the static unbalance on the side that is stated.
 #[test]
 fn the_mass_matrix_is_that_of_a_rigid_body() {
-    let section = unbalanced(SectionModel::table_4_1(), (0.0, 0.06));
+    let section = unbalanced(SectionModel::table_4_1(), [0.0, 0.06]);
     let s = section.structure().unwrap();
     let (m, e, j) = (15.0, 0.03, 0.6);
     for (y, theta) in [(1.0, 0.0), (0.0, 1.0), (0.7, 2.0), (0.7, -2.0)] {
@@ -133,7 +133,7 @@ fn the_mass_matrix_is_that_of_a_rigid_body() {
 fn both_descriptions_of_a_body_have_the_same_eigenvalues() {
     for named in matrix::sections_of_two() {
         for offsets in OFFSETS {
-            let s = unbalanced(named.section.clone(), offsets)
+            let s = unbalanced(named.section.clone(), offsets.into())
                 .structure()
                 .unwrap();
             for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
@@ -168,7 +168,7 @@ fn every_route_gives_one_onset() {
     for named in matrix::sections_of_two() {
         let mut onsets = Vec::new();
         for offsets in OFFSETS {
-            let s = unbalanced(named.section.clone(), offsets)
+            let s = unbalanced(named.section.clone(), offsets.into())
                 .structure()
                 .unwrap();
             let chord = by_mid_chord(&s);
@@ -214,7 +214,7 @@ fn every_route_gives_one_onset() {
 /// Released, stepped through changing wind under forces: `y_mid = y + a θ`, moments about the axis.
 #[test]
 fn both_descriptions_of_a_body_move_alike() {
-    let section = unbalanced(SectionModel::table_4_1(), (0.1, 0.06));
+    let section = unbalanced(SectionModel::table_4_1(), [0.1, 0.06]);
     let s = section.structure().unwrap();
     let t = to_mid_chord(&s, 1.0);
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
@@ -247,7 +247,7 @@ fn both_descriptions_of_a_body_move_alike() {
 /// Static coefficients: equilibrium and nonlinear motion in gusts.
 #[test]
 fn static_forces_act_about_the_axis() {
-    let section = unbalanced(SectionModel::table_4_1(), (0.1, 0.06));
+    let section = unbalanced(SectionModel::table_4_1(), [0.1, 0.06]);
     let s = section.structure().unwrap();
     let arms = Arms {
         lateral: 0.1,

@@ -15,9 +15,9 @@ use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 const WIND: f64 = 35.0;
 
 /// An instance that runs, by names.
-struct Unit(Instance);
+struct GustUnit(Instance);
 
-impl Unit {
+impl GustUnit {
     fn new(export: &BridgeExport) -> Self {
         Self::starting(export, 0.0)
     }
@@ -132,7 +132,7 @@ fn strip_of(node: usize, strips: usize, nodes: usize) -> usize {
 }
 
 /// Coordinates of all modes of a unit, mass-normalised.
-fn coordinates(unit: &mut Unit, study: &BridgeStudy) -> Vec<f64> {
+fn coordinates(unit: &mut GustUnit, study: &BridgeStudy) -> Vec<f64> {
     let modes = study.by_model.modes.iter();
     modes
         .map(|m| unit.get(&format!("mode[{}].coordinate", m.number)) * m.generalised_mass.sqrt())
@@ -156,7 +156,7 @@ fn gusts_are_equal_forces() {
         .export(&wanted(strips, RationalAdmittance::None))
         .unwrap();
     for rise in [0.0, 0.8] {
-        let mut unit = Unit::new(&export).run(WIND);
+        let mut unit = GustUnit::new(&export).run(WIND);
         let mut stepper = stepper(&study);
         let mut state = stepper.released(&[0.0; 8], &[0.0; 8]).unwrap();
         let mut inputs = Inputs::steady(WIND, 8);
@@ -199,7 +199,7 @@ fn lags_of_modes_are_those_of_strips() {
     let export = study
         .export(&wanted(nodes, RationalAdmittance::Sears))
         .unwrap();
-    let mut unit = Unit::new(&export).run(WIND);
+    let mut unit = GustUnit::new(&export).run(WIND);
     // poles and weights of the admittance, from its source
     let lags = [
         [0.082_32, 0.1522],
@@ -299,7 +299,7 @@ fn turbulence_of_the_archive_is_buffeting() {
             ..BridgeExportOptions::default()
         })
         .unwrap();
-    let mut unit = Unit::new(&export).run(WIND);
+    let mut unit = GustUnit::new(&export).run(WIND);
     let mut rows: Vec<Vec<f64>> = vec![Vec::new(); 6];
     for i in 0..6000 {
         // steps that do not fall on the samples every second time
@@ -326,7 +326,7 @@ fn turbulence_of_the_archive_is_buffeting() {
     let record_s = step_s * export.turbulence.as_ref().unwrap().u[0].len() as f64;
     let [first, later @ ..] = [0.0, 1e3, 1e7].map(|records| {
         let start = records * record_s;
-        let mut unit = Unit::starting(&export, start).run(WIND);
+        let mut unit = GustUnit::starting(&export, start).run(WIND);
         unit.0.do_step(start, 5.0).unwrap();
         unit.get("node[1156].heave")
     });
@@ -335,7 +335,7 @@ fn turbulence_of_the_archive_is_buffeting() {
         assert!((heave / first - 1.0).abs() < 1e-6, "{heave} {first}");
     }
     // without it nothing moves
-    let mut calm = Unit::new(&export);
+    let mut calm = GustUnit::new(&export);
     calm.set("turbulence_factor", 0.0);
     let mut calm = calm.run(WIND);
     calm.0.do_step(0.0, 5.0).unwrap();
@@ -361,7 +361,7 @@ fn derivatives_are_differences() {
         ("wind_speed", 1e-2),
     ] {
         let at = |shift: f64| {
-            let mut unit = Unit::new(&export);
+            let mut unit = GustUnit::new(&export);
             unit.set("wind_speed", WIND);
             unit.set("mode[23].initial_coordinate", 1.0);
             unit.set("strip[2].gust_w", 1.0);

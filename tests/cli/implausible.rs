@@ -1,7 +1,7 @@
 //! Implausible inputs from the file to what is shown: first line, page, machine-readable answer and exit code.
 
 use crate::command::{aerodeck, flowing, refused, succeeds};
-use crate::girders::{Girder, write_tables};
+use crate::girders::{GirderShape, write_tables};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -99,14 +99,14 @@ fn axes_that_are_turned_reach_the_page_of_a_bridge_and_of_what_is_converted() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
     let run = ["bridge", "flutter", "bridge.toml"];
-    write_tables(at, &Girder::default());
+    write_tables(at, &GirderShape::default());
     let right = shown(at, &run);
     assert_eq!(right.code, 0, "{}", right.said);
     write_tables(
         at,
-        &Girder {
+        &GirderShape {
             downwind: [0.5, -0.75f64.sqrt(), 0.0],
-            ..Girder::default()
+            ..GirderShape::default()
         },
     );
     let finding = "modes.axes.downwind: the line of the nodes is turned by 30.0° from the girder axis up × downwind";
@@ -132,9 +132,9 @@ fn what_is_left_out_of_a_compact_file_hides_no_curve() {
     let at = folder.path();
     write_tables(
         at,
-        &Girder {
+        &GirderShape {
             bow: 0.2,
-            ..Girder::default()
+            ..GirderShape::default()
         },
     );
     let convert = ["bridge", "convert", "bridge.toml", "one.csv", "--every"];
@@ -154,7 +154,7 @@ fn what_is_left_out_of_a_compact_file_hides_no_curve() {
 fn a_bridge_without_rotations_cannot_be_judged() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    write_tables(at, &Girder::default());
+    write_tables(at, &GirderShape::default());
     let shapes = fs::read_to_string(at.join("shapes.csv")).unwrap();
     let (heading, rows) = shapes.split_once('\n').unwrap();
     let still = |row: &str| {
@@ -173,7 +173,7 @@ fn a_bridge_without_rotations_cannot_be_judged() {
 fn a_compact_file_replaces_nothing_unasked() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    write_tables(at, &Girder::default());
+    write_tables(at, &GirderShape::default());
     let convert = |more: &[&'static str]| [&["bridge", "convert", "bridge.toml"], more].concat();
     succeeds(at, &convert(&["one.csv"]));
     let kept = "one.csv: expected no file there yet (or --force)";

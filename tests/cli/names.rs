@@ -1,7 +1,7 @@
 //! Names of users: refused where a terminal or a page would obey them, and never a formula of a spreadsheet.
 
 use crate::command::{listing, refused, succeeds};
-use crate::girders::{Girder, write_tables};
+use crate::girders::{GirderShape, write_tables};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -96,7 +96,7 @@ fn campaigns_and_bridges_with_such_names_are_refused() {
         refused(at, &check, &["campaign.toml: line ", "name: ", REFUSED]);
     }
 
-    write_tables(at, &Girder::default());
+    write_tables(at, &GirderShape::default());
     let nodes = fs::read_to_string(at.join("nodes.csv")).unwrap();
     let named = nodes.replacen("\n1001,", "\nA\u{1b}[1m,", 1);
     assert!(named != nodes);
@@ -163,7 +163,7 @@ fn names_are_no_formulas_in_the_files_of_a_campaign() {
 fn names_of_nodes_are_no_formulas_in_the_compact_file() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    write_tables(at, &Girder::default());
+    write_tables(at, &GirderShape::default());
     for name in ["nodes.csv", "shapes.csv"] {
         let text = fs::read_to_string(at.join(name)).unwrap();
         let named: String = text

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// How the model stands in its axes.
-pub struct Girder {
+pub struct GirderShape {
     /// Components of `modes.axes.downwind`; the girder runs along x, so the wind square to it blows along −y.
     pub downwind: [f64; 3],
     /// Rise of the girder in plan over its half length.
@@ -15,7 +15,7 @@ pub struct Girder {
     pub required_m_s: f64,
 }
 
-impl Default for Girder {
+impl Default for GirderShape {
     fn default() -> Self {
         Self {
             downwind: [0.0, -1.0, 0.0],
@@ -26,7 +26,7 @@ impl Default for Girder {
 }
 
 /// `nodes.csv`, `modes.csv`, `shapes.csv` and `bridge.toml` of eight modes of the bridge.
-pub fn write_tables(folder: &Path, girder: &Girder) {
+pub fn write_tables(folder: &Path, girder: &GirderShape) {
     let mut modes = embedded::modes("langenuen").unwrap();
     modes
         .modes
@@ -61,7 +61,7 @@ pub fn write_tables(folder: &Path, girder: &Girder) {
     }
 }
 
-fn bridge_text(girder: &Girder) -> String {
+fn bridge_text(girder: &GirderShape) -> String {
     let axes = format!(
         "axes = {{ up = \"z\", downwind = {:?} }}\n",
         girder.downwind

@@ -10,7 +10,7 @@ use aerodeck::units::ReducedFrequency;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
-/// Names of the outputs in the order of [`Run::outputs`].
+/// Names of the outputs in the order of [`SteppedSection::outputs`].
 const OUTPUTS: [&str; 8] = [
     "heave",
     "heave_rate",
@@ -130,7 +130,7 @@ fn named(values: &[(&str, f64)]) -> Value {
 }
 
 /// A run in process, written down call by call as an importer would make it.
-struct Run<'a> {
+struct SteppedSection<'a> {
     model: &'a TrainedModel,
     section: SectionModel,
     stepper: Stepper,
@@ -140,7 +140,7 @@ struct Run<'a> {
     steps: Vec<Value>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> SteppedSection<'a> {
     fn new(model: &'a TrainedModel) -> Self {
         let stepper = Stepper::new(couple(model, &model.section));
         let e = &model.experiment;
@@ -213,7 +213,7 @@ impl<'a> Run<'a> {
     }
 
     fn written(self, name: &str) -> Value {
-        let initial = Run::new(self.model).outputs();
+        let initial = SteppedSection::new(self.model).outputs();
         json!({
             "name": name, "outputs": OUTPUTS, "initial_outputs": initial, "steps": self.steps,
         })
@@ -222,7 +222,7 @@ impl<'a> Run<'a> {
 
 /// The default experiment.
 fn released(model: &TrainedModel) -> Value {
-    let mut run = Run::new(model);
+    let mut run = SteppedSection::new(model);
     for _ in 0..1000 {
         run.step(&[], &[], 0.01);
     }
@@ -231,7 +231,7 @@ fn released(model: &TrainedModel) -> Value {
 
 /// Steps of many sizes, wind and forces that jump and ramp.
 fn driven(model: &TrainedModel) -> Value {
-    let mut run = Run::new(model);
+    let mut run = SteppedSection::new(model);
     for n in 0..300 {
         let size = [0.01, 0.003_7, 0.02, 0.01, 0.010_000_000_000_000_002][n % 5];
         let phase = n as f64 * 0.05;
@@ -256,7 +256,7 @@ fn driven(model: &TrainedModel) -> Value {
 
 /// Parameters changed between steps.
 fn retuned(model: &TrainedModel) -> Value {
-    let mut run = Run::new(model);
+    let mut run = SteppedSection::new(model);
     for n in 0..200 {
         match n {
             50 => run.step(&[("mass", 17.0), ("torsion_frequency", 4.5)], &[], 0.01),

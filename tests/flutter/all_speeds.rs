@@ -10,9 +10,9 @@ use aerodeck::section::{Dof, SectionModel, Translation};
 const SPEED_MAX: f64 = 60.0;
 
 /// A stream of numbers from −1 to 1.
-struct Noise(u64);
+struct NoiseStream(u64);
 
-impl Noise {
+impl NoiseStream {
     fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -23,7 +23,7 @@ impl Noise {
 
 /// A section about that of Table 4.1, every third with sway, with forces about those of a plate that are far enough from it to
 /// grow in bands, to recover, and to be unstable from still air on.
-fn section(noise: &mut Noise) -> CoupledSection {
+fn section(noise: &mut NoiseStream) -> CoupledSection {
     let mut section = SectionModel::table_4_1();
     let mut around = |x: f64, part: f64| x * (1.0 + part * noise.next());
     section.vertical.frequency_hz = Some(around(2.0, 0.4));
@@ -84,7 +84,7 @@ fn contradictions(
     section: &CoupledSection,
     bands: &[GrowthBand],
     count: usize,
-    noise: &mut Noise,
+    noise: &mut NoiseStream,
 ) -> usize {
     let inside = |v: f64| bands.iter().any(|b| b.from_m_s <= v && v <= b.to_m_s);
     let speeds = (0..count).map(|i| {
@@ -103,7 +103,7 @@ fn contradictions(
 
 /// Sections, bands found, and speeds that contradict them.
 fn compare(sections: usize, speeds: usize) -> (usize, usize) {
-    let mut noise = Noise(0x9E37_79B9_7F4A_7C15);
+    let mut noise = NoiseStream(0x9E37_79B9_7F4A_7C15);
     let (mut bands, mut wrong) = (0, 0);
     for i in 0..sections {
         let section = section(&mut noise);

@@ -19,13 +19,13 @@ use aerodeck::trained_model::TrainedModel;
 const ROUNDING: f64 = 1e-9;
 
 /// A unit with its table.
-struct Unit {
+struct ProbedUnit {
     what: String,
     table: VariableTable,
     make: Box<dyn Fn() -> Resources>,
 }
 
-impl Unit {
+impl ProbedUnit {
     fn new(what: impl Into<String>, make: impl Fn() -> Resources + 'static) -> Self {
         let table = make().described_table().unwrap();
         let (what, make) = (what.into(), Box::new(make));
@@ -279,11 +279,11 @@ fn sections_depend_on_what_is_stated() {
             Some(RationalAdmittance::None),
             Some(RationalAdmittance::Liepmann),
         ] {
-            Unit::section(kind, &model, gusts).checked();
+            ProbedUnit::section(kind, &model, gusts).checked();
         }
         (model.section.axis_offset_m, model.section.mass_offset_m) = (Some(0.0), Some(0.0));
         model.section.vertical.damping_ratio = 0.0;
-        Unit::section(
+        ProbedUnit::section(
             &format!("{kind} with offsets"),
             &model,
             Some(RationalAdmittance::Liepmann),
@@ -302,7 +302,7 @@ fn sections_of_three_motions_depend_on_what_is_stated() {
         },
     ] {
         let model = three_dof::trained(form, 1.5);
-        Unit::section("three motions", &model, Some(RationalAdmittance::Liepmann)).checked();
+        ProbedUnit::section("three motions", &model, Some(RationalAdmittance::Liepmann)).checked();
     }
 }
 
@@ -310,7 +310,7 @@ fn sections_of_three_motions_depend_on_what_is_stated() {
 fn bridges_depend_on_what_is_stated() {
     for motions in [TWO, THREE] {
         let export = langenuen("LN21-5200", motions).export(&BridgeExportOptions::default());
-        Unit::bridge(motions, &export.unwrap()).checked();
+        ProbedUnit::bridge(motions, &export.unwrap()).checked();
     }
 }
 
@@ -334,8 +334,8 @@ fn damped_bridges_in_gusts_depend_on_what_is_stated() {
         }),
         ..BridgeExportOptions::default()
     };
-    Unit::bridge("dampers and gusts", &study.export(&wanted).unwrap()).checked();
-    Unit::bridge(
+    ProbedUnit::bridge("dampers and gusts", &study.export(&wanted).unwrap()).checked();
+    ProbedUnit::bridge(
         "structure",
         &study.structure(&BridgeExportOptions::default()).unwrap(),
     )

@@ -59,9 +59,9 @@ fn with_row(mut resources: Resources, row: &'static ComputedNumber) -> Resources
 }
 
 /// In initialisation mode, where every known may be set.
-struct Unit(Instance);
+struct RowUnit(Instance);
 
-impl Unit {
+impl RowUnit {
     fn new(resources: Resources) -> Self {
         let mut instance = Instance::new(resources).unwrap();
         instance.set_up_experiment(0.0, None).unwrap();
@@ -131,7 +131,7 @@ fn check(resources: Resources, initial: &str, rotations: &[&str]) {
         "as an output and as an unknown of the initialisation"
     );
 
-    let mut unit = Unit::new(resources);
+    let mut unit = RowUnit::new(resources);
     unit.set("wind_speed", 7.0);
     unit.set(initial, 0.02);
     let turned = rotations.iter().map(|name| unit.get(name));
@@ -198,7 +198,7 @@ fn check_motion(resources: Resources, of: [&str; 2], knowns: &[(&str, f64)]) {
         let initial = &of_row.initial_dependencies;
         assert!(read.initial_dependencies.iter().all(|d| stated(d, initial)));
     }
-    let mut unit = Unit::new(resources);
+    let mut unit = RowUnit::new(resources);
     unit.set("wind_speed", 7.0);
     for (known, _) in knowns.iter().filter(|(known, _)| *known != "wind_speed") {
         let value = unit.get(known);
@@ -237,7 +237,7 @@ fn an_output_of_the_motion_is_one_row() {
         );
     }
     // the node that is turned most
-    let mut unit = Unit::new(with_row(bridge(), &OF_MOTION));
+    let mut unit = RowUnit::new(with_row(bridge(), &OF_MOTION));
     let table = bridge().table;
     let initial = table
         .variables()
@@ -251,7 +251,7 @@ fn an_output_of_the_motion_is_one_row() {
         .iter()
         .filter_map(|v| v.name.strip_suffix("].rotation"));
     let nodes: Vec<String> = nodes.map(str::to_owned).collect();
-    let turned = |unit: &mut Unit, node: &str| unit.get(&format!("{node}].rotation")).abs();
+    let turned = |unit: &mut RowUnit, node: &str| unit.get(&format!("{node}].rotation")).abs();
     let most = nodes
         .iter()
         .max_by(|a, b| turned(&mut unit, a).total_cmp(&turned(&mut unit, b)));
@@ -331,7 +331,7 @@ fn check_strip(resources: Resources, strip: &str) {
     let listed = format!("<Unknown index=\"{reference}\"");
     assert_eq!(description.matches(&listed).count(), 2);
 
-    let mut unit = Unit::new(resources);
+    let mut unit = RowUnit::new(resources);
     let moved = [
         ("heave", 0.02),
         ("heave_rate", 0.3),

@@ -208,7 +208,7 @@ fn quasi_steady_limits_of_laguerre_models_are_met() {
 }
 
 #[derive(serde::Deserialize)]
-struct Stored {
+struct StoredFits {
     laguerre: Vec<StoredEntry>,
     rational_functions: Vec<StoredEntry>,
 }
@@ -223,7 +223,7 @@ struct StoredEntry {
 /// machine that wrote them; other mathematics libraries round sines and exponentials otherwise.
 #[test]
 fn least_squares_alone_are_what_they_were() {
-    let stored: Stored =
+    let stored: StoredFits =
         serde_json::from_str(include_str!("../data/unconstrained_fits.json")).unwrap();
     let table = decks().into_iter().find(|d| d.name == "LN21-5200").unwrap();
     let records = TunnelPlan::default()

@@ -8,14 +8,35 @@ use aerodeck::response::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces,
 use aerodeck::section::{SectionModel, Structure, Translation};
 use nalgebra::{DMatrix, DVector};
 
+/// How motion and forces are exchanged.
+#[derive(Clone, Copy)]
+struct Exchange {
+    /// Step, s.
+    h: f64,
+    /// How many of displacement, rate and acceleration the forces are given.
+    known: usize,
+    /// How far ahead the forces are put out, in steps.
+    prediction: f64,
+}
+
+impl Exchange {
+    fn new(h: f64, known: usize, prediction: f64) -> Self {
+        Self {
+            h,
+            known,
+            prediction,
+        }
+    }
+}
+
 /// Spectral radius of one step of an explicit (Jacobi) master: a structure holds the force that the forces put out at
 /// the communication point, these take the motion of that point.
-fn radius(
-    structure: &Structure,
-    realization: &Realization,
-    wind: f64,
-    (h, known, prediction): (f64, usize, f64),
-) -> f64 {
+fn radius(structure: &Structure, realization: &Realization, wind: f64, exchange: Exchange) -> f64 {
+    let Exchange {
+        h,
+        known,
+        prediction,
+    } = exchange;
     let n = structure.dofs.len();
     let inverse = structure.mass.clone().try_inverse().unwrap();
     let mut a = DMatrix::zeros(3 * n, 3 * n);
@@ -89,17 +110,17 @@ fn radius(
 }
 
 /// The same for a flat plate and IABSE 1.1a with `mass` times its mass, inertia and stiffness.
-fn radius_of_plate(mass: f64, wind: f64, how: (f64, usize, f64)) -> f64 {
+fn radius_of_plate(mass: f64, wind: f64, exchange: Exchange) -> f64 {
     let mut structure = SectionModel::iabse_1_1a().structure().unwrap();
     structure.mass *= mass;
     structure.damping *= mass;
     structure.stiffness *= mass;
     let realization = RationalModel::jones_flat_plate().realize();
-    radius(&structure, &realization, wind, how)
+    radius(&structure, &realization, wind, exchange)
 }
 
 /// Where a function of the wind speed becomes positive.
-fn crossing((mut low, mut high): (f64, f64), grows: &mut dyn FnMut(f64) -> bool) -> f64 {
+fn crossing(mut low: f64, mut high: f64, grows: &mut dyn FnMut(f64) -> bool) -> f64 {
     assert!(!grows(low) && grows(high), "{low} {high}");
     while high - low > 1e-6 {
         let middle = 0.5 * (low + high);
@@ -113,8 +134,8 @@ fn crossing((mut low, mut high): (f64, f64), grows: &mut dyn FnMut(f64) -> bool)
 }
 
 fn onset(h: f64, known: usize, prediction: f64) -> f64 {
-    crossing((40.0, 110.0), &mut |wind| {
-        radius_of_plate(1.0, wind, (h, known, prediction)) > 1.0
+    crossing(40.0, 110.0, &mut |wind| {
+        radius_of_plate(1.0, wind, Exchange::new(h, known, prediction)) > 1.0
     })
 }
 
@@ -153,7 +174,8 @@ fn stable_below_the_onset() {
     for parts in [200.0, 100.0, 50.0, 25.0] {
         for known in 1..=3 {
             for wind in [0.0, 0.05, 1.0, 10.0, 30.0, 50.0, 70.0] {
-                let radius = radius_of_plate(1.0, wind, (PERIOD_S / parts, known, 1.5));
+                let radius =
+                    radius_of_plate(1.0, wind, Exchange::new(PERIOD_S / parts, known, 1.5));
                 // in still air the filters stay where they are
                 let limit = if wind == 0.0 { 1.0 + 1e-12 } else { 1.0 };
                 assert!(
@@ -175,7 +197,7 @@ fn light_sections_need_iterations() {
         while stable / diverges > 1.001 {
             let mass = f64::sqrt(stable * diverges);
             // one hundredth of a period of the rotation, gentle wind
-            if radius_of_plate(mass, 1.0, (0.036, known, 1.5)) < 1.0 {
+            if radius_of_plate(mass, 1.0, Exchange::new(0.036, known, 1.5)) < 1.0 {
                 stable = mass;
             } else {
                 diverges = mass;
@@ -214,18 +236,23 @@ fn measured_decks_flutter_where_their_sections_do() {
                 .unwrap()
                 .model;
             let coupled = CoupledSection::with_model(&structure, &model).unwrap();
-            let whole = crossing((1.0, *fastest), &mut |wind| {
+            let whole = crossing(1.0, *fastest, &mut |wind| {
                 let values = coupled.at(wind).unwrap().eigenvalues().unwrap();
                 values.iter().any(|z| z.re > 0.0)
             });
             let realization = model.realize();
             let mut grows = |wind: f64| {
-                radius(&structure, &realization, wind, (period_s / 100.0, 2, 1.5)) > 1.0
+                radius(
+                    &structure,
+                    &realization,
+                    wind,
+                    Exchange::new(period_s / 100.0, 2, 1.5),
+                ) > 1.0
             };
             for share in [0.002, 0.02, 0.1, 0.3, 0.6, 0.9] {
                 assert!(!grows(share * whole), "{name}: {} m/s", share * whole);
             }
-            let beside = crossing((0.95 * whole, 1.05 * whole), &mut grows);
+            let beside = crossing(0.95 * whole, 1.05 * whole, &mut grows);
             let error = beside / whole - 1.0;
             println!(
                 "{name}, B {} m, {} motions: {whole:.3} {:+.3} %",

@@ -4,7 +4,7 @@ use crate::entry::Job;
 use crate::jobs::{growth, steps};
 
 /// Cost over size.
-pub(crate) struct Curve {
+pub(crate) struct GrowthCurve {
     pub(crate) name: &'static str,
     /// What is done.
     pub(crate) what: &'static str,
@@ -20,11 +20,11 @@ pub(crate) struct Curve {
     pub(crate) reason: &'static str,
     /// Why it may be more, on a machine as they are; empty where nothing is known that would make it so.
     pub(crate) beyond: &'static str,
-    pub(crate) kind: Kind,
+    pub(crate) kind: CurveKind,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum CurveKind {
     /// One call of many: what counts is how many go into a minute.
     Call,
     /// A whole job.
@@ -35,7 +35,7 @@ pub(crate) enum Kind {
     Threads,
 }
 
-const PLAIN: Curve = Curve {
+const PLAIN: GrowthCurve = GrowthCurve {
     name: "",
     what: "",
     of: "states",
@@ -45,10 +45,10 @@ const PLAIN: Curve = Curve {
     exponent: 1.0,
     reason: "",
     beyond: "",
-    kind: Kind::Whole,
+    kind: CurveKind::Whole,
 };
 
-const BRIDGE: Curve = Curve {
+const BRIDGE: GrowthCurve = GrowthCurve {
     of: "modes, of 63 to 2000 nodes",
     sizes: &[39, 60, 90, 130, 200],
     ..PLAIN
@@ -57,34 +57,34 @@ const BRIDGE: Curve = Curve {
 const LEAVES_THE_CACHE: &str =
     "matrices of more than 350 states (1 MB) leave the second cache, and come at half the speed";
 
-const THREADS: Curve = Curve {
+const THREADS: GrowthCurve = GrowthCurve {
     of: "threads",
     exponent: -1.0,
     reason: "parts that do not wait for one another",
-    kind: Kind::Threads,
+    kind: CurveKind::Threads,
     ..PLAIN
 };
 
-pub(crate) static CURVES: &[Curve] = &[
-    Curve {
+pub(crate) static CURVES: &[GrowthCurve] = &[
+    GrowthCurve {
         name: "step",
         what: "a step in steady wind",
         job: growth::step,
         exponent: 2.0,
         reason: "a product with the matrix of all states",
-        kind: Kind::Call,
+        kind: CurveKind::Call,
         ..PLAIN
     },
-    Curve {
+    GrowthCurve {
         name: "change-of-wind",
         what: "a step in another wind",
         job: growth::change_of_wind,
         exponent: 2.0,
         reason: "some products with the matrix of all states",
-        kind: Kind::Call,
+        kind: CurveKind::Call,
         ..PLAIN
     },
-    Curve {
+    GrowthCurve {
         name: "onset",
         what: "the flutter onset",
         job: growth::onset,
@@ -92,17 +92,17 @@ pub(crate) static CURVES: &[Curve] = &[
         reason: "all eigenvalues, at a number of winds that does not depend on the states",
         ..PLAIN
     },
-    Curve {
+    GrowthCurve {
         name: "strips",
         what: "a step of forces, set and read",
         of: "strips",
         sizes: &[1, 10, 100, 1000, 10_000],
         job: steps::strips_of,
         reason: "strips know nothing of one another",
-        kind: Kind::Call,
+        kind: CurveKind::Call,
         ..PLAIN
     },
-    Curve {
+    GrowthCurve {
         name: "assembly",
         what: "a bridge coupled to its forces",
         of: "nodes × modes²",
@@ -111,7 +111,7 @@ pub(crate) static CURVES: &[Curve] = &[
         reason: "each pair of modes is summed over the nodes",
         ..BRIDGE
     },
-    Curve {
+    GrowthCurve {
         name: "sweep",
         what: "all modes at ten winds",
         job: growth::sweep,
@@ -120,7 +120,7 @@ pub(crate) static CURVES: &[Curve] = &[
         beyond: LEAVES_THE_CACHE,
         ..BRIDGE
     },
-    Curve {
+    GrowthCurve {
         name: "buffeting",
         what: "response, 4096 samples",
         of: "nodes × modes",
@@ -129,61 +129,61 @@ pub(crate) static CURVES: &[Curve] = &[
         reason: "the gusts of each node act on each mode at each sample",
         ..BRIDGE
     },
-    Curve {
+    GrowthCurve {
         name: "bridge-step",
         what: "a step of the bridge",
         job: growth::bridge_step,
         exponent: 2.0,
         reason: "a product with the matrix of all states, four a mode, whatever the nodes",
         beyond: LEAVES_THE_CACHE,
-        kind: Kind::Call,
+        kind: CurveKind::Call,
         ..BRIDGE
     },
-    Curve {
+    GrowthCurve {
         name: "training",
         what: "six filters and least squares",
         of: "samples a motion",
         sizes: &[10_000, 100_000, 1_000_000, 10_000_000, 100_000_000],
         job: growth::training,
         reason: "every sample passes the filters once and is forgotten",
-        kind: Kind::Streamed,
+        kind: CurveKind::Streamed,
         ..PLAIN
     },
-    Curve {
+    GrowthCurve {
         name: "monte-carlo",
         what: "an analysis of scatter",
         of: "samples",
         sizes: &[1000, 10_000, 100_000, 1_000_000, 10_000_000],
         job: growth::monte_carlo,
         reason: "samples are independent and only counted",
-        kind: Kind::Streamed,
+        kind: CurveKind::Streamed,
         ..PLAIN
     },
-    Curve {
+    GrowthCurve {
         name: "threads-training",
         what: "training, eight records",
         job: growth::training_by_threads,
         ..THREADS
     },
-    Curve {
+    GrowthCurve {
         name: "threads-sweep",
         what: "modes at ten winds",
         job: growth::sweep_by_threads,
         ..THREADS
     },
-    Curve {
+    GrowthCurve {
         name: "threads-grid",
         what: "a grid of 500 models",
         job: growth::grid_by_threads,
         ..THREADS
     },
-    Curve {
+    GrowthCurve {
         name: "threads-monte-carlo",
         what: "100 000 samples",
         job: growth::monte_carlo_by_threads,
         ..THREADS
     },
-    Curve {
+    GrowthCurve {
         name: "threads-buffeting",
         what: "response of a bridge",
         job: growth::buffeting_by_threads,

@@ -1,6 +1,6 @@
 //! Whole bridges: Langenuen with 39 modes, and a beam on the flat plate with as many nodes as asked for.
 
-use super::c_interface::{Archive, Kind, Unit};
+use super::c_interface::{FmiKind, LoadedUnit, Unpacked};
 use super::models::folder;
 use crate::bridges;
 use crate::entry::Job;
@@ -38,10 +38,10 @@ fn write_unit(folder: &Path, study: &BridgeStudy) {
     }
 }
 
-fn unit(folder: &Path) -> Unit {
+fn unit(folder: &Path) -> LoadedUnit {
     let read = |name| std::fs::read_to_string(folder.join(name)).expect("a file");
-    let archive = Archive::of_bridge(&read("model.json"), &read("bridge.json"));
-    Unit::new(archive, Kind::CoSimulation, &[("wind_speed", 30.0)])
+    let archive = Unpacked::of_bridge(&read("model.json"), &read("bridge.json"));
+    LoadedUnit::new(archive, FmiKind::CoSimulation, &[("wind_speed", 30.0)])
 }
 
 pub(crate) fn prepare_whole() {
@@ -88,7 +88,7 @@ pub(crate) fn step_in_another_wind() -> Job {
     })
 }
 
-fn stepped(mut before: impl FnMut(&Unit, f64) + 'static) -> Job {
+fn stepped(mut before: impl FnMut(&LoadedUnit, f64) + 'static) -> Job {
     let unit = unit(&folder("bridge"));
     let references = unit.references(["node[1156].heave", "node[1081].rotation"]);
     let mut n = 0.0;

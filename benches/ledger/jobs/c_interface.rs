@@ -25,13 +25,13 @@ type Instantiate = unsafe extern "C" fn(
 
 #[derive(Clone, Copy)]
 #[repr(i32)]
-pub(crate) enum Kind {
+pub(crate) enum FmiKind {
     ModelExchange = 0,
     CoSimulation = 1,
 }
 
 /// The runtime, loaded as an importer loads it, beside the resources of a unit.
-pub(crate) struct Archive {
+pub(crate) struct Unpacked {
     library: libloading::Library,
     resources: Resources,
     guid: CString,
@@ -39,7 +39,7 @@ pub(crate) struct Archive {
     _folder: tempfile::TempDir,
 }
 
-impl Archive {
+impl Unpacked {
     /// Of a section, with gusts where their file is given.
     pub(crate) fn of_section(json: &str, gusts: Option<&str>) -> Self {
         let options = OptionFiles {
@@ -85,7 +85,7 @@ impl Archive {
         unsafe { *self.library.get::<F>(name).expect("a function") }
     }
 
-    fn instantiate(&self, kind: Kind) -> *mut c_void {
+    fn instantiate(&self, kind: FmiKind) -> *mut c_void {
         let functions = Callbacks::silent();
         let instantiate: Instantiate = self.function(b"fmi2Instantiate");
         // SAFETY: texts and callbacks outlive the call, which copies them
@@ -107,7 +107,7 @@ impl Archive {
     /// An instance, made and freed.
     pub(crate) fn make_and_free(&self) {
         type Free = unsafe extern "C" fn(*mut c_void);
-        let handle = self.instantiate(Kind::CoSimulation);
+        let handle = self.instantiate(FmiKind::CoSimulation);
         // SAFETY: an instance that nobody else has
         unsafe { self.function::<Free>(b"fmi2FreeInstance")(handle) };
     }
@@ -118,7 +118,7 @@ fn location(folder: &Path) -> String {
 }
 
 /// An instance that has been initialised, never freed.
-pub(crate) struct Unit {
+pub(crate) struct LoadedUnit {
     handle: *mut c_void,
     step: Step,
     get: Get,
@@ -126,12 +126,12 @@ pub(crate) struct Unit {
     set_time: SetTime,
     set_states: States,
     rates: States,
-    archive: Archive,
+    archive: Unpacked,
 }
 
-impl Unit {
+impl LoadedUnit {
     /// With these values set before initialisation ends.
-    pub(crate) fn new(archive: Archive, kind: Kind, starts: &[(&str, f64)]) -> Self {
+    pub(crate) fn new(archive: Unpacked, kind: FmiKind, starts: &[(&str, f64)]) -> Self {
         let handle = archive.instantiate(kind);
         type Setup = unsafe extern "C" fn(*mut c_void, c_int, f64, f64, c_int, f64) -> c_int;
         let setup: Setup = archive.function(b"fmi2SetupExperiment");

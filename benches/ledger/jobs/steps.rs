@@ -1,6 +1,6 @@
 //! Steps, rates and instances of a section through the C interface, and strips of forces.
 
-use super::c_interface::{Archive, Kind, Unit};
+use super::c_interface::{FmiKind, LoadedUnit, Unpacked};
 use super::models::{by_filters, text};
 use crate::entry::Job;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
@@ -18,16 +18,20 @@ const STATES: usize = 12;
 const MOTION: [&str; 4] = ["heave", "heave_rate", "rotation", "rotation_rate"];
 
 /// Released; what dies out becomes zero, not a denormal number that would be slow on its own account.
-fn released(archive: Archive, kind: Kind) -> Unit {
-    Unit::new(archive, kind, &[])
+fn released(archive: Unpacked, kind: FmiKind) -> LoadedUnit {
+    LoadedUnit::new(archive, kind, &[])
 }
 
 /// A step with what `before` sets, and readings of four variables.
-fn stepped(archive: Archive, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) -> Job {
-    calls(released(archive, Kind::CoSimulation), names, before)
+fn stepped(
+    archive: Unpacked,
+    names: [&str; 4],
+    before: impl Fn(&LoadedUnit, f64) + 'static,
+) -> Job {
+    calls(released(archive, FmiKind::CoSimulation), names, before)
 }
 
-fn calls(unit: Unit, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) -> Job {
+fn calls(unit: LoadedUnit, names: [&str; 4], before: impl Fn(&LoadedUnit, f64) + 'static) -> Job {
     let references = unit.references(names);
     let (mut n, mut values) = (0.0, [0.0; 4]);
     Job::new(move || {
@@ -39,7 +43,7 @@ fn calls(unit: Unit, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) ->
 }
 
 pub(crate) fn motion() -> Job {
-    let archive = Archive::of_section(&text("continuous_laguerre"), None);
+    let archive = Unpacked::of_section(&text("continuous_laguerre"), None);
     stepped(archive, MOTION, |_, _| ())
 }
 
@@ -55,30 +59,30 @@ pub(crate) fn motion_of_least() -> Job {
 
 fn motion_of_deck(filters: usize) -> Job {
     let json = by_filters(filters).to_json().expect("a model");
-    stepped(Archive::of_section(&json, None), MOTION, |_, _| ())
+    stepped(Unpacked::of_section(&json, None), MOTION, |_, _| ())
 }
 
 /// The calls of [`motion`] with nothing behind them.
 pub(crate) fn caller() -> Job {
-    let archive = Archive::of_section(&text("continuous_laguerre"), None);
-    let unit = released(archive, Kind::CoSimulation).that_does_nothing();
+    let archive = Unpacked::of_section(&text("continuous_laguerre"), None);
+    let unit = released(archive, FmiKind::CoSimulation).that_does_nothing();
     calls(unit, MOTION, |_, _| ())
 }
 
 pub(crate) fn forces() -> Job {
     let names = ["heave", "lift", "rotation", "moment"];
-    let archive = Archive::of_section(&text("continuous_laguerre"), None);
+    let archive = Unpacked::of_section(&text("continuous_laguerre"), None);
     stepped(archive, names, |_, _| ())
 }
 
 pub(crate) fn discrete() -> Job {
-    let archive = Archive::of_section(&text("discrete_laguerre"), None);
+    let archive = Unpacked::of_section(&text("discrete_laguerre"), None);
     stepped(archive, MOTION, |_, _| ())
 }
 
 /// Another wind before each step.
 pub(crate) fn another_wind() -> Job {
-    let archive = Archive::of_section(&text("continuous_laguerre"), None);
+    let archive = Unpacked::of_section(&text("continuous_laguerre"), None);
     let wind = archive_reference("wind_speed", None);
     stepped(archive, MOTION, move |unit, n| {
         unit.set(&[wind], &[10.0 + 1e-6 * n]);
@@ -89,7 +93,7 @@ pub(crate) fn another_wind() -> Job {
 pub(crate) fn gusts() -> Job {
     let gusts = serde_json::to_string(&gust_force()).expect("gusts");
     let references = ["gust_u", "gust_w"].map(|name| archive_reference(name, Some(&gusts)));
-    let archive = Archive::of_section(&text("continuous_laguerre"), Some(&gusts));
+    let archive = Unpacked::of_section(&text("continuous_laguerre"), Some(&gusts));
     stepped(archive, MOTION, move |unit, n| {
         let gust = (0.01 * n).sin();
         unit.set(&references, &[gust, 0.5 * gust]);
@@ -118,8 +122,8 @@ pub(crate) fn gust_force() -> GustForce {
 
 /// Rates of all states at an instant, for an importer that integrates.
 pub(crate) fn derivative() -> Job {
-    let archive = Archive::of_section(&text("continuous_laguerre"), None);
-    let unit = released(archive, Kind::ModelExchange);
+    let archive = Unpacked::of_section(&text("continuous_laguerre"), None);
+    let unit = released(archive, FmiKind::ModelExchange);
     unit.integrate();
     let mut states = vec![0.01; STATES];
     let (mut rates, mut n) = (states.clone(), 0.0);
@@ -132,7 +136,7 @@ pub(crate) fn derivative() -> Job {
 }
 
 fn instance_of(kind: &str) -> Job {
-    let archive = Archive::of_section(&text(kind), None);
+    let archive = Unpacked::of_section(&text(kind), None);
     Job::new(move || archive.make_and_free())
 }
 
@@ -240,7 +244,7 @@ pub(crate) fn ten_million() -> Job {
 pub(crate) fn loads() -> Job {
     Job::new(|| {
         for _ in 0..1000 {
-            Archive::of_section(&text("continuous_laguerre"), None).make_and_free();
+            Unpacked::of_section(&text("continuous_laguerre"), None).make_and_free();
         }
     })
 }

@@ -1,18 +1,18 @@
 //! Whole bridges.
 
 use super::{NO_FMU, NOBODY, OWN_FORMAT, PLAIN};
-use crate::entry::{Baseline, Entry, Script, Threads};
+use crate::entry::{Baseline, BenchEntry, Script, Threads};
 use crate::jobs::bridge;
 
-const BRIDGE: Entry = Entry {
+const BRIDGE: BenchEntry = BenchEntry {
     size: "39 modes, 195 states, L = 3",
     prepare: Some(bridge::prepare_whole),
     times: 2000,
     ..PLAIN
 };
 
-pub(crate) static ENTRIES: &[Entry] = &[
-    Entry {
+pub(crate) static ENTRIES: &[BenchEntry] = &[
+    BenchEntry {
         name: "bridge-step",
         what: "FMU of a bridge, doStep and two readings",
         job: bridge::step,
@@ -27,7 +27,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         is_step: true,
         ..BRIDGE
     },
-    Entry {
+    BenchEntry {
         name: "bridge-step-wind",
         what: "the same, another wind set at every step",
         job: bridge::step_in_another_wind,
@@ -43,7 +43,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         is_step: true,
         ..BRIDGE
     },
-    Entry {
+    BenchEntry {
         name: "bridge-damping",
         what: "the same unit, damping_now in another wind",
         job: bridge::damping,
@@ -58,7 +58,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([10, 60]),
         ..BRIDGE
     },
-    Entry {
+    BenchEntry {
         name: "bridge-onset",
         what: "FMU of a bridge, onset_speed after another density",
         size: "8 modes, L = 3",
@@ -69,7 +69,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([1, 4]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "bridge-sweep",
         what: "modes of a bridge over wind speed",
         size: "39 modes, 195 states, L = 3, 60 speeds",
@@ -84,7 +84,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         }),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "bridge-profile",
         what: "flutter of a bridge in a wind profile, table and model",
         size: "39 modes, 50 speeds",
@@ -99,7 +99,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         },
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "bridge-buffeting",
         what: "both domains, two records of 600 s",
         size: "39 modes, 63 nodes, 12 000 samples",
@@ -108,7 +108,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: NOBODY,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "bridge-field",
         what: "field of turbulence",
         size: "100 strips, 12 000 samples",
@@ -117,7 +117,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: NOBODY,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "bridge-response",
         what: "response to that field",
         size: "39 modes, 100 strips, 12 000 samples",
@@ -126,7 +126,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: NOBODY,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "large-bridge",
         what: "coupled, modes at 20 speeds, one step",
         size: "1000 nodes, 100 modes",

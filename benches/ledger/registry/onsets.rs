@@ -1,7 +1,7 @@
 //! Changes at run time, onsets and modes, and many of them.
 
 use super::{NOBODY, PLAIN};
-use crate::entry::{Baseline, Entry, Job, Script, Threads};
+use crate::entry::{Baseline, BenchEntry, Job, Script, Threads};
 use crate::jobs::{changes, onset, samples};
 
 const fn exponential(job: fn() -> Job) -> Baseline {
@@ -24,28 +24,28 @@ const fn search(job: fn() -> Job) -> Baseline {
     }
 }
 
-const CHANGE: Entry = Entry {
+const CHANGE: BenchEntry = BenchEntry {
     size: "12 states, L = 4",
     times: 2000,
     ..PLAIN
 };
 
-pub(crate) static ENTRIES: &[Entry] = &[
-    Entry {
+pub(crate) static ENTRIES: &[BenchEntry] = &[
+    BenchEntry {
         name: "change-died-out",
         what: "step in steady wind, died out",
         job: changes::died_out,
         baseline: exponential(changes::exponential_continuous),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "change-wind",
         what: "step with another wind",
         job: changes::held_continuous,
         baseline: exponential(changes::exponential_continuous),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "change-wind-discrete",
         what: "the same of the discrete model",
         size: "10 states, L = 3",
@@ -53,14 +53,14 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: exponential(changes::exponential_discrete),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "change-ramps",
         what: "step with the wind on a ramp",
         job: changes::ramps_continuous,
         baseline: exponential(changes::exponential_continuous),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "change-ramps-discrete",
         what: "the same of the discrete model",
         size: "10 states, L = 3",
@@ -68,7 +68,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: exponential(changes::exponential_discrete),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "change-gusts",
         what: "step with gusts on top of the ramp",
         size: "16 states, L = 4",
@@ -82,7 +82,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         },
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "onset",
         what: "onset_speed after another mass",
         job: changes::onset_continuous,
@@ -91,7 +91,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([10, 60]),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "onset-discrete",
         what: "the same of the discrete model",
         size: "10 states, L = 3",
@@ -101,7 +101,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([10, 60]),
         ..CHANGE
     },
-    Entry {
+    BenchEntry {
         name: "sweep",
         what: "V-g sweep with modes",
         size: "12 states, L = 4, 24 speeds",
@@ -118,7 +118,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([5, 25]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "pk",
         what: "p-k iteration",
         size: "two motions, L = 4, 24 speeds",
@@ -128,7 +128,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([5, 25]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "samples",
         what: "an onset of a random section",
         size: "10 states, L = 3, 300 sections",
@@ -145,7 +145,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         }),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "monte-carlo",
         what: "a whole analysis, 28 random numbers a sample",
         size: "10 states, L = 3, 1000 samples",
@@ -155,7 +155,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([1, 3]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "large-monte-carlo",
         what: "the same",
         size: "10 states, L = 3, 1 000 000 samples",

@@ -1,7 +1,7 @@
 //! Fits to records, and metrics that compare signals.
 
 use super::{NOBODY, OWN_FORMAT, PLAIN};
-use crate::entry::{Baseline, Entry, Script, Threads};
+use crate::entry::{Baseline, BenchEntry, Script, Threads};
 use crate::jobs::{fits, metrics};
 
 const fn grid(argument: fn() -> serde_json::Value) -> Baseline {
@@ -15,15 +15,15 @@ const fn grid(argument: fn() -> serde_json::Value) -> Baseline {
     })
 }
 
-const METRIC: Entry = Entry {
+const METRIC: BenchEntry = BenchEntry {
     size: "4000 samples",
     baseline: NOBODY,
     threads: Threads::All,
     ..PLAIN
 };
 
-pub(crate) static ENTRIES: &[Entry] = &[
-    Entry {
+pub(crate) static ENTRIES: &[BenchEntry] = &[
+    BenchEntry {
         name: "fit",
         what: "fit of one short set of records, default form",
         size: "two speeds, 50 Hz, 4 s a frequency, L chosen (3 to 5)",
@@ -33,7 +33,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([1, 3]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "training",
         what: "filters and least squares, L = 6, one pole",
         size: "172 800 samples a motion",
@@ -48,7 +48,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         }),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "large-training",
         what: "`aerodeck train`, from its files",
         size: "four records of one hour at 200 Hz, L chosen (3 to 5)",
@@ -59,7 +59,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         judged_peak: true,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "grid-discrete",
         what: "grid over L and α, all models and residuals",
         size: "500 cells, L = 1 to 10, 172 800 samples a motion",
@@ -68,7 +68,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: grid(fits::grid_discrete_argument),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "grid-continuous",
         what: "grid over L and p, all models and residuals",
         size: "500 cells, L = 1 to 10, 172 800 samples a motion",
@@ -77,7 +77,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: grid(fits::grid_continuous_argument),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "judging",
         what: "its cells judged: data left out, onsets, guards",
         size: "500 cells, L = 1 to 10",
@@ -86,7 +86,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: NOBODY,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "warping",
         what: "dynamic time warping, distance and path",
         size: "20 000 by 20 000 samples",
@@ -102,37 +102,37 @@ pub(crate) static ENTRIES: &[Entry] = &[
         judged_peak: true,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "metric-phase",
         what: "phase",
         job: metrics::metric_phase,
         ..METRIC
     },
-    Entry {
+    BenchEntry {
         name: "metric-magnitude-warped",
         what: "warped magnitude",
         job: metrics::metric_magnitude_warped,
         ..METRIC
     },
-    Entry {
+    BenchEntry {
         name: "metric-wavelet",
         what: "wavelet, 1200 levels",
         job: metrics::metric_wavelet,
         ..METRIC
     },
-    Entry {
+    BenchEntry {
         name: "metric-density",
         what: "probability density",
         job: metrics::metric_density,
         ..METRIC
     },
-    Entry {
+    BenchEntry {
         name: "metric-stationarity",
         what: "stationarity, 120 levels",
         job: metrics::metric_stationarity,
         ..METRIC
     },
-    Entry {
+    BenchEntry {
         name: "metric-bicoherence",
         what: "bicoherence, 120 levels",
         job: metrics::metric_bicoherence,

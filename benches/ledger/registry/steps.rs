@@ -1,7 +1,7 @@
 //! Steps, instances and strips of an FMU.
 
 use super::{NO_FMU, OWN_FORMAT, PLAIN};
-use crate::entry::{Baseline, Entry};
+use crate::entry::{Baseline, BenchEntry};
 use crate::jobs::steps;
 
 /// Of an FMU that is not ours: there is none with these equations, so the arithmetic alone is the measure.
@@ -14,7 +14,7 @@ const PRODUCT: Baseline = Baseline::Here {
 };
 
 /// A step of a section through the C interface.
-const STEP: Entry = Entry {
+const STEP: BenchEntry = BenchEntry {
     size: "12 states, L = 4",
     times: 50_000,
     baseline: PRODUCT,
@@ -23,54 +23,54 @@ const STEP: Entry = Entry {
     ..PLAIN
 };
 
-pub(crate) static ENTRIES: &[Entry] = &[
-    Entry {
+pub(crate) static ENTRIES: &[BenchEntry] = &[
+    BenchEntry {
         name: "step",
         what: "FMU, doStep and getReal of four motions",
         job: steps::motion,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "step-most",
         what: "the same of a deck as it is fitted by default",
         size: "14 states, L = 5",
         job: steps::motion_of_most,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "step-least",
         what: "the same of a deck with the filters of the thesis",
         size: "10 states, L = 3",
         job: steps::motion_of_least,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "step-forces",
         what: "the same with two forces among the four",
         job: steps::forces,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "step-wind",
         what: "the motions, another wind set at every step",
         job: steps::another_wind,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "step-gusts",
         what: "the motions, two gusts set at every step",
         size: "16 states, L = 4",
         job: steps::gusts,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "step-discrete",
         what: "discrete model, the motions",
         size: "10 states, L = 3",
         job: steps::discrete,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "caller",
         what: "the calls of doStep and getReal alone, part of every step above",
         size: "two calls",
@@ -79,14 +79,14 @@ pub(crate) static ENTRIES: &[Entry] = &[
         baseline: Baseline::None("it is the overhead of this program"),
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "derivative",
         what: "model exchange, rates of all states",
         job: steps::derivative,
         is_step: false,
         ..STEP
     },
-    Entry {
+    BenchEntry {
         name: "instance",
         what: "FMU, an instance made and freed",
         size: "12 states, L = 4",
@@ -96,7 +96,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([20, 120]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "instance-rational",
         what: "the same of rational functions",
         size: "8 states, two lags",
@@ -106,7 +106,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([20, 120]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "instance-discrete",
         what: "the same of the discrete model",
         size: "10 states, L = 3",
@@ -116,7 +116,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([20, 120]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "strip",
         what: "unit of forces, a strip: motion set, step, forces read",
         size: "1000 strips",
@@ -133,7 +133,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         count: Some([3, 13]),
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "growth-steps",
         what: "ten million steps: memory must not grow",
         size: "12 states, L = 4",
@@ -142,7 +142,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
         judged_peak: true,
         ..PLAIN
     },
-    Entry {
+    BenchEntry {
         name: "growth-loads",
         what: "a thousand loads of the library: memory must not grow",
         size: "12 states, L = 4",

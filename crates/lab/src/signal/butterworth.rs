@@ -14,14 +14,14 @@ const ORDER_AT_MOST: usize = 12;
 
 /// `y[k] = b₀x[k] + b₁x[k−1] + b₂x[k−2] − a₁y[k−1] − a₂y[k−2]`; a first-order section has `b₂ = a₂ = 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Section {
+pub(super) struct SecondOrderSection {
     /// Numerator, from `z⁰` on.
     pub b: [f64; 3],
     /// Denominator without its leading one.
     pub a: [f64; 2],
 }
 
-impl Section {
+impl SecondOrderSection {
     /// From `p = 1 − z` of a pole: a pair of conjugate ones.
     fn pair(p: Complex<f64>) -> Self {
         let gain = 0.25 * p.norm_sqr();
@@ -61,7 +61,7 @@ impl Section {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ButterworthLowPass {
     order: usize,
-    sections: Vec<Section>,
+    sections: Vec<SecondOrderSection>,
 }
 
 impl ButterworthLowPass {
@@ -94,11 +94,14 @@ impl ButterworthLowPass {
             let s = Complex::from_polar(warped, angle);
             s * -2.0 / (Complex::new(4.0, 0.0) - s)
         };
-        let mut sections: Vec<Section> = (1..=order / 2)
-            .map(|k| Section::pair(away_from_one(k)))
+        let mut sections: Vec<SecondOrderSection> = (1..=order / 2)
+            .map(|k| SecondOrderSection::pair(away_from_one(k)))
             .collect();
         if order % 2 == 1 {
-            sections.insert(0, Section::single(away_from_one(order.div_ceil(2)).re));
+            sections.insert(
+                0,
+                SecondOrderSection::single(away_from_one(order.div_ceil(2)).re),
+            );
         }
         Ok(Self { order, sections })
     }
@@ -106,7 +109,7 @@ impl ButterworthLowPass {
     /// Amplitude that a harmonic keeps at one passage.
     pub(crate) fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
         let z = Complex::from_polar(1.0, -2.0 * PI * frequency_hz / sampling_hz);
-        let of_one = |s: &Section| {
+        let of_one = |s: &SecondOrderSection| {
             let above = z * (z * s.b[2] + s.b[1]) + s.b[0];
             let below = z * (z * s.a[1] + s.a[0]) + 1.0;
             (above / below).norm()
@@ -189,7 +192,7 @@ mod tests {
     }
 
     #[derive(serde::Deserialize)]
-    struct Case {
+    struct Reference {
         order: usize,
         cutoff_hz: f64,
         sampling_hz: f64,
@@ -211,7 +214,7 @@ mod tests {
             "/../../tests/data/butterworth_golden.json"
         );
         let text = std::fs::read_to_string(path).unwrap();
-        let cases: Vec<Case> = serde_json::from_str(&text).unwrap();
+        let cases: Vec<Reference> = serde_json::from_str(&text).unwrap();
         assert!(cases.len() >= 20);
         for case in cases {
             let filter =

@@ -59,12 +59,12 @@ fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
 }
 
 /// An unpacked archive as far as the runtime sees it, in a folder whose name needs coding.
-struct Archive {
+struct Extracted {
     folder: tempfile::TempDir,
     resources: Resources,
 }
 
-impl Archive {
+impl Extracted {
     fn new(json: &str) -> Self {
         let folder = tempfile::Builder::new()
             .prefix("Brücke 1 ")
@@ -138,7 +138,7 @@ struct Creation {
 }
 
 impl Creation {
-    fn right(archive: &Archive) -> Self {
+    fn right(archive: &Extracted) -> Self {
         let c = |text: String| Some(CString::new(text).unwrap());
         Self {
             name: c("deck".into()),
@@ -166,21 +166,21 @@ impl Creation {
 }
 
 /// An instance with its importer.
-struct Unit {
-    archive: Archive,
+struct StartedUnit {
+    archive: Extracted,
     // the box keeps the address that the logger was given
     messages: Box<Messages>,
     handle: fmi2Component,
 }
 
-impl Drop for Unit {
+impl Drop for StartedUnit {
     fn drop(&mut self) {
         unsafe { fmi2FreeInstance(self.handle) };
     }
 }
 
-impl Unit {
-    fn instantiate(archive: Archive) -> Self {
+impl StartedUnit {
+    fn instantiate(archive: Extracted) -> Self {
         let messages = Box::<Messages>::default();
         let functions = callbacks(&messages);
         let handle = Creation::right(&archive).call(&functions, false);
@@ -193,7 +193,7 @@ impl Unit {
     }
 
     fn new(kind: &str) -> Self {
-        Self::instantiate(Archive::fixture(kind))
+        Self::instantiate(Extracted::fixture(kind))
     }
 
     /// Ready for the first step at time zero.

@@ -26,7 +26,7 @@ unsafe extern "C" fn collect(
     messages.lock().unwrap().push(text.into_owned());
 }
 
-struct Unit {
+struct NewStandardUnit {
     folder: tempfile::TempDir,
     resources: Resources,
     groups: Groups,
@@ -34,13 +34,13 @@ struct Unit {
     handle: fmi2Component,
 }
 
-impl Drop for Unit {
+impl Drop for NewStandardUnit {
     fn drop(&mut self) {
         unsafe { fmi3FreeInstance(self.handle) };
     }
 }
 
-impl Unit {
+impl NewStandardUnit {
     fn new(kind: &str, strips: Option<usize>, integrated: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = format!(
@@ -175,7 +175,7 @@ impl Unit {
 #[test]
 fn the_trajectory_is_that_of_the_instance_bit_for_bit() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let unit = Unit::new(kind, None, false);
+        let unit = NewStandardUnit::new(kind, None, false);
         let read = |name: &str| unit.resources.table.find_name(name).unwrap() as u32;
         let (outputs, wind) = (["heave", "rotation", "lift", "moment"], read("wind_speed"));
         let indices = outputs.map(read);
@@ -209,7 +209,7 @@ fn the_trajectory_is_that_of_the_instance_bit_for_bit() {
 
 #[test]
 fn strips_are_arrays() {
-    let unit = Unit::new("rational", Some(3), false);
+    let unit = NewStandardUnit::new("rational", Some(3), false);
     unit.start();
     unit.set("wind_speed", &[20.0]);
     unit.set("heave", &[0.01, 0.0, -0.02]);
@@ -228,7 +228,7 @@ fn strips_are_arrays() {
 /// The adjoint is the transpose of the directional derivative.
 #[test]
 fn adjoints_are_transposed_directions() {
-    let unit = Unit::new("rational", None, false);
+    let unit = NewStandardUnit::new("rational", None, false);
     unit.start();
     unit.ok(unit.step(0.0, 0.1));
     let unknowns = ["heave_acceleration", "moment"].map(|n| unit.reference(n));
@@ -286,7 +286,7 @@ fn adjoints_are_transposed_directions() {
 #[test]
 fn seeds_that_are_no_numbers_are_refused() {
     for seed in [f64::NAN, f64::INFINITY] {
-        let unit = Unit::new("rational", None, false);
+        let unit = NewStandardUnit::new("rational", None, false);
         unit.start();
         let (unknown, known) = ([unit.reference("moment")], [unit.reference("rotation")]);
         let mut found = [7.0];
@@ -310,7 +310,7 @@ fn seeds_that_are_no_numbers_are_refused() {
 
 #[test]
 fn an_importer_may_integrate() {
-    let unit = Unit::new("continuous_laguerre", None, true);
+    let unit = NewStandardUnit::new("continuous_laguerre", None, true);
     unit.start();
     let mut flags = [true; 5];
     let [a, b, c, d, e] = &mut flags;
@@ -335,7 +335,7 @@ fn an_importer_may_integrate() {
 /// States of strips are arrays, which follow one another as the importer's list does.
 #[test]
 fn states_of_strips_are_arrays() {
-    let unit = Unit::new("rational", Some(3), true);
+    let unit = NewStandardUnit::new("rational", Some(3), true);
     unit.start();
     unit.ok(unsafe { fmi3EnterContinuousTimeMode(unit.handle) });
     unit.set("wind_speed", &[20.0]);
@@ -362,7 +362,7 @@ fn states_of_strips_are_arrays() {
 
 #[test]
 fn what_there_is_not_is_refused_and_the_run_goes_on() {
-    let unit = Unit::new("rational", None, false);
+    let unit = NewStandardUnit::new("rational", None, false);
     unit.start();
     let vr = [unit.groups.time()];
     let status = unsafe { fmi3EnterStepMode(unit.handle) };
@@ -375,7 +375,7 @@ fn what_there_is_not_is_refused_and_the_run_goes_on() {
     unit.refused(status, "no variables of this type");
     // a resource path, a token and a kind that do not fit
     assert!(
-        Unit::new("discrete_laguerre", Some(2), false)
+        NewStandardUnit::new("discrete_laguerre", Some(2), false)
             .instantiate(true, 0)
             .is_null()
     );

@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 /// Kinds of units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum Exported {
     Section(&'static str),
     Forces(&'static str),
     /// On strips of several models.
@@ -34,15 +34,15 @@ enum Kind {
     Damped,
 }
 
-const KINDS: [Kind; 8] = [
-    Kind::Section("continuous_laguerre"),
-    Kind::Section("rational"),
-    Kind::Section("discrete_laguerre"),
-    Kind::Forces("rational"),
-    Kind::Forces("discrete_laguerre"),
-    Kind::Patched,
-    Kind::Bridge,
-    Kind::Damped,
+const KINDS: [Exported; 8] = [
+    Exported::Section("continuous_laguerre"),
+    Exported::Section("rational"),
+    Exported::Section("discrete_laguerre"),
+    Exported::Forces("rational"),
+    Exported::Forces("discrete_laguerre"),
+    Exported::Patched,
+    Exported::Bridge,
+    Exported::Damped,
 ];
 
 fn fixture(name: &str) -> Vec<u8> {
@@ -108,7 +108,7 @@ fn dampers(model: &TrainedModel) -> Dampers {
     }
 }
 
-fn resources(kind: Kind) -> Resources {
+fn resources(kind: Exported) -> Resources {
     resources_in(kind, false)
 }
 
@@ -122,7 +122,7 @@ fn gust_force() -> GustForce {
 }
 
 /// With gusts among the inputs, of a bridge also turbulence in the archive, or without.
-fn resources_in(kind: Kind, gusts: bool) -> Resources {
+fn resources_in(kind: Exported, gusts: bool) -> Resources {
     let force = gust_force();
     let gust_text = gusts.then(|| serde_json::to_string(&force).unwrap());
     let of_files = |name, force: Option<&str>| {
@@ -134,17 +134,17 @@ fn resources_in(kind: Kind, gusts: bool) -> Resources {
         Resources::from_bytes(&fixture(name), files).unwrap()
     };
     match kind {
-        Kind::Section(name) => of_files(name, None),
-        Kind::Forces(name) => {
+        Exported::Section(name) => of_files(name, None),
+        Exported::Forces(name) => {
             let options = ForceOptions::single(0.5).to_json().unwrap();
             of_files(name, Some(&options))
         }
-        Kind::Patched => several_models::resources(gusts),
-        Kind::Bridge | Kind::Damped => {
+        Exported::Patched => several_models::resources(gusts),
+        Exported::Bridge | Exported::Damped => {
             let json = fixture("rational");
             let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
             let mut options = bridge_of(&model);
-            if matches!(kind, Kind::Damped) {
+            if matches!(kind, Exported::Damped) {
                 options.dampers = dampers(&model);
             }
             options.gusts = gusts.then(|| BridgeGusts {
@@ -171,12 +171,12 @@ fn resources_in(kind: Kind, gusts: bool) -> Resources {
     }
 }
 
-fn driven(kind: Kind, gusts: bool) -> Instance {
+fn driven(kind: Exported, gusts: bool) -> Instance {
     Instance::new(resources_in(kind, gusts)).unwrap()
 }
 
 /// A new instance whose importer integrates, or does not; `None` where it cannot.
-fn instance(kind: Kind, integrated: bool) -> Option<Instance> {
+fn instance(kind: Exported, integrated: bool) -> Option<Instance> {
     let instance = Instance::new(resources(kind)).unwrap();
     if integrated {
         instance.for_model_exchange().ok()

@@ -54,7 +54,9 @@ fn compare(
     forces: LinearForces,
     section: &SectionModel,
     rebuilt: impl Fn(&[f64]) -> Box<dyn Realizable>,
-    (samples, speed_max, scatter): (usize, f64, f64),
+    samples: usize,
+    speed_max: f64,
+    scatter: f64,
 ) -> (usize, usize) {
     let sweep = OnsetSweep::new(forces, &section.structure().unwrap(), speed_max).unwrap();
     let tested = sweep.forces().tested;
@@ -162,7 +164,7 @@ fn two_thousand_laguerre_samples() {
     assert_eq!(forces.coefficients().len(), 2 * 6 * 2);
     let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn Realizable>;
     let section = SectionModel::table_4_1();
-    let (onsets, unresolved) = compare(forces, &section, rebuilt, (2000, 60.0, 0.05));
+    let (onsets, unresolved) = compare(forces, &section, rebuilt, 2000, 60.0, 0.05);
     assert!(onsets > 1500 && unresolved < 4, "{onsets} {unresolved}");
 }
 
@@ -174,7 +176,7 @@ fn frequencies_that_cross() {
     let jones = RationalModel::jones_flat_plate();
     let forces = LinearForces::of_rational(&jones, None);
     let rebuilt = |_: &[f64]| Box::new(RationalModel::jones_flat_plate()) as Box<dyn Realizable>;
-    let (_, unresolved) = compare(forces, &section, rebuilt, (300, 60.0, 0.0));
+    let (_, unresolved) = compare(forces, &section, rebuilt, 300, 60.0, 0.0);
     assert!(unresolved < 30, "{unresolved}");
 }
 
@@ -223,7 +225,7 @@ fn three_degrees_of_freedom() {
         section.axis_offset_m = offset;
         section.mass_offset_m = offset;
         let forces = LinearForces::of_laguerre(&model, None);
-        let (onsets, unresolved) = compare(forces, &section, rebuilt, (500, 60.0, 0.05));
+        let (onsets, unresolved) = compare(forces, &section, rebuilt, 500, 60.0, 0.05);
         assert!(onsets > 300 && unresolved < 8, "{onsets} {unresolved}");
     }
 }
@@ -239,7 +241,7 @@ fn unbalanced_sections() {
         section.axis_offset_m = Some(axis);
         section.mass_offset_m = Some(mass);
         let forces = LinearForces::of_rational(&jones, None);
-        let (onsets, unresolved) = compare(forces, &section, rebuilt, (100, 60.0, 0.0));
+        let (onsets, unresolved) = compare(forces, &section, rebuilt, 100, 60.0, 0.0);
         assert!(unresolved < 20, "{axis} {mass}: {unresolved}");
         found += onsets;
     }

@@ -3,7 +3,7 @@
 use super::*;
 use fmi2Status::fmi2Error;
 
-fn output_rates<const N: usize>(unit: &Unit, names: [&str; N]) -> [f64; N] {
+fn output_rates<const N: usize>(unit: &StartedUnit, names: [&str; N]) -> [f64; N] {
     let (vr, order, mut values) = (unit.references(&names), [1; N], [f64::NAN; N]);
     unit.ok(unsafe {
         fmi2GetRealOutputDerivatives(
@@ -17,7 +17,7 @@ fn output_rates<const N: usize>(unit: &Unit, names: [&str; N]) -> [f64; N] {
     values
 }
 
-fn directional(unit: &Unit, unknown: &str, known: &[&str], seeds: &[f64]) -> f64 {
+fn directional(unit: &StartedUnit, unknown: &str, known: &[&str], seeds: &[f64]) -> f64 {
     let (u, k) = (unit.references(&[unknown]), unit.references(known));
     let mut value = f64::NAN;
     unit.ok(unsafe {
@@ -58,7 +58,7 @@ fn close(a: f64, b: f64, tolerance: f64, name: &str) {
 #[test]
 fn output_rates_are_those_of_the_run() {
     for kind in ["continuous_laguerre", "rational"] {
-        let unit = Unit::started(kind);
+        let unit = StartedUnit::started(kind);
         unit.set("external_lift", 3.0);
         unit.ok(unit.step(0.0, 0.4));
         unit.set_rate("external_lift", 40.0);
@@ -84,7 +84,7 @@ fn output_rates_are_those_of_the_run() {
 #[test]
 fn outputs_by_inputs() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let unit = Unit::started(kind);
+        let unit = StartedUnit::started(kind);
         unit.ok(unit.step(0.0, 0.37));
         for (input, delta) in [
             ("wind_speed", 1e-3),
@@ -118,7 +118,7 @@ fn outputs_by_inputs() {
 
 #[test]
 fn unknowns_by_parameters_while_initialising() {
-    let unit = Unit::new("continuous_laguerre");
+    let unit = StartedUnit::new("continuous_laguerre");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     for (known, delta, tolerance) in [
@@ -161,7 +161,7 @@ fn unknowns_by_parameters_while_initialising() {
 #[test]
 fn wrong_derivatives_are_refused() {
     let call = |unknown: &str, known: &str| {
-        let unit = Unit::started("rational");
+        let unit = StartedUnit::started("rational");
         let (u, k) = (unit.references(&[unknown]), unit.references(&[known]));
         let mut value = 0.0;
         let status = unsafe {
@@ -185,7 +185,7 @@ fn wrong_derivatives_are_refused() {
     call("onset_speed", "wind_speed");
     call("heave", "lift");
     call("wind_speed", "wind_speed");
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let vr = unit.references(&["heave"]);
     let mut value = 0.0;
     let status = unsafe {
@@ -193,7 +193,7 @@ fn wrong_derivatives_are_refused() {
     };
     unit.refused(status, fmi2Error, &["order", "found 2"]);
     unit.ok(unit.step(0.0, 0.1)); // the run goes on
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let status = unsafe {
         fmi2SetRealInputDerivatives(unit.handle, vr.as_ptr(), 1, [1].as_ptr(), [0.1].as_ptr())
     };

@@ -29,7 +29,7 @@ fn gust_force() -> Vec<u8> {
     serde_json::to_vec(&force).unwrap()
 }
 
-impl Archive {
+impl Extracted {
     pub(super) fn exported(self, what: What) -> Self {
         let folder = self.folder.path();
         let model = std::fs::read(folder.join("model.json")).unwrap();
@@ -58,8 +58,8 @@ impl Archive {
     }
 }
 
-fn archive(kind: &str, what: What) -> Archive {
-    Archive::fixture(kind).exported(what)
+fn archive(kind: &str, what: What) -> Extracted {
+    Extracted::fixture(kind).exported(what)
 }
 
 pub(super) fn alone() -> What {
@@ -69,7 +69,7 @@ pub(super) fn alone() -> What {
     }
 }
 
-impl Unit {
+impl StartedUnit {
     fn completed_status(&self) -> fmi2Status {
         let (mut event, mut end) = (1, 1);
         unsafe { fmi2CompletedIntegratorStep(self.handle, 1, &raw mut event, &raw mut end) }
@@ -81,7 +81,7 @@ impl Unit {
 }
 
 /// Names of the states in their order, and of their rates.
-fn state_names(unit: &Unit) -> [Vec<String>; 2] {
+fn state_names(unit: &StartedUnit) -> [Vec<String>; 2] {
     let table = &unit.archive.resources.table;
     let name = |index: usize| table.variables()[index].name.clone();
     let state = |rate: usize| name(table.variables()[rate].derivative_of.unwrap());
@@ -195,7 +195,7 @@ fn motion_of_one_strip_is_not_that_of_others() {
         gusts: true,
     };
     for kind in KINDS {
-        let unit = Unit::instantiate(archive(kind, three));
+        let unit = StartedUnit::instantiate(archive(kind, three));
         unit.start();
         let names = ["strip[1].lift", "strip[2].lift", "strip[3].total_moment"];
         let set = |s: usize, t: f64| {
@@ -225,7 +225,7 @@ fn motion_of_one_strip_is_not_that_of_others() {
 #[test]
 fn totals_that_overflow_are_refused() {
     for unit in [
-        Unit::instantiate(archive(KINDS[0], alone())),
+        StartedUnit::instantiate(archive(KINDS[0], alone())),
         exchanged(archive(KINDS[0], alone())),
     ] {
         unit.set("length", 1e308);
@@ -245,7 +245,7 @@ fn the_flow_has_settled_in_both_interfaces() {
             gusts: true,
             ..alone()
         };
-        let own = Unit::instantiate(archive(kind, what));
+        let own = StartedUnit::instantiate(archive(kind, what));
         let foreign = exchanged(archive(kind, what));
         let [states, rates] = state_names(&own);
         for unit in [&own, &foreign] {
@@ -254,7 +254,7 @@ fn the_flow_has_settled_in_both_interfaces() {
             }
             unit.start();
         }
-        let read = |unit: &Unit, names: &[String]| {
+        let read = |unit: &StartedUnit, names: &[String]| {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let mut values = vec![f64::NAN; names.len()];
             unit.ok(unit.try_get(&names, &mut values));
@@ -294,7 +294,7 @@ fn motion_that_is_not_connected_is_refused() {
     unit.set("heave_rate", 0.1);
     unit.completed();
     let words = ["added mass", "heave_acceleration"];
-    let said = |unit: &Unit| {
+    let said = |unit: &StartedUnit| {
         let all = unit.messages.lock().unwrap();
         all.iter()
             .filter(|m| words.iter().all(|w| m.3.contains(w)))
@@ -328,7 +328,7 @@ fn motion_that_is_not_connected_is_refused() {
     );
 }
 
-fn has_added_mass(unit: &Unit) -> bool {
+fn has_added_mass(unit: &StartedUnit) -> bool {
     unit.directional("lift", "heave_acceleration") != 0.0
 }
 

@@ -20,8 +20,8 @@ fn force(admittance: RationalAdmittance) -> GustForce {
     }
 }
 
-fn in_gusts(kind: &str, admittance: RationalAdmittance) -> Archive {
-    let plain = Archive::fixture(kind);
+fn in_gusts(kind: &str, admittance: RationalAdmittance) -> Extracted {
+    let plain = Extracted::fixture(kind);
     let gusts = serde_json::to_vec(&force(admittance)).unwrap();
     std::fs::write(plain.folder.path().join("gusts.json"), &gusts).unwrap();
     let model = std::fs::read(plain.folder.path().join("model.json")).unwrap();
@@ -29,7 +29,7 @@ fn in_gusts(kind: &str, admittance: RationalAdmittance) -> Archive {
         gusts: Some(&gusts),
         ..OptionFiles::default()
     };
-    Archive {
+    Extracted {
         resources: Resources::from_bytes(&model, options).unwrap(),
         ..plain
     }
@@ -45,8 +45,8 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn a_gust_acts_as_its_force() {
     for kind in KINDS {
-        let blown = Unit::instantiate(in_gusts(kind, RationalAdmittance::None));
-        let pushed = Unit::new(kind);
+        let blown = StartedUnit::instantiate(in_gusts(kind, RationalAdmittance::None));
+        let pushed = StartedUnit::new(kind);
         let section = &blown.archive.model().section;
         let (wind, width) = (20.0, section.width_m);
         let scale = 0.5 * section.air_density_kg_m3 * wind * width;
@@ -89,7 +89,7 @@ fn a_step_is_exact_however_it_is_cut() {
     ] {
         for kind in KINDS {
             let run = |steps: u32| {
-                let unit = Unit::instantiate(in_gusts(kind, admittance));
+                let unit = StartedUnit::instantiate(in_gusts(kind, admittance));
                 unit.set("gust_u", 1.0);
                 unit.start();
                 unit.set("wind_speed", 20.0);
@@ -118,7 +118,7 @@ fn an_importer_that_integrates_feels_the_same_gusts() {
     for kind in &KINDS[..2] {
         let mut errors = Vec::new();
         for steps in [1000u32, 2000] {
-            let own = Unit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
+            let own = StartedUnit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
             let foreign = exchanged(in_gusts(kind, RationalAdmittance::Sears));
             for unit in [&own, &foreign] {
                 unit.start();
@@ -146,7 +146,7 @@ fn an_importer_that_integrates_feels_the_same_gusts() {
 #[test]
 fn a_step_of_ages_under_a_gust_is_refused_at_once() {
     for kind in KINDS {
-        let unit = Unit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
+        let unit = StartedUnit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
         unit.set("wind_speed", 1e-3);
         unit.start();
         unit.set("gust_w", 1.0);
@@ -158,7 +158,7 @@ fn a_step_of_ages_under_a_gust_is_refused_at_once() {
 #[test]
 fn a_harmonic_gust_gives_the_response_of_the_frequency_domain() {
     let (kind, wind, frequency, parts) = ("continuous_laguerre", 20.0, 3.1, 400u32);
-    let unit = Unit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
+    let unit = StartedUnit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
     unit.set("wind_speed", wind);
     unit.start();
     let step = 1.0 / (frequency * f64::from(parts));
@@ -204,7 +204,7 @@ fn a_harmonic_gust_gives_the_response_of_the_frequency_domain() {
 
 #[test]
 fn gusts_come_in_saved_states_and_derivatives() {
-    let unit = Unit::instantiate(in_gusts("rational", RationalAdmittance::Sears));
+    let unit = StartedUnit::instantiate(in_gusts("rational", RationalAdmittance::Sears));
     unit.start();
     unit.set("gust_w", 3.0);
     unit.ok(unit.step(0.0, 0.2));
@@ -225,7 +225,7 @@ fn gusts_come_in_saved_states_and_derivatives() {
     unit.ok(unsafe { fmi2FreeFMUstate(c, &raw mut saved) });
     unit.ok(unsafe { fmi2FreeFMUstate(c, &raw mut again) });
 
-    let force = Unit::instantiate(in_gusts("rational", RationalAdmittance::None));
+    let force = StartedUnit::instantiate(in_gusts("rational", RationalAdmittance::None));
     force.start();
     let scale = {
         let section = &force.archive.model().section;

@@ -5,7 +5,7 @@ use super::*;
 use fmi2Status::{fmi2Discard, fmi2OK};
 
 /// Everything that is calculated from the parameters, with the log switched on.
-fn calculated(unit: &Unit) -> ([f64; 4], [bool; 3]) {
+fn calculated(unit: &StartedUnit) -> ([f64; 4], [bool; 3]) {
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     let numbers = unit.get([
         "onset_speed",
@@ -17,7 +17,7 @@ fn calculated(unit: &Unit) -> ([f64; 4], [bool; 3]) {
     (numbers, flags.map(|name| unit.flag(name)))
 }
 
-fn warned(unit: &Unit, words: &str) -> bool {
+fn warned(unit: &StartedUnit, words: &str) -> bool {
     let messages = unit.messages.lock().unwrap();
     let is = |m: &&(String, fmi2Status, String, String)| {
         m.1 == fmi2Status::fmi2Warning && m.2 == "logStatusWarning" && m.3.contains(words)
@@ -39,7 +39,7 @@ fn legal_parameters_do_not_make_a_getter_fail() {
     ];
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
         for parameters in cases {
-            let unit = Unit::new(kind);
+            let unit = StartedUnit::new(kind);
             unit.ok(unit.set_up());
             unit.ok(unit.enter());
             for (name, value) in parameters {
@@ -65,7 +65,7 @@ fn legal_parameters_do_not_make_a_getter_fail() {
 /// motion can still be stepped.
 #[test]
 fn what_cannot_be_searched_for_is_zero_with_a_warning() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     unit.set("torsion_frequency", 0.0);
@@ -83,7 +83,7 @@ fn what_cannot_be_searched_for_is_zero_with_a_warning() {
 fn a_wind_that_rounding_takes_below_zero_is_at_rest() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
         for (wind, parts) in [(7.0, 10), (0.3, 3), (12.7, 49), (25.0, 7)] {
-            let unit = Unit::started(kind);
+            let unit = StartedUnit::started(kind);
             unit.set("wind_speed", wind);
             let step = 0.1;
             unit.set_rate("wind_speed", -wind / (step * f64::from(parts)));
@@ -98,7 +98,7 @@ fn a_wind_that_rounding_takes_below_zero_is_at_rest() {
             unit.set_rate("wind_speed", 0.0);
             unit.ok(unit.step(step * f64::from(parts), step));
         }
-        let unit = Unit::started(kind);
+        let unit = StartedUnit::started(kind);
         unit.set("wind_speed", -1e-16);
         assert_eq!(unit.get(["wind_speed"]), [0.0]);
         unit.ok(unit.step(0.0, 0.1));
@@ -119,7 +119,7 @@ fn endless_steps_are_discarded_within_ten_milliseconds() {
     let discarded = |kind: &str, (name, value): (&str, f64), rate: f64, step: f64| {
         let spent = (0..5).map(|_| {
             // before the start, where changed parameters are looked at
-            let unit = Unit::new(kind);
+            let unit = StartedUnit::new(kind);
             unit.set(name, value);
             unit.start();
             unit.set_rate("wind_speed", rate);
@@ -139,7 +139,7 @@ fn endless_steps_are_discarded_within_ten_milliseconds() {
     discarded(discrete, ("width", 1e-6), 0.0, 10.0);
     discarded("rational", ("wind_speed", 20.0), 1e-3, 1e5);
     // one exponential, but of a matrix without a right digit
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let status = unit.step(0.0, 1e40);
     unit.refused(status, fmi2Discard, &["no digit would be right"]);
 }
@@ -147,7 +147,7 @@ fn endless_steps_are_discarded_within_ten_milliseconds() {
 /// Far above the onset every number that is handed out is one, to the end.
 #[test]
 fn no_output_is_ever_infinite() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     unit.set("wind_speed", 90.0);
     let names = ["heave", "heave_acceleration", "lift", "rotation", "moment"];
     let mut time = 0.0;
@@ -173,7 +173,7 @@ fn no_output_is_ever_infinite() {
 /// Some importers never set up the experiment.
 #[test]
 fn an_experiment_that_is_not_set_up_starts_at_zero() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     unit.ok(unit.enter());
     assert!(warned(&unit, "has not been set up"));
@@ -183,7 +183,7 @@ fn an_experiment_that_is_not_set_up_starts_at_zero() {
 
 /// The continuous fixture with so many filters of heave, nearly all of which do nothing.
 fn many_filters(count: usize) -> TrainedModel {
-    let mut model = Archive::fixture("continuous_laguerre").resources.model;
+    let mut model = Extracted::fixture("continuous_laguerre").resources.model;
     let Model::Laguerre(filters) = &mut model.model else {
         panic!("the fixture has filters");
     };
@@ -206,7 +206,7 @@ fn models_of_too_many_states_are_refused() {
 fn sections_of_many_states_are_not_searched() {
     let mut model = many_filters(300);
     model.experiment.onset_search_limit_m_s = 5.0;
-    let unit = Unit::instantiate(Archive::new(&model.to_json().unwrap()));
+    let unit = StartedUnit::instantiate(Extracted::new(&model.to_json().unwrap()));
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     unit.ok(unit.set_up());
     unit.ok(unit.enter());

@@ -5,7 +5,7 @@ use fmi2Status::fmi2Error;
 
 /// Runs an initialisation with these log settings; returns the categories that were written.
 fn categories_of(on: bool, names: &[&CStr]) -> Vec<String> {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     let pointers: Vec<_> = names.iter().map(|n| n.as_ptr()).collect();
     let on = fmi2Boolean::from(on);
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, on, names.len(), pointers.as_ptr()) });
@@ -33,7 +33,7 @@ fn events_are_written_where_they_are_wanted() {
 
 #[test]
 fn unknown_categories_are_refused() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     let names = [c"logEverything".as_ptr()];
     let status = unsafe { fmi2SetDebugLogging(unit.handle, 1, 1, names.as_ptr()) };
     unit.refused(status, fmi2Error, &["logEverything"]);
@@ -41,7 +41,7 @@ fn unknown_categories_are_refused() {
     unit.start();
     unit.ok(unit.step(0.0, 0.1));
     let names = [std::ptr::null()];
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     let status = unsafe { fmi2SetDebugLogging(unit.handle, 1, 1, names.as_ptr()) };
     unit.refused(status, fmi2Error, &["log category"]);
 }
@@ -49,11 +49,11 @@ fn unknown_categories_are_refused() {
 /// An onset outside the tested range is reported once, as a warning, when it is asked for.
 #[test]
 fn warnings_of_the_onset_search_are_written() {
-    let mut model = Archive::fixture("rational").resources.model;
+    let mut model = Extracted::fixture("rational").resources.model;
     model.tested_range.max = crate::units::ReducedFrequency::from_full_width(0.11);
     // growth comes down to the tested range at 65 m/s
     model.experiment.onset_search_limit_m_s = 50.0;
-    let unit = Unit::instantiate(Archive::new(&model.to_json().unwrap()));
+    let unit = StartedUnit::instantiate(Extracted::new(&model.to_json().unwrap()));
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     unit.start();
     unit.messages.lock().unwrap().clear();

@@ -5,21 +5,21 @@ use fmi2Status::{fmi2Discard, fmi2Error};
 
 const KINDS: [&str; 2] = ["continuous_laguerre", "rational"];
 
-pub(super) fn exchanged(archive: Archive) -> Unit {
+pub(super) fn exchanged(archive: Extracted) -> StartedUnit {
     let messages = Box::<Messages>::default();
     let functions = callbacks(&messages);
     let mut creation = Creation::right(&archive);
     creation.kind = fmi2ModelExchange;
     let handle = creation.call(&functions, false);
     assert!(!handle.is_null(), "{:?}", messages.lock().unwrap());
-    Unit {
+    StartedUnit {
         archive,
         messages,
         handle,
     }
 }
 
-impl Unit {
+impl StartedUnit {
     pub(super) fn integrate_from_event(&self) {
         let mut info = fmi2EventInfo {
             newDiscreteStatesNeeded: 1,
@@ -93,16 +93,16 @@ impl Unit {
 /// Fixed steps of fourth order against exact ones, in steady and in growing wind; half the step leaves a sixteenth of the difference.
 #[test]
 fn the_motion_is_that_of_co_simulation() {
-    let archives: [fn() -> Archive; 3] = [
-        || Archive::fixture(KINDS[0]),
-        || Archive::fixture(KINDS[1]),
-        Archive::three_dof,
+    let archives: [fn() -> Extracted; 3] = [
+        || Extracted::fixture(KINDS[0]),
+        || Extracted::fixture(KINDS[1]),
+        Extracted::three_dof,
     ];
     let runs = archives.iter().flat_map(|a| [(a, 0.0), (a, 15.0)]);
     for (archive, ramp) in runs {
         let mut errors = Vec::new();
         for steps in [2000u32, 4000] {
-            let (own, foreign) = (Unit::instantiate(archive()), exchanged(archive()));
+            let (own, foreign) = (StartedUnit::instantiate(archive()), exchanged(archive()));
             own.start();
             foreign.start();
             foreign.set("external_lift", 3.0);
@@ -132,7 +132,7 @@ fn the_motion_is_that_of_co_simulation() {
 #[test]
 fn the_state_space_gives_rates_and_outputs() {
     for kind in KINDS {
-        let unit = exchanged(Archive::fixture(kind));
+        let unit = exchanged(Extracted::fixture(kind));
         unit.start();
         unit.integrate_from_event();
         let table = &unit.archive.resources.table;
@@ -179,7 +179,7 @@ fn the_state_space_gives_rates_and_outputs() {
 /// The wind's column, against a difference of the rates.
 #[test]
 fn rates_follow_the_wind() {
-    let unit = exchanged(Archive::fixture(KINDS[0]));
+    let unit = exchanged(Extracted::fixture(KINDS[0]));
     unit.start();
     unit.integrate_from_event();
     let x: Vec<f64> = (0..unit.size()).map(|i| 0.01 / (i + 1) as f64).collect();
@@ -204,7 +204,7 @@ fn rates_follow_the_wind() {
 }
 
 /// A sampled model has nothing to integrate.
-pub(super) fn cannot_be_integrated(archive: &Archive) {
+pub(super) fn cannot_be_integrated(archive: &Extracted) {
     let messages = Box::<Messages>::default();
     let functions = callbacks(&messages);
     let mut creation = Creation::right(archive);
@@ -216,9 +216,9 @@ pub(super) fn cannot_be_integrated(archive: &Archive) {
 
 #[test]
 fn what_does_not_belong_to_it_is_refused() {
-    cannot_be_integrated(&Archive::fixture("discrete_laguerre"));
+    cannot_be_integrated(&Extracted::fixture("discrete_laguerre"));
 
-    let unit = exchanged(Archive::fixture(KINDS[1]));
+    let unit = exchanged(Extracted::fixture(KINDS[1]));
     unit.start();
     unit.integrate_from_event();
     let x = vec![f64::NAN; unit.size()];
@@ -235,7 +235,7 @@ fn what_does_not_belong_to_it_is_refused() {
     assert!(nominals.iter().all(|x| *x > 0.0));
 
     // a state of the other interface
-    let own = Unit::started(KINDS[1]);
+    let own = StartedUnit::started(KINDS[1]);
     let mut saved = null();
     own.ok(unsafe { fmi2GetFMUstate(own.handle, &raw mut saved) });
     let status = unsafe { fmi2SetFMUstate(unit.handle, saved) };
@@ -243,11 +243,11 @@ fn what_does_not_belong_to_it_is_refused() {
     own.ok(unsafe { fmi2FreeFMUstate(own.handle, &raw mut saved) });
 
     for illegal in [
-        |u: &Unit| u.step(0.0, 0.1),
-        |u: &Unit| u.try_set(&["mass"], &[5.0]),
-        |u: &Unit| unsafe { fmi2SetContinuousStates(u.handle, null(), 0) },
+        |u: &StartedUnit| u.step(0.0, 0.1),
+        |u: &StartedUnit| u.try_set(&["mass"], &[5.0]),
+        |u: &StartedUnit| unsafe { fmi2SetContinuousStates(u.handle, null(), 0) },
     ] {
-        let unit = exchanged(Archive::fixture(KINDS[1]));
+        let unit = exchanged(Extracted::fixture(KINDS[1]));
         unit.start();
         unit.integrate_from_event();
         unit.refused(illegal(&unit), fmi2Error, &[]);
@@ -259,7 +259,7 @@ fn what_does_not_belong_to_it_is_refused() {
 /// Parameters change at events; the motion stays where it is.
 #[test]
 fn parameters_change_at_events() {
-    let unit = exchanged(Archive::fixture(KINDS[0]));
+    let unit = exchanged(Extracted::fixture(KINDS[0]));
     unit.start();
     unit.integrate_from_event();
     unit.runge_kutta(0.0, 0.01, 0.0);

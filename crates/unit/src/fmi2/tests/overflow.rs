@@ -7,7 +7,7 @@ use crate::variables::StartValue;
 #[test]
 fn a_release_that_overflows_is_refused() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let unit = Unit::new(kind);
+        let unit = StartedUnit::new(kind);
         unit.ok(unit.set_up());
         unit.ok(unit.enter());
         unit.set("initial_heave", 1e308);
@@ -33,7 +33,7 @@ fn a_release_that_overflows_is_refused() {
 /// A width that gives no section: it is refused, and another leads on.
 #[test]
 fn a_section_that_cannot_be_is_refused() {
-    let unit = Unit::new("continuous_laguerre");
+    let unit = StartedUnit::new("continuous_laguerre");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     let [width] = unit.get(["width"]);
@@ -50,7 +50,7 @@ fn a_section_that_cannot_be_is_refused() {
 /// A sampled model whose samples no step could count.
 #[test]
 fn samples_that_are_too_dense_are_refused() {
-    let archive = Archive::fixture("discrete_laguerre");
+    let archive = Extracted::fixture("discrete_laguerre");
     let mut model = archive.resources.model;
     let Model::DiscreteLaguerre(m) = &mut model.model else {
         panic!("the fixture is sampled");

@@ -19,7 +19,7 @@ fn refused_creation(creation: &Creation) -> String {
 
 #[test]
 fn creation_is_refused_with_a_reason() {
-    let archive = Archive::fixture("rational");
+    let archive = Extracted::fixture("rational");
     let c = |text: &str| Some(CString::new(text).unwrap());
     let with = |change: &dyn Fn(&mut Creation)| {
         let mut creation = Creation::right(&archive);
@@ -44,7 +44,7 @@ fn creation_is_refused_with_a_reason() {
 
 #[test]
 fn damaged_models_are_refused_with_file_and_place() {
-    let archive = Archive::fixture("rational");
+    let archive = Extracted::fixture("rational");
     let file = archive.folder.path().join("model.json");
     let right = std::fs::read_to_string(&file).unwrap();
     for (damaged, word) in [
@@ -77,7 +77,7 @@ fn damaged_models_are_refused_with_file_and_place() {
 
 #[test]
 fn creation_without_logger_is_null() {
-    let creation = Creation::right(&Archive::fixture("rational"));
+    let creation = Creation::right(&Extracted::fixture("rational"));
     assert!(creation.call(null(), false).is_null());
     let messages = Messages::default();
     let mut functions = callbacks(&messages);
@@ -88,7 +88,7 @@ fn creation_without_logger_is_null() {
 /// The URI with a slash at the end, and the copies that the unit makes of everything it was given.
 #[test]
 fn creation_copies_what_it_is_given() {
-    let archive = Archive::fixture("rational");
+    let archive = Extracted::fixture("rational");
     let messages = Messages::default();
     let handle = {
         let mut creation = Creation::right(&archive);
@@ -105,14 +105,14 @@ fn creation_copies_what_it_is_given() {
 
 #[test]
 fn values_are_refused_whole() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let before = unit.get(["external_lift", "mass"]);
     let status = unit.try_set(&["external_lift", "mass"], &[7.0, -1.0]);
     unit.refused(status, fmi2Discard, &["`mass` = -1", "minimum"]);
     assert_eq!(unit.get(["external_lift", "mass"]), before);
     unit.ok(unit.step(0.0, 0.1)); // a discard does not end the run
     for (bad, shown) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
-        let unit = Unit::started("rational");
+        let unit = StartedUnit::started("rational");
         let status = unit.try_set(&["external_lift", "wind_speed"], &[7.0, bad]);
         unit.refused(status, fmi2Error, &["wind_speed", "finite", shown]);
         assert_eq!(unit.get(["external_lift", "wind_speed"]), [0.0, 38.0]);
@@ -129,7 +129,7 @@ fn steps_are_refused() {
         (0.5, 0.1, ["communication point", "0.5"]),
         (f64::NAN, 0.1, ["communication point", "NaN"]),
     ] {
-        let unit = Unit::started("rational");
+        let unit = StartedUnit::started("rational");
         let before = unit.outputs();
         unit.refused(unit.step(time, step), fmi2Error, &words);
         assert_eq!(unit.outputs(), before);
@@ -142,7 +142,7 @@ fn steps_are_refused() {
 
 #[test]
 fn the_stop_time_holds() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     unit.ok(unsafe { fmi2SetupExperiment(unit.handle, 1, 1e-4, 2.0, 1, 3.0) });
     unit.ok(unit.enter());
     unit.ok(unit.exit());
@@ -153,7 +153,7 @@ fn the_stop_time_holds() {
     }
     unit.refused(unit.step(time, 0.1), fmi2Error, &["stop time 3 s"]);
     for (start, stop) in [(0.0, -1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
-        let unit = Unit::new("rational");
+        let unit = StartedUnit::new("rational");
         let status = unsafe { fmi2SetupExperiment(unit.handle, 0, 0.0, start, 1, stop) };
         unit.refused(status, fmi2Error, &["start", "stop"]);
     }
@@ -164,7 +164,7 @@ fn references_are_checked() {
     let mut number = 0.0;
     let mut integer = 0;
     let last = 9999;
-    type Try<'a> = &'a mut dyn FnMut(&Unit) -> fmi2Status;
+    type Try<'a> = &'a mut dyn FnMut(&StartedUnit) -> fmi2Status;
     let cases: [(Try, [&str; 2]); 6] = [
         (
             &mut |u| unsafe { fmi2GetReal(u.handle, &raw const last, 1, &raw mut number) },
@@ -201,14 +201,14 @@ fn references_are_checked() {
         ),
     ];
     for (call, words) in cases {
-        let unit = Unit::started("rational");
+        let unit = StartedUnit::started("rational");
         unit.refused(call(&unit), fmi2Error, &words);
     }
 }
 
 #[test]
 fn null_arrays_and_null_instances_are_errors() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let status = unsafe { fmi2GetReal(unit.handle, null(), 2, null()) };
     unit.refused(status, fmi2Error, &["vr", "2 elements", "NULL"]);
     let nothing = null::<c_void>();
@@ -228,14 +228,16 @@ fn null_arrays_and_null_instances_are_errors() {
 }
 
 /// Brings a fresh unit into a state.
-fn in_state(state: State) -> Unit {
+fn in_state(state: State) -> StartedUnit {
     in_state_of(Interface::CoSimulation, state)
 }
 
-fn in_state_of(interface: Interface, state: State) -> Unit {
+fn in_state_of(interface: Interface, state: State) -> StartedUnit {
     let unit = match interface {
-        Interface::CoSimulation => Unit::new("rational"),
-        Interface::ModelExchange => super::model_exchange::exchanged(Archive::fixture("rational")),
+        Interface::CoSimulation => StartedUnit::new("rational"),
+        Interface::ModelExchange => {
+            super::model_exchange::exchanged(Extracted::fixture("rational"))
+        }
     };
     if state == State::Error {
         assert_eq!(unit.exit(), fmi2Error);
@@ -287,13 +289,13 @@ fn the_table_of_legal_calls_is_kept() {
 
 #[test]
 fn calls_in_the_wrong_order() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     unit.refused(
         unit.exit(),
         fmi2Error,
         &["ExitInitializationMode", "instantiated"],
     );
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     let status = unit.try_get(&["heave"], &mut [0.0]);
     unit.refused(status, fmi2Error, &["`heave` (an output", "instantiated"]);
     let unit = in_state(State::Terminated);
@@ -304,7 +306,7 @@ fn calls_in_the_wrong_order() {
 /// The wind would come to rest within the step and blow backwards.
 #[test]
 fn a_step_that_cannot_be_computed_is_discarded() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     unit.ok(unit.step(0.0, 0.25));
     let c = unit.handle;
     let mut saved: fmi2FMUstate = null();
@@ -339,7 +341,7 @@ fn a_step_that_cannot_be_computed_is_discarded() {
 
 #[test]
 fn functions_that_are_not_offered_leave_the_run_alone() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let c = unit.handle;
     for (status, name) in unsafe {
         [
@@ -382,7 +384,10 @@ fn functions_that_are_not_offered_leave_the_run_alone() {
 
 #[test]
 fn a_panic_poisons_its_instance_only() {
-    let (sick, well) = (Unit::started("rational"), Unit::started("rational"));
+    let (sick, well) = (
+        StartedUnit::started("rational"),
+        StartedUnit::started("rational"),
+    );
     let status = unsafe {
         guarded(sick.handle, Call::GetReal, "GetReal", |_| {
             panic!("100 % #r1# broken")

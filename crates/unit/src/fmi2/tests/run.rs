@@ -64,8 +64,8 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 /// Steps of several sizes with forces, a gust and ramps, outputs compared after every step.
-pub(super) fn compare(archive: Archive) {
-    let unit = Unit::instantiate(archive);
+pub(super) fn compare(archive: Extracted) {
+    let unit = StartedUnit::instantiate(archive);
     let mut process = InProcess::new(unit.archive.model());
     unit.start();
     let mut time = 0.0;
@@ -107,7 +107,7 @@ pub(super) fn compare(archive: Archive) {
 #[test]
 fn every_kind_moves_as_in_process() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        compare(Archive::fixture(kind));
+        compare(Extracted::fixture(kind));
     }
 }
 
@@ -116,7 +116,7 @@ fn every_kind_moves_as_in_process() {
 fn newer_rational_forms_move_as_in_process() {
     use crate::aerodynamics::{Lags, MinimumStateModel};
     use crate::trained_model::Model;
-    let mut trained = Archive::fixture("rational").resources.model;
+    let mut trained = Extracted::fixture("rational").resources.model;
     let Model::Rational(roger) = trained.model.clone() else {
         panic!("the fixture is rational");
     };
@@ -135,7 +135,7 @@ fn newer_rational_forms_move_as_in_process() {
     for (model, states) in [(Model::Rational(own), 4), (Model::MinimumState(small), 2)] {
         trained.schema_version = model.schema_version();
         trained.model = model;
-        let archive = Archive::new(&trained.to_json().unwrap());
+        let archive = Extracted::new(&trained.to_json().unwrap());
         let variable = archive.resources.table.find_name("filters").unwrap();
         let value = &archive.resources.table.variables()[variable].value;
         assert_eq!(*value, crate::variables::StartValue::Integer(Some(states)));
@@ -149,7 +149,7 @@ fn newer_rational_forms_move_as_in_process() {
 fn filters_of_one_transfer_function_move_as_in_process() {
     use crate::aerodynamics::laguerre::DiscreteTerm;
     use crate::trained_model::Model;
-    let mut model = Archive::fixture("discrete_laguerre").resources.model;
+    let mut model = Extracted::fixture("discrete_laguerre").resources.model;
     let Model::DiscreteLaguerre(discrete) = &mut model.model else {
         panic!("not discrete");
     };
@@ -162,19 +162,19 @@ fn filters_of_one_transfer_function_move_as_in_process() {
     model.schema_version = model.model.schema_version();
     let states = model.model.realize().states();
     assert_eq!(states, 8);
-    compare(Archive::new(&model.to_json().unwrap()));
+    compare(Extracted::new(&model.to_json().unwrap()));
 }
 
 #[test]
 fn three_degrees_of_freedom_move_as_in_process() {
-    let mut archive = Archive::three_dof();
-    let unit = Unit::instantiate(Archive::three_dof());
+    let mut archive = Extracted::three_dof();
+    let unit = StartedUnit::instantiate(Extracted::three_dof());
     let [frequency] = unit.get(["sway_frequency"]);
     assert!((frequency - (2000.0_f64 / 15.0).sqrt() / std::f64::consts::TAU).abs() < 1e-15);
     // a lateral motion to compare needs a start; the force of the run gives it
     archive.resources.model.experiment.initial_rotation_rad = 0.02;
-    let archive = Archive::new(&archive.resources.model.to_json().unwrap());
-    let unit = Unit::instantiate(archive);
+    let archive = Extracted::new(&archive.resources.model.to_json().unwrap());
+    let unit = StartedUnit::instantiate(archive);
     let mut process = InProcess::new(unit.archive.model());
     unit.start();
     unit.set("external_drag", 4.0);
@@ -189,7 +189,7 @@ fn three_degrees_of_freedom_move_as_in_process() {
 
 #[test]
 fn initialisation_reads_and_writes() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     unit.set("initial_heave", 0.02); // start values are set while instantiated …
     unit.set("wind_speed", 20.0);
     unit.ok(unit.set_up());
@@ -211,7 +211,7 @@ fn initialisation_reads_and_writes() {
 /// `max |heave|` over a second decays below the onset and grows above it.
 #[test]
 fn tunable_parameters_act_between_steps() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     unit.ok(unit.step(0.0, 0.5));
     let before = unit.outputs();
     unit.set("torsion_frequency", 4.0);
@@ -227,7 +227,7 @@ fn tunable_parameters_act_between_steps() {
 
 #[test]
 fn calculated_parameters_are_those_of_the_searches() {
-    let unit = Unit::new("rational");
+    let unit = StartedUnit::new("rational");
     let model = unit.archive.model().clone();
     let section =
         CoupledSection::new(model.section.structure().unwrap(), model.model.realize()).unwrap();
@@ -276,7 +276,7 @@ fn calculated_parameters_are_those_of_the_searches() {
 /// The onset of the flat plate (39.468 m/s) is met by the growth of the stepped motion.
 #[test]
 fn growth_changes_sign_at_the_calculated_onset() {
-    let unit = Unit::new("continuous_laguerre");
+    let unit = StartedUnit::new("continuous_laguerre");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     let [onset] = unit.get(["onset_speed"]);
@@ -301,7 +301,7 @@ fn growth_changes_sign_at_the_calculated_onset() {
 
 #[test]
 fn integers_texts_and_empty_lists() {
-    let unit = Unit::started("discrete_laguerre");
+    let unit = StartedUnit::started("discrete_laguerre");
     let vr = unit.references(&["filters"]);
     let mut filters = 0;
     unit.ok(unsafe { fmi2GetInteger(unit.handle, vr.as_ptr(), 1, &raw mut filters) });
@@ -334,15 +334,18 @@ fn integers_texts_and_empty_lists() {
 
 #[test]
 fn instances_live_side_by_side_and_in_threads() {
-    let alone = Unit::started("rational");
-    let run = |unit: &Unit| {
+    let alone = StartedUnit::started("rational");
+    let run = |unit: &StartedUnit| {
         for i in 0..100 {
             unit.ok(unit.step(0.02 * f64::from(i), 0.02));
         }
         bits(&unit.outputs())
     };
     let expected = run(&alone);
-    let (first, second) = (Unit::started("rational"), Unit::started("rational"));
+    let (first, second) = (
+        StartedUnit::started("rational"),
+        StartedUnit::started("rational"),
+    );
     second.set("wind_speed", 10.0);
     for i in 0..100 {
         first.ok(first.step(0.02 * f64::from(i), 0.02));
@@ -352,7 +355,7 @@ fn instances_live_side_by_side_and_in_threads() {
     assert_ne!(bits(&second.outputs()), expected);
     std::thread::scope(|scope| {
         let runs: Vec<_> = (0..4)
-            .map(|_| scope.spawn(|| run(&Unit::started("rational"))))
+            .map(|_| scope.spawn(|| run(&StartedUnit::started("rational"))))
             .collect();
         for thread in runs {
             assert_eq!(thread.join().unwrap(), expected);
@@ -372,7 +375,7 @@ fn a_clock_is_off_by_roundings_alone() {
                 (-step, "communication point"),
                 (0.48, "communication point"),
             ] {
-                let unit = Unit::new("rational");
+                let unit = StartedUnit::new("rational");
                 let stop = start + f64::from(count) * step;
                 unit.ok(unsafe { fmi2SetupExperiment(unit.handle, 0, 0.0, start, 1, stop) });
                 unit.ok(unit.enter());
@@ -396,7 +399,10 @@ fn a_clock_is_off_by_roundings_alone() {
 /// One step of h is two of h/2: steps are exact.
 #[test]
 fn steps_are_exact() {
-    let (one, two) = (Unit::started("rational"), Unit::started("rational"));
+    let (one, two) = (
+        StartedUnit::started("rational"),
+        StartedUnit::started("rational"),
+    );
     for unit in [&one, &two] {
         unit.set("external_lift", 5.0);
         unit.set_rate("external_lift", -2.0);

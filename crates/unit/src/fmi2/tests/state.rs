@@ -4,7 +4,7 @@ use super::*;
 use fmi2Status::fmi2Error;
 
 /// A run with everything in it; returns the outputs after every step, as bits.
-fn run(unit: &Unit, from: usize) -> Vec<u64> {
+fn run(unit: &StartedUnit, from: usize) -> Vec<u64> {
     let mut bits = Vec::new();
     for i in from..120 {
         match i {
@@ -27,7 +27,7 @@ const KINDS: [&str; 3] = ["continuous_laguerre", "rational", "discrete_laguerre"
 #[test]
 fn reset_restores_every_default() {
     for kind in KINDS {
-        let unit = Unit::new(kind);
+        let unit = StartedUnit::new(kind);
         let variables = unit.archive.resources.table.variables().to_vec();
         unit.start();
         let first = run(&unit, 0);
@@ -39,13 +39,13 @@ fn reset_restores_every_default() {
         }
         unit.start();
         assert_eq!(run(&unit, 0), first);
-        let fresh = Unit::started(kind);
+        let fresh = StartedUnit::started(kind);
         assert_eq!(run(&fresh, 0), first);
     }
 }
 
 /// Steps of one size under changes of everything; `before` is done before each.
-fn changing_run(unit: &Unit, before: impl Fn()) -> Vec<u64> {
+fn changing_run(unit: &StartedUnit, before: impl Fn()) -> Vec<u64> {
     let mut saved: fmi2FMUstate = null();
     let (mut bits, mut restart) = (Vec::new(), 0);
     for i in 0..160 {
@@ -90,7 +90,7 @@ fn changing_run(unit: &Unit, before: impl Fn()) -> Vec<u64> {
 #[test]
 fn a_step_taken_again_is_the_step_itself() {
     for kind in KINDS {
-        let (again, anew) = (Unit::started(kind), Unit::started(kind));
+        let (again, anew) = (StartedUnit::started(kind), StartedUnit::started(kind));
         let expected = changing_run(&anew, || anew.set_rate("external_moment", 0.0));
         assert!(changing_run(&again, || ()) == expected, "{kind}");
     }
@@ -99,7 +99,7 @@ fn a_step_taken_again_is_the_step_itself() {
 #[test]
 fn saved_states_are_replayed() {
     for kind in KINDS {
-        let unit = Unit::started(kind);
+        let unit = StartedUnit::started(kind);
         let all = run(&unit, 0);
         unit.ok(unit.reset());
         unit.start();
@@ -135,7 +135,7 @@ fn saved_states_are_replayed() {
 }
 
 /// Bytes of the current state.
-fn serialize(unit: &Unit) -> Vec<fmi2Byte> {
+fn serialize(unit: &StartedUnit) -> Vec<fmi2Byte> {
     let c = unit.handle;
     let (mut saved, mut size): (fmi2FMUstate, usize) = (null(), 0);
     unit.ok(unsafe { fmi2GetFMUstate(c, &raw mut saved) });
@@ -146,7 +146,7 @@ fn serialize(unit: &Unit) -> Vec<fmi2Byte> {
     bytes
 }
 
-fn deserialize(unit: &Unit, bytes: &[fmi2Byte]) -> (fmi2Status, fmi2FMUstate) {
+fn deserialize(unit: &StartedUnit, bytes: &[fmi2Byte]) -> (fmi2Status, fmi2FMUstate) {
     let mut saved: fmi2FMUstate = null();
     let status = unsafe {
         fmi2DeSerializeFMUstate(unit.handle, bytes.as_ptr(), bytes.len(), &raw mut saved)
@@ -157,7 +157,7 @@ fn deserialize(unit: &Unit, bytes: &[fmi2Byte]) -> (fmi2Status, fmi2FMUstate) {
 #[test]
 fn serialised_states_go_on_in_another_instance() {
     for kind in KINDS {
-        let unit = Unit::started(kind);
+        let unit = StartedUnit::started(kind);
         let mut time = 0.0;
         for i in 0..20 {
             if i == 10 {
@@ -169,7 +169,7 @@ fn serialised_states_go_on_in_another_instance() {
         }
         let bytes = serialize(&unit);
         let rest = run(&unit, 20);
-        let other = Unit::new(kind); // not even initialised
+        let other = StartedUnit::new(kind); // not even initialised
         let (status, mut saved) = deserialize(&other, &bytes);
         other.ok(status);
         other.ok(unsafe { fmi2SetFMUstate(other.handle, saved) });
@@ -192,7 +192,7 @@ fn sign(bytes: &mut [fmi2Byte]) {
 
 #[test]
 fn damaged_bytes_are_refused() {
-    let started = || Unit::started("rational");
+    let started = || StartedUnit::started("rational");
     let right = serialize(&started());
     let byte = |x: u8| x as fmi2Byte;
     let damaged = |change: &dyn Fn(&mut Vec<fmi2Byte>)| {
@@ -235,7 +235,7 @@ fn damaged_bytes_are_refused() {
         unit.ok(unit.step(0.0, 0.1)); // the run goes on
     }
     // a state of another model, and too little room
-    let unit = Unit::started("continuous_laguerre");
+    let unit = StartedUnit::started("continuous_laguerre");
     let (status, _) = deserialize(&unit, &right);
     unit.refused(status, fmi2Error, &["identity"]);
     let unit = started();
@@ -246,7 +246,7 @@ fn damaged_bytes_are_refused() {
     unit.refused(status, fmi2Error, &["room for"]);
     let status = unsafe { fmi2SetFMUstate(unit.handle, null()) };
     unit.refused(status, fmi2Error, &["FMUstate", "NULL"]);
-    let other = Unit::started("continuous_laguerre");
+    let other = StartedUnit::started("continuous_laguerre");
     let status = unsafe { fmi2SetFMUstate(other.handle, saved) };
     other.refused(
         status,
@@ -259,7 +259,7 @@ fn damaged_bytes_are_refused() {
 /// A saved state is the way out of an error.
 #[test]
 fn a_saved_state_leads_out_of_an_error() {
-    let unit = Unit::started("rational");
+    let unit = StartedUnit::started("rational");
     let mut saved: fmi2FMUstate = null();
     unit.ok(unit.step(0.0, 0.1));
     unit.ok(unsafe { fmi2GetFMUstate(unit.handle, &raw mut saved) });

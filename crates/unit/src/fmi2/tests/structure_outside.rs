@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// The forces of a unit and the structure of its model, integrated together.
 struct Beside {
-    forces: Unit,
+    forces: StartedUnit,
     structure: Structure,
     /// Mass less the forces by acceleration.
     inertia: DMatrix<f64>,
@@ -16,7 +16,7 @@ struct Beside {
 }
 
 impl Beside {
-    fn new(archive: Archive, ramp: f64, q: &[f64]) -> Self {
+    fn new(archive: Extracted, ramp: f64, q: &[f64]) -> Self {
         let structure = archive.model().section.structure().unwrap();
         let forces = exchanged(archive);
         forces.set("wind_speed", 20.0);
@@ -119,20 +119,20 @@ impl Beside {
 /// step leaves a sixteenth of the difference.
 #[test]
 fn with_a_structure_outside_it_is_the_section() {
-    let plain: [fn() -> Archive; 3] = [
-        || Archive::fixture(KINDS[0]),
-        || Archive::fixture(KINDS[1]),
-        Archive::three_dof,
+    let plain: [fn() -> Extracted; 3] = [
+        || Extracted::fixture(KINDS[0]),
+        || Extracted::fixture(KINDS[1]),
+        Extracted::three_dof,
     ];
     let plain = plain.into_iter().map(|a| (a, false));
-    let gusty: [(fn() -> Archive, bool); 1] = [(|| Archive::fixture(KINDS[1]), true)];
+    let gusty: [(fn() -> Extracted, bool); 1] = [(|| Extracted::fixture(KINDS[1]), true)];
     let cases = plain.chain(gusty);
     for ((fixture, gusts), ramp) in cases.flat_map(|c| [(c, 0.0), (c, 15.0)]) {
         let section = What {
             strips: None,
             gusts,
         };
-        let own = Unit::instantiate(fixture().exported(section));
+        let own = StartedUnit::instantiate(fixture().exported(section));
         own.set("wind_speed", 20.0);
         if gusts {
             own.set("gust_w", 1.5);

@@ -13,11 +13,11 @@ const KINDS: [&str; 4] = [
 ];
 
 /// The forces of the rational fixture, or the section of another one.
-fn unit_of(kind: &str) -> Unit {
+fn unit_of(kind: &str) -> StartedUnit {
     if kind != "force" {
-        return Unit::new(kind);
+        return StartedUnit::new(kind);
     }
-    let mut archive = Archive::fixture("rational");
+    let mut archive = Extracted::fixture("rational");
     let json = std::fs::read(archive.folder.path().join("model.json")).unwrap();
     let options = ForceOptions::single(0.45).to_json().unwrap();
     std::fs::write(archive.folder.path().join(FORCE_FILE), &options).unwrap();
@@ -26,7 +26,7 @@ fn unit_of(kind: &str) -> Unit {
         ..OptionFiles::default()
     };
     archive.resources = Resources::from_bytes(&json, files).unwrap();
-    Unit::instantiate(archive)
+    StartedUnit::instantiate(archive)
 }
 
 /// What an importer may call.
@@ -109,7 +109,7 @@ fn by_the_standard(deed: Deed, state: State) -> (fmi2Status, State) {
     }
 }
 
-impl Unit {
+impl StartedUnit {
     fn state(&self) -> State {
         unsafe { &*self.handle.cast::<guard::Component>() }
             .instance
@@ -237,7 +237,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 
 /// A run with a wind of its own, in parts at another wind; outputs as bits.
 fn run(kind: &str, wind: f64) -> Vec<u64> {
-    let unit = Unit::started(kind);
+    let unit = StartedUnit::started(kind);
     unit.set("wind_speed", wind);
     let mut found = Vec::new();
     for n in 0..60 {
@@ -267,7 +267,7 @@ fn sixty_four_threads_do_not_notice_each_other() {
 /// drift remains that grows with their number.
 fn many_steps(count: u32) {
     let unit = |kind| {
-        let unit = Unit::new(kind);
+        let unit = StartedUnit::new(kind);
         // what does not decay keeps its size over the run
         for name in ["heave_damping_ratio", "torsion_damping_ratio"] {
             unit.set(name, 0.0);
@@ -309,10 +309,10 @@ fn a_hundred_million_steps_are_one() {
 /// An instance that is reset over and over, with other parameters each time, gives the bits of a fresh one.
 fn resets(count: u32) {
     for kind in ["rational", "discrete_laguerre"] {
-        let used = Unit::new(kind);
+        let used = StartedUnit::new(kind);
         for n in 0..count {
             let part = f64::from(n) / f64::from(count);
-            let run = |unit: &Unit| {
+            let run = |unit: &StartedUnit| {
                 unit.set("mass", 10.0 + 10.0 * part);
                 unit.set("wind_speed", 5.0 + 40.0 * (7.0 * part).fract());
                 unit.set("initial_rotation", 0.01 * (0.1 + part));
@@ -327,7 +327,10 @@ fn resets(count: u32) {
             // what a reset has to take back
             used.set("width", 0.3 + part);
             used.ok(used.reset());
-            assert!(run(&used) == run(&Unit::new(kind)), "{kind}, set {n}");
+            assert!(
+                run(&used) == run(&StartedUnit::new(kind)),
+                "{kind}, set {n}"
+            );
         }
     }
 }

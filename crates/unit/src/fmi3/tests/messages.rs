@@ -5,7 +5,7 @@ use super::*;
 /// Refusals name the function that was called, and nothing of FMI 2.0.
 #[test]
 fn messages_name_what_was_called() {
-    let unit = Unit::new("rational", None, false);
+    let unit = NewStandardUnit::new("rational", None, false);
     let at = [1.0];
     let wind = [unit.reference("wind_speed")];
     let mut state = null_mut();
@@ -30,7 +30,7 @@ fn messages_name_what_was_called() {
 /// A wish that the description does not grant is answered in the log.
 #[test]
 fn event_mode_of_co_simulation_is_not_taken_silently() {
-    let unit = Unit::new("rational", None, false);
+    let unit = NewStandardUnit::new("rational", None, false);
     for used in [0, 1] {
         unit.messages.lock().unwrap().clear();
         let handle = unit.instantiate(false, used);
@@ -43,7 +43,7 @@ fn event_mode_of_co_simulation_is_not_taken_silently() {
 /// However late it is.
 #[test]
 fn a_step_is_not_taken_twice() {
-    let (unit, start) = (Unit::new("rational", None, false), 1.76e9);
+    let (unit, start) = (NewStandardUnit::new("rational", None, false), 1.76e9);
     unit.ok(unsafe { fmi3EnterInitializationMode(unit.handle, 0, 0.0, start, 1, start + 1.0) });
     unit.ok(unsafe { fmi3ExitInitializationMode(unit.handle) });
     unit.ok(unit.step(start, 0.01));
@@ -53,7 +53,7 @@ fn a_step_is_not_taken_twice() {
 /// No number of three hundred digits.
 #[test]
 fn numbers_are_short() {
-    let unit = Unit::new("rational", None, false);
+    let unit = NewStandardUnit::new("rational", None, false);
     let mass = [unit.reference("mass")];
     let status = unsafe { fmi3SetFloat64(unit.handle, mass.as_ptr(), 1, [-1e300].as_ptr(), 1) };
     assert_eq!(status, fmi2Status::fmi2Discard);

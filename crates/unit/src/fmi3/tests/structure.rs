@@ -4,7 +4,7 @@ use super::*;
 
 const KINDS: [&str; 3] = ["continuous_laguerre", "rational", "discrete_laguerre"];
 
-impl Unit {
+impl NewStandardUnit {
     fn configure(&self, strips: u64) -> fmi2Status {
         self.ok(unsafe { fmi3EnterConfigurationMode(self.handle) });
         let vr = self.groups.strips_reference().unwrap();
@@ -40,9 +40,9 @@ impl Unit {
 fn any_number_of_strips_is_that_of_an_export() {
     for kind in KINDS {
         for strips in [1, 2, 3, 7] {
-            let exported = Unit::new(kind, Some(strips), false);
+            let exported = NewStandardUnit::new(kind, Some(strips), false);
             exported.set("wind_speed", &[17.0]);
-            let unit = Unit::new(kind, Some(3), false);
+            let unit = NewStandardUnit::new(kind, Some(3), false);
             assert_eq!(unit.strips(), 3);
             unit.set("wind_speed", &[17.0]);
             unit.ok(unit.configure(strips as u64));
@@ -50,7 +50,7 @@ fn any_number_of_strips_is_that_of_an_export() {
             assert_eq!(unit.lifts(strips), exported.lifts(strips), "{kind}");
             unit.ok(unsafe { fmi3Reset(unit.handle) });
             assert_eq!(unit.strips(), 3);
-            let three = Unit::new(kind, Some(3), false);
+            let three = NewStandardUnit::new(kind, Some(3), false);
             assert_eq!(unit.lifts(3), three.lifts(3), "{kind}");
         }
     }
@@ -58,7 +58,7 @@ fn any_number_of_strips_is_that_of_an_export() {
 
 #[test]
 fn what_is_no_number_of_strips_is_refused() {
-    let unit = Unit::new("rational", Some(3), false);
+    let unit = NewStandardUnit::new("rational", Some(3), false);
     for strips in [0, 10_001, u64::MAX] {
         assert_eq!(unit.configure(strips), fmi2Status::fmi2Discard);
         unit.ok(unsafe { fmi3ExitConfigurationMode(unit.handle) });
@@ -81,7 +81,7 @@ fn what_is_no_number_of_strips_is_refused() {
     let (vr, four) = (unit.groups.strips_reference().unwrap(), 4);
     let status = unsafe { fmi3SetUInt64(unit.handle, &raw const vr, 1, &raw const four, 1) };
     unit.refused(status, "configuration mode only");
-    let section = Unit::new("rational", None, false);
+    let section = NewStandardUnit::new("rational", None, false);
     let status = unsafe { fmi3EnterConfigurationMode(section.handle) };
     section.refused(status, "no structural parameters");
     section.start();
@@ -90,7 +90,7 @@ fn what_is_no_number_of_strips_is_refused() {
 /// Every element of an array depends on its own strip, and on the wind of all.
 #[test]
 fn every_strip_depends_on_itself() {
-    let unit = Unit::new("rational", Some(3), false);
+    let unit = NewStandardUnit::new("rational", Some(3), false);
     unit.start();
     let lift = unit.reference("lift");
     let mut count = 0;

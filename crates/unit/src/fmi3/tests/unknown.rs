@@ -21,7 +21,7 @@ fn what_cannot_be_searched_for_is_zero_with_a_warning() {
             "flutter onset",
         ),
     ] {
-        let unit = Unit::new("rational", None, false);
+        let unit = NewStandardUnit::new("rational", None, false);
         unit.ok(unsafe { fmi3SetDebugLogging(unit.handle, 1, 0, null()) });
         unit.ok(unsafe { fmi3EnterInitializationMode(unit.handle, 0, 0.0, 0.0, 1, 100.0) });
         unit.set(name, &[value]);

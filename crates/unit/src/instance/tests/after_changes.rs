@@ -1,6 +1,6 @@
 //! Whatever is read first after a parameter was set is that of the parameter.
 
-use super::{KINDS, Kind, index, instance, start};
+use super::{Exported, KINDS, index, instance, start};
 use crate::instance::layout::{DataType, Source};
 use crate::instance::{Instance, Snapshot};
 use crate::lifecycle::{State, gettable_in, settable_in};
@@ -52,20 +52,20 @@ fn read_from(instance: &mut Instance, indices: &[u32], first: usize) -> Vec<u64>
 }
 
 /// A unit with a parameter set before anything else, in this state.
-fn fresh(kind: Kind, integrated: bool, parameter: (u32, f64)) -> Instance {
+fn fresh(kind: Exported, integrated: bool, index: u32, value: f64) -> Instance {
     let mut unit = instance(kind, integrated).unwrap();
-    unit.set_reals(&[parameter.0], &[parameter.1]).unwrap();
+    unit.set_reals(&[index], &[value]).unwrap();
     unit
 }
 
 /// Ways in which a parameter reaches a unit that has shown the values of another.
 #[derive(Debug, Clone, Copy)]
-enum Way {
+enum ChangedBy {
     Set,
     Restored,
 }
 
-fn judge(kind: Kind, integrated: bool, state: State) {
+fn judge(kind: Exported, integrated: bool, state: State) {
     let begin = |unit: &mut Instance| match state {
         State::Initialization => unit.enter_initialization(),
         _ => {
@@ -88,15 +88,15 @@ fn judge(kind: Kind, integrated: bool, state: State) {
         unit.restore(&before).unwrap();
         unit.set_reals(&[parameter.0], &[parameter.1]).unwrap();
         let changed = unit.snapshot();
-        let mut other = fresh(kind, integrated, parameter);
+        let mut other = fresh(kind, integrated, parameter.0, parameter.1);
         begin(&mut other);
         let expected = shown(&mut other, &changed);
         for first in 0..indices.len() {
-            for way in [Way::Set, Way::Restored] {
+            for way in [ChangedBy::Set, ChangedBy::Restored] {
                 shown(&mut unit, &before);
                 match way {
-                    Way::Set => unit.set_reals(&[parameter.0], &[parameter.1]).unwrap(),
-                    Way::Restored => unit.restore(&changed).unwrap(),
+                    ChangedBy::Set => unit.set_reals(&[parameter.0], &[parameter.1]).unwrap(),
+                    ChangedBy::Restored => unit.restore(&changed).unwrap(),
                 }
                 let found = read_from(&mut unit, &indices, first);
                 for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
@@ -104,7 +104,7 @@ fn judge(kind: Kind, integrated: bool, state: State) {
                     let first = &unit.table().variables()[indices[first] as usize].name;
                     let [found, expected] = [found, expected].map(|bits| f64::from_bits(*bits));
                     // the onset of a bridge is followed from that of the last search, until it settles to 1e-9
-                    let followed = matches!(kind, Kind::Bridge | Kind::Damped)
+                    let followed = matches!(kind, Exported::Bridge | Exported::Damped)
                         && (found - expected).abs() <= 1e-8 * expected.abs().max(1.0);
                     assert!(
                         found == expected || followed,
@@ -141,8 +141,8 @@ fn what_is_read_between_events_is_that_of_the_parameters() {
 /// A bridge of one node is the section that it was made of: so is its onset, whatever the parameters.
 #[test]
 fn the_onset_of_a_bridge_is_that_of_the_parameters() {
-    let mut section = instance(Kind::Section("rational"), false).unwrap();
-    let mut bridge = instance(Kind::Bridge, false).unwrap();
+    let mut section = instance(Exported::Section("rational"), false).unwrap();
+    let mut bridge = instance(Exported::Bridge, false).unwrap();
     for unit in [&mut section, &mut bridge] {
         start(unit);
     }
@@ -164,7 +164,7 @@ fn the_onset_of_a_bridge_is_that_of_the_parameters() {
 #[test]
 fn a_damper_stays_where_it_is_when_its_mass_changes() {
     for integrated in [false, true] {
-        let mut unit = instance(Kind::Damped, integrated).unwrap();
+        let mut unit = instance(Exported::Damped, integrated).unwrap();
         start(&mut unit);
         if integrated {
             let states: Vec<f64> = (0..unit.state_count()).map(|i| 1e-3 * i as f64).collect();
@@ -193,7 +193,7 @@ fn a_damper_stays_where_it_is_when_its_mass_changes() {
         unit.restore(&kept).unwrap();
         assert_eq!(at(&mut unit), before);
     }
-    let mut released = instance(Kind::Damped, false).unwrap();
+    let mut released = instance(Exported::Damped, false).unwrap();
     released.enter_initialization();
     let [mass, stroke] = ["damper[1].mass", "damper[1].stroke"].map(|name| index(&released, name));
     released.set_reals(&[mass], &[7.0]).unwrap();

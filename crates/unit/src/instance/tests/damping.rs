@@ -1,6 +1,6 @@
 //! `damping_now` of every kind is the smallest damping of all eigenvalues, whatever wind was before.
 
-use super::{Kind, fixture, index, instance, start};
+use super::{Exported, fixture, index, instance, start};
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::smallest_damping;
@@ -10,19 +10,19 @@ use crate::trained_model::TrainedModel;
 fn the_damping_is_that_of_all_eigenvalues() {
     let kinds = [
         (
-            Kind::Section("continuous_laguerre"),
+            Exported::Section("continuous_laguerre"),
             "continuous_laguerre",
             1e-12,
         ),
-        (Kind::Section("rational"), "rational", 1e-12),
+        (Exported::Section("rational"), "rational", 1e-12),
         // by steps of a series against a matrix exponential
         (
-            Kind::Section("discrete_laguerre"),
+            Exported::Section("discrete_laguerre"),
             "discrete_laguerre",
             1e-11,
         ),
         // of modes, which are normalised
-        (Kind::Bridge, "rational", 1e-11),
+        (Exported::Bridge, "rational", 1e-11),
     ];
     for (kind, name, tolerance) in kinds {
         let json = String::from_utf8(fixture(name)).unwrap();
@@ -48,7 +48,7 @@ fn the_damping_is_that_of_all_eigenvalues() {
 /// A sample that lasts longer than half a period shows another motion: what cannot be told is zero, with its reason.
 #[test]
 fn a_sampled_model_tells_no_damping_in_slow_wind() {
-    let mut unit = instance(Kind::Section("discrete_laguerre"), false).unwrap();
+    let mut unit = instance(Exported::Section("discrete_laguerre"), false).unwrap();
     start(&mut unit);
     unit.take_notices();
     let [wind, damping] = ["wind_speed", "damping_now"].map(|name| index(&unit, name));
@@ -69,7 +69,7 @@ fn a_sampled_model_tells_no_damping_in_slow_wind() {
             .unwrap();
         assert_eq!(slope, [0.0]);
     }
-    let mut fresh = instance(Kind::Section("discrete_laguerre"), false).unwrap();
+    let mut fresh = instance(Exported::Section("discrete_laguerre"), false).unwrap();
     fresh.enter_initialization();
     fresh.set_reals(&[wind], &[0.0]).unwrap();
     let (mass, mut slope) = (index(&fresh, "mass"), [f64::NAN]);

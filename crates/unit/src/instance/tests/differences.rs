@@ -1,6 +1,6 @@
 //! Derivatives while initialising are what differences of the values say, with gusts among the inputs.
 
-use super::{Kind, driven, start};
+use super::{Exported, driven, start};
 use crate::instance::Instance;
 use crate::variables::{Causality, Initial, Role, StartValue, Variable};
 
@@ -17,11 +17,11 @@ fn all(unit: &mut Instance, indices: &[u32]) -> Vec<f64> {
 #[test]
 fn derivatives_while_initialising_are_differences() {
     for kind in [
-        Kind::Section("continuous_laguerre"),
-        Kind::Section("rational"),
-        Kind::Patched,
-        Kind::Bridge,
-        Kind::Damped,
+        Exported::Section("continuous_laguerre"),
+        Exported::Section("rational"),
+        Exported::Patched,
+        Exported::Bridge,
+        Exported::Damped,
     ] {
         let mut unit = driven(kind, true);
         unit.set_up_experiment(0.0, None).unwrap();
@@ -83,9 +83,9 @@ fn derivatives_while_initialising_are_differences() {
 #[test]
 fn derivatives_of_forces_after_a_step_are_differences() {
     for kind in [
-        Kind::Forces("rational"),
-        Kind::Forces("discrete_laguerre"),
-        Kind::Patched,
+        Exported::Forces("rational"),
+        Exported::Forces("discrete_laguerre"),
+        Exported::Patched,
     ] {
         let mut unit = driven(kind, false);
         start(&mut unit);

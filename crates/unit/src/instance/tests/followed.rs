@@ -1,6 +1,6 @@
 //! The onset of a bridge is followed where that is safe, and searched for where it is not.
 
-use super::{Kind, index, resources, start};
+use super::{Exported, index, resources, start};
 use crate::instance::Instance;
 use crate::instance::bridge_built::BuiltBridge;
 use crate::instance::bridge_followed::SearchedOnset;
@@ -27,7 +27,7 @@ fn searched(built: &BuiltBridge) -> (OnsetCard, SearchedOnset) {
 /// By two ways: the motion followed, and the search of all eigenvalues.
 #[test]
 fn what_is_followed_is_what_a_search_finds() {
-    let resources = resources(Kind::Bridge);
+    let resources = resources(Exported::Bridge);
     let (_, known) = searched(&built(&resources, &[]));
     for changed in [
         &[("air_density", 1.5)][..],
@@ -57,7 +57,7 @@ fn what_is_followed_is_what_a_search_finds() {
 /// Far parameters, a limit below, and a mode that has lost its damping: nothing is answered without a search.
 #[test]
 fn what_cannot_be_trusted_is_not_followed() {
-    let resources = resources(Kind::Bridge);
+    let resources = resources(Exported::Bridge);
     let mut default = built(&resources, &[]);
     let (card, known) = searched(&default);
     let onset = card.numbers.speed_m_s.value;
@@ -89,11 +89,11 @@ fn what_cannot_be_trusted_is_not_followed() {
 /// A start that comes with the archive gives the onset that a unit without one finds.
 #[test]
 fn a_start_in_the_archive_gives_the_same_onset() {
-    let plain = resources(Kind::Bridge);
+    let plain = resources(Exported::Bridge);
     let default = built(&plain, &[]);
     let (card, _) = searched(&default);
     let onset = card.numbers.speed_m_s.value;
-    let mut given = resources(Kind::Bridge);
+    let mut given = resources(Exported::Bridge);
     // a little off: the unit settles by itself
     let hertz = card.numbers.frequency_hz.value;
     let start = OnsetStart::at(onset, hertz, default.stepper.section()).unwrap();

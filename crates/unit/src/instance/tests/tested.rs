@@ -1,6 +1,6 @@
 //! A bridge is judged in the range in which its forces were tested, as a section is.
 
-use super::{Kind, bridge_of, fixture, index, instance, start};
+use super::{Exported, bridge_of, fixture, index, instance, start};
 use crate::instance::Instance;
 use crate::resources::{OptionFiles, Resources};
 use crate::trained_model::TrainedModel;
@@ -93,8 +93,8 @@ fn a_bridge_is_judged_where_it_was_tested() {
 #[test]
 fn a_wind_that_leaves_the_tests_is_said() {
     for (kind, words) in [
-        (Kind::Section("rational"), "this section was tested"),
-        (Kind::Bridge, "this bridge was tested"),
+        (Exported::Section("rational"), "this section was tested"),
+        (Exported::Bridge, "this bridge was tested"),
     ] {
         let mut unit = instance(kind, false).unwrap();
         start(&mut unit);

@@ -1,6 +1,6 @@
 //! What is not known reads as nothing that is safe.
 
-use super::{Kind, bridge_of, fixture, index, instance};
+use super::{Exported, bridge_of, fixture, index, instance};
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::instance::section::OnsetCard;
@@ -24,7 +24,7 @@ fn flag(unit: &mut Instance, name: &str) -> bool {
 /// Where a search finds nothing its limit is what was judged.
 #[test]
 fn an_onset_that_is_not_there_is_the_limit() {
-    let mut unit = instance(Kind::Section("rational"), false).unwrap();
+    let mut unit = instance(Exported::Section("rational"), false).unwrap();
     unit.enter_initialization();
     let limit = index(&unit, "onset_search_limit");
     unit.set_reals(&[limit], &[2.0]).unwrap();
@@ -50,7 +50,7 @@ fn an_onset_that_is_not_known_is_no_stable_one() {
 fn without_stiffness_nothing_is_stable() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         for frequency in ["heave_frequency", "torsion_frequency"] {
-            let mut unit = instance(Kind::Section(kind), false).unwrap();
+            let mut unit = instance(Exported::Section(kind), false).unwrap();
             unit.enter_initialization();
             let own = index(&unit, frequency);
             unit.set_reals(&[own], &[0.0]).unwrap();
@@ -67,9 +67,9 @@ fn without_stiffness_nothing_is_stable() {
 fn what_diverges_below_its_onset_is_not_stable() {
     let of_section = ["heave_frequency", "torsion_frequency"];
     for (kind, frequencies) in [
-        (Kind::Section("rational"), of_section),
-        (Kind::Section("continuous_laguerre"), of_section),
-        (Kind::Bridge, ["mode[1].frequency", "mode[2].frequency"]),
+        (Exported::Section("rational"), of_section),
+        (Exported::Section("continuous_laguerre"), of_section),
+        (Exported::Bridge, ["mode[1].frequency", "mode[2].frequency"]),
     ] {
         let mut unit = instance(kind, false).unwrap();
         unit.enter_initialization();
@@ -168,7 +168,7 @@ fn an_onset_that_data_do_not_determine_says_so() {
 /// The search limit would read as safe.
 #[test]
 fn what_a_bridge_cannot_be_searched_for_is_zero() {
-    let mut unit = instance(Kind::Bridge, false).unwrap();
+    let mut unit = instance(Exported::Bridge, false).unwrap();
     unit.enter_initialization();
     for density in [1e300, 1.25, 1e200, f64::MAX] {
         let own = index(&unit, "air_density");
@@ -210,7 +210,7 @@ fn what_a_bridge_cannot_be_searched_for_is_zero() {
 /// Filters of a bridge are those of all its modes: as many as continuous states beyond coordinates and rates.
 #[test]
 fn a_bridge_counts_its_filters() {
-    let mut unit = instance(Kind::Bridge, false).unwrap();
+    let mut unit = instance(Exported::Bridge, false).unwrap();
     let filters = index(&unit, "filters");
     let count = unit.integer(filters).unwrap();
     let states = unit.state_count();
