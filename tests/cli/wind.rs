@@ -183,6 +183,23 @@ fn gusts_of_a_file_give_the_same_run() {
         rows[rows.len() - 1][0].as_f64().unwrap()
     };
     assert!((last(&first) - last(&second)).abs() < 1e-9 * last(&first).abs().max(1.0));
+
+    // the same with the mean wind left in them
+    let name = folder.path().join("gusts.csv");
+    let mut whole = String::new();
+    for line in fs::read_to_string(&name).unwrap().lines() {
+        let cells: Vec<&str> = line.split(',').collect();
+        match cells[..] {
+            [time, u, w] if !line.contains("_s") => {
+                let u: f64 = u.parse().unwrap();
+                whole += &format!("{time},{},{w}\n", u + 20.0);
+            }
+            _ => whole += &format!("{line}\n"),
+        }
+    }
+    fs::write(&name, whole).unwrap();
+    let expected = "gusts.csv: column u_m_s: expected gusts without the mean wind of";
+    refused(folder.path(), &["quasi-steady", "wind.toml"], &[expected]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::aeroelastic::{
     CoupledSection, EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria,
 };
 use crate::buffeting::{BuffetingProblem, turbulence_field};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
 use crate::response::{GustyWind, Inputs, NonlinearSection, Stepper};
@@ -17,6 +17,8 @@ use serde::Serialize;
 
 /// Agreement that halving the step has to reach.
 const STEP_TOLERANCE: f64 = 1e-6;
+/// Mean of a series of gusts over the mean wind from which it holds that wind; of a gust that stays, a half is a lot.
+const MEAN_AT_MOST: f64 = 0.5;
 /// Angles of the line through the coefficients in the figure.
 const LINE_POINTS: usize = 161;
 
@@ -191,7 +193,10 @@ fn gusts(
     linear: &LinearQuasiSteady,
 ) -> Result<GustSeries> {
     if let Some(path) = &run.gusts {
-        return read_gusts(study.directory.join(path));
+        let path = study.directory.join(path);
+        let gusts = read_gusts(&path)?;
+        without_mean_wind(&gusts, run.wind_speed_m_s).map_err(|e| e.in_file(&path))?;
+        return Ok(gusts);
     }
     let Some(turbulence) = &study.turbulence else {
         return GustSeries::calm(run.duration_s + run.step_s);
@@ -203,6 +208,18 @@ fn gusts(
     let field = turbulence_field(&problem, speed, step_s, samples.max(16), run.seed)?;
     let [along, vertical] = field.gusts.map(|rows| rows.concat());
     GustSeries::new(step_s, along, vertical)
+}
+
+/// Refuses gusts that hold the mean wind, which would blow twice.
+fn without_mean_wind(gusts: &GustSeries, wind_speed_m_s: f64) -> Result<()> {
+    let along = gusts.along_m_s();
+    let mean = along.iter().sum::<f64>() / along.len() as f64;
+    ensure(
+        mean.abs() < MEAN_AT_MOST * wind_speed_m_s,
+        "column u_m_s",
+        format_args!("gusts without the mean wind of {wind_speed_m_s} m/s"),
+        format_args!("a mean of {mean:.3} m/s"),
+    )
 }
 
 /// Motion about the equilibrium under linear forces and gusts on straight lines, by exact steps.
