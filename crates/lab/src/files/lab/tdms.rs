@@ -9,7 +9,7 @@
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::tdms_bytes::{Bytes, STRING, TIME_STAMP, property, sample, size_of};
 use crate::error::{Error, Result, ensure};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 const LEAD_IN_BYTES: usize = 28;
 const HAS_METADATA: u32 = 1 << 1;
@@ -269,8 +269,15 @@ impl TdmsFile {
                 return Err(no_group(wanted, &groups));
             }
         }
+        // scales stand on a channel, its group or the file
+        let scaled_later: BTreeSet<Vec<String>> = objects
+            .iter()
+            .filter(|(_, object)| object.is_still_to_be_scaled())
+            .map(|(parts, _)| parts.clone())
+            .collect();
         let mut rates = Vec::new();
         for (parts, object) in objects {
+            let is_raw = (0..=parts.len()).any(|n| scaled_later.contains(&parts[..n]));
             let inside = match (group, parts.first()) {
                 (Some(wanted), Some(own)) if own != wanted => continue,
                 (Some(_), Some(_)) => parts[1..].join("/"),
@@ -285,7 +292,7 @@ impl TdmsFile {
                 for (name, value) in object.properties {
                     set.attributes.insert(format!("{prefix}{name}"), value);
                 }
-            } else if let Some(rate) = push_channel(&mut set, &inside, object) {
+            } else if let Some(rate) = push_channel(&mut set, &inside, object, is_raw) {
                 rates.push(rate);
             }
         }
@@ -294,20 +301,35 @@ impl TdmsFile {
     }
 }
 
+impl Object {
+    fn number(&self, key: &str) -> Option<f64> {
+        match self.properties.get(key) {
+            Some(Attribute::Number(x)) => Some(*x),
+            _ => None,
+        }
+    }
+
+    fn text(&self, key: &str) -> Option<&str> {
+        match self.properties.get(key) {
+            Some(Attribute::Text(t)) => Some(t),
+            _ => None,
+        }
+    }
+
+    /// Whether it states scales that its samples have not been through: where nothing is said of that, they have not.
+    fn is_still_to_be_scaled(&self) -> bool {
+        self.number("NI_Number_Of_Scales").is_some_and(|n| n > 0.0)
+            && self
+                .text("NI_Scaling_Status")
+                .is_none_or(|s| s == "unscaled")
+    }
+}
+
 /// Adds a channel; its sampling frequency, if it states one.
-fn push_channel(set: &mut ChannelSet, name: &str, object: Object) -> Option<f64> {
-    let number = |key: &str| match object.properties.get(key) {
-        Some(Attribute::Number(x)) => Some(*x),
-        _ => None,
-    };
-    let text = |key: &str| match object.properties.get(key) {
-        Some(Attribute::Text(t)) => Some(t.clone()),
-        _ => None,
-    };
-    let is_raw = number("NI_Number_Of_Scales").is_some_and(|n| n > 0.0)
-        && text("NI_Scaling_Status").is_some_and(|s| s == "unscaled");
-    let step = number("wf_increment").filter(|step| *step > 0.0);
-    let unit = text("unit_string").filter(|u| !u.is_empty());
+fn push_channel(set: &mut ChannelSet, name: &str, object: Object, is_raw: bool) -> Option<f64> {
+    let step = object.number("wf_increment").filter(|step| *step > 0.0);
+    let unit = object.text("unit_string").filter(|u| !u.is_empty());
+    let unit = unit.map(str::to_owned);
     if is_raw {
         set.leave_out(name, "counts that still have to be scaled");
     } else if object.layout.is_some_and(|l| l.kind == TIME_STAMP) {

@@ -261,6 +261,34 @@ fn tdms_in_several_blocks_interleaved_and_big_endian() {
     assert!(complaint("a.tdms", &in_blocks[..in_blocks.len() - 1], None).contains("truncated?"));
 }
 
+/// Scales of a group hold for its channels; where nothing is said of them, they are still to be taken.
+#[test]
+fn tdms_counts_of_scaled_groups_are_left_out() {
+    let plain = segment(0b1110, 2, false, &[1, 2, -1, -2]);
+    let mut group = Vec::new();
+    for x in [3, 4] {
+        group.extend(u32::to_le_bytes(x)); // objects; letters of the name
+    }
+    group.extend(b"/'g'");
+    for x in [u32::MAX, 1, 19] {
+        group.extend(x.to_le_bytes()); // no samples; one property; letters of its name
+    }
+    group.extend(b"NI_Number_Of_Scales");
+    for x in [3_u32, 1] {
+        group.extend(x.to_le_bytes()); // a whole number: one scale
+    }
+    let mut bytes = [&plain[..28], &group, &plain[32..]].concat();
+    for at in [12, 20] {
+        let length = u64::from_le_bytes(plain[at..at + 8].try_into().unwrap());
+        bytes[at..at + 8].copy_from_slice(&(length + group.len() as u64 - 4).to_le_bytes());
+    }
+    let set = tdms::parse(&bytes, Some("g")).unwrap();
+    let why = "counts that still have to be scaled".to_owned();
+    let left_out = ["a", "b"].map(|name| (name.to_owned(), why.clone()));
+    assert!(set.channels.is_empty());
+    assert_eq!(set.left_out, left_out);
+}
+
 /// Truncated at every length and with bytes overwritten, every file gives samples or an error, and soon.
 #[test]
 fn truncated_and_corrupt_files_are_refused() {
