@@ -172,4 +172,21 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         &arguments("predicted"),
         &["`time_s`, sample 50"],
     );
+    // a step of 1 without a unit is one of seconds or of milliseconds, unless the rate is stated
+    let counted: String = (0..100)
+        .map(|k| format!("{k},{},{}\n", k % 7, k % 5))
+        .collect();
+    std::fs::write(&path, format!("t,measured,predicted\n{counted}")).unwrap();
+    let said = &[
+        "f.csv: `t`: expected a unit, as in `t [s]`",
+        "found steps of 1",
+    ];
+    let unstated: Vec<&str> =
+        [&arguments("predicted")[..8], &arguments("predicted")[10..]].concat();
+    refused(folder.path(), &unstated, said);
+    for [hz, to_hz] in [["1", "0.4"], ["1000", "400"]] {
+        let mut stated = arguments("predicted");
+        (stated[9], stated[11]) = (hz, to_hz);
+        succeeds(folder.path(), &stated);
+    }
 }

@@ -123,10 +123,11 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
 
 /// The one sampling frequency that the file states, its time column shows and the arguments say, Hz.
 fn sampling(args: &CompareSignalsArgs, set: &ChannelSet) -> Result<f64> {
-    let by_time = sampling_by_time(set).transpose()?;
     let asked = args.sampling_hz.map(|hz| positive("--sampling-hz", hz));
+    let asked = asked.transpose()?;
+    let by_time = sampling_by_time(set, asked.or(set.sampling_hz)).transpose()?;
     let known = [
-        (asked.transpose()?, "--sampling-hz"),
+        (asked, "--sampling-hz"),
         (set.sampling_hz, "the file"),
         (by_time, "its time column"),
     ];

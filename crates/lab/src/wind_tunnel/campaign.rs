@@ -16,12 +16,11 @@ mod section_forces;
 mod wind_speed;
 mod write;
 
-pub use channel_map::sampling_by_time;
+pub use channel_map::{SAME_RATE, sampling_by_time};
 pub use file::Campaign;
 pub use load::CampaignReading;
 pub use load::RecordingSummary;
 pub use load::{LoadedCampaign, read_campaign};
-pub use recording::SAME_RATE;
 pub use write::FileFormat;
 pub use write::write_virtual_campaign;
 

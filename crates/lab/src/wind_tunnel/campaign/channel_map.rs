@@ -203,30 +203,42 @@ pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
     }
 }
 
-/// The sampling frequency by a column that is called time, Hz; none without one. Without a unit a step of a second or more is one
-/// in milliseconds.
+/// Two statements of one sampling frequency may differ by this part.
+pub const SAME_RATE: f64 = 1e-3;
+/// Steps of a time without a unit that are read as seconds; longer ones can be milliseconds.
+const SECONDS_BELOW: f64 = 0.1;
+
+/// The sampling frequency by a column that is called time, Hz; none without one. A column without a unit is in seconds or milliseconds: in
+/// that which agrees with the frequency `stated_hz` elsewhere, and in seconds where its steps would be none of a laboratory's otherwise.
 ///
 /// # Errors
-/// [`Error::Input`] with column and sample where it does not rise evenly.
-pub fn sampling_by_time(set: &ChannelSet) -> Option<Result<f64>> {
+/// [`Error::Input`] with column and sample where it does not rise evenly, and where its unit cannot be told.
+pub fn sampling_by_time(set: &ChannelSet, stated_hz: Option<f64>) -> Option<Result<f64>> {
     let is_time = |name: &str| {
         let name = name.trim().to_lowercase();
         ["t", "zeit"].contains(&name.as_str()) || name.starts_with("time")
     };
     let channel = set.channels.iter().find(|c| is_time(&c.name))?;
-    let per_unit = match sampling_of(&format!("`{}`", channel.name), &channel.samples) {
+    let place = format!("`{}`", channel.name);
+    let per_unit = match sampling_of(&place, &channel.samples) {
         Ok(per_unit) => per_unit,
         Err(error) => return Some(Err(error)),
     };
-    let seconds = match channel.unit.as_deref() {
-        Some("s") => 1.0,
-        Some("ms") => 1e-3,
-        None if per_unit > 1.0 => 1.0,
-        None => 1e-3,
+    let agrees = |hz: &f64| stated_hz.is_some_and(|stated| (hz / stated - 1.0).abs() <= SAME_RATE);
+    let in_ms = 1e3 * per_unit;
+    Some(Ok(match channel.unit.as_deref() {
+        Some("s") => per_unit,
+        Some("ms") => in_ms,
         // minutes, dates: not judged
         Some(_) => return None,
-    };
-    Some(Ok(per_unit / seconds))
+        None if agrees(&in_ms) => in_ms,
+        None if stated_hz.is_some() || per_unit * SECONDS_BELOW > 1.0 => per_unit,
+        None => {
+            let expected = "a unit, as in `t [s]`: seconds or milliseconds";
+            let found = format!("steps of {}", 1.0 / per_unit);
+            return Some(Err(Error::input(place, expected, found)));
+        }
+    }))
 }
 
 /// Length of a channel, for messages about unequal ones.

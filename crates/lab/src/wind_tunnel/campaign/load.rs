@@ -2,9 +2,10 @@
 
 use super::air::Air;
 use super::channel_map::ChannelMap;
+use super::channel_map::SAME_RATE;
 use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
-use super::recording::{LoadedRecording, SAME_RATE};
+use super::recording::LoadedRecording;
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, ensure, positive};
 use crate::plausibility::FindingSeverity;

@@ -1,7 +1,9 @@
 //! One recording: channels taken out of a file by the map, in SI units, of one length, all of it numbers.
 
 use super::channel::{CellChannel, ChannelRef};
-use super::channel_map::{ChannelMap, cell_quantity, described, sampling_by_time, sampling_of};
+use super::channel_map::{
+    ChannelMap, SAME_RATE, cell_quantity, described, sampling_by_time, sampling_of,
+};
 use super::file::{Campaign, FileRef, RunBlock};
 use super::findings::{RunFinding, channel_findings, first_gap};
 use super::quantity::Quantity;
@@ -10,9 +12,6 @@ use crate::files::lab::ChannelSet;
 use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
-
-/// Two statements of one sampling frequency may differ by this part.
-pub const SAME_RATE: f64 = 1e-3;
 
 /// One recording with what was found on the way.
 pub(super) struct LoadedRecording {
@@ -227,7 +226,8 @@ impl ChannelExtraction<'_> {
             (by_time, "the time channel"),
         ];
         // a time that the map leaves out is no statement of its own, but may not contradict
-        let beside = sampling_by_time(self.set).and_then(Result::ok);
+        let beside =
+            sampling_by_time(self.set, stated.or(self.set.sampling_hz)).and_then(Result::ok);
         let beside = beside.filter(|_| by_time.is_none());
         let beside = (beside, "a time column that `channels.time` does not name");
         let mut stated = known.iter().filter_map(|(hz, who)| hz.map(|hz| (hz, *who)));
