@@ -181,6 +181,14 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         "f.csv: `t`: expected a unit, as in `t [s]`",
         "found steps of 1",
     ];
+    std::fs::write(
+        folder.path().join("g.csv"),
+        format!("time_ms,measured,predicted\n{counted}"),
+    )
+    .unwrap();
+    let mut named: Vec<&str> = [&arguments("predicted")[..8]].concat();
+    named[3] = "g.csv";
+    succeeds(folder.path(), &named);
     let unstated: Vec<&str> =
         [&arguments("predicted")[..8], &arguments("predicted")[10..]].concat();
     refused(folder.path(), &unstated, said);

@@ -226,7 +226,12 @@ pub fn sampling_by_time(set: &ChannelSet, stated_hz: Option<f64>) -> Option<Resu
     };
     let agrees = |hz: &f64| stated_hz.is_some_and(|stated| (hz / stated - 1.0).abs() <= SAME_RATE);
     let in_ms = 1e3 * per_unit;
-    Some(Ok(match channel.unit.as_deref() {
+    let named = || {
+        ["s", "ms"]
+            .into_iter()
+            .find(|unit| channel.name.ends_with(&format!("_{unit}")))
+    };
+    Some(Ok(match channel.unit.as_deref().or_else(named) {
         Some("s") => per_unit,
         Some("ms") => in_ms,
         // minutes, dates: not judged
