@@ -8,7 +8,7 @@ use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
 use crate::error::{Error, Result, ensure};
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
-use crate::selection::{Selection, SelectionPlan, metric_grid, select};
+use crate::selection::{Selection, metric_grid, select};
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
 use std::fmt::Write as _;
@@ -135,13 +135,12 @@ fn judge(
             on_done(p.records_done, p.records);
         })
     })?;
-    let plan = SelectionPlan {
-        structure: study.section.structure()?,
-        search: study.speeds().search(),
-    };
+    let (structure, search) = (study.section.structure()?, study.speeds().search());
     let total = grid.values().len();
     let selection = progress.counting("judging the cells", |on_done| {
-        select(&grid, &plan, &|done| on_done(done, total))
+        select(&grid, &structure, &search, &|done| {
+            on_done(done, total);
+        })
     })?;
     Ok((grid, selection))
 }

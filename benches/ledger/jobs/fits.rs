@@ -7,7 +7,7 @@ use aerodeck::identification::{
     Constraints, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights, fit_records,
 };
 use aerodeck::section::SectionModel;
-use aerodeck::selection::{SelectionPlan, select};
+use aerodeck::selection::select;
 use aerodeck::study::demo_study_text;
 use aerodeck::wind_tunnel::TunnelPlan;
 use rayon::prelude::*;
@@ -146,14 +146,12 @@ pub(crate) fn grid_continuous_argument() -> Value {
 pub(crate) fn judging() -> Job {
     let records = full_set();
     let grid = Grid::new(&sources(&records), continuous_axis(), FILTERS, &|_| ()).expect("a grid");
-    let plan = SelectionPlan {
-        structure: SectionModel::table_4_1().structure().expect("a structure"),
-        search: OnsetSearch {
-            speed_max_m_s: 60.0,
-            speeds: 120,
-        },
+    let structure = SectionModel::table_4_1().structure().expect("a structure");
+    let search = OnsetSearch {
+        speed_max_m_s: 60.0,
+        speeds: 120,
     };
     Job::new(move || {
-        black_box(select(&grid, &plan, &|_| ()).expect("a selection"));
+        black_box(select(&grid, &structure, &search, &|_| ()).expect("a selection"));
     })
 }

@@ -38,7 +38,7 @@ pub use fit::{FitOptions, fit};
 pub use form::{FeedThrough, Form, LEAST_CHOSEN, MOST_CHOSEN, PoleSearch};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
-pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
+pub use grid::{CellFit, Grid, GridAxis};
 pub use kept_record::KeptRecord;
 pub use options::{TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};

@@ -10,11 +10,9 @@ mod folds;
 mod guards;
 mod metrics;
 
-pub use cells::{Cell, Recommendation, Selection, SelectionPlan, select};
+pub use cells::{Cell, Recommendation, Selection, select};
 pub use folds::CrossValidation;
-pub use metrics::CellMetrics;
-pub use metrics::MetricGrid;
-pub use metrics::metric_grid;
+pub use metrics::{CellMetrics, MetricGrid, metric_grid};
 
 #[cfg(test)]
 mod tests;

@@ -12,7 +12,7 @@ use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
 use super::time::continuous::{RecordFit, Rows};
 use super::time::fitted::JointTimeFit;
-use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
+use super::time::pass::{ColumnOrder, OnProgress, Pass};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
@@ -33,15 +33,6 @@ pub enum GridAxis {
     Continuous(Vec<f64>, Box<TimeFit>),
 }
 
-/// A stretch of a record that was kept apart.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StretchLabel {
-    /// Mean speed of the record, m/s.
-    pub mean_speed_m_s: f64,
-    /// Frequency of the motion, Hz; `None` for other motions.
-    pub frequency_hz: Option<f64>,
-}
-
 /// Factors of all candidates and stretches.
 pub struct Grid {
     axis: GridAxis,
@@ -52,9 +43,8 @@ pub struct Grid {
     /// Reduced frequencies of the records.
     pub(crate) tested: ReducedFrequencyRange,
     delta_s: f64,
-    pass: Pass,
-    /// The stretches, in the order in which `keep` sees them.
-    pub(crate) labels: Vec<StretchLabel>,
+    /// Its stretches are in the order in which `keep` sees them.
+    pub(crate) pass: Pass,
 }
 
 /// Fit of one cell.
@@ -91,13 +81,6 @@ impl Grid {
         let records = Records::read(records, StaticTerm::None)?;
         let tested = records.tested_range()?;
         let pass = axis.pass(&records, filters_max, progress)?;
-        let label = |s: &Stretch| {
-            let record = &records.each[s.record];
-            StretchLabel {
-                mean_speed_m_s: record.header.mean_speed_m_s,
-                frequency_hz: s.segment.map(|i| record.header.segments[i].frequency_hz),
-            }
-        };
         ensure(
             pass.stretches.iter().all(|s| s.set.len() <= 1),
             "records",
@@ -105,7 +88,6 @@ impl Grid {
             "several that move at once",
         )?;
         Ok(Self {
-            labels: pass.stretches.iter().map(label).collect(),
             axis,
             delta_s: records.longest_step(),
             dofs: records.dofs,
@@ -122,7 +104,10 @@ impl Grid {
 
     /// Symbol of the axis.
     pub(crate) fn symbol(&self) -> &'static str {
-        self.axis.symbol()
+        match self.axis {
+            GridAxis::Discrete(..) => "α",
+            GridAxis::Continuous(..) => "p",
+        }
     }
 
     /// All numbers of filters, from one to the greatest, of one value of the axis, fitted to the stretches for which
@@ -160,15 +145,10 @@ impl Grid {
         let mut objective = systems.objective(per_input, &|_, _| true);
         if let Some(constrained) = self.constrained(systems, value, filters)? {
             objective = constrained.objective();
-            for (i, all) in coefficients.iter_mut().enumerate() {
-                for j in 0..self.dofs.len() {
-                    for (c, x) in constrained
-                        .values(i * self.dofs.len() + j)
-                        .iter()
-                        .enumerate()
-                    {
-                        all[self.pass.order.index(c, j)] = *x;
-                    }
+            let n = self.dofs.len();
+            for e in 0..n * n {
+                for (c, x) in constrained.values(e).iter().enumerate() {
+                    coefficients[e / n][self.pass.order.index(c, e % n)] = *x;
                 }
             }
         }
@@ -243,19 +223,13 @@ impl Grid {
             }
             GridAxis::Continuous(poles, fit) => {
                 let form = with_filters(&fit.form, filters);
-                let chain = vec![vec![vec![poles[value]; filters]; n]; n];
-                let coefficients: Vec<Vec<Vec<f64>>> = (0..n)
-                    .map(|i| {
-                        (0..n)
-                            .map(|j| {
-                                (0..per_input)
-                                    .map(|c| all[i][self.pass.order.index(c, j)])
-                                    .collect()
-                            })
-                            .collect()
-                    })
-                    .collect();
-                assemble(&form, &self.dofs, &chain, &coefficients)
+                let of_entry = |e: usize| {
+                    let at = |c| self.pass.order.index(c, e % n);
+                    (0..per_input).map(|c| all[e / n][at(c)]).collect()
+                };
+                let coefficients: Vec<Vec<f64>> = (0..n * n).map(of_entry).collect();
+                let chains = vec![vec![poles[value]; filters]; n * n];
+                assemble(&form, &self.dofs, &chains, &coefficients)
             }
         }
     }
@@ -279,14 +253,6 @@ impl Grid {
             (square * residual, square * factor.total_sum(i))
         });
         Some(sums.collect())
-    }
-
-    /// Input that moves in a stretch.
-    pub(crate) fn motion(&self, stretch: usize) -> Option<Dof> {
-        self.pass.stretches[stretch]
-            .set
-            .first()
-            .map(|j| self.dofs[*j])
     }
 }
 
@@ -332,14 +298,6 @@ impl GridAxis {
                 };
                 task.pass(&candidates, rows, 1, 1)
             }
-        }
-    }
-
-    /// Symbol of the parameter.
-    pub(crate) fn symbol(&self) -> &'static str {
-        match self {
-            Self::Discrete(..) => "α",
-            Self::Continuous(..) => "p",
         }
     }
 }

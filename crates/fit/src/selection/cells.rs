@@ -1,7 +1,6 @@
 //! The cells of a selection: fit, error on unseen data, onset, verdict.
 
-use super::folds::{CrossValidation, Folds, HeldOut, combine, unpredicted};
-use super::guards::judge;
+use super::folds::{CrossValidation, HeldOut, combine, folds, unpredicted, validate};
 use crate::error::Result;
 use crate::flutter::OnsetSearch;
 use crate::identification::Grid;
@@ -10,15 +9,6 @@ use crate::section::{Dof, Structure};
 use crate::signal::extremes;
 use serde::Serialize;
 use std::collections::BTreeSet;
-
-/// What a selection needs besides the grid.
-#[derive(Debug, Clone)]
-pub struct SelectionPlan {
-    /// The suspended section.
-    pub structure: Structure,
-    /// Where to look for onsets.
-    pub search: OnsetSearch,
-}
 
 /// One number of filters with one pole or decay factor.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -37,6 +27,13 @@ pub struct Cell {
     pub onset_m_s: Option<f64>,
     /// Reasons against the model; empty for one that may be used.
     pub rejected: Vec<String>,
+}
+
+impl Cell {
+    /// Its error on data left out; NaN without one.
+    fn score(&self) -> f64 {
+        self.cross_validation.map_or(f64::NAN, |v| v.score)
+    }
 }
 
 /// All cells and the recommended one.
@@ -60,20 +57,37 @@ pub struct Selection {
     pub reason: String,
 }
 
-/// Judges every cell, in parallel over the values of the axis.
+/// Judges every cell with a suspended section, in parallel over the values of the axis.
 ///
-/// `done` is called before and after each value with the number of those that are through.
+/// `search` says where to look for onsets; `done` is called before and after each value with the number of those that are through.
 ///
 /// # Errors
 /// None at present: cells that cannot be fitted are refused with their reason.
 pub fn select(
     grid: &Grid,
-    plan: &SelectionPlan,
+    structure: &Structure,
+    search: &OnsetSearch,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Selection> {
-    let folds = Folds::new(&grid.labels);
+    let folds = folds(grid);
     let cells = numbered(grid.values().len(), &|all, _| done(all), |value| {
-        Ok(cells_of(grid, plan, &folds, value))
+        let fits = grid.fits(value, &|_| true).into_iter().zip(1..);
+        let of_value = fits.zip(validate(&folds, grid, value));
+        let cell = |((fit, filters), held_out): (_, Option<HeldOut>)| {
+            let mut cell = Cell {
+                filters,
+                value: grid.values()[value],
+                ..Cell::default()
+            };
+            cell.judge(fit, structure, search, grid.tested);
+            if cell.residual.is_some() && held_out.is_none() {
+                cell.rejected
+                    .push("the records without one speed or frequency do not determine it".into());
+            }
+            // what no cell predicts is not known yet
+            (cell, held_out)
+        };
+        Ok(of_value.map(cell).collect::<Vec<_>>())
     })?;
     let (mut cells, held_out): (Vec<Cell>, Vec<Option<HeldOut>>) =
         cells.into_iter().flatten().unzip();
@@ -117,44 +131,6 @@ fn in_words(left_out: &[BTreeSet<(usize, usize)>; 2], dofs: &[Dof]) -> Vec<Strin
     .collect()
 }
 
-/// All numbers of filters of one value; errors on data left out stand beside each, for what no cell predicts is not known yet.
-fn cells_of(
-    grid: &Grid,
-    plan: &SelectionPlan,
-    folds: &Folds,
-    value: usize,
-) -> Vec<(Cell, Option<HeldOut>)> {
-    let fits = grid.fits(value, &|_| true);
-    let validations = folds.validate(grid, value);
-    fits.into_iter()
-        .zip(validations)
-        .enumerate()
-        .map(|(l, (fit, held_out))| {
-            let mut cell = Cell {
-                filters: l + 1,
-                value: grid.values()[value],
-                ..Cell::default()
-            };
-            match fit {
-                Ok(fit) => {
-                    cell.residual = Some(fit.objective);
-                    cell.cancellation = Some(fit.cancellation);
-                    let verdict = judge(&fit, &plan.structure, &plan.search, grid.tested);
-                    cell.onset_m_s = verdict.onset_m_s;
-                    cell.rejected = verdict.rejected;
-                    if held_out.is_none() {
-                        cell.rejected.push(
-                            "the records without one speed or frequency do not determine it".into(),
-                        );
-                    }
-                }
-                Err(error) => cell.rejected.push(format!("it cannot be fitted ({error})")),
-            }
-            (cell, held_out)
-        })
-        .collect()
-}
-
 /// The recommended model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recommendation {
@@ -172,78 +148,49 @@ pub struct Recommendation {
     pub onsets_within_m_s: Option<[f64; 2]>,
 }
 
-/// A cell that may be used.
-#[derive(Clone, Copy)]
-struct Usable<'a> {
-    at: usize,
-    cell: &'a Cell,
-    validation: CrossValidation,
-}
-
-impl Usable<'_> {
-    fn score(&self) -> f64 {
-        self.validation.score
-    }
-}
-
 /// The fewest filters whose error on data left out is within one standard error of the least (the rule of Breiman,
 /// Friedman, Olshen & Stone, *Classification and Regression Trees*, 1984, section 3.4.3), among the cells without a
 /// reason against them; for that number of filters the best value.
 fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
-    let cells = selection.cells.iter().enumerate();
-    let usable: Vec<Usable<'_>> = cells
-        .filter(|(_, cell)| cell.rejected.is_empty())
-        .filter_map(|(at, cell)| {
-            let validation = cell.cross_validation?;
-            Some(Usable {
-                at,
-                cell,
-                validation,
-            })
-        })
-        .collect();
-    let least = usable.iter().min_by(|a, b| a.score().total_cmp(&b.score()));
-    let Some(best) = least.copied() else {
+    let may_be_used = |c: &&Cell| c.rejected.is_empty() && c.cross_validation.is_some();
+    let usable = selection.cells.iter().filter(may_be_used);
+    let by_score = |a: &&Cell, b: &&Cell| a.score().total_cmp(&b.score());
+    let Some(best) = usable.clone().min_by(by_score) else {
         let most = most_common_reason(selection);
         let reason = format!(
             "No model can be recommended: every cell is refused, most often because {most}."
         );
         return (None, reason);
     };
-    let limit = best.score() * best.score() + best.validation.standard_error_of_square;
-    let within = usable
-        .into_iter()
-        .filter(|u| u.score() * u.score() <= limit);
-    let within: Vec<Usable<'_>> = within.collect();
-    let chosen = within.iter().min_by(|a, b| {
-        let filters = a.cell.filters.cmp(&b.cell.filters);
-        filters.then(a.score().total_cmp(&b.score()))
-    });
-    let chosen = *chosen.unwrap_or(&best);
-    let onsets = within.iter().filter_map(|u| u.cell.onset_m_s);
-    let (low, high) = extremes(onsets);
+    let scatter = best.cross_validation.map(|v| v.standard_error_of_square);
+    let limit = best.score() * best.score() + scatter.unwrap_or_default();
+    let within: Vec<&Cell> = usable.filter(|c| c.score() * c.score() <= limit).collect();
+    let fewest = |a: &&Cell, b: &&Cell| a.filters.cmp(&b.filters).then(by_score(a, b));
+    let chosen = within.iter().copied().min_by(fewest).unwrap_or(best);
+    let (low, high) = extremes(within.iter().filter_map(|c| c.onset_m_s));
+    let mut places = selection.cells.iter();
     let recommended = Recommendation {
-        cell: chosen.at,
-        filters: chosen.cell.filters,
-        value: chosen.cell.value,
+        cell: places.position(|c| std::ptr::eq(c, chosen)).unwrap_or(0),
+        filters: chosen.filters,
+        value: chosen.value,
         score: chosen.score(),
-        onset_m_s: chosen.cell.onset_m_s,
+        onset_m_s: chosen.onset_m_s,
         onsets_within_m_s: (low <= high).then_some([low, high]),
     };
-    let mut reason = explain(selection, &chosen, &best);
+    let mut reason = explain(selection, chosen, best);
     reason.push_str(&onsets_in_words(&within));
     for name in &selection.unpredicted {
         reason.push_str(&format!(
             " No model predicts {name} better than a force of zero: it does not count in the errors."
         ));
     }
-    reason.push_str(&why_not_others(selection, &chosen));
+    reason.push_str(&why_not_others(selection, recommended.cell));
     (Some(recommended), reason)
 }
 
 /// How far the choice among models that are as good moves the onset; nothing for a single one.
-fn onsets_in_words(within: &[Usable<'_>]) -> String {
-    let onsets = within.iter().filter_map(|u| u.cell.onset_m_s);
+fn onsets_in_words(within: &[&Cell]) -> String {
+    let onsets = within.iter().filter_map(|c| c.onset_m_s);
     let (low, high) = extremes(onsets.clone());
     let none = match within.len() - onsets.count() {
         0 => String::new(),
@@ -260,10 +207,10 @@ fn onsets_in_words(within: &[Usable<'_>]) -> String {
 }
 
 /// Why `chosen` and not `best`.
-fn explain(selection: &Selection, chosen: &Usable<'_>, best: &Usable<'_>) -> String {
+fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
     let symbol = &selection.symbol;
-    let (own, error) = (name(chosen.cell, symbol), percent(chosen.score()));
-    let mut reason = if chosen.at == best.at {
+    let (own, error) = (name(chosen, symbol), percent(chosen.score()));
+    let mut reason = if std::ptr::eq(chosen, best) {
         format!(
             "{own}: its error on data left out, {error}, is the least of all models that may be used"
         )
@@ -272,10 +219,10 @@ fn explain(selection: &Selection, chosen: &Usable<'_>, best: &Usable<'_>) -> Str
             "{own}: the fewest filters whose error on data left out, {error}, is within one standard error of the least ({} with \
              {})",
             percent(best.score()),
-            name(best.cell, symbol)
+            name(best, symbol)
         )
     };
-    if let Some(onset) = chosen.cell.onset_m_s {
+    if let Some(onset) = chosen.onset_m_s {
         reason.push_str(&format!("; onset {onset:.3} m/s"));
     }
     reason.push('.');
@@ -283,16 +230,19 @@ fn explain(selection: &Selection, chosen: &Usable<'_>, best: &Usable<'_>) -> Str
 }
 
 /// What speaks for a wider grid, and what fits better but is refused.
-fn why_not_others(selection: &Selection, chosen: &Usable<'_>) -> String {
+fn why_not_others(selection: &Selection, chosen: usize) -> String {
     let symbol = &selection.symbol;
     let mut reason = String::new();
-    let (along, values) = (chosen.at / selection.filters_max, selection.values.len());
+    let (along, values) = (chosen / selection.filters_max, selection.values.len());
     if values > 1 && (along == 0 || along + 1 == values) {
         reason.push_str(&format!(
             " {symbol} lies at the edge of the grid: widen it to see whether the error falls further."
         ));
     }
-    for refused in free_but_refused(selection) {
+    // what a free search would have taken for each number of filters
+    let free = selection.free.iter().flatten();
+    let free = free.map(|at| &selection.cells[*at]);
+    for refused in free.filter(|c| !c.rejected.is_empty()) {
         reason.push_str(&format!(
             " {} fits the records {}, but is refused: {}.",
             name(refused, symbol),
@@ -303,17 +253,6 @@ fn why_not_others(selection: &Selection, chosen: &Usable<'_>) -> String {
         ));
     }
     reason
-}
-
-/// What a free search would have taken for each number of filters, where it is refused.
-fn free_but_refused(selection: &Selection) -> Vec<&Cell> {
-    selection
-        .free
-        .iter()
-        .flatten()
-        .map(|at| &selection.cells[*at])
-        .filter(|c| !c.rejected.is_empty())
-        .collect()
 }
 
 fn most_common_reason(selection: &Selection) -> String {

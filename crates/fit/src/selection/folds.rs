@@ -1,7 +1,7 @@
 //! Cross-validation across speeds and across frequencies of motion.
 
 use crate::error::Result;
-use crate::identification::{CellFit, Grid, StretchLabel};
+use crate::identification::{CellFit, Grid};
 use crate::signal::mean;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,43 +28,39 @@ type Errors = BTreeMap<(usize, usize), f64>;
 /// Errors of a cell fold by fold: across speeds, across frequencies; none where there was nothing to leave out.
 pub(super) type HeldOut = [Vec<Errors>; 2];
 
-/// Stretches that are left out together.
-pub(super) struct Folds {
-    speeds: Vec<Vec<usize>>,
-    frequencies: Vec<Vec<usize>>,
+/// Stretches that are left out together: those of each speed, those of each frequency.
+pub(super) fn folds(grid: &Grid) -> [Vec<Vec<usize>>; 2] {
+    let stretches = grid.pass.stretches.iter().enumerate();
+    let frequencies = stretches.clone().map(|(s, of)| (of.frequency_hz, s));
+    let speeds = stretches.map(|(s, of)| (of.mean_speed_m_s, s));
+    let known = frequencies.filter_map(|(hertz, s)| Some((hertz?, s)));
+    [groups(speeds.collect()), groups(known.collect())]
 }
 
-impl Folds {
-    pub(crate) fn new(labels: &[StretchLabel]) -> Self {
-        Self {
-            speeds: groups(labels, |l| Some(l.mean_speed_m_s)),
-            frequencies: groups(labels, |l| l.frequency_hz),
-        }
-    }
-
-    /// Errors of all numbers of filters of one value of the axis across speeds and across frequencies, fold by fold; `None` where a
-    /// fit without a fold fails or nothing can be left out.
-    pub(crate) fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<HeldOut>> {
-        let errors = |folds: &[Vec<usize>]| {
-            let mut of_filters = vec![Some(Vec::new()); grid.filters_max];
-            for fold in folds.iter().filter(|_| folds.len() > 1) {
-                let fits = grid.fits(value, &|s| !fold.contains(&s));
-                for (errors, fit) in of_filters.iter_mut().zip(fits) {
-                    match (errors.as_mut(), held_out(grid, value, fold, &fit)) {
-                        (Some(list), Some(error)) => list.push(error),
-                        _ => *errors = None,
-                    }
+/// Errors of all numbers of filters of one value of the axis across speeds and across frequencies, fold by fold; `None` where a
+/// fit without a fold fails or nothing can be left out.
+pub(super) fn validate(
+    folds: &[Vec<Vec<usize>>; 2],
+    grid: &Grid,
+    value: usize,
+) -> Vec<Option<HeldOut>> {
+    let [speeds, frequencies] = folds.each_ref().map(|folds| {
+        let mut of_filters = vec![Some(Vec::new()); grid.filters_max];
+        for fold in folds.iter().filter(|_| folds.len() > 1) {
+            let fits = grid.fits(value, &|s| !fold.contains(&s));
+            for (errors, fit) in of_filters.iter_mut().zip(fits) {
+                match (errors.as_mut(), held_out(grid, value, fold, &fit)) {
+                    (Some(list), Some(error)) => list.push(error),
+                    _ => *errors = None,
                 }
             }
-            of_filters
-        };
-        let pairs = errors(&self.speeds)
-            .into_iter()
-            .zip(errors(&self.frequencies));
-        pairs
-            .map(|(s, f)| Some([s?, f?]).filter(|parts| parts.iter().any(|p| !p.is_empty())))
-            .collect()
-    }
+        }
+        of_filters
+    });
+    let pairs = speeds.into_iter().zip(frequencies);
+    pairs
+        .map(|(s, f)| Some([s?, f?]).filter(|parts| parts.iter().any(|p| !p.is_empty())))
+        .collect()
 }
 
 /// Mean squared relative error of each transfer function, by force and motion, in the stretches left out.
@@ -72,10 +68,9 @@ fn held_out(grid: &Grid, value: usize, fold: &[usize], fit: &Result<CellFit>) ->
     let fit = fit.as_ref().ok()?;
     let mut sums: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
     for &stretch in fold {
-        let Some(motion) = grid.motion(stretch) else {
+        let Some(&j) = grid.pass.stretches[stretch].set.first() else {
             continue;
         };
-        let j = grid.dofs.iter().position(|d| *d == motion)?;
         for (i, (residual, total)) in grid.residuals(stretch, value, fit)?.into_iter().enumerate() {
             let sum = sums.entry((i, j)).or_insert((0.0, 0.0));
             *sum = (sum.0 + residual, sum.1 + total);
@@ -146,12 +141,7 @@ pub(super) fn combine(
 }
 
 /// Indices of stretches of one value, by rising value.
-fn groups(labels: &[StretchLabel], value: fn(&StretchLabel) -> Option<f64>) -> Vec<Vec<usize>> {
-    let mut known: Vec<(f64, usize)> = labels
-        .iter()
-        .enumerate()
-        .filter_map(|(s, label)| Some((value(label)?, s)))
-        .collect();
+fn groups(mut known: Vec<(f64, usize)>) -> Vec<Vec<usize>> {
     known.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
     for (x, s) in known {
@@ -169,19 +159,10 @@ mod tests {
 
     #[test]
     fn folds_are_speeds_and_frequencies() {
-        let label = |v: f64, f: f64| StretchLabel {
-            mean_speed_m_s: v,
-            frequency_hz: Some(f),
-        };
-        let labels = [
-            label(8.0, 0.5),
-            label(8.1, 1.0),
-            label(4.0, 0.51),
-            label(4.0, 1.01),
-        ];
-        let folds = Folds::new(&labels);
-        assert_eq!(folds.speeds, [vec![2, 3], vec![0, 1]]);
-        assert_eq!(folds.frequencies, [vec![0, 2], vec![1, 3]]);
+        let speeds = groups(vec![(8.0, 0), (8.1, 1), (4.0, 2), (4.0, 3)]);
+        assert_eq!(speeds, [vec![2, 3], vec![0, 1]]);
+        let frequencies = groups(vec![(0.5, 0), (1.0, 1), (0.51, 2), (1.01, 3)]);
+        assert_eq!(frequencies, [vec![0, 2], vec![1, 3]]);
     }
 
     #[test]

@@ -30,14 +30,11 @@ fn selected_with(
     filters: usize,
 ) -> Selection {
     let grid = Grid::new(&sources(records), axis, filters, &|_| ()).unwrap();
-    let plan = SelectionPlan {
-        structure: section.structure().unwrap(),
-        search: OnsetSearch {
-            speed_max_m_s: 60.0,
-            speeds: 120,
-        },
+    let search = OnsetSearch {
+        speed_max_m_s: 60.0,
+        speeds: 120,
     };
-    select(&grid, &plan, &|_| ()).unwrap()
+    select(&grid, &section.structure().unwrap(), &search, &|_| ()).unwrap()
 }
 
 /// On LN21-5500 four filters with a free pole fit best, cancel, and flutter below 10 m/s, far outside the tested range

@@ -12,7 +12,6 @@
 use super::design::{Block, Design};
 use crate::error::Result;
 use crate::identification::time::pass::Stretch;
-use crate::identification::time::record::DimensionlessRecord;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -24,22 +23,43 @@ const STEEPEST: f64 = 4.0;
 /// by chance alone it stays below (its scatter is about 0.15 with 32 segments).
 const COHERENT: f64 = 1.5;
 
-/// Blocks with the segment each belongs to.
-pub(super) struct Stretched {
-    blocks: Vec<Block>,
-    /// One key per segment.
-    segments: Vec<usize>,
-    /// Names of the segments, by their keys.
-    names: Vec<String>,
-}
-
-/// The sandwich over stretches, or over segments where residuals repeat through them; and which, in words.
-pub(super) fn sandwich(stretched: Stretched, tangent: DMatrix<f64>) -> Result<(Design, String)> {
-    let Stretched {
-        blocks,
-        segments,
-        names,
-    } = stretched;
+/// The sandwich over stretches, or over segments where residuals repeat through them; and which, in words. The forces of
+/// every stretch are stacked, each relative to its size over all stretches, as the search of poles weighs them.
+pub(super) fn sandwich(
+    mut parts: Vec<StretchRows<'_>>,
+    tangent: DMatrix<f64>,
+) -> Result<(Design, String)> {
+    weigh(&mut parts);
+    let mut stretches: BTreeMap<(usize, usize), Vec<StretchRows<'_>>> = BTreeMap::new();
+    for part in parts {
+        let stretch = stretches.entry((part.of.record, part.of.stretch));
+        stretch.or_default().push(part);
+    }
+    // the blocks, the key of the segment of each, and the names of the segments
+    let (mut blocks, mut segments, mut names) = (Vec::new(), Vec::new(), Vec::new());
+    let mut keys: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for members in stretches.into_values() {
+        let (of, rate) = (members[0].of, members[0].rate);
+        let of_segment = match of.frequency_hz {
+            Some(f) => format!("{}, {f:.2} Hz", members[0].name),
+            None => format!("{}, stretch {}", members[0].name, of.stretch + 1),
+        };
+        let name = match of.frequency_hz {
+            Some(_) => format!("{of_segment}, stretch {}", of.stretch + 1),
+            None => of_segment.clone(),
+        };
+        let key = keys.entry((of.record, of.segment.unwrap_or(of.stretch)));
+        segments.push(*key.or_insert_with(|| {
+            names.push(of_segment);
+            names.len() - 1
+        }));
+        let of_forces: Vec<Block> = members.into_iter().map(|part| part.block).collect();
+        blocks.push(Block {
+            speed_m_s: Some(of.mean_speed_m_s),
+            k: of.frequency_hz.map(|f| TAU * f / rate),
+            ..Block::joined(name, &of_forces)
+        });
+    }
     let fine = Design::new(blocks, tangent.clone())?;
     let ratio = fine.coherence(&segments);
     let either = "residuals may be correlated in any way within a block and between its forces; sandwich of the blocks \
@@ -60,6 +80,9 @@ pub(super) fn sandwich(stretched: Stretched, tangent: DMatrix<f64>) -> Result<(D
 /// Rows of one force in one stretch of a record.
 pub(super) struct StretchRows<'a> {
     pub of: &'a Stretch,
+    /// Name of the record, and its `V/B`, 1/s.
+    pub name: &'a str,
+    pub rate: f64,
     pub force: usize,
     /// Weighted as the force is in that stretch; its variance is still to be set.
     pub block: Block,
@@ -67,57 +90,8 @@ pub(super) struct StretchRows<'a> {
     pub total: f64,
 }
 
-/// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
-/// them.
-pub(super) fn gather(
-    records: &[DimensionlessRecord],
-    mut parts: Vec<StretchRows<'_>>,
-) -> Stretched {
-    weigh(records, &mut parts);
-    let mut stretches: BTreeMap<(usize, usize), Vec<StretchRows<'_>>> = BTreeMap::new();
-    for part in parts {
-        let stretch = stretches.entry((part.of.record, part.of.stretch));
-        stretch.or_default().push(part);
-    }
-    let mut out = Stretched {
-        blocks: Vec::new(),
-        segments: Vec::new(),
-        names: Vec::new(),
-    };
-    let mut keys: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for ((record, stretch), members) in stretches {
-        let segment = members[0].of.segment;
-        let record_of = &records[record];
-        let hertz = segment.map(|s| record_of.header.segments[s].frequency_hz);
-        let number = stretch + 1;
-        let (of_segment, name) = match hertz {
-            Some(f) => {
-                let segment = format!("{}, {f:.2} Hz", record_of.header.name);
-                let stretch = format!("{segment}, stretch {number}");
-                (segment, stretch)
-            }
-            None => {
-                let stretch = format!("{}, stretch {number}", record_of.header.name);
-                (stretch.clone(), stretch)
-            }
-        };
-        let key = keys.entry((record, segment.unwrap_or(stretch)));
-        out.segments.push(*key.or_insert_with(|| {
-            out.names.push(of_segment);
-            out.names.len() - 1
-        }));
-        let of_forces: Vec<Block> = members.into_iter().map(|part| part.block).collect();
-        out.blocks.push(Block {
-            speed_m_s: Some(record_of.header.mean_speed_m_s),
-            k: hertz.map(|f| TAU * f / record_of.rate),
-            ..Block::joined(name, &of_forces)
-        });
-    }
-    out
-}
-
 /// Gives the rows of all parts their weight and their working variance: equations of one group share their scale.
-fn weigh<'a>(records: &[DimensionlessRecord], parts: &mut [StretchRows<'a>]) {
+fn weigh<'a>(parts: &mut [StretchRows<'a>]) {
     // inputs that moved, and force: equations that share their scale
     let mut groups: BTreeMap<(&'a [usize], usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
@@ -132,7 +106,7 @@ fn weigh<'a>(records: &[DimensionlessRecord], parts: &mut [StretchRows<'a>]) {
         } else {
             1.0
         };
-        for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
+        for (&m, variance) in members.iter().zip(working_variances(&own)) {
             let block = &mut parts[m].block;
             block.rows *= scale;
             block.residual *= scale;
@@ -143,7 +117,7 @@ fn weigh<'a>(records: &[DimensionlessRecord], parts: &mut [StretchRows<'a>]) {
 
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
 /// squares on the logarithms.
-fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows<'_>]) -> Vec<f64> {
+fn working_variances(parts: &[&StretchRows<'_>]) -> Vec<f64> {
     let floor = 1e-12
         * parts
             .iter()
@@ -156,9 +130,7 @@ fn working_variances(records: &[DimensionlessRecord], parts: &[&StretchRows<'_>]
     let points: Vec<(usize, f64, f64)> = parts
         .iter()
         .map(|p| {
-            let hz = p.of.segment.map_or(1.0, |s| {
-                records[p.of.record].header.segments[s].frequency_hz
-            });
+            let hz = p.of.frequency_hz.unwrap_or(1.0);
             let mean_square =
                 p.block.residual.norm_squared().max(floor) / p.block.residual.len() as f64;
             let weight = p.of.weights[p.force];

@@ -67,7 +67,7 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
     let objective = report.orders[2].objective;
     assert!((cell.objective / objective - 1.0).abs() < 1e-2);
     // residuals of all stretches together are those of the fit
-    let sums = (0..grid.labels.len()).filter_map(|s| grid.residuals(s, 0, &cell));
+    let sums = (0..grid.pass.stretches.len()).filter_map(|s| grid.residuals(s, 0, &cell));
     let (residual, total) = sums
         .flatten()
         .fold((0.0, 0.0), |t, s| (t.0 + s.0, t.1 + s.1));
@@ -82,7 +82,7 @@ fn leaving_stretches_out_is_a_fit_to_the_others() {
     let axis = || GridAxis::Continuous(vec![0.3], Box::new(records_alone()));
     let both = Grid::new(&sources(&made), axis(), 2, &|_| ()).unwrap();
     let high = Grid::new(&sources(&made[..2]), axis(), 2, &|_| ()).unwrap();
-    let keep = |s: usize| both.labels[s].mean_speed_m_s > 8.0;
+    let keep = |s: usize| both.pass.stretches[s].mean_speed_m_s > 8.0;
     let a = both.fits(0, &keep).pop().unwrap().unwrap();
     let b = high.fits(0, &|_| true).pop().unwrap().unwrap();
     assert!(differ(&a.model, &b.model) < 1e-9);

@@ -134,8 +134,12 @@ pub(crate) struct Stretch {
     pub record: usize,
     /// Number of the stretch in its record.
     pub stretch: usize,
+    /// Mean speed of the record, m/s.
+    pub mean_speed_m_s: f64,
     /// Segment it lies in; `None` in a record without segments.
     pub segment: Option<usize>,
+    /// Frequency of the motion in that segment, Hz.
+    pub frequency_hz: Option<f64>,
     /// Instant of its first row, s.
     start_s: f64,
     /// Inputs that moved.
@@ -347,7 +351,9 @@ impl OpenStretch {
             closed.push(Stretch {
                 record,
                 stretch,
+                mean_speed_m_s: 0.0,
                 segment: None,
+                frequency_hz: None,
                 start_s: done.start_s,
                 set,
                 factors: systems.into_iter().map(StreamingQr::finish).collect(),
@@ -359,7 +365,7 @@ impl OpenStretch {
     }
 }
 
-/// Finds the segments of the stretches and gives all stretches of one segment, or of one record, the same weights.
+/// Says where the stretches lie and gives all stretches of one segment, or of one record, the same weights.
 fn weigh(stretches: &mut [Stretch], record: &DimensionlessRecord, weights: TimeWeights) {
     let segments = &record.header.segments;
     for stretch in stretches.iter_mut() {
@@ -367,6 +373,8 @@ fn weigh(stretches: &mut [Stretch], record: &DimensionlessRecord, weights: TimeW
         let begun = |s: &&Segment| s.start_s <= stretch.start_s + 0.5 * record.step_s;
         let last = segments.iter().take_while(begun).count().saturating_sub(1);
         stretch.segment = (!segments.is_empty()).then_some(last);
+        stretch.frequency_hz = stretch.segment.map(|s| segments[s].frequency_hz);
+        stretch.mean_speed_m_s = record.header.mean_speed_m_s;
     }
     // a record without segments is one
     let same =
