@@ -235,9 +235,10 @@ impl<'a> CostMatrix<'a> {
                 continue;
             }
             let base = checkpoint.index;
-            let triangle = Triangle::new(self, checkpoint, row, d);
+            let steps = self.steps(checkpoint, row, d);
             while d > base {
-                match triangle.step(row, d) {
+                let (first_row, of_cells) = &steps[(d - base - 1) as usize];
+                match of_cells[(row - first_row) as usize] {
                     Step::Row => (row, d) = (row - 1, d - 1),
                     Step::Column => d -= 1,
                     Step::Diagonal => (row, d) = (row - 1, d - 2),
@@ -248,56 +249,33 @@ impl<'a> CostMatrix<'a> {
         cells.reverse();
         cells
     }
-}
 
-/// Steps of all cells from which `(row, d)` can be reached, back to a checkpoint.
-struct Triangle {
-    base: isize,
-    apex_row: isize,
-    apex_d: isize,
-    steps: Vec<Step>,
-}
-
-impl Triangle {
-    fn new(grid: &CostMatrix<'_>, checkpoint: Checkpoint, apex_row: isize, apex_d: isize) -> Self {
+    /// Steps of all cells from which `(apex_row, apex_d)` can be reached, back to a checkpoint: of each antidiagonal the first row and
+    /// the steps from there on.
+    fn steps(
+        &self,
+        checkpoint: Checkpoint,
+        apex_row: isize,
+        apex_d: isize,
+    ) -> Vec<(isize, Vec<Step>)> {
         let Checkpoint {
-            index: base,
+            index,
             mut last,
             mut before,
         } = checkpoint;
-        let width = apex_d - base;
-        let mut triangle = Self {
-            base,
-            apex_row,
-            apex_d,
-            steps: vec![Step::Row; (width * width) as usize],
-        };
-        for d in base + 1..=apex_d {
-            let (first, end) = grid.row_range(d);
+        let mut all = Vec::with_capacity((apex_d - index) as usize);
+        for d in index + 1..=apex_d {
+            let (first, end) = self.row_range(d);
             let first_row = first.max(apex_row - (apex_d - d));
-            let mut now = Antidiagonal {
-                first_row,
-                values: Vec::with_capacity(width as usize),
-            };
-            for row in first_row..=end.min(apex_row) {
+            let cells = (first_row..=end.min(apex_row)).map(|row| {
                 let (least, step) = cheapest(last.at(row - 1), last.at(row), before.at(row - 1));
-                now.values.push(grid.cost(row, d) + least);
-                let index = triangle.index(row, d);
-                triangle.steps[index] = step;
-            }
-            before = std::mem::replace(&mut last, now);
+                (self.cost(row, d) + least, step)
+            });
+            let (values, steps) = cells.unzip();
+            before = std::mem::replace(&mut last, Antidiagonal { first_row, values });
+            all.push((first_row, steps));
         }
-        triangle
-    }
-
-    fn index(&self, row: isize, d: isize) -> usize {
-        let width = self.apex_d - self.base;
-        let offset = row - (self.apex_row - (self.apex_d - d));
-        ((d - self.base - 1) * width + offset) as usize
-    }
-
-    fn step(&self, row: isize, d: isize) -> Step {
-        self.steps[self.index(row, d)]
+        all
     }
 }
 

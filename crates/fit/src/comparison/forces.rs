@@ -11,21 +11,12 @@ mod models;
 mod options;
 mod score;
 mod statements;
-mod tested_deck;
 
-pub use decks::DecksComparison;
-pub use decks::compare_decks;
+pub use decks::{DecksComparison, compare_decks};
 pub use entries::{in_magnitude_band, in_phase_band};
-pub use models::History;
-pub use models::ModelsComparison;
-pub use models::compare_models;
-pub use options::CompareOptions;
-pub use options::Scoring;
-pub use options::THESIS_DECKS;
-pub use score::ForceMetrics;
-pub use score::Score;
-pub use score::ScoreSummary;
-pub use score::score_table;
+pub use models::{History, ModelsComparison, compare_models};
+pub use options::{CompareOptions, Scoring, THESIS_DECKS};
+pub use score::{ForceMetrics, Score, ScoreSummary, score_table};
 pub use statements::Statement;
 
 #[cfg(test)]

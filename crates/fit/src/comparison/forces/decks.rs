@@ -1,14 +1,11 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
-use super::options::CompareOptions;
-use super::score::{ModelOnRecord, Score, ScoreSummary, run_all, summaries};
+use super::options::{CompareOptions, TestedDeck};
+use super::score::{ModelOnRecord, Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_decks};
-use super::tested_deck::TestedDeck;
 use crate::error::{Result, ensure};
-use crate::identification::{FitReport, Fitted, fit_discrete};
-use crate::numbered::OnDone;
-use crate::trained_model::Model;
-use crate::wind_tunnel::Record;
+use crate::identification::{Fitted, fit_discrete};
+use crate::numbered::{OnDone, numbered};
 use serde::Serialize;
 
 /// What was done on one deck.
@@ -47,74 +44,53 @@ pub struct DecksComparison {
 /// compares them frequency by frequency. `progress` hears how many of how many records are done.
 pub fn compare_decks(options: &CompareOptions, progress: OnDone<'_>) -> Result<DecksComparison> {
     ensure(!options.decks.is_empty(), "decks", "at least one", "none")?;
+    // deck and speed of the training, and the fit
+    let train = |deck: &TestedDeck| -> Result<((String, f64), Fitted)> {
+        let fitted = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
+        Ok(((deck.table.name.clone(), deck.training_speed_m_s()), fitted))
+    };
     let teacher = options.trained_on.as_ref();
-    let teacher = teacher.map(|name| Trained::new(&TestedDeck::new(name, options)?, options));
+    let teacher = teacher.map(|name| train(&TestedDeck::new(name, options)?));
     let teacher = teacher.transpose()?;
     let mut decks = Vec::with_capacity(options.decks.len());
     for name in &options.decks {
         let deck = TestedDeck::new(name, options)?;
         let trained = match &teacher {
             Some(teacher) => teacher.clone(),
-            None => Trained::new(&deck, options)?,
+            None => train(&deck)?,
         };
         decks.push((deck, trained));
     }
     let name = options.laguerre_name();
     let trials: Vec<ModelOnRecord<'_>> = decks
         .iter()
-        .flat_map(|(deck, trained)| {
-            deck.records.iter().map(|record| ModelOnRecord {
+        .flat_map(|(deck, ((trained_on, speed_m_s), fitted))| {
+            let name = &name;
+            deck.records.iter().map(move |record| ModelOnRecord {
                 deck,
                 record,
-                name: &name,
-                model: &trained.model,
-                held_out: trained.held_out(deck, record),
+                name,
+                model: &fitted.model,
+                held_out: *trained_on != deck.table.name
+                    || *speed_m_s != record.header.mean_speed_m_s,
             })
         })
         .collect();
-    let outcomes = run_all(&trials, options, progress)?;
-    let scores: Vec<Score> = outcomes.into_iter().flat_map(|o| o.scores).collect();
+    let outcomes = numbered(trials.len(), progress, |at| trials[at].run(options))?;
+    let scores: Vec<Score> = outcomes.into_iter().flat_map(|(_, s)| s).collect();
+    let scores_of = |(deck, (trained_on, fitted)): (TestedDeck, (_, Fitted))| TestedDeckScores {
+        deck: deck.table.name,
+        width_m: deck.table.width_m,
+        speeds_m_s: deck.speeds_m_s,
+        trained_on,
+        method: fitted.report.method,
+        notes: fitted.report.notes,
+    };
     Ok(DecksComparison {
-        decks: decks.into_iter().map(|(d, t)| t.scores_of(d)).collect(),
+        decks: decks.into_iter().map(scores_of).collect(),
         summaries: summaries(&scores),
         statements: on_decks(&scores),
         options: options.clone(),
         scores,
     })
-}
-
-/// A model and where it comes from.
-#[derive(Clone)]
-struct Trained {
-    deck: String,
-    speed_m_s: f64,
-    model: Model,
-    report: FitReport,
-}
-
-impl Trained {
-    fn new(deck: &TestedDeck, options: &CompareOptions) -> Result<Self> {
-        let Fitted { model, report } = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
-        Ok(Self {
-            deck: deck.table.name.clone(),
-            speed_m_s: deck.training_speed_m_s(),
-            model,
-            report,
-        })
-    }
-
-    fn held_out(&self, deck: &TestedDeck, record: &Record) -> bool {
-        self.deck != deck.table.name || self.speed_m_s != record.header.mean_speed_m_s
-    }
-
-    fn scores_of(self, deck: TestedDeck) -> TestedDeckScores {
-        TestedDeckScores {
-            deck: deck.table.name,
-            width_m: deck.table.width_m,
-            speeds_m_s: deck.speeds_m_s,
-            trained_on: (self.deck, self.speed_m_s),
-            method: self.report.method,
-            notes: self.report.notes,
-        }
-    }
 }

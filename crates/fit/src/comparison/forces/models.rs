@@ -1,10 +1,9 @@
 //! Several models on one girder, in the time and the frequency domain (sections 3.5.5 and 3.5.6 of the thesis).
 
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
-use super::options::CompareOptions;
-use super::score::{ModelOnRecord, Score, ScoreSummary, run_all, summaries};
+use super::options::{CompareOptions, TestedDeck};
+use super::score::{ModelOnRecord, Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_models};
-use super::tested_deck::TestedDeck;
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
@@ -12,7 +11,7 @@ use crate::identification::{
     Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit,
     fit_discrete, fit_records, fit_table,
 };
-use crate::numbered::OnDone;
+use crate::numbered::{OnDone, numbered};
 use crate::section::Dof;
 use crate::wind_tunnel::{Record, RecordSource};
 use serde::Serialize;
@@ -110,11 +109,8 @@ pub fn compare_models(options: &CompareOptions, progress: OnDone<'_>) -> Result<
             held_out: false,
         }));
     }
-    let outcomes = run_all(&trials, options, progress)?;
-    let (predicted, scores): (Vec<_>, Vec<_>) = outcomes
-        .into_iter()
-        .map(|o| (o.predicted, o.scores))
-        .unzip();
+    let outcomes = numbered(trials.len(), progress, |at| trials[at].run(options))?;
+    let (predicted, scores): (Vec<_>, Vec<_>) = outcomes.into_iter().unzip();
     let scores = scores.concat();
     let entries = compare_entries(&group, speed, &options.dofs, &models)?;
     Ok(ModelsComparison {

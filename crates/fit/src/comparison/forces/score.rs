@@ -1,14 +1,12 @@
 //! Models asked for the forces of records, and the metrics of these against what was measured, one set per frequency of the motion.
 
-use super::options::{CompareOptions, Scoring};
-use super::tested_deck::TestedDeck;
+use super::options::{CompareOptions, Scoring, TestedDeck};
 use crate::comparison::{
     DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
     magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
 };
 use crate::error::{Result, ensure, positive};
 use crate::files::text::csv_cell;
-use crate::numbered::{OnDone, numbered};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::wind_tunnel::{Record, Segment, predicted_forces};
@@ -208,25 +206,9 @@ pub(super) struct ModelOnRecord<'a> {
     pub(super) held_out: bool,
 }
 
-/// What a model predicts for a record.
-pub(super) struct PredictedForces {
-    /// One vector per force, one number per sample.
-    pub(super) predicted: Vec<Vec<f64>>,
-    /// One entry per force and frequency.
-    pub(super) scores: Vec<Score>,
-}
-
-/// The outcomes in the order of the trials. `progress` hears how many of how many are done.
-pub(super) fn run_all(
-    trials: &[ModelOnRecord<'_>],
-    options: &CompareOptions,
-    progress: OnDone<'_>,
-) -> Result<Vec<PredictedForces>> {
-    numbered(trials.len(), progress, |at| trials[at].run(options))
-}
-
 impl ModelOnRecord<'_> {
-    fn run(&self, options: &CompareOptions) -> Result<PredictedForces> {
+    /// What the model predicts for the record, one vector per force, and its scores, one per force and frequency.
+    pub(super) fn run(&self, options: &CompareOptions) -> Result<(Vec<Vec<f64>>, Vec<Score>)> {
         let record = self.record;
         let predicted = predicted_forces(self.model, record)?;
         let h = &record.header;
@@ -257,6 +239,6 @@ impl ModelOnRecord<'_> {
                 });
             }
         }
-        Ok(PredictedForces { predicted, scores })
+        Ok((predicted, scores))
     }
 }
