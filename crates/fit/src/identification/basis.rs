@@ -15,15 +15,9 @@ use nalgebra::{Complex, DMatrix, DVector};
 #[derive(Debug, Clone)]
 pub(crate) struct Basis {
     feed: FeedThrough,
-    chain: FilterKind,
-}
-
-#[derive(Debug, Clone)]
-enum FilterKind {
-    /// `Λ_l(p)`.
-    Orthonormal(FilterBank),
-    /// `p/(p + d_l)`.
-    Lags(Vec<f64>),
+    bank: FilterBank,
+    /// Whether its poles are those of lag terms `p/(p + d_l)` instead of `Λ_l(p)`.
+    lags: bool,
 }
 
 /// Filters in dimensionless time, `x' = A x + b r + b₁ r'`; their outputs are their states.
@@ -36,17 +30,14 @@ pub(crate) struct Filters {
 impl Basis {
     /// The basis of `form` with the poles `poles`, one per filter.
     pub(crate) fn new(form: &Form, poles: &[f64]) -> Result<Self> {
-        let orthonormal = || FilterBank::new(poles.to_vec()).map(FilterKind::Orthonormal);
-        let chain = match form {
+        let lags = match form {
             Form::Rational { .. } | Form::RationalPerForce { .. } | Form::MinimumState { .. } => {
-                FilterKind::Lags(FilterBank::new(poles.to_vec())?.poles().to_vec())
+                true
             }
-            Form::Laguerre { .. } | Form::TakenakaMalmquist { .. } => orthonormal()?,
+            Form::Laguerre { .. } | Form::TakenakaMalmquist { .. } => false,
         };
-        Ok(Self {
-            feed: form.feed_through(),
-            chain,
-        })
+        let basis = Self::orthonormal(form, poles)?;
+        Ok(Self { lags, ..basis })
     }
 
     /// Orthonormal filters that span the same space: for the search of poles, whose objective depends on the space
@@ -54,24 +45,19 @@ impl Basis {
     pub(crate) fn orthonormal(form: &Form, poles: &[f64]) -> Result<Self> {
         Ok(Self {
             feed: form.feed_through(),
-            chain: FilterKind::Orthonormal(FilterBank::new(poles.to_vec())?),
+            bank: FilterBank::new(poles.to_vec())?,
+            lags: false,
         })
     }
 
     /// Whether another basis has the same columns.
     pub(crate) fn same_columns(&self, other: &Self) -> bool {
-        let kind = std::mem::discriminant::<FilterKind>;
-        self.feed == other.feed
-            && kind(&self.chain) == kind(&other.chain)
-            && self.poles() == other.poles()
+        self.feed == other.feed && self.lags == other.lags && self.poles() == other.poles()
     }
 
     /// Poles of the filters.
     pub(crate) fn poles(&self) -> &[f64] {
-        match &self.chain {
-            FilterKind::Orthonormal(bank) => bank.poles(),
-            FilterKind::Lags(lags) => lags,
-        }
+        self.bank.poles()
     }
 
     pub(crate) fn feed(&self) -> FeedThrough {
@@ -87,48 +73,41 @@ impl Basis {
     pub(crate) fn columns(&self, p: Complex<f64>) -> Vec<Complex<f64>> {
         let powers = [Complex::new(1.0, 0.0), p, p * p];
         let mut columns: Vec<_> = self.feed.orders().map(|order| powers[order]).collect();
-        match &self.chain {
-            FilterKind::Orthonormal(bank) => columns.extend(bank.response(p)),
-            FilterKind::Lags(lags) => columns.extend(lags.iter().map(|d| p / (p + d))),
+        if self.lags {
+            columns.extend(self.poles().iter().map(|d| p / (p + d)));
+        } else {
+            columns.extend(self.bank.response(p));
         }
         columns
     }
 
     /// Value and slope `d/dp` of all columns at `p = 0`.
     pub(crate) fn at_zero(&self) -> [Vec<f64>; 2] {
-        let feed = |order: usize| {
-            self.feed
-                .orders()
-                .map(move |o| if o == order { 1.0 } else { 0.0 })
-        };
-        let (mut value, mut slope): (Vec<f64>, Vec<f64>) = (feed(0).collect(), feed(1).collect());
-        match &self.chain {
-            FilterKind::Orthonormal(bank) => {
-                // the logarithmic derivative of Λ_l: −1/π_l from its own pole, −2/π_j from every all-pass before it
-                let mut before = 0.0;
-                for (filter, pole) in bank
-                    .response(Complex::new(0.0, 0.0))
-                    .iter()
-                    .zip(bank.poles())
-                {
-                    value.push(filter.re);
-                    slope.push(filter.re * (before - 1.0 / pole));
-                    before -= 2.0 / pole;
-                }
-            }
-            FilterKind::Lags(lags) => {
-                value.extend(lags.iter().map(|_| 0.0));
-                slope.extend(lags.iter().map(|d| 1.0 / d));
-            }
+        let [mut value, mut slope] = [0, 1].map(|order| -> Vec<f64> {
+            let feed = self.feed.orders();
+            feed.map(|o| f64::from(u8::from(o == order))).collect()
+        });
+        if self.lags {
+            value.resize(self.len(), 0.0);
+            slope.extend(self.poles().iter().map(|d| 1.0 / d));
+            return [value, slope];
+        }
+        // the logarithmic derivative of Λ_l: −1/π_l from its own pole, −2/π_j from every all-pass before it
+        let mut before = 0.0;
+        let filters = self.bank.response(Complex::new(0.0, 0.0));
+        for (filter, pole) in filters.iter().zip(self.poles()) {
+            value.push(filter.re);
+            slope.push(filter.re * (before - 1.0 / pole));
+            before -= 2.0 / pole;
         }
         [value, slope]
     }
 
     /// Names of the columns as in the equations: `e0 … c0 …`, or `a1 … a4 …`.
     pub(crate) fn names(&self) -> Vec<String> {
-        let (feed, shift, filter, first) = match self.chain {
-            FilterKind::Orthonormal(_) => ("e", 0, "c", 0),
-            FilterKind::Lags(_) => ("a", 1, "a", 4),
+        let (feed, shift, filter, first) = match self.lags {
+            false => ("e", 0, "c", 0),
+            true => ("a", 1, "a", 4),
         };
         let filters = (0..self.poles().len()).map(|l| format!("{filter}{}", first + l));
         self.feed
@@ -140,50 +119,48 @@ impl Basis {
 
     /// The filters as a linear system driven by the motion.
     pub(crate) fn filters(&self) -> Filters {
-        match &self.chain {
-            FilterKind::Orthonormal(bank) => {
-                let (a, on_motion) = bank.matrices();
-                let on_rate = DVector::zeros(on_motion.len());
-                Filters {
-                    a,
-                    on_motion,
-                    on_rate,
-                }
-            }
+        let count = self.poles().len();
+        let (a, on_motion) = match self.lags {
             // (1.28), corrected: δ' = r' − d δ
-            FilterKind::Lags(lags) => Filters {
-                a: DMatrix::from_diagonal(&DVector::from_vec(lags.iter().map(|d| -d).collect())),
-                on_motion: DVector::zeros(lags.len()),
-                on_rate: DVector::from_element(lags.len(), 1.0),
-            },
+            true => {
+                let poles = DVector::from_fn(count, |l, _| -self.poles()[l]);
+                (DMatrix::from_diagonal(&poles), DVector::zeros(count))
+            }
+            false => self.bank.matrices(),
+        };
+        Filters {
+            a,
+            on_motion,
+            on_rate: DVector::from_element(count, f64::from(u8::from(self.lags))),
         }
     }
 }
 
-/// The model whose entry `(i, j)` has the poles `poles(i, j)` and the coefficients `coefficients[i][j]`, in the order
-/// of the columns of its basis.
+/// The model whose entries, row by row, have these poles and coefficients, in the order of the columns of their bases.
 ///
 /// # Errors
 /// Poles that are not positive, or a model that does not pass its own check.
 pub(crate) fn assemble(
     form: &Form,
     dofs: &[Dof],
-    poles: &[Vec<Vec<f64>>],
-    coefficients: &[Vec<Vec<f64>>],
+    poles: &[Vec<f64>],
+    coefficients: &[Vec<f64>],
 ) -> Result<Model> {
     let n = dofs.len();
     let feed = form.feed_through();
     let part = |order: usize| {
         let column = feed.orders().position(|o| o == order);
-        DMatrix::from_fn(n, n, |i, j| column.map_or(0.0, |c| coefficients[i][j][c]))
+        DMatrix::from_fn(n, n, |i, j| {
+            column.map_or(0.0, |c| coefficients[i * n + j][c])
+        })
     };
-    let filter = |i: usize, j: usize, l: usize| coefficients[i][j][feed.count() + l];
+    let filter = |i: usize, j: usize, l: usize| coefficients[i * n + j][feed.count() + l];
     if let Form::Rational { .. } | Form::RationalPerForce { .. } = form {
-        let count = poles[0][0].len();
+        let count = poles[0].len();
         let lags = if form.poles_per_force() {
-            Lags::PerForce(poles.iter().map(|row| row[0].clone()).collect())
+            Lags::PerForce(poles.iter().step_by(n).cloned().collect())
         } else {
-            Lags::Shared(poles[0][0].clone())
+            Lags::Shared(poles[0].clone())
         };
         let model = RationalModel {
             dofs: dofs.to_vec(),
@@ -203,7 +180,7 @@ pub(crate) fn assemble(
         e0: part(0),
         e1: part(1),
         e2: part(2),
-        terms: filter_terms(poles, &filter)?,
+        terms: filter_terms(n, poles, &filter)?,
     };
     model.validate()?;
     Ok(Model::Laguerre(model))
@@ -212,13 +189,13 @@ pub(crate) fn assemble(
 /// The filters of every input, with their coefficients `filter(force, input, l)`: one chain serves all forces that share
 /// its poles.
 fn filter_terms(
-    poles: &[Vec<Vec<f64>>],
+    n: usize,
+    poles: &[Vec<f64>],
     filter: &dyn Fn(usize, usize, usize) -> f64,
 ) -> Result<Vec<FilterTerm>> {
-    let n = poles.len();
     let mut terms = Vec::new();
     for input in 0..n {
-        let of_force: Vec<&Vec<f64>> = poles.iter().map(|row| &row[input]).collect();
+        let of_force: Vec<&Vec<f64>> = poles.iter().skip(input).step_by(n).collect();
         for (i, chain) in of_force.iter().enumerate() {
             if of_force[..i].contains(chain) {
                 continue;

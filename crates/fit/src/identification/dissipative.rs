@@ -29,7 +29,7 @@ mod report;
 use super::affine::{AffineMap, AffineSpace};
 use super::basis::Basis;
 use crate::error::{Error, Result};
-use condition::{Condition, ConditionRows};
+use condition::Condition;
 use conic::shortest;
 use edge::TestedRangeEnd;
 pub use equations::Constraints;
@@ -63,10 +63,9 @@ pub(crate) enum Strictness {
 
 /// The conditions on one model with given poles.
 pub(crate) struct Dissipation<'a> {
-    bases: &'a [Basis],
     k_max: f64,
     motions: Motions<'a>,
-    conditions: Vec<ConditionRows>,
+    conditions: Vec<Condition>,
     equations: Vec<Equation>,
 }
 
@@ -89,14 +88,12 @@ impl<'a> Dissipation<'a> {
         let mut conditions = Vec::new();
         if requirements.constraints == Constraints::Dissipative {
             for part in 0..motions.parts.len() {
-                let all = Condition::all(bases[0].feed(), requirements.k_max, part);
-                conditions.extend(all.into_iter().map(|c| ConditionRows::new(c, &motions)));
+                conditions.extend(Condition::all(&motions, requirements.k_max, part));
             }
         }
         Self {
             equations: equations(bases, motions.count, requirements),
             k_max: requirements.k_max,
-            bases,
             motions,
             conditions,
         }
@@ -104,7 +101,7 @@ impl<'a> Dissipation<'a> {
 
     /// The end of the tested range for every part, from the fit that the data alone give.
     fn edges(&self, alone: &[Vec<f64>]) -> Vec<TestedRangeEnd> {
-        let first = |part: usize| self.conditions.iter().find(|s| s.condition.part == part);
+        let first = |part: usize| self.conditions.iter().find(|s| s.part == part);
         (0..self.motions.parts.len())
             .filter_map(first)
             .map(|s| TestedRangeEnd::new(s.matrix(&self.motions, alone)))
@@ -129,7 +126,7 @@ impl<'a> Dissipation<'a> {
         let mut conditions = self.conditions.clone();
         let (mut free, mut coefficients) = (start.clone(), at_start.clone());
         let mut holds = vec![false; conditions.len()];
-        let broken = |s: &ConditionRows| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
+        let broken = |s: &Condition| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
         let mut more = match conditions.iter().any(broken) {
             true => None,
             false => Some(self.broken_between(&at_start, &edges, strictness)),
@@ -144,15 +141,14 @@ impl<'a> Dissipation<'a> {
                 return Ok(Some(solution));
             }
             conditions.extend(more.into_iter().flatten());
-            let cone = |s: &ConditionRows| {
-                let edge = &edges[s.condition.part];
+            let cone = |s: &Condition| {
+                let edge = &edges[s.part];
                 s.cone(&self.motions, entries, &at_start, edge, &equalities)
             };
             let cones: Vec<_> = conditions.iter().map(cone).collect();
-            let found = shortest(&cones, width)?;
-            free = start + found.w;
+            let (further, holding) = shortest(&cones, width)?;
+            (free, holds) = (start + further, holding);
             coefficients = entries.iter().map(|e| e.coefficients(&free)).collect();
-            holds = found.holds;
             more = Some(self.broken_between(&coefficients, &edges, strictness));
         }
         Err(Error::Numerical(format!(
@@ -166,16 +162,14 @@ impl<'a> Dissipation<'a> {
         coefficients: &[Vec<f64>],
         edges: &[TestedRangeEnd],
         strictness: Strictness,
-    ) -> Vec<ConditionRows> {
+    ) -> Vec<Condition> {
         if strictness == Strictness::Sampled {
             return Vec::new();
         }
         let mut all = Vec::new();
         for (part, edge) in edges.iter().enumerate() {
-            for k in self.broken_at(part, coefficients, edge) {
-                let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
-                all.push(ConditionRows::new(condition, &self.motions));
-            }
+            let ks = self.broken_at(part, coefficients, edge).into_iter();
+            all.extend(ks.map(|k| Condition::above(k, k / self.k_max, &self.motions, part)));
         }
         all
     }
@@ -183,20 +177,15 @@ impl<'a> Dissipation<'a> {
     /// Eigenvalues of a condition's matrix beyond what it may have, over its scale, and eigenvectors.
     fn excesses(
         &self,
-        conditions: &ConditionRows,
+        condition: &Condition,
         coefficients: &[Vec<f64>],
         edges: &[TestedRangeEnd],
     ) -> (DVector<f64>, DMatrix<f64>) {
-        let Condition {
-            scale,
-            margin,
-            own,
-            part,
-            ..
-        } = conditions.condition;
-        let beyond = conditions.matrix(&self.motions, coefficients) - &edges[part].own * own;
-        let eigen = SymmetricEigen::new(beyond / (edges[part].size * scale));
-        (eigen.eigenvalues.add_scalar(margin), eigen.eigenvectors)
+        let edge = &edges[condition.part];
+        let beyond = condition.matrix(&self.motions, coefficients) - &edge.own * condition.own;
+        let eigen = SymmetricEigen::new(beyond / (edge.size * condition.scale));
+        let excesses = eigen.eigenvalues.add_scalar(condition.margin);
+        (excesses, eigen.eigenvectors)
     }
 
     fn solution(
@@ -205,7 +194,7 @@ impl<'a> Dissipation<'a> {
         free: DVector<f64>,
         coefficients: Vec<Vec<f64>>,
         edges: &[TestedRangeEnd],
-        held: Vec<&ConditionRows>,
+        held: Vec<&Condition>,
         mut space: AffineSpace,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
@@ -237,21 +226,19 @@ impl<'a> Dissipation<'a> {
     /// The constraint that a condition is in one direction of its motions.
     fn active_constraint(
         &self,
-        conditions: &ConditionRows,
+        condition: &Condition,
         direction: &DVector<f64>,
         edges: &[TestedRangeEnd],
         alone: &[Vec<f64>],
         coefficients: &[Vec<f64>],
     ) -> ActiveConstraint {
-        let Condition {
-            kind, k, part, own, ..
-        } = conditions.condition;
+        let (part, own) = (condition.part, condition.own);
         let value =
-            |x: &[Vec<f64>]| direction.dot(&(conditions.matrix(&self.motions, x) * direction));
+            |x: &[Vec<f64>]| direction.dot(&(condition.matrix(&self.motions, x) * direction));
         let follows = (own > 0.0).then(|| edges[part].change(direction)).flatten();
         ActiveConstraint {
-            kind,
-            k,
+            kind: condition.kind,
+            k: condition.k,
             entry: None,
             direction: self.motions.whole(part, direction.as_slice()).data.into(),
             alone: value(alone),
@@ -266,18 +253,16 @@ impl<'a> Dissipation<'a> {
     /// Its gradient in the free numbers; none where it holds nothing but the growth that the tests end with.
     fn free_gradient(
         &self,
-        conditions: &ConditionRows,
+        condition: &Condition,
         constraint: &ActiveConstraint,
         entries: &[AffineMap],
     ) -> Option<DVector<f64>> {
         let v = DVector::from_column_slice(&constraint.direction);
-        let held = conditions.gradient(&self.motions, &(&v * v.transpose()), entries);
+        let held = condition.gradient(&self.motions, &(&v * v.transpose()), entries);
         let Some(limit) = &constraint.limit else {
             return Some(held);
         };
-        let part = conditions.condition.part;
-        let end = Condition::above(self.k_max, 1.0, self.bases[0].feed(), part);
-        let follows = ConditionRows::new(end, &self.motions);
+        let follows = Condition::above(self.k_max, 1.0, &self.motions, condition.part);
         let norm = held.norm();
         let free = held - follows.gradient(&self.motions, &limit.weights, entries);
         (free.norm() > NOTHING_HELD * norm).then_some(free)
@@ -285,9 +270,9 @@ impl<'a> Dissipation<'a> {
 }
 
 /// The conditions that hold something, in their order.
-fn held<'a>(conditions: &'a [ConditionRows], holds: &[bool]) -> Vec<&'a ConditionRows> {
+fn held<'a>(conditions: &'a [Condition], holds: &[bool]) -> Vec<&'a Condition> {
     let pairs = conditions.iter().zip(holds);
-    let mut held: Vec<&ConditionRows> = pairs.filter_map(|(s, held)| held.then_some(s)).collect();
-    held.sort_by(|a, b| a.condition.order(&b.condition));
+    let mut held: Vec<&Condition> = pairs.filter_map(|(s, held)| held.then_some(s)).collect();
+    held.sort_by(|a, b| a.order(b));
     held
 }

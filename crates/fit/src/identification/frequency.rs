@@ -20,7 +20,7 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use joint::{Joint, JointFit, by_noise};
-use poles::{choose_poles, choose_poles_together};
+use poles::choose_poles;
 use std::collections::BTreeMap;
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
@@ -122,7 +122,7 @@ fn fit_linear(
     tested: ReducedFrequencyRange,
 ) -> Result<FittedTable> {
     let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
-    let (poles, search) = choose_poles(entries, &forms, fit, tested)?;
+    let (poles, search) = choose_poles(entries, &forms, fit, tested, None)?;
     let mut reports = Vec::with_capacity(entries.len());
     for (entry, poles) in entries.iter().zip(&poles) {
         reports.push(fit_entry(entry, &fit.form, poles)?);
@@ -146,7 +146,7 @@ fn fit_linear(
     if bound.constrained.is_none() {
         return Ok(alone);
     }
-    let (poles, search) = choose_poles_together(&joint, &forms, fit, tested, poles)?;
+    let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&joint, poles)))?;
     let together = joint.at(&poles)?;
     let reports = constrained_reports(&together, entries, &poles)?;
     let model = model_of(dofs, fit, &reports)?;
@@ -172,13 +172,8 @@ fn fit_linear(
 
 /// The model that the accounts of its entries describe.
 fn model_of(dofs: &[Dof], fit: &FrequencyFit, reports: &[EntryReport]) -> Result<Model> {
-    let rows = || reports.chunks(dofs.len());
-    let poles: Vec<Vec<_>> = rows()
-        .map(|row| row.iter().map(|r| r.poles.clone()).collect())
-        .collect();
-    let values: Vec<Vec<_>> = rows()
-        .map(|row| row.iter().map(EntryReport::values).collect())
-        .collect();
+    let poles: Vec<Vec<f64>> = reports.iter().map(|r| r.poles.clone()).collect();
+    let values: Vec<Vec<f64>> = reports.iter().map(EntryReport::values).collect();
     assemble(&fit.form, dofs, &poles, &values)
 }
 

@@ -34,15 +34,11 @@ struct LagSearch<'a> {
     n: usize,
     states: usize,
     feed: FeedThrough,
-    /// Bounds of the search, or the lags that were given.
-    lags: SearchedLags,
+    /// The lags where they are given, and the bounds of their search where not.
+    given: Option<&'a Vec<f64>>,
+    bounds: Option<Bounds>,
     /// What is asked besides, once least squares alone are known.
     requirements: Option<FitRequirements>,
-}
-
-enum SearchedLags {
-    Within(Bounds),
-    Given(Vec<f64>),
 }
 
 /// Fits the minimum-state form to the entries of `G`.
@@ -62,24 +58,25 @@ pub(super) fn fit_minimum_state(
         n: dofs.len(),
         states,
         feed: fit.form.feed_through(),
-        lags: match &fit.poles.fixed {
-            Some(fixed) => SearchedLags::Given(fixed.clone()),
-            None => SearchedLags::Within(Bounds::resolve(&fit.poles, tested, &fit.form)?),
+        given: fit.poles.fixed.as_ref(),
+        bounds: match fit.poles.fixed {
+            Some(_) => None,
+            None => Some(Bounds::resolve(&fit.poles, tested, &fit.form)?),
         },
         requirements: None,
     };
     let (best, points) = task.search(fit)?;
-    let search = match &task.lags {
-        SearchedLags::Given(_) => Vec::new(),
-        SearchedLags::Within(bounds) => vec![SearchReport {
+    let mut search = Vec::new();
+    if let Some(bounds) = task.bounds {
+        search.push(SearchReport {
             entry: None,
             force: None,
             min: bounds.min,
             max: bounds.max,
             chosen: best_of(&points)?,
             points,
-        }],
-    };
+        });
+    }
     let (alone, _) = task.finish(dofs, &best, search)?;
     if fit.constraints == Constraints::None {
         return Ok(alone);
@@ -94,10 +91,7 @@ impl LagSearch<'_> {
         let mut points = Vec::new();
         let mut best: Option<(f64, Vec<f64>)> = None;
         for start in self.starts(fit)? {
-            let mut at = DVector::from_vec(start);
-            for _ in 0..ROUNDS {
-                at = descend(at, &|x| self.residuals(x).ok());
-            }
+            let at = self.descended(start);
             let Ok(residuals) = self.residuals(at.as_slice()) else {
                 continue;
             };
@@ -121,6 +115,12 @@ impl LagSearch<'_> {
         ))
     }
 
+    /// Where descents that follow each other end.
+    fn descended(&self, start: Vec<f64>) -> DVector<f64> {
+        let again = |at, _| descend(at, &|x| self.residuals(x).ok());
+        (0..ROUNDS).fold(DVector::from_vec(start), again)
+    }
+
     /// Points of the search: variables of the lags, if they are searched, then `E` row by row.
     fn starts(&self, fit: &FrequencyFit) -> Result<Vec<Vec<f64>>> {
         let roger = Form::Rational {
@@ -128,29 +128,16 @@ impl LagSearch<'_> {
             added_mass: self.feed.e2,
         };
         let mut lags = Vec::new();
-        match &self.lags {
-            SearchedLags::Given(given) => lags.push(given.clone()),
-            SearchedLags::Within(bounds) => {
-                let evenly = vec![0.0; self.states];
-                if let Some(start) = &fit.poles.start {
-                    lags.push(start.clone());
-                } else {
-                    let residuals = |poles: &[f64]| self.residuals_of_roger(&roger, poles);
-                    if let Ok(found) =
-                        search_poles(self.states, &fit.poles, *bounds, None, &residuals)
-                    {
-                        lags.push(found.chosen.poles);
-                    }
-                    lags.push(bounds.poles(&evenly));
-                }
-            }
+        lags.extend(self.given.or(fit.poles.start.as_ref()).cloned());
+        if let Some(bounds) = self.bounds.filter(|_| lags.is_empty()) {
+            let residuals = |poles: &[f64]| self.residuals_of_roger(&roger, poles);
+            let found = search_poles(self.states, &fit.poles, bounds, None, &residuals);
+            lags.extend(found.ok().map(|found| found.chosen.poles));
+            lags.push(bounds.poles(&vec![0.0; self.states]));
         }
         let mut starts = Vec::new();
         for lags in &lags {
-            let variables = match &self.lags {
-                SearchedLags::Given(_) => Vec::new(),
-                SearchedLags::Within(bounds) => bounds.free(lags),
-            };
+            let variables = self.bounds.map_or_else(Vec::new, |b| b.free(lags));
             let mut push = |e: Vec<f64>| starts.push([variables.clone(), e].concat());
             if let Ok(e) = self.rank_one(&roger, lags) {
                 push(e);
@@ -203,10 +190,8 @@ impl LagSearch<'_> {
     }
 
     fn lags_at(&self, x: &[f64]) -> Vec<f64> {
-        match &self.lags {
-            SearchedLags::Given(lags) => lags.clone(),
-            SearchedLags::Within(bounds) => bounds.poles(&x[..self.states]),
-        }
+        let searched = || self.bounds.map(|b| b.poles(&x[..self.states]));
+        self.given.cloned().or_else(searched).unwrap_or_default()
     }
 
     /// `E`, m×n.

@@ -14,7 +14,7 @@ use super::time::continuous::{RecordFit, Rows, padded};
 use super::time::fitted::FittedSystems;
 use super::time::pass::OnProgress;
 use super::time::record::{DimensionlessRecord, Records};
-use super::time::search::{ChosenPoles, PASSES, choose_poles};
+use super::time::search::{EntryPoles, PASSES, choose_poles};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
@@ -59,9 +59,8 @@ pub fn fit_records(
         progress,
     };
     // what the tests do not determine fails in the search of poles, in words that say nothing of it
-    let poles = choose_poles(&task, spanned).map_err(|e| task.too_few_numbers(e))?;
-    let fits = task.least_squares_at(&poles)?;
-    let (found, search, constraints) = task.under_constraints(fits, poles)?;
+    let chosen = choose_poles(&task, spanned).map_err(|e| task.too_few_numbers(e))?;
+    let (found, search, constraints) = task.under_constraints(chosen)?;
     let model = found.model()?;
     let entries = found.reports()?;
     let mut report = FitReport {
@@ -105,9 +104,8 @@ impl<'a> RecordFit<'a> {
 
     /// The pass over every sample, then least squares: a fit at the unconstrained poles and, where the constrained ones
     /// are others, one at those.
-    fn least_squares_at(&'a self, poles: &ChosenPoles) -> Result<Vec<FitAtPoles<'a>>> {
-        let mut sets = vec![poles.unconstrained.chains.clone()];
-        sets.extend(poles.constrained.as_ref().map(|c| c.chains.clone()));
+    fn least_squares_at(&'a self, chosen: &[EntryPoles]) -> Result<Vec<FitAtPoles<'a>>> {
+        let mut sets: Vec<Vec<Vec<f64>>> = chosen.iter().map(|c| c.chains.clone()).collect();
         sets.dedup();
         let feed = self.fit.form.feed_through().count();
         let longest = sets.iter().flatten().map(Vec::len).max().unwrap_or(0);
@@ -148,37 +146,32 @@ impl<'a> RecordFit<'a> {
         sets.into_iter().zip(counts).map(fit).collect()
     }
 
-    /// The fit that is wanted, made of those of [`RecordFit::least_squares_at`]: by least squares alone or, where
+    /// The fit that is wanted, of those at the poles that were chosen without constraints and, where some are asked for, under them: by least squares alone or, where
     /// constraints are asked for and bind, under them; with the search that led there and what the constraints cost.
     fn under_constraints(
-        &self,
-        fits: Vec<FitAtPoles<'a>>,
-        poles: ChosenPoles,
+        &'a self,
+        mut chosen: Vec<EntryPoles>,
     ) -> Result<(FitAtPoles<'a>, Vec<SearchReport>, Option<ConstraintReport>)> {
-        let ChosenPoles {
-            unconstrained,
-            constrained,
-            requirements,
-        } = poles;
-        let mut fits = fits.into_iter();
+        let (dofs, asked) = (&self.records.dofs, chosen.len() > 1);
+        let requirements = self.fit.requirements(dofs, self.records.spanned_range()?)?;
+        let mut fits = self.least_squares_at(&chosen)?.into_iter();
         let none = || Error::Numerical("fit to records: no fit".into());
         let mut found = fits.next().ok_or_else(none)?;
         let (reports, model, bases) = (found.reports()?, found.model()?, found.bases()?);
-        if constrained.is_some() {
+        if asked {
             found.fitted.constrain(&bases, &requirements)?;
         }
-        let Some(constrained) = constrained.filter(|_| found.fitted.active().is_some()) else {
-            return Ok((found, unconstrained.search, None));
-        };
+        if found.fitted.active().is_none() {
+            return Ok((found, chosen.swap_remove(0).search, None));
+        }
         if let Some(other) = fits.next() {
             found = other;
             found.fitted.constrain(&found.bases()?, &requirements)?;
         }
         let active = found.fitted.active().unwrap_or_default();
         let with = found.reports()?;
-        let dofs = &self.records.dofs;
         let constraints = ConstraintReport::new(active, dofs, &reports, &bases, &with, model);
-        Ok((found, constrained.search, Some(constraints)))
+        Ok((found, chosen.swap_remove(1).search, Some(constraints)))
     }
 }
 
@@ -197,16 +190,10 @@ impl FitAtPoles<'_> {
     }
 
     fn model(&self) -> Result<Model> {
-        let n = self.task.records.dofs.len();
-        let chains: Vec<_> = self.chains.chunks(n).map(<[_]>::to_vec).collect();
-        let row = |i| (0..n).map(|j| self.fitted.values(i, j)).collect();
-        let values: Vec<Vec<Vec<f64>>> = (0..n).map(row).collect();
-        assemble(
-            &self.task.fit.form,
-            &self.task.records.dofs,
-            &chains,
-            &values,
-        )
+        let (form, dofs) = (&self.task.fit.form, &self.task.records.dofs);
+        let of_entry = |e| self.fitted.values(e / dofs.len(), e % dofs.len());
+        let values: Vec<Vec<f64>> = (0..self.chains.len()).map(of_entry).collect();
+        assemble(form, dofs, &self.chains, &values)
     }
 
     fn reports(&self) -> Result<Vec<EntryReport>> {

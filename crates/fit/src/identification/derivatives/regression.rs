@@ -1,7 +1,7 @@
 //! Least squares at one test point, and the standard errors of its solution.
 
 use super::result::{DerivativeEstimate, IdentifiedDerivatives};
-use super::test_points::{CROSS_TALK, RunSamples, TestRun};
+use super::test_points::{CROSS_TALK, TestRun};
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Error, Result, ensure};
 use crate::identification::least_squares::{Factor, StreamingQr};
@@ -59,11 +59,11 @@ impl<'a> TestPointEquations<'a> {
         let columns = 2 * active.len() + 2 * group.len();
         let (mut rows, mut grams, mut forces) = (Vec::new(), Vec::new(), Vec::new());
         for (run, stretch) in group.iter().enumerate() {
-            let samples = stretch.samples()?;
-            let z = regressors(&samples, run, &active, columns);
+            let (motion, force) = stretch.samples()?;
+            let z = regressors(&motion, force[0].len(), run, &active, columns);
             grams.push(z.tr_mul(&z));
             rows.push(z);
-            forces.push(samples.force);
+            forces.push(force);
         }
         Ok(Self {
             dofs,
@@ -202,12 +202,17 @@ impl<'a> TestPointEquations<'a> {
 }
 
 /// Rows of one run: motions and rates, then its own constant and trend.
-fn regressors(s: &RunSamples, run: usize, active: &[usize], columns: usize) -> DMatrix<f64> {
-    let count = s.force[0].len();
+fn regressors(
+    motion: &[[Vec<f64>; 2]],
+    count: usize,
+    run: usize,
+    active: &[usize],
+    columns: usize,
+) -> DMatrix<f64> {
     let middle = 0.5 * (count as f64 - 1.0);
     DMatrix::from_fn(count, columns, |k, c| {
         if c < 2 * active.len() {
-            return s.motion[active[c / 2]][c % 2][k];
+            return motion[active[c / 2]][c % 2][k];
         }
         match c - 2 * active.len() {
             own if own == 2 * run => 1.0,

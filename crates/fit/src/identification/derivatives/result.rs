@@ -86,33 +86,18 @@ impl DerivativeEstimate {
             && self.v_hat == other.v_hat
             && self.mean_speed_m_s == other.mean_speed_m_s
     }
-}
 
-/// Two runs of one test point.
-#[derive(Clone, Copy)]
-struct RunContradiction<'a> {
-    first: &'a DerivativeEstimate,
-    second: &'a DerivativeEstimate,
-    /// Their difference over what runs may differ by.
-    apart: f64,
-}
-
-impl<'a> RunContradiction<'a> {
-    fn new(first: &'a DerivativeEstimate, second: &'a DerivativeEstimate, largest: f64) -> Self {
-        let error = first.standard_error.hypot(second.standard_error);
+    /// Its difference from another run over what runs may differ by, where the greatest magnitude of the derivative is `largest`.
+    fn apart(&self, other: &Self, largest: f64) -> f64 {
+        let error = self.standard_error.hypot(other.standard_error);
         let allowed = (RUNS_DIFFER * largest).max(4.0 * error);
         // forces per motion, for a derivative goes with the square of the reduced velocity
-        let second_value = second.value * (first.v_hat / second.v_hat).powi(2);
-        let apart = (first.value - second_value).abs() / allowed;
-        Self {
-            first,
-            second,
-            apart,
-        }
+        let other_value = other.value * (self.v_hat / other.v_hat).powi(2);
+        (self.value - other_value).abs() / allowed
     }
 
-    fn explain(&self) -> String {
-        let (a, b) = (self.first, self.second);
+    fn contradiction(&self, other: &Self) -> String {
+        let (a, b) = (self, other);
         format!(
             "runs {} and {} are of one test point and contradict each other: {} at {:.3} Hz is {:.4} ± {:.4} and {:.4} ± {:.4}; the table has \
              both, as they are or as their mean",
@@ -192,28 +177,21 @@ impl IdentifiedDerivatives {
 
     /// Runs of one test point that contradict each other, of each pair what differs most: their mean is no better than the worse of them.
     pub fn contradictions(&self) -> Vec<String> {
-        let mut worst = BTreeMap::<[&str; 2], RunContradiction<'_>>::new();
+        let mut worst = BTreeMap::<[&str; 2], (f64, [&DerivativeEstimate; 2])>::new();
         for (i, a) in self.estimates.iter().enumerate() {
-            for b in self.estimates[i + 1..]
-                .iter()
-                .filter(|b| a.is_tested_again(b))
-            {
-                let found = RunContradiction::new(a, b, self.largest(a.derivative));
+            let magnitudes = self.each(a.derivative).map(|e| e.value.abs());
+            let largest = magnitudes.fold(0.0, f64::max);
+            let later = self.estimates[i + 1..].iter();
+            for b in later.filter(|b| a.is_tested_again(b)) {
+                let found = (a.apart(b, largest), [a, b]);
                 let pair = worst.entry([&a.run, &b.run]).or_insert(found);
-                if found.apart > pair.apart {
+                if found.0 > pair.0 {
                     *pair = found;
                 }
             }
         }
-        worst.retain(|_, found| found.apart > 1.0);
-        worst.values().map(RunContradiction::explain).collect()
-    }
-
-    /// Greatest magnitude of a derivative.
-    fn largest(&self, derivative: Derivative) -> f64 {
-        self.each(derivative)
-            .map(|e| e.value.abs())
-            .fold(0.0, f64::max)
+        let worst = worst.into_values().filter(|(apart, _)| *apart > 1.0);
+        worst.map(|(_, [a, b])| a.contradiction(b)).collect()
     }
 
     pub(super) fn sort(&mut self) {

@@ -42,14 +42,6 @@ pub(super) struct TestRun {
     fits: Vec<HarmonicFit>,
 }
 
-/// What a run says at each sample, without dimensions.
-pub(super) struct RunSamples {
-    /// `r_j` and `r_j'/K`.
-    pub motion: Vec<[Vec<f64>; 2]>,
-    /// `q_i`.
-    pub force: Vec<Vec<f64>>,
-}
-
 impl TestRun {
     /// A warning of a motion that is sampled so rarely that its harmonics, or those of the force, show as one another.
     fn few_samples(&self) -> Option<String> {
@@ -62,11 +54,11 @@ impl TestRun {
         })
     }
 
-    /// Its samples; only the harmonics of the motion, which alone is free of noise.
+    /// What it says at each sample, without dimensions: `r_j` and `r_j'/K`, of which only the harmonics are free of noise, and `q_i`.
     ///
     /// # Errors
     /// [`Error::Io`] for long records whose file cannot be read any more.
-    pub(super) fn samples(&self) -> Result<RunSamples> {
+    pub(super) fn samples(&self) -> Result<(Vec<[Vec<f64>; 2]>, Vec<Vec<f64>>)> {
         let header = &self.header;
         let (n, rate) = (header.dofs.len(), header.sampling_hz);
         let omega = std::f64::consts::TAU * self.frequency_hz;
@@ -85,10 +77,7 @@ impl TestRun {
             let factor = 1.0 / (pressure * dof.force_scale(header.width_m));
             force.iter_mut().for_each(|f| *f *= factor);
         }
-        Ok(RunSamples {
-            motion: (0..n).map(motion_of).collect(),
-            force,
-        })
+        Ok(((0..n).map(motion_of).collect(), force))
     }
 }
 

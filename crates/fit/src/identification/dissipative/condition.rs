@@ -5,8 +5,6 @@ use super::edge::TestedRangeEnd;
 use super::motions::Motions;
 use super::report::ConstraintKind;
 use crate::identification::affine::{AffineMap, AffineSpace};
-use crate::identification::basis::Basis;
-use crate::identification::form::FeedThrough;
 use nalgebra::{DMatrix, DVector};
 use std::cmp::Ordering;
 
@@ -20,7 +18,7 @@ const FAST_MARGIN: f64 = 1e-3;
 const MARGIN: f64 = 1e-6;
 
 /// One matrix `M`, linear in the coefficients, with `−sym M ⪰ margin · I`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Condition {
     pub kind: ConstraintKind,
     /// Which motions it holds together.
@@ -32,45 +30,62 @@ pub(super) struct Condition {
     pub margin: f64,
     /// Share of the growth of the tests that is left here: `(K_max/K)²`.
     pub own: f64,
+    /// What a transfer function of each distinct basis contributes, over its columns.
+    rows: Vec<Vec<f64>>,
 }
 
 impl Condition {
     /// All conditions on one part of the motions, condition 3 at `K_max` first.
-    pub(super) fn all(feed: FeedThrough, k_max: f64, part: usize) -> Vec<Self> {
+    pub(super) fn all(motions: &Motions<'_>, k_max: f64, part: usize) -> Vec<Self> {
+        let feed = motions.distinct[0].feed();
         let step = REACH.ln() / (SAMPLES as f64 - 1.0);
         let mut all: Vec<Self> = (0..SAMPLES)
             .map(|i| {
                 let ratio = (step * i as f64).exp();
-                Self::above(k_max * ratio, ratio, feed, part)
+                Self::above(k_max * ratio, ratio, motions, part)
             })
             .collect();
-        let limits = [
-            (ConstraintKind::FastMotion, feed.e1, 1.0, FAST_MARGIN),
-            (ConstraintKind::AddedMass, feed.e2, 1.0 / k_max, MARGIN),
-        ];
-        for (kind, _, scale, margin) in limits.into_iter().filter(|l| l.1) {
-            all.push(Self {
-                kind,
-                part,
-                k: None,
-                scale,
-                margin,
-                own: 0.0,
-            });
-        }
+        let added_mass = || Self {
+            scale: 1.0 / k_max,
+            margin: MARGIN,
+            ..Self::limit(ConstraintKind::AddedMass, motions, part)
+        };
+        all.extend(
+            feed.e1
+                .then(|| Self::limit(ConstraintKind::FastMotion, motions, part)),
+        );
+        all.extend(feed.e2.then(added_mass));
         all
     }
 
     /// Condition 3 at one `K`, `ratio` times the highest tested one.
-    pub(super) fn above(k: f64, ratio: f64, feed: FeedThrough, part: usize) -> Self {
+    pub(super) fn above(k: f64, ratio: f64, motions: &Motions<'_>, part: usize) -> Self {
+        let kind = ConstraintKind::AboveTestedRange;
         Self {
-            kind: ConstraintKind::AboveTestedRange,
-            part,
             k: Some(k),
             // without e₁ the filters alone are left, which fade
-            scale: if feed.e1 { 1.0 } else { ratio.powi(-2) },
+            scale: if motions.distinct[0].feed().e1 {
+                1.0
+            } else {
+                ratio.powi(-2)
+            },
             margin: MARGIN,
             own: ratio.powi(-2),
+            rows: rows(kind, Some(k), motions),
+            ..Self::limit(kind, motions, part)
+        }
+    }
+
+    /// A condition in the limit of fast motion.
+    pub(super) fn limit(kind: ConstraintKind, motions: &Motions<'_>, part: usize) -> Self {
+        Self {
+            kind,
+            part,
+            k: None,
+            scale: 1.0,
+            margin: FAST_MARGIN,
+            own: 0.0,
+            rows: rows(kind, None, motions),
         }
     }
 
@@ -80,27 +95,10 @@ impl Condition {
         let parts = self.part.cmp(&other.part);
         parts.then(at(self).total_cmp(&at(other)))
     }
-}
-
-/// A condition with what a transfer function of each distinct basis contributes, as a row over its columns.
-#[derive(Debug, Clone)]
-pub(super) struct ConditionRows {
-    pub condition: Condition,
-    pub rows: Vec<Vec<f64>>,
-}
-
-impl ConditionRows {
-    pub(super) fn new(condition: Condition, motions: &Motions<'_>) -> Self {
-        let row = |basis: &&Basis| condition.kind.row(condition.k, basis);
-        Self {
-            rows: motions.distinct.iter().map(row).collect(),
-            condition,
-        }
-    }
 
     /// Symmetric part of `M` in the motions of its part.
     pub(super) fn matrix(&self, motions: &Motions<'_>, coefficients: &[Vec<f64>]) -> DMatrix<f64> {
-        let part = &motions.parts[self.condition.part];
+        let part = &motions.parts[self.part];
         let full = DMatrix::from_fn(part.len(), part.len(), |i, j| {
             let e = part[i] * motions.count + part[j];
             let row = &self.rows[motions.basis_of[e]];
@@ -140,18 +138,11 @@ impl ConditionRows {
         edge: &TestedRangeEnd,
         equalities: &AffineSpace,
     ) -> Cone {
-        let Condition {
-            part,
-            scale,
-            margin,
-            own,
-            ..
-        } = self.condition;
         let n = motions.count;
-        let held = &motions.parts[part];
+        let held = &motions.parts[self.part];
         let size = held.len();
-        let floor = DMatrix::identity(size, size) * (margin * scale * edge.size);
-        let room = &edge.own * own - floor - self.matrix(motions, start);
+        let floor = DMatrix::identity(size, size) * (self.margin * self.scale * edge.size);
+        let room = &edge.own * self.own - floor - self.matrix(motions, start);
         let gradient = |i: usize, j: usize| {
             let mut weights = DMatrix::zeros(n, n);
             weights[(held[i], held[j])] += 0.5;
@@ -168,4 +159,9 @@ impl ConditionRows {
             [room[(0, 0)], room[(1, 1)], room[(0, 1)]],
         )
     }
+}
+
+fn rows(kind: ConstraintKind, k: Option<f64>, motions: &Motions<'_>) -> Vec<Vec<f64>> {
+    let distinct = motions.distinct.iter();
+    distinct.map(|basis| kind.row(k, basis)).collect()
 }

@@ -5,28 +5,21 @@
 //! scaling and Mehrotra's corrector (Vandenberghe, *The CVXOPT linear and quadratic cone program solvers*, 2010) takes some
 //! fifteen steps whatever the number of inequalities that hold the answer, each a Cholesky factor of the size of the vector.
 
-mod cone;
 mod interior_point;
 mod second_order;
 
-pub(super) use cone::Cone;
+pub(super) use second_order::Cone;
 
 use crate::error::Result;
 use interior_point::{Problem, contradiction};
 use nalgebra::DVector;
 use second_order::{Vector, tail};
 
-/// The shortest vector, and which cones hold it.
-pub(super) struct Shortest {
-    pub w: DVector<f64>,
-    pub holds: Vec<bool>,
-}
-
-/// The shortest `w` of `size` numbers in all cones.
+/// The shortest `w` of `size` numbers in all cones, and which of them hold it.
 ///
 /// # Errors
 /// [`Error::Numerical`](crate::Error::Numerical) for cones that have nothing in common.
-pub(super) fn shortest(cones: &[Cone], size: usize) -> Result<Shortest> {
+pub(super) fn shortest(cones: &[Cone], size: usize) -> Result<(DVector<f64>, Vec<bool>)> {
     let unit: Vec<Cone> = cones
         .iter()
         .map(|c| c.scaled(c.size().max(f64::MIN_POSITIVE).recip()))
@@ -40,10 +33,7 @@ pub(super) fn shortest(cones: &[Cone], size: usize) -> Result<Shortest> {
         return Err(contradiction());
     }
     if furthest == 0.0 {
-        return Ok(Shortest {
-            w: DVector::zeros(size),
-            holds: vec![false; cones.len()],
-        });
+        return Ok((DVector::zeros(size), vec![false; cones.len()]));
     }
     // numbers that no cone looks at stay zero
     let seen: Vec<usize> = (0..size)
@@ -56,10 +46,8 @@ pub(super) fn shortest(cones: &[Cone], size: usize) -> Result<Shortest> {
         w[c] = x * furthest;
     }
     let holds = |(s, z): (&Vector, &Vector)| s[0] - tail(s) < z[0] + tail(z);
-    Ok(Shortest {
-        w,
-        holds: point.s.iter().zip(&point.z).map(holds).collect(),
-    })
+    let holds = point.s.iter().zip(&point.z).map(holds).collect();
+    Ok((w, holds))
 }
 
 #[cfg(test)]
@@ -78,19 +66,19 @@ mod tests {
         let y = Cone::half_space(vector(&[0.0, -1.0]), -2.0);
         let sum = Cone::half_space(vector(&[-1.0, -1.0]), -1.0);
         let found = shortest(&[x, y, sum.clone()], 2).unwrap();
-        assert!((found.w - vector(&[1.0, 2.0])).amax() < 1e-12);
-        assert_eq!(found.holds, [true, true, false]);
+        assert!((found.0 - vector(&[1.0, 2.0])).amax() < 1e-12);
+        assert_eq!(found.1, [true, true, false]);
         let found = shortest(std::slice::from_ref(&sum), 2).unwrap();
-        assert!((found.w - vector(&[0.5, 0.5])).amax() < 1e-12);
+        assert!((found.0 - vector(&[0.5, 0.5])).amax() < 1e-12);
         let found = shortest(&[Cone::half_space(vector(&[1.0, 0.0]), 3.0)], 2).unwrap();
-        assert!(found.w.amax() == 0.0 && found.holds == [false]);
+        assert!(found.0.amax() == 0.0 && found.1 == [false]);
         // 1e-7 in size: as exact as at one
         let tiny = [
             Cone::half_space(vector(&[-2.0, 0.0]), -2e-7),
             Cone::half_space(vector(&[0.0, -1.0]), -2e-7),
         ];
         let found = shortest(&tiny, 2).unwrap();
-        assert!((found.w - vector(&[1e-7, 2e-7])).amax() < 1e-19);
+        assert!((found.0 - vector(&[1e-7, 2e-7])).amax() < 1e-19);
     }
 
     /// The symmetric matrix nearest to a given one with no positive eigenvalue is its negative part (Higham 1988).
@@ -105,7 +93,7 @@ mod tests {
                 [one(0), one(1), one(2) * root],
                 [-given[0], -given[1], -given[2]],
             );
-            let w = shortest(&[cone], 3).unwrap().w;
+            let w = shortest(&[cone], 3).unwrap().0;
             let matrix = DMatrix::from_row_slice(2, 2, &[given[0], given[2], given[2], given[1]]);
             let mut eigen = matrix.symmetric_eigen();
             eigen.eigenvalues.apply(|x| *x = x.min(0.0));

@@ -6,7 +6,7 @@
 //! eigenvalue of `H` changes its sign.
 
 use super::Dissipation;
-use super::condition::{Condition, ConditionRows};
+use super::condition::Condition;
 use super::edge::TestedRangeEnd;
 use super::report::ConstraintKind;
 use crate::state_space::{eigenvalues, golden_section};
@@ -70,9 +70,8 @@ impl Dissipation<'_> {
         coefficients: &[Vec<f64>],
         edge: &TestedRangeEnd,
     ) -> f64 {
-        let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
-        let conditions = ConditionRows::new(condition, &self.motions);
-        let beyond = conditions.matrix(&self.motions, coefficients) - &edge.own * condition.own;
+        let condition = Condition::above(k, k / self.k_max, &self.motions, part);
+        let beyond = condition.matrix(&self.motions, coefficients) - &edge.own * condition.own;
         SymmetricEigen::new(beyond / edge.size).eigenvalues.max()
     }
 
@@ -85,12 +84,8 @@ impl Dissipation<'_> {
     ) -> Option<Vec<f64>> {
         let motions = &self.motions.parts[part];
         let n = motions.len();
-        let fast = Condition {
-            kind: ConstraintKind::FastMotion,
-            k: None,
-            ..Condition::above(self.k_max, 1.0, self.bases[0].feed(), part)
-        };
-        let e1 = ConditionRows::new(fast, &self.motions).matrix(&self.motions, coefficients);
+        let fast = Condition::limit(ConstraintKind::FastMotion, &self.motions, part);
+        let e1 = fast.matrix(&self.motions, coefficients);
         let inverse = e1.try_inverse()?;
         let filters: usize = self.motions.distinct.iter().map(|b| b.poles().len()).sum();
         let states = n * (filters + 1);

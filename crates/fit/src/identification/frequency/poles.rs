@@ -4,12 +4,11 @@ use super::joint::Joint;
 use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
-use crate::identification::form::PoleSearch;
 use crate::identification::frequency_options::FrequencyFit;
 use crate::identification::own::{EntryForm, search_for, searched_together};
 use crate::identification::report::SearchReport;
 use crate::identification::samples::{EntrySamples, shares};
-use crate::identification::search::{Bounds, PoleResiduals, search_poles};
+use crate::identification::search::{Bounds, search_poles};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DVector;
 
@@ -26,56 +25,29 @@ fn searched(forms: &[EntryForm], fit: &FrequencyFit) -> Result<(Vec<EntryForm>, 
     Ok((forms, groups))
 }
 
-/// Poles of every entry, one per filter, and how they were found.
+/// Poles of every entry, one per filter, and how they were found: of every group of entries for itself, or, `together` at given
+/// poles, over the residuals of all entries under their constraints. Groups are then searched one after the other, each from where
+/// it is best without constraints, and twice.
 pub(super) fn choose_poles(
     entries: &[EntrySamples],
     forms: &[EntryForm],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
+    together: Option<(&Joint<'_>, Vec<Vec<f64>>)>,
 ) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
     let (forms, groups) = searched(forms, fit)?;
     let stated = |f: &EntryForm| f.fixed.as_ref().map(|fixed| f.form.expand(fixed));
-    let mut poles: Vec<Vec<f64>> = forms
-        .iter()
-        .map(|f| stated(f).unwrap_or_default())
-        .collect();
+    let stated = || forms.iter().map(|f| stated(f).unwrap_or_default());
+    let (joint, poles) = together.unzip();
+    let mut poles = poles.unwrap_or_else(|| stated().collect());
+    let in_turn = joint.is_some() && groups.len() > 1;
     let mut reports = Vec::new();
-    for members in groups {
-        let form = &forms[members[0]].form;
-        let group: Vec<&EntrySamples> = members.iter().map(|&e| &entries[e]).collect();
-        let residuals = |free: &[f64]| relative_residuals(&group, form, &form.expand(free));
-        let options = search_for(&fit.poles, form);
-        reports.push(search_group(
-            &group,
-            &forms[members[0]],
-            &options,
-            tested,
-            &residuals,
-        )?);
-        for e in members {
-            poles[e] = form.expand(&reports[reports.len() - 1].chosen.poles);
-        }
-    }
-    Ok((poles, reports))
-}
-
-/// The same over the residuals of all entries under their constraints. Groups are searched one after the other, each
-/// from where it is best without constraints, and twice.
-pub(super) fn choose_poles_together(
-    joint: &Joint<'_>,
-    forms: &[EntryForm],
-    fit: &FrequencyFit,
-    tested: ReducedFrequencyRange,
-    mut poles: Vec<Vec<f64>>,
-) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
-    let (forms, groups) = searched(forms, fit)?;
-    let rounds = if groups.len() > 1 { 2 } else { 1 };
-    let mut reports = Vec::new();
-    for _ in 0..rounds {
+    for _ in 0..=usize::from(in_turn) {
         reports.clear();
         for members in &groups {
-            let form = &forms[members[0]].form;
-            let group: Vec<&EntrySamples> = members.iter().map(|&e| &joint.entries[e]).collect();
+            let of = &forms[members[0]];
+            let form = &of.form;
+            let group: Vec<&EntrySamples> = members.iter().map(|&e| &entries[e]).collect();
             let at = |free: &[f64]| {
                 let mut all = poles.clone();
                 for &e in members {
@@ -83,34 +55,24 @@ pub(super) fn choose_poles_together(
                 }
                 all
             };
-            let residuals = |free: &[f64]| joint.residuals(&at(free));
+            let residuals = |free: &[f64]| match joint {
+                Some(joint) => joint.residuals(&at(free)),
+                None => relative_residuals(&group, form, &form.expand(free)),
+            };
             let mut options = search_for(&fit.poles, form);
-            if groups.len() > 1 {
+            if in_turn {
                 options.start = Some(form.collapse(&poles[members[0]]));
             }
-            let first = &forms[members[0]];
-            let report = search_group(&group, first, &options, tested, &residuals)?;
+            let bounds = Bounds::resolve(&options, tested, form)?;
+            let name = of.alone.then(|| (group[0].force, group[0].motion));
+            let count = form.free_poles();
+            let mut report = search_poles(count, &options, bounds, name, &residuals)?;
+            report.force = form.poles_per_force().then_some(group[0].force);
             poles = at(&report.chosen.poles);
             reports.push(report);
         }
     }
     Ok((poles, reports))
-}
-
-/// Searches the poles that a group of entries shares.
-fn search_group(
-    group: &[&EntrySamples],
-    of: &EntryForm,
-    options: &PoleSearch,
-    tested: ReducedFrequencyRange,
-    residuals: PoleResiduals<'_>,
-) -> Result<SearchReport> {
-    let form = &of.form;
-    let bounds = Bounds::resolve(options, tested, form)?;
-    let name = of.alone.then(|| (group[0].force, group[0].motion));
-    let mut report = search_poles(form.free_poles(), options, bounds, name, residuals)?;
-    report.force = form.poles_per_force().then_some(group[0].force);
-    Ok(report)
 }
 
 /// Lags that are given: one list for all forces, or those of the forces one after the other.

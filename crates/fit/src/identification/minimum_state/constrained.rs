@@ -1,15 +1,14 @@
 //! The minimum-state form under constraints: for given lags and `E` they are convex in `D` and the feed-through of all forces.
 
-use super::{FittedTable, LagSearch, LinearProblem, LinearSolution, ROUNDS};
+use super::{FittedTable, LagSearch, LinearProblem, LinearSolution};
 use crate::error::Result;
 use crate::identification::affine::AffineMap;
 use crate::identification::dissipative::{
     ActiveConstraint, ConstraintReport, Dissipation, Strictness,
 };
 use crate::identification::report::SearchPoint;
-use crate::identification::search::descend;
 use crate::section::Dof;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// All forces at one point of the search.
 pub(super) struct FittedForces {
@@ -32,11 +31,7 @@ impl LagSearch<'_> {
         if self.rows(&best, Strictness::Everywhere)?.active.is_none() {
             return Ok(alone);
         }
-        let mut at = DVector::from_vec(best);
-        for _ in 0..ROUNDS {
-            at = descend(at, &|x| self.residuals(x).ok());
-        }
-        let point = self.normalised(at.as_slice());
+        let point = self.normalised(self.descended(best).as_slice());
         let mut search = alone.search.clone();
         for report in &mut search {
             report.chosen = SearchPoint {

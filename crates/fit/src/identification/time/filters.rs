@@ -7,7 +7,7 @@
 //! harmonic motion and its force are thereby distorted alike, up to what the low-pass leaves of the images above half
 //! the sampling frequency (about 1e-5 with the default cut-off).
 
-use super::low_pass::{Filtered, Hold, LowPassStep, ORDER, low_pass};
+use super::low_pass::{Filtered, LowPassStep, ORDER, hold, low_pass};
 use super::pass::{Chunk, Columns};
 use super::record::DimensionlessRecord;
 use crate::error::{Error, Result, ensure};
@@ -144,7 +144,7 @@ impl<'a> ContinuousColumns<'a> {
         )?;
         let step = record.delta_s();
         let (a, b) = low_pass(TAU * cutoff_hz / record.rate);
-        let hold = Hold::new(&a, &b, step)?;
+        let hold = hold(&a, &b, step)?;
         let of_candidate = |bases: &Vec<Basis>| {
             let each = bases.iter().map(|basis| filter_step(basis, &a, &b, step));
             each.collect::<Result<Vec<_>>>()
@@ -184,11 +184,8 @@ fn filter_step(basis: &Basis, a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> 
     joint
         .view_mut((ORDER, ORDER), (count, count))
         .copy_from(&filters.a);
-    let hold = Hold::new(
-        &joint,
-        &b.clone().resize_vertically(ORDER + count, 0.0),
-        step,
-    )?;
+    let drive = b.clone().resize_vertically(ORDER + count, 0.0);
+    let hold = hold(&joint, &drive, step)?;
     let rest = filters
         .a
         .lu()
@@ -203,8 +200,8 @@ fn filter_step(basis: &Basis, a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> 
             .map(|l| {
                 std::array::from_fn(|m| match m {
                     0..ORDER => hold.phi[(ORDER + l, m)],
-                    ORDER => hold.g0[ORDER + l],
-                    _ => hold.g1[ORDER + l],
+                    ORDER => hold.gamma_0[ORDER + l],
+                    _ => hold.gamma_1[ORDER + l],
                 })
             })
             .collect(),

@@ -15,6 +15,7 @@ use crate::identification::report::{
 };
 use crate::section::Dof;
 use nalgebra::DMatrix;
+use std::borrow::Cow;
 
 /// The solved systems of all forces.
 pub(crate) struct FittedSystems<'a> {
@@ -260,22 +261,20 @@ impl JointTimeFit {
         let count = if apart { n * n } else { n } as f64;
         let mut at = 0;
         for i in 0..n {
-            if !apart {
-                let linear = joint.add(&systems.whole(i), count, at)?;
-                at += linear.spread.ncols();
-                for j in 0..n {
-                    let places = systems.places(i, j).into_iter().map(|p| (p, 1.0));
-                    joint
-                        .entries
-                        .push(linear.picked(&places.collect::<Vec<_>>()));
-                }
-                joint.whole.push(linear);
-            }
-            for j in (0..n).filter(|_| apart) {
-                let factor = systems.alone(i, j).ok_or_else(no_rows)?;
+            let factors: Vec<Cow<'_, Factor>> = match apart {
+                true => (0..n).filter_map(|j| systems.alone(i, j)).collect(),
+                false => vec![systems.whole(i)],
+            };
+            for factor in factors {
                 let linear = joint.add(&factor, count, at)?;
                 at += linear.spread.ncols();
-                joint.entries.push(linear.clone());
+                if apart {
+                    joint.entries.push(linear.clone());
+                } else {
+                    let places = |j| systems.places(i, j).into_iter().map(|p| (p, 1.0));
+                    let picked = |j| linear.picked(&places(j).collect::<Vec<_>>());
+                    joint.entries.extend((0..n).map(picked));
+                }
                 joint.whole.push(linear);
             }
         }
@@ -354,8 +353,4 @@ impl JointTimeFit {
                 .covariance(&self.entries[e], all.map(free)),
         )
     }
-}
-
-fn no_rows() -> Error {
-    Error::Numerical("constraints of the fit: a transfer function without rows".into())
 }

@@ -32,28 +32,13 @@ pub(super) fn low_pass(omega: f64) -> (DMatrix<f64>, DVector<f64>) {
     (a, b)
 }
 
-/// `z[k] = Φ z[k−1] + g₀ u[k−1] + g₁ u[k]`, the first-order hold between samples.
-pub(super) struct Hold {
-    pub phi: DMatrix<f64>,
-    pub g0: DVector<f64>,
-    pub g1: DVector<f64>,
-}
-
-impl Hold {
-    pub(super) fn new(a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> Result<Self> {
-        let b = DMatrix::from_column_slice(b.len(), 1, b.as_slice());
-        let StepMatrices {
-            phi,
-            gamma_0,
-            gamma_1,
-        } = c2d(a, &b, step)?;
-        let g1 = gamma_1.column(0) / step;
-        Ok(Self {
-            phi,
-            g0: gamma_0.column(0) - &g1,
-            g1,
-        })
-    }
+/// `z[k] = Φ z[k−1] + γ₀ u[k−1] + γ₁ u[k]`, the first-order hold between samples.
+pub(super) fn hold(a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> Result<StepMatrices> {
+    let b = DMatrix::from_column_slice(b.len(), 1, b.as_slice());
+    let mut hold = c2d(a, &b, step)?;
+    hold.gamma_1 /= step;
+    hold.gamma_0 -= &hold.gamma_1;
+    Ok(hold)
 }
 
 /// The low-pass of one channel and what it has put out for the current chunk.
@@ -105,11 +90,11 @@ pub(super) struct LowPassStep {
 }
 
 impl LowPassStep {
-    pub(super) fn new(hold: &Hold) -> Self {
+    pub(super) fn new(hold: &StepMatrices) -> Self {
         Self {
             phi: from_fn(|n| from_fn(|m| hold.phi[(m, n)])),
-            g0: from_fn(|m| hold.g0[m]),
-            g1: from_fn(|m| hold.g1[m]),
+            g0: from_fn(|m| hold.gamma_0[m]),
+            g1: from_fn(|m| hold.gamma_1[m]),
         }
     }
 

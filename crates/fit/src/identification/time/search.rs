@@ -43,17 +43,7 @@ pub(crate) struct EntryPoles {
     pub search: Vec<SearchReport>,
 }
 
-/// What [`choose_poles`] finds.
-pub(crate) struct ChosenPoles {
-    /// By least squares alone.
-    pub unconstrained: EntryPoles,
-    /// Under the constraints, where some are asked for.
-    pub constrained: Option<EntryPoles>,
-    /// The constraints.
-    pub requirements: FitRequirements,
-}
-
-/// Poles of every transfer function, by least squares alone and under the constraints of the fit. Both searches
+/// Poles of every transfer function, by least squares alone and, where constraints are asked for, under these. Both searches
 /// share their passes. Poles that only some transfer functions share are those of least squares in either case: under
 /// constraints each of their candidates would have to be tried with all candidates of the others.
 ///
@@ -63,7 +53,7 @@ pub(crate) struct ChosenPoles {
 pub(crate) fn choose_poles(
     task: &RecordFit<'_>,
     tested: ReducedFrequencyRange,
-) -> Result<ChosenPoles> {
+) -> Result<Vec<EntryPoles>> {
     let (fit, dofs) = (task.fit, &task.records.dofs);
     let entries = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let requirements = fit.requirements(dofs, tested)?;
@@ -90,17 +80,13 @@ pub(crate) fn choose_poles(
         task.evaluate(&mut groups, pass, longest)?;
     }
     let constrained = groups.split_off(unconstrained);
-    let unconstrained = choice(&entries, dofs, groups)?;
-    let constrained = match (requirements.any(), constrained.is_empty()) {
-        (false, _) => None,
-        (true, true) => Some(unconstrained.clone()),
-        (true, false) => Some(choice(&entries, dofs, constrained)?),
-    };
-    Ok(ChosenPoles {
-        unconstrained,
-        constrained,
-        requirements,
-    })
+    let mut chosen = vec![choice(&entries, dofs, groups)?];
+    if !constrained.is_empty() {
+        chosen.push(choice(&entries, dofs, constrained)?);
+    } else if requirements.any() {
+        chosen.push(chosen[0].clone());
+    }
+    Ok(chosen)
 }
 
 impl RecordFit<'_> {

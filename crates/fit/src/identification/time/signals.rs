@@ -181,17 +181,9 @@ impl Signals {
         &self,
         mut f: impl FnMut(&SignalBlock) -> Result<()>,
     ) -> Result<()> {
-        match &self.store {
-            Store::Memory(blocks) => blocks.iter().try_for_each(f),
-            Store::File(file) => {
-                let mut block = SignalBlock::default();
-                for first in (0..self.rows).step_by(SIGNAL_ROWS) {
-                    self.read(file, first, &mut block)?;
-                    f(&block)?;
-                }
-                Ok(())
-            }
-        }
+        let mut read = SignalBlock::default();
+        let mut firsts = (0..self.rows).step_by(SIGNAL_ROWS);
+        firsts.try_for_each(|first| f(self.block(first, &mut read)?))
     }
 
     /// All channels over some of the samples.
@@ -202,28 +194,13 @@ impl Signals {
         // a clone of an empty list has no capacity
         let empty = || Vec::with_capacity(samples.len().min(self.rows));
         let mut channels: Vec<Vec<f64>> = (0..2 * self.dofs).map(|_| empty()).collect();
-        let mut take = |block: &SignalBlock| {
-            let end = block.first + block.rows();
-            let part = samples.start.max(block.first)..samples.end.min(end);
+        let mut read = SignalBlock::default();
+        let (start, end) = (samples.start, samples.end.min(self.rows));
+        for first in (start / SIGNAL_ROWS * SIGNAL_ROWS..end).step_by(SIGNAL_ROWS) {
+            let block = self.block(first, &mut read)?;
+            let part = start.max(first) - first..end.min(first + block.rows()) - first;
             for (all, channel) in channels.iter_mut().zip(&block.channels) {
-                let part =
-                    part.start.min(end) - block.first..part.end.max(block.first) - block.first;
-                all.extend_from_slice(channel.get(part).unwrap_or_default());
-            }
-        };
-        let first = samples.start / SIGNAL_ROWS;
-        match &self.store {
-            Store::Memory(blocks) => {
-                let within = blocks.iter().skip(first);
-                within.take_while(|b| b.first < samples.end).for_each(take);
-            }
-            Store::File(file) => {
-                let mut block = SignalBlock::default();
-                let end = samples.end.min(self.rows);
-                for first in (first * SIGNAL_ROWS..end).step_by(SIGNAL_ROWS) {
-                    self.read(file, first, &mut block)?;
-                    take(&block);
-                }
+                all.extend_from_slice(channel.get(part.clone()).unwrap_or_default());
             }
         }
         Ok(channels)
@@ -254,6 +231,17 @@ impl Signals {
         let start = (first * 2 * self.dofs * size_of::<f64>()) as u64;
         file.seek(SeekFrom::Start(start)).map_err(io)?;
         Ok(file)
+    }
+
+    /// The block that begins with a sample, which is `read` where it stands in a file.
+    fn block<'a>(&'a self, first: usize, read: &'a mut SignalBlock) -> Result<&'a SignalBlock> {
+        match &self.store {
+            Store::Memory(blocks) => Ok(&blocks[first / SIGNAL_ROWS]),
+            Store::File(file) => {
+                self.read(file, first, read)?;
+                Ok(read)
+            }
+        }
     }
 
     fn read(&self, file: &Mutex<File>, first: usize, block: &mut SignalBlock) -> Result<()> {

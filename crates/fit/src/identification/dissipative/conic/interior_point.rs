@@ -1,7 +1,8 @@
 //! The way through the interior of the cones, by Newton's steps towards the answer.
 
-use super::cone::Cone;
-use super::second_order::{Scaling, Vector, determinant, dot, product, quotient, reach, tail};
+use super::second_order::{
+    Cone, Scaling, Vector, determinant, dot, product, quotient, reach, tail,
+};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::subtract;
 use aerodeck_core::vectorised;
@@ -145,7 +146,7 @@ impl Problem {
                 write(part, &v);
             }
         }
-        let system = Weighted::new(&scaled)?;
+        let factor = one_plus_gram(&scaled).cholesky()?;
         let direction = |wanted: &[Vector]| -> (DVector<f64>, Vec<Vector>, Vec<Vector>) {
             // W⁻¹ (short − W (λ \ wanted))
             let rest: Vec<Vector> = (0..cones)
@@ -155,7 +156,7 @@ impl Problem {
                     from_fn(|r| short[r] - back[r])
                 })
                 .collect();
-            let (w, left) = system.solve(&self.flat(&rest), uneven);
+            let (w, left) = refined(&scaled, &factor, &self.flat(&rest), uneven);
             let left = self.cut(&left);
             let along = self.times(&w);
             let z = (0..cones).map(|c| scalings[c].divide(&left[c])).collect();
@@ -199,41 +200,33 @@ impl Problem {
     }
 }
 
-/// `min ‖B w + b‖² + ‖w + a‖²` by the Cholesky factor of `I + BᵀB`. Rows of cones that hold the answer are larger than the
-/// others by many digits, which the factor loses and refinement of `w` and `y = B w + b` together brings back (Björck 1967).
-struct Weighted<'a> {
-    rows: &'a DMatrix<f64>,
-    factor: Cholesky<f64, Dyn>,
-}
-
-impl<'a> Weighted<'a> {
-    fn new(rows: &'a DMatrix<f64>) -> Option<Self> {
-        let factor = one_plus_gram(rows).cholesky()?;
-        Some(Self { rows, factor })
-    }
-
-    /// `w` and `y`.
-    fn solve(&self, b: &DVector<f64>, a: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
-        let mut w = DVector::zeros(a.len());
-        let mut y = DVector::zeros(b.len());
-        // of nothing, whose products are nothing
-        let (mut first, mut second) = (-a, -b);
-        let mut before = f64::INFINITY;
-        for _ in 0..=REFINEMENTS {
-            let left = first.norm_squared() + second.norm_squared();
-            if left == 0.0 || left > 0.1 * before {
-                break;
-            }
-            before = left;
-            let right = first + transposed_times(self.rows, &second);
-            let by = self.factor.solve(&right);
-            y += times(self.rows, &by) - second;
-            w += by;
-            first = -a - &w - transposed_times(self.rows, &y);
-            second = &y - b - times(self.rows, &w);
+/// The `w` of `min ‖B w + b‖² + ‖w + a‖²` by the Cholesky factor of `I + BᵀB`, and `y = B w + b`. Rows of cones that hold the answer
+/// are larger than the others by many digits, which the factor loses and refinement of both together brings back (Björck 1967).
+fn refined(
+    rows: &DMatrix<f64>,
+    factor: &Cholesky<f64, Dyn>,
+    b: &DVector<f64>,
+    a: &DVector<f64>,
+) -> (DVector<f64>, DVector<f64>) {
+    let mut w = DVector::zeros(a.len());
+    let mut y = DVector::zeros(b.len());
+    // of nothing, whose products are nothing
+    let (mut first, mut second) = (-a, -b);
+    let mut before = f64::INFINITY;
+    for _ in 0..=REFINEMENTS {
+        let left = first.norm_squared() + second.norm_squared();
+        if left == 0.0 || left > 0.1 * before {
+            break;
         }
-        (w, y)
+        before = left;
+        let right = first + transposed_times(rows, &second);
+        let by = factor.solve(&right);
+        y += times(rows, &by) - second;
+        w += by;
+        first = -a - &w - transposed_times(rows, &y);
+        second = &y - b - times(rows, &w);
     }
+    (w, y)
 }
 
 /// As many numbers of a cone as it has rows.
