@@ -11,9 +11,7 @@ use aerodeck::plausibility::{Finding, of_model};
 use aerodeck::section::SectionModel;
 use aerodeck::study::{ExportBlock, uncertainty_beside};
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
-use aerodeck::uncertainty::{
-    CoefficientUncertainty, FormEnsemble, ModelUncertainty, UncertaintyWithData,
-};
+use aerodeck::uncertainty::{CoefficientUncertainty, FormEnsemble, KnownData, ModelUncertainty};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
@@ -75,7 +73,9 @@ impl Model {
                 forms,
                 ..
             } = *known;
-            (UncertaintyWithData::from(coefficients), forms)
+            // what is written of the coefficients leaves their data out
+            let data = coefficients.data.clone();
+            (coefficients, data, forms)
         });
         let of_data = (&m.tested, &m.provenance, &m.report, &known);
         reduced(slf, &(&m.model, of_data, &m.stored, &m.name, &m.findings))
@@ -85,9 +85,14 @@ impl Model {
     fn _from_state(state: &str) -> PyResult<Self> {
         let (model, of_data, stored, name, findings) = restored(state)?;
         let (tested, provenance, report, known) = of_data;
-        let known: Result<(UncertaintyWithData, Option<FormEnsemble>), String> = known;
-        let of_data = |(with_data, forms)| {
-            let coefficients = CoefficientUncertainty::from(with_data);
+        type Known = (
+            CoefficientUncertainty,
+            Option<KnownData>,
+            Option<FormEnsemble>,
+        );
+        let known: Result<Known, String> = known;
+        let of_data = |(mut coefficients, data, forms): Known| {
+            coefficients.data = data;
             ModelUncertainty::of_data(coefficients, forms, tested).map_err(|e| e.to_string())
         };
         Ok(Self {

@@ -30,7 +30,6 @@ mod of_data;
 mod onset;
 mod parameters;
 mod record_covariance;
-mod sampling;
 mod scattered;
 mod segments;
 mod speed_groups;
@@ -38,11 +37,9 @@ mod speed_onsets;
 mod speed_prior;
 mod speed_scatter;
 mod statistics;
-mod student_scale;
 mod table_covariance;
-mod with_data;
 
-pub use coefficients::CoefficientUncertainty;
+pub use coefficients::{CoefficientUncertainty, KnownData};
 pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, coverage};
 pub use draws::ModelDraws;
 pub use family::{DeckOutcome, FamilyPlan, FamilyRange, FamilyReport, RangeCount, family_coverage};
@@ -51,15 +48,11 @@ pub use model::{DerivativeInterval, ModelUncertainty};
 pub use of_data::ModelOfData;
 pub use onset::{OnsetError, ResampledOnset, Resampling};
 pub use parameters::{Coordinates, Parameter, SearchedPole};
-pub use record_covariance::discrete_uncertainty;
-pub use record_covariance::record_uncertainty;
-pub use sampling::SampledOnsets;
+pub use record_covariance::{discrete_uncertainty, record_uncertainty};
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
-pub use statistics::sample_quantile;
-pub use student_scale::StudentScale;
+pub use statistics::{SampledOnsets, StudentScale, sample_quantile};
 pub use table_covariance::table_uncertainty;
-pub use with_data::UncertaintyWithData;
 
 #[cfg(test)]
 mod tests;

@@ -41,12 +41,17 @@ pub struct CoefficientUncertainty {
     /// Scatter between mean speeds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speeds: Option<SpeedScatter>,
+    /// The data it was made from; files leave them out.
     #[serde(skip)]
-    pub(super) design: Option<Design>,
+    pub data: Option<KnownData>,
+}
+
+/// The data that an estimate was made from, for another process.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KnownData {
+    pub(super) design: Design,
     /// Reduced frequencies over which the scatter between mean speeds was asked.
-    #[serde(skip)]
-    pub(super) tested: Option<ReducedFrequencyRange>,
-    #[serde(skip)]
+    tested: Option<ReducedFrequencyRange>,
     pub(super) effects: Vec<Effect>,
 }
 
@@ -61,24 +66,17 @@ impl CoefficientUncertainty {
         parameters: Vec<Parameter>,
         design: Design,
     ) -> Result<Self> {
-        let contributions = design.contributions();
         let mut estimate = Self {
             assumption,
             dofs,
             coordinates,
             parameters,
-            covariance: &contributions * contributions.transpose(),
+            covariance: DMatrix::zeros(0, 0),
             blocks: design.names(),
             speeds: None,
-            design: None,
-            tested,
-            effects: Vec::new(),
+            data: None,
         };
-        if let Some(tested) = tested {
-            estimate.add_speeds(&design, tested, SpeedPrior::measured(None))?;
-        }
-        estimate.state_errors();
-        estimate.design = Some(design);
+        estimate.know(design, tested, None)?;
         Ok(estimate)
     }
 
@@ -87,27 +85,39 @@ impl CoefficientUncertainty {
     /// # Errors
     /// [`Error::Numerical`](crate::error::Error::Numerical) when the covariance cannot be made again.
     pub fn leaving_out(mut self, deck: &str) -> Result<Self> {
-        let (Some(design), Some(speeds), Some(tested)) =
-            (self.design.take(), &self.speeds, self.tested)
-        else {
+        let (Some(data), Some(speeds)) = (self.data.take(), &self.speeds) else {
             return Ok(self);
         };
         let said = format!("; {}", speeds.describe());
         if let Some(without) = self.assumption.strip_suffix(&said) {
             self.assumption = without.to_owned();
         }
-        let contributions = design.contributions();
-        self.covariance = &contributions * contributions.transpose();
-        self.add_speeds(&design, tested, SpeedPrior::measured(Some(deck)))?;
-        self.state_errors();
-        self.design = Some(design);
+        self.know(data.design, data.tested, Some(deck))?;
         Ok(self)
     }
 
-    fn state_errors(&mut self) {
+    /// Takes the covariance from its blocks, and the scatter between mean speeds where that is asked.
+    fn know(
+        &mut self,
+        design: Design,
+        tested: Option<ReducedFrequencyRange>,
+        without: Option<&str>,
+    ) -> Result<()> {
+        let contributions = design.contributions();
+        self.covariance = &contributions * contributions.transpose();
+        let effects = match tested {
+            Some(tested) => self.add_speeds(&design, tested, SpeedPrior::measured(without))?,
+            None => Vec::new(),
+        };
         for (i, parameter) in self.parameters.iter_mut().enumerate() {
             parameter.standard_error = self.covariance[(i, i)].max(0.0).sqrt();
         }
+        self.data = Some(KnownData {
+            design,
+            tested,
+            effects,
+        });
+        Ok(())
     }
 
     /// Adds the scatter between mean speeds.
@@ -116,7 +126,7 @@ impl CoefficientUncertainty {
         design: &Design,
         tested: ReducedFrequencyRange,
         prior: SpeedPrior,
-    ) -> Result<()> {
+    ) -> Result<Vec<Effect>> {
         let at = self.transfer_slopes(&spread_over(tested, POINTS))?;
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
@@ -126,9 +136,8 @@ impl CoefficientUncertainty {
         for effect in &effects {
             self.covariance += &effect.columns * effect.columns.transpose();
         }
-        self.effects = effects;
         self.speeds = Some(scatter);
-        Ok(())
+        Ok(effects)
     }
 
     /// The transfer matrix at every `K`, and its derivatives with respect to the parameters, by central differences.
@@ -209,7 +218,7 @@ impl CoefficientUncertainty {
                 searched,
             } => {
                 let first_pole = expected.saturating_sub(searched.len());
-                let mut chains = chains.clone();
+                let mut chains = chains.concat();
                 for (pole, value) in searched.iter().zip(&values[first_pole..]) {
                     pole.move_to(*value, form, &mut chains);
                 }
@@ -250,7 +259,7 @@ impl CoefficientUncertainty {
                 searched,
             } if !searched.is_empty() => {
                 let values = self.values();
-                LinearModel::new(form, &self.dofs, chains, searched, values).map(Some)
+                LinearModel::new(form, &self.dofs, &chains.concat(), searched, values).map(Some)
             }
             _ => Ok(None),
         }
@@ -270,7 +279,9 @@ impl CoefficientUncertainty {
     /// Degrees of freedom of that standard error; `None` for an estimate that was read from a file, which no longer knows
     /// its data.
     pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
-        let (design, effects) = (self.design.as_ref()?, &self.effects);
+        let KnownData {
+            design, effects, ..
+        } = self.data.as_ref()?;
         let gradient = DVector::from_column_slice(gradient);
         Some(speed_scatter::degrees_of_freedom(
             design, effects, &gradient,
@@ -279,7 +290,8 @@ impl CoefficientUncertainty {
 
     /// Adds a draw of the scatter between speeds to parameters that were drawn from the blocks.
     pub(crate) fn scatter_speeds(&self, values: &mut [f64], normal: &mut dyn FnMut() -> f64) {
-        for column in self.effects.iter().flat_map(|e| e.columns.column_iter()) {
+        let effects = self.data.iter().flat_map(|data| &data.effects);
+        for column in effects.flat_map(|e| e.columns.column_iter()) {
             let z = normal();
             for (value, change) in values.iter_mut().zip(column.iter()) {
                 *value += z * change;
@@ -293,10 +305,8 @@ impl CoefficientUncertainty {
     /// # Errors
     /// [`Error::Numerical`](crate::error::Error::Numerical) when the weighted blocks do not determine all parameters.
     pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<Option<Vec<f64>>> {
-        let Some(design) = &self.design else {
-            return Ok(None);
-        };
-        Ok(Some(self.moved_by(&design.reweighted(weights)?)))
+        let reweighted = |data: &KnownData| Ok(self.moved_by(&data.design.reweighted(weights)?));
+        self.data.as_ref().map(reweighted).transpose()
     }
 
     /// The estimates and a step from them.
@@ -320,7 +330,7 @@ impl CoefficientUncertainty {
     ///
     /// The second value is why a speed alone does not tell.
     pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
-        let Some(design) = &self.design else {
+        let Some(KnownData { design, .. }) = &self.data else {
             return Vec::new();
         };
         let Some((groups, speeds_m_s)) = speed_groups(&design.blocks) else {
@@ -332,7 +342,7 @@ impl CoefficientUncertainty {
 
     /// Reduced frequencies of the blocks, where they have one and are known.
     pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
-        let ks = self.design.as_ref()?.blocks.iter().filter_map(|b| b.k);
+        let ks = self.data.as_ref()?.design.blocks.iter().filter_map(|b| b.k);
         ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
     }
 

@@ -15,113 +15,102 @@ use nalgebra::{Complex, DMatrix, DVector};
 /// Frequencies at which columns are compared, for each column.
 const POINTS_PER_COLUMN: usize = 4;
 
-/// The columns of one transfer function in those of a longer chain.
+/// One transfer function in the columns of a longer chain.
 #[derive(Debug, Clone)]
 pub(super) struct Expansion {
     /// Poles of the longer chain.
     pub extended: Vec<f64>,
     /// Columns of the model in those of the longer chain, E×N.
     pub native: DMatrix<f64>,
-    basis: Basis,
-    grid: Vec<Complex<f64>>,
+    /// Derivatives with respect to the searched poles, E×(number of these); zero for poles of other transfer functions.
+    pub slopes: DMatrix<f64>,
 }
 
 impl Expansion {
-    /// For a chain of poles, with room for their derivatives where they were `searched`.
-    pub(crate) fn new(form: &Form, chain: &[f64], searched: bool) -> Result<Self> {
-        let mut extended = chain.to_vec();
-        if searched {
-            extended.extend(form.collapse(chain));
-        }
-        let basis = Basis::orthonormal(form, &extended)?;
-        let low = chain.iter().copied().fold(f64::INFINITY, f64::min) / 20.0;
-        let high = chain.iter().copied().fold(0.0, f64::max) * 20.0;
-        let points = POINTS_PER_COLUMN * basis.len();
-        let step = (high / low).ln() / (points as f64 - 1.0);
-        let mut expansion = Self {
-            extended,
-            native: DMatrix::zeros(0, 0),
-            basis,
-            grid: (0..points)
-                .map(|i| Complex::new(0.0, low * (step * i as f64).exp()))
-                .collect(),
-        };
-        let own = Basis::new(form, chain)?;
-        expansion.native = expansion.express(&|p| own.columns(p), own.len())?;
-        Ok(expansion)
-    }
-
-    /// Derivatives of the transfer function `(i, j)` with coefficients `values` with respect to the searched poles, E×(number of
-    /// these); zero for poles of other transfer functions.
-    pub(super) fn slopes(
-        &self,
+    /// For the chain of the transfer function `(i, j)`, whose coefficients come first in `values`, with room for derivatives where
+    /// poles were searched.
+    pub(super) fn new(
         form: &Form,
         chain: &[f64],
         values: &[f64],
-        i: usize,
-        j: usize,
+        [i, j]: [usize; 2],
         searched: &[SearchedPole],
-    ) -> Result<DMatrix<f64>> {
-        let all = self.jacobian(form, chain, values)?;
-        let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
-        for (m, pole) in searched.iter().enumerate() {
-            if pole.is_of(i, j) {
+    ) -> Result<Self> {
+        let count = form.collapse(chain).len();
+        let mut extended = chain.to_vec();
+        if !searched.is_empty() {
+            extended.extend(form.collapse(chain));
+        }
+        let (own, longer) = (
+            Basis::new(form, chain)?,
+            Basis::orthonormal(form, &extended)?,
+        );
+        let native = express(&longer, chain, own.len(), &|p| own.columns(p))?;
+        let mut slopes = DMatrix::zeros(longer.len(), searched.len());
+        if !searched.is_empty() {
+            let pairs = (0..count).map(|m| moved_pole(form, chain, m));
+            let pairs = pairs.collect::<Result<Vec<_>>>()?;
+            let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
+                let columns = basis.columns(p);
+                columns.iter().zip(values).map(|(z, c)| z * *c).sum()
+            };
+            let all = express(&longer, chain, count, &|p| {
+                let pairs = pairs.iter().zip(chain);
+                pairs
+                    .map(|((up, down), pole)| (sum(up, p) - sum(down, p)) / (2.0 * STEP * pole))
+                    .collect()
+            })?;
+            let own = searched
+                .iter()
+                .enumerate()
+                .filter(|(_, pole)| pole.is_of(i, j));
+            for (m, pole) in own {
                 slopes.column_mut(m).copy_from(&all.column(pole.index));
             }
         }
-        Ok(slopes)
+        Ok(Self {
+            extended,
+            native,
+            slopes,
+        })
     }
+}
 
-    /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles of its chain, E×m.
-    fn jacobian(&self, form: &Form, chain: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
-        let count = form.collapse(chain).len();
-        let pairs = (0..count).map(|m| moved_pole(form, chain, m));
-        let pairs = pairs.collect::<Result<Vec<_>>>()?;
-        let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
-            let columns = basis.columns(p);
-            columns.iter().zip(values).map(|(z, c)| z * *c).sum()
-        };
-        let slopes = |p: Complex<f64>| {
-            pairs
-                .iter()
-                .zip(chain)
-                .map(|((up, down), pole)| (sum(up, p) - sum(down, p)) / (2.0 * STEP * pole))
-                .collect()
-        };
-        self.express(&slopes, count)
-    }
-
-    /// Functions of the complex frequency in the columns of the longer chain, by least squares on the grid.
-    fn express(
-        &self,
-        functions: &dyn Fn(Complex<f64>) -> Vec<Complex<f64>>,
-        count: usize,
-    ) -> Result<DMatrix<f64>> {
-        let rows = 2 * self.grid.len();
-        let table = |f: &dyn Fn(Complex<f64>) -> Vec<Complex<f64>>, width: usize| {
-            let mut m = DMatrix::zeros(rows, width);
-            for (i, p) in self.grid.iter().enumerate() {
-                for (c, z) in f(*p).into_iter().enumerate() {
-                    m[(2 * i, c)] = z.re;
-                    m[(2 * i + 1, c)] = z.im;
-                }
+/// `count` functions of the complex frequency in the columns of a basis, by least squares on a grid about the poles of a chain.
+fn express(
+    basis: &Basis,
+    chain: &[f64],
+    count: usize,
+    functions: &dyn Fn(Complex<f64>) -> Vec<Complex<f64>>,
+) -> Result<DMatrix<f64>> {
+    let low = chain.iter().copied().fold(f64::INFINITY, f64::min) / 20.0;
+    let high = chain.iter().copied().fold(0.0, f64::max) * 20.0;
+    let points = POINTS_PER_COLUMN * basis.len();
+    let step = (high / low).ln() / (points as f64 - 1.0);
+    let table = |f: &dyn Fn(Complex<f64>) -> Vec<Complex<f64>>, width: usize| {
+        let mut m = DMatrix::zeros(2 * points, width);
+        for i in 0..points {
+            let p = Complex::new(0.0, low * (step * i as f64).exp());
+            for (c, z) in f(p).into_iter().enumerate() {
+                m[(2 * i, c)] = z.re;
+                m[(2 * i + 1, c)] = z.im;
             }
-            m
-        };
-        let mut columns = table(&|p| self.basis.columns(p), self.basis.len());
-        let scale: Vec<f64> = columns.column_iter().map(|c| c.norm()).collect();
-        for (mut column, s) in columns.column_iter_mut().zip(&scale) {
-            column.unscale_mut(*s);
         }
-        let values = table(functions, count);
-        let solution = columns
-            .try_svd(true, true, f64::EPSILON, 10_000)
-            .and_then(|svd| svd.solve(&values, 1e-13).ok())
-            .ok_or_else(|| Error::Numerical("covariance: columns of a chain of filters".into()))?;
-        Ok(DMatrix::from_fn(scale.len(), count, |i, j| {
-            solution[(i, j)] / scale[i]
-        }))
+        m
+    };
+    let mut columns = table(&|p| basis.columns(p), basis.len());
+    let scale: Vec<f64> = columns.column_iter().map(|c| c.norm()).collect();
+    for (mut column, s) in columns.column_iter_mut().zip(&scale) {
+        column.unscale_mut(*s);
     }
+    let values = table(functions, count);
+    let solution = columns
+        .try_svd(true, true, f64::EPSILON, 10_000)
+        .and_then(|svd| svd.solve(&values, 1e-13).ok())
+        .ok_or_else(|| Error::Numerical("covariance: columns of a chain of filters".into()))?;
+    Ok(DMatrix::from_fn(scale.len(), count, |i, j| {
+        solution[(i, j)] / scale[i]
+    }))
 }
 
 /// A model as a linear function of its parameters: that of the estimate and its slopes, in chains that hold both.
@@ -134,32 +123,26 @@ pub(crate) struct LinearModel {
     dofs: Vec<Dof>,
     estimate: Vec<f64>,
     searched: usize,
-    /// Chain, native columns and slopes of every transfer function, row by row.
-    entries: Vec<(Vec<f64>, DMatrix<f64>, DMatrix<f64>)>,
+    /// Every transfer function, row by row.
+    entries: Vec<Expansion>,
 }
 
 impl LinearModel {
-    /// For the chains of every transfer function, the estimates and the searched poles.
+    /// For the chains of every transfer function, row by row, the estimates and the searched poles.
     pub(super) fn new(
         form: &Form,
         dofs: &[Dof],
-        chains: &[Vec<Vec<f64>>],
+        chains: &[Vec<f64>],
         searched: &[SearchedPole],
         estimate: Vec<f64>,
     ) -> Result<Self> {
-        let mut entries = Vec::new();
-        let mut first = 0;
-        for (i, row) in chains.iter().enumerate() {
-            for (j, chain) in row.iter().enumerate() {
-                let expansion = Expansion::new(form, chain, true)?;
-                let count = expansion.native.ncols();
-                let values = &estimate[first..first + count];
-                let slopes = expansion.slopes(form, chain, values, i, j, searched)?;
-                entries.push((expansion.extended, expansion.native, slopes));
-                first += count;
-            }
+        let (mut entries, mut first, n) = (Vec::new(), 0, dofs.len());
+        for (e, chain) in chains.iter().enumerate() {
+            let own = Expansion::new(form, chain, &estimate[first..], [e / n, e % n], searched)?;
+            first += own.native.ncols();
+            entries.push(own);
         }
-        let filters = entries.first().map_or(0, |e| e.0.len());
+        let filters = entries.first().map_or(0, |e| e.extended.len());
         Ok(Self {
             form: Form::TakenakaMalmquist {
                 filters,
@@ -181,16 +164,14 @@ impl LinearModel {
         });
         let mut first = 0;
         let mut list = Vec::with_capacity(self.entries.len());
-        for (_, native, slopes) in &self.entries {
+        for Expansion { native, slopes, .. } in &self.entries {
             let own = DVector::from_column_slice(&values[first..first + native.ncols()]);
             first += native.ncols();
             let all: DVector<f64> = native * own + slopes * &moved;
             list.push(all.as_slice().to_vec());
         }
-        let n = self.dofs.len();
-        let rows = |all: Vec<Vec<f64>>| all.chunks(n).map(<[_]>::to_vec).collect::<Vec<_>>();
-        let chains = rows(self.entries.iter().map(|e| e.0.clone()).collect());
-        assemble(&self.form, &self.dofs, &chains, &rows(list))
+        let chains: Vec<Vec<f64>> = self.entries.iter().map(|e| e.extended.clone()).collect();
+        assemble(&self.form, &self.dofs, &chains, &list)
     }
 }
 
@@ -230,13 +211,19 @@ mod tests {
         ];
         for (form, free) in forms {
             let chain = form.expand(&free);
-            let expansion = Expansion::new(&form, &chain, true).unwrap();
             let own = Basis::new(&form, &chain).unwrap();
             let values: Vec<f64> = (0..own.len()).map(|c| 1.0 - 0.3 * c as f64).collect();
-            let jacobian = expansion.jacobian(&form, &chain, &values).unwrap();
+            let pole = |index: usize| SearchedPole {
+                entry: None,
+                apart: Vec::new(),
+                index,
+            };
+            let searched: Vec<_> = (0..free.len()).map(pole).collect();
+            let expansion = Expansion::new(&form, &chain, &values, [0, 0], &searched).unwrap();
+            let longer = Basis::orthonormal(&form, &expansion.extended).unwrap();
             for k in [0.037, 0.31, 1.9] {
                 let p = Complex::new(0.0, k);
-                let long = expansion.basis.columns(p);
+                let long = longer.columns(p);
                 let in_long = |m: &DMatrix<f64>, c: usize| -> Complex<f64> {
                     long.iter().enumerate().map(|(e, z)| z * m[(e, c)]).sum()
                 };
@@ -257,7 +244,7 @@ mod tests {
                             .sum()
                     };
                     let direct = (at(1.0 + 1e-4) - at(1.0 - 1e-4)) / (2e-4 * free[m]);
-                    let found = in_long(&jacobian, m);
+                    let found = in_long(&expansion.slopes, m);
                     assert!(
                         (found - direct).norm() < 1e-6 * direct.norm(),
                         "{form:?} {found} {direct}"

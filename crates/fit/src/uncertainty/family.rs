@@ -5,10 +5,8 @@
 //! above it or below it.
 
 mod deck;
-mod plan;
 
-pub use deck::FamilyRange;
-pub use plan::FamilyPlan;
+pub use deck::{FamilyPlan, FamilyRange};
 
 use super::coverage::IntervalCoverage;
 use super::forms::FormEnsemble;

@@ -16,8 +16,8 @@ use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{
-    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
-    fit_table,
+    Constraints, EntryReport, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights,
+    PoleSearch, fit_table,
 };
 use crate::section::{Dof, Structure};
 use crate::signal::mean_and_deviation;
@@ -124,11 +124,17 @@ impl FormEnsemble {
             .map(|by| InterpolatedTable::by(*by, &table, dofs, Extrapolation::Refuse));
         let read = read.collect::<Result<_>>()?;
         let numbers = samples.len() as f64;
-        let fitted: Vec<FittedForm> = fitted_forms(tested)
+        let fitted: Vec<_> = fitted_forms(tested)
             .into_par_iter()
-            .filter_map(|(name, fit)| {
+            .filter_map(|(form, fit)| {
                 let fitted = known(&fit).or_else(|| fit_table(samples, dofs, &fit).ok())?;
-                FittedForm::new(name, &fit, fitted, numbers).ok()
+                let variances = variances(&fit, &fitted.report, numbers)?;
+                let fitted = AdmissibleForm {
+                    form,
+                    residual_ratio: 1.0,
+                    model: fitted.model,
+                };
+                Some((fitted, variances))
             })
             .collect();
         Ok(Self {
@@ -293,48 +299,21 @@ fn fitted_forms(tested: ReducedFrequencyRange) -> Vec<(String, FrequencyFit)> {
         .collect()
 }
 
-/// One form with its fit.
-struct FittedForm {
-    name: String,
-    fitted: Fitted,
-    /// Variance of the residuals of each transfer function per degree of freedom, over its mean square.
-    variances: Vec<f64>,
-}
-
-impl FittedForm {
-    /// Of a fit to so many numbers.
-    fn new(name: String, fit: &FrequencyFit, fitted: Fitted, numbers: f64) -> Result<Self> {
-        let searched = match fit.poles.fixed {
-            Some(_) => 0.0,
-            None => fit.form.filters() as f64,
-        };
-        let entries = &fitted.report.entries;
-        let numbers = numbers / entries.len() as f64;
-        let mut variances = Vec::with_capacity(entries.len());
-        for entry in entries {
-            let shared = searched / entries.len() as f64;
-            let free = numbers - entry.coefficients.len() as f64 - shared;
-            if free <= 0.0 {
-                return Err(Error::Numerical(format!("{name}: no degrees of freedom")));
-            }
-            variances.push(entry.relative_rms.unwrap_or(0.0).powi(2) * numbers / free);
-        }
-        Ok(Self {
-            name,
-            fitted,
-            variances,
-        })
-    }
-
-    /// Variance of the residuals over that of another form, the mean over the transfer functions.
-    fn ratio(&self, best: &Self) -> f64 {
-        let floor = AS_GOOD.powi(2);
-        let ratios = self.variances.iter().zip(&best.variances);
-        let sum: f64 = ratios
-            .map(|(own, best)| (own + floor) / (best + floor))
-            .sum();
-        sum / self.variances.len() as f64
-    }
+/// Variance of the residuals of each transfer function of a fit to so many numbers per degree of freedom, over its mean square; none
+/// without degrees of freedom.
+fn variances(fit: &FrequencyFit, report: &FitReport, numbers: f64) -> Option<Vec<f64>> {
+    let searched = match fit.poles.fixed {
+        Some(_) => 0.0,
+        None => fit.form.filters() as f64,
+    };
+    let count = report.entries.len() as f64;
+    let numbers = numbers / count;
+    let of = |entry: &EntryReport| {
+        let free = numbers - entry.coefficients.len() as f64 - searched / count;
+        let variance = entry.relative_rms.unwrap_or(0.0).powi(2) * numbers / free;
+        (free > 0.0).then_some(variance)
+    };
+    report.entries.iter().map(of).collect()
 }
 
 impl FormOnset {
@@ -351,23 +330,27 @@ impl FormOnset {
     }
 }
 
-/// Forms that explain the samples as well as the best of them.
-fn admissible(all: Vec<FittedForm>) -> Result<Vec<AdmissibleForm>> {
-    let sum = |f: &FittedForm| -> f64 { f.variances.iter().sum() };
-    let best = all
-        .iter()
+/// Forms that explain the samples as well as the best of them, of all with the variances of their residuals.
+fn admissible(all: Vec<(AdmissibleForm, Vec<f64>)>) -> Result<Vec<AdmissibleForm>> {
+    let sum = |variances: &Vec<f64>| -> f64 { variances.iter().sum() };
+    let each = all.iter().map(|(_, variances)| variances.clone());
+    let best = each
         .min_by(|a, b| sum(a).total_cmp(&sum(b)))
         .ok_or_else(|| Error::Numerical("no form can be fitted to these samples".into()))?;
-    let ratios: Vec<f64> = all.iter().map(|f| f.ratio(best)).collect();
-    let rated = all.into_iter().zip(ratios);
-    let kept = rated.filter(|(_, ratio)| *ratio <= ADMISSIBLE);
-    Ok(kept
-        .map(|(f, residual_ratio)| AdmissibleForm {
-            form: f.name,
-            residual_ratio,
-            model: f.fitted.model,
-        })
-        .collect())
+    let floor = AS_GOOD.powi(2);
+    // the mean over the transfer functions
+    let ratio = |own: &[f64]| {
+        let ratios = own.iter().zip(&best);
+        let sum: f64 = ratios
+            .map(|(own, best)| (own + floor) / (best + floor))
+            .sum();
+        sum / own.len() as f64
+    };
+    let rated = all.into_iter().map(|(form, own)| AdmissibleForm {
+        residual_ratio: ratio(&own),
+        ..form
+    });
+    Ok(rated.filter(|f| f.residual_ratio <= ADMISSIBLE).collect())
 }
 
 /// The table that these are the samples of.

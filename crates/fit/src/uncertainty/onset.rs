@@ -6,8 +6,7 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::draws::ModelDraws;
-use super::sampling::SampledOnsets;
-use super::statistics::two_sided_quantile;
+use super::statistics::{SampledOnsets, two_sided_quantile};
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};

@@ -68,32 +68,21 @@ impl SearchedPole {
         }
     }
 
-    /// Gives it another value in the poles of every transfer function that has it.
-    pub(super) fn move_to(&self, value: f64, form: &Form, chains: &mut [Vec<Vec<f64>>]) {
-        for (i, row) in chains.iter_mut().enumerate() {
-            for (j, chain) in row.iter_mut().enumerate() {
-                if self.is_of(i, j) {
-                    *chain = form.with_pole(chain, self.index, value);
-                }
-            }
+    /// Gives it another value in the poles of every transfer function that has it; these come row by row.
+    pub(super) fn move_to(&self, value: f64, form: &Form, chains: &mut [Vec<f64>]) {
+        let n = chains.len().isqrt();
+        let own = chains.iter_mut().enumerate();
+        for (_, chain) in own.filter(|(e, _)| self.is_of(e / n, e % n)) {
+            *chain = form.with_pole(chain, self.index, value);
         }
     }
 }
 
 /// Coefficients of every transfer function, one after the other in `values`.
-pub(super) fn per_chain(
-    form: &Form,
-    chains: &[Vec<Vec<f64>>],
-    values: &[f64],
-) -> Vec<Vec<Vec<f64>>> {
+pub(super) fn per_chain(form: &Form, chains: &[Vec<f64>], values: &[f64]) -> Vec<Vec<f64>> {
     let mut rest = values.iter().copied();
-    let mut of_chain = |chain: &Vec<f64>| {
-        let count = form.feed_through().count() + chain.len();
-        rest.by_ref().take(count).collect()
-    };
-    let rows = chains.iter();
-    rows.map(|row| row.iter().map(&mut of_chain).collect())
-        .collect()
+    let counts = chains.iter().map(|c| form.feed_through().count() + c.len());
+    counts.map(|n| rest.by_ref().take(n).collect()).collect()
 }
 
 /// How parameters make a model.

@@ -4,7 +4,7 @@ use super::coefficients::CoefficientUncertainty;
 use super::columns::Expansion;
 use super::design::Block;
 use super::parameters::{Coordinates, FitParameters, Parameter, constraint_sentence};
-use super::segments::{StretchRows, Stretched, gather, sandwich};
+use super::segments::{StretchRows, sandwich};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
 use crate::identification::discrete::discrete_pass;
@@ -54,7 +54,7 @@ pub fn record_uncertainty(
     };
     let closed = task.pass(&entries.candidates(), rows, 1, 1)?.stretches;
     let tangent = parameters.tangent(report)?;
-    let (design, blocks) = sandwich(entries.blocks(&records.each, &closed)?, tangent)?;
+    let (design, blocks) = sandwich(entries.rows(&records.each, &closed)?, tangent)?;
     let searched = parameters.sentence() + &constraint_sentence(report);
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; {searched}"),
@@ -69,13 +69,9 @@ pub fn record_uncertainty(
 /// Transfer functions with their columns in the chains of the pass.
 struct Entries {
     inputs: usize,
-    /// Chain of each, of one length where they share it.
-    chains: Vec<Vec<f64>>,
-    /// Columns of the model in those of the chain.
-    natives: Vec<DMatrix<f64>>,
+    /// Each in its chain, of one length where they share it.
+    each: Vec<Expansion>,
     values: Vec<Vec<f64>>,
-    /// Slopes with respect to the searched poles, E×(number of searched poles).
-    slopes: Vec<DMatrix<f64>>,
     /// First parameter of each entry.
     first: Vec<usize>,
     /// Parameter and value of the constant of each force; none where none was estimated along.
@@ -87,28 +83,31 @@ struct Entries {
 
 impl Entries {
     fn new(report: &FitReport, parameters: &FitParameters) -> Result<Self> {
-        let (form, searched) = (&parameters.form, &parameters.searched);
         let inputs = report.entries.len().isqrt();
-        let mut entries = Self {
+        let expanded = |(e, entry): (usize, &EntryReport)| {
+            let (form, place) = (&parameters.form, [e / inputs, e % inputs]);
+            Expansion::new(
+                form,
+                &entry.poles,
+                &entry.values(),
+                place,
+                &parameters.searched,
+            )
+        };
+        let entries = report.entries.iter();
+        Ok(Self {
             inputs,
-            chains: Vec::new(),
-            natives: Vec::new(),
-            values: report.entries.iter().map(EntryReport::values).collect(),
-            slopes: Vec::new(),
+            each: entries
+                .clone()
+                .enumerate()
+                .map(expanded)
+                .collect::<Result<_>>()?,
+            values: entries.map(EntryReport::values).collect(),
             first: parameters.first.clone(),
             constants: Vec::new(),
             parameters: parameters.all.len(),
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
-        };
-        for (e, (entry, values)) in report.entries.iter().zip(&entries.values).enumerate() {
-            let expansion = Expansion::new(form, &entry.poles, !searched.is_empty())?;
-            let (i, j) = (e / inputs, e % inputs);
-            let slopes = expansion.slopes(form, &entry.poles, values, i, j, searched)?;
-            entries.chains.push(expansion.extended);
-            entries.natives.push(expansion.native);
-            entries.slopes.push(slopes);
-        }
-        Ok(entries)
+        })
     }
 
     /// Those of a discrete model, whose columns are the filters themselves, and its parameters: of each force its constant, then
@@ -129,12 +128,15 @@ impl Entries {
             }
         }
         let of_entry = |&at: &usize| parameters[at..at + filters].iter().map(|p| p.value);
+        let columns = Expansion {
+            extended: Vec::new(),
+            native: DMatrix::identity(filters, filters),
+            slopes: DMatrix::zeros(filters, 0),
+        };
         let entries = Self {
             inputs,
-            chains: Vec::new(),
-            natives: vec![DMatrix::identity(filters, filters); first.len()],
+            each: vec![columns; first.len()],
             values: first.iter().map(|at| of_entry(at).collect()).collect(),
-            slopes: vec![DMatrix::zeros(filters, 0); first.len()],
             first,
             constants,
             parameters: parameters.len(),
@@ -145,15 +147,20 @@ impl Entries {
 
     /// Chains of the pass, for all inputs: one, or one an entry.
     fn candidates(&self) -> Vec<Vec<Vec<f64>>> {
-        let count = if self.shared { 1 } else { self.chains.len() };
-        let chains = self.chains.iter().take(count);
+        let count = if self.shared { 1 } else { self.each.len() };
+        let chains = self.each.iter().take(count).map(|e| &e.extended);
         let longest = chains.clone().map(Vec::len).max().unwrap_or(0);
         chains
             .map(|c| vec![padded(c, longest); self.inputs])
             .collect()
     }
 
-    fn blocks(&self, records: &[DimensionlessRecord], closed: &[Stretch]) -> Result<Stretched> {
+    /// Rows of every force in every stretch that tells something.
+    fn rows<'a>(
+        &self,
+        records: &'a [DimensionlessRecord],
+        closed: &'a [Stretch],
+    ) -> Result<Vec<StretchRows<'a>>> {
         let mut parts = Vec::new();
         // a stretch at rest tells of the constants alone
         let tells = |c: &&Stretch| !(c.set.is_empty() && self.constants.is_empty());
@@ -163,13 +170,19 @@ impl Entries {
                     "covariance: poles per transfer function need records of single motions".into(),
                 ));
             }
-            parts.extend((0..self.inputs).map(|i| self.part(stretch, i)));
+            let record = &records[stretch.record];
+            parts.extend((0..self.inputs).map(|i| self.part(record, stretch, i)));
         }
-        Ok(gather(records, parts))
+        Ok(parts)
     }
 
     /// Rows of force `i` in one stretch.
-    fn part<'a>(&self, stretch: &'a Stretch, i: usize) -> StretchRows<'a> {
+    fn part<'a>(
+        &self,
+        record: &'a DimensionlessRecord,
+        stretch: &'a Stretch,
+        i: usize,
+    ) -> StretchRows<'a> {
         let moving = stretch.set.len();
         let which = if self.shared {
             0
@@ -187,7 +200,7 @@ impl Entries {
         }
         for (s, &j) in stretch.set.iter().enumerate() {
             let e = i * self.inputs + j;
-            let (native, slopes) = (&self.natives[e], &self.slopes[e]);
+            let Expansion { native, slopes, .. } = &self.each[e];
             for c in 0..native.nrows() {
                 let row = usize::from(constant.is_some()) + c * moving + s;
                 for a in 0..native.ncols() {
@@ -201,6 +214,8 @@ impl Entries {
         }
         StretchRows {
             of: stretch,
+            name: &record.header.name,
+            rate: record.rate,
             force: i,
             block: Block {
                 name: String::new(),
@@ -256,7 +271,7 @@ pub fn discrete_uncertainty(
     .stretches;
     let (entries, parameters) = Entries::discrete(model, filters);
     let free = DMatrix::identity(parameters.len(), parameters.len());
-    let (design, blocks) = sandwich(entries.blocks(&records.each, &closed)?, free)?;
+    let (design, blocks) = sandwich(entries.rows(&records.each, &closed)?, free)?;
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; α is given"),
         Some(records.tested_range()?),

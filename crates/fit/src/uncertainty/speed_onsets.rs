@@ -61,13 +61,6 @@ pub struct SpeedOnsets {
     pub contradiction: Option<Contradiction>,
 }
 
-/// One speed while it is compared.
-struct SpeedEstimate {
-    mean_speed_m_s: f64,
-    estimate: CoefficientUncertainty,
-    error: OnsetError,
-}
-
 /// Onsets by the tests at each speed, near that of all tests.
 pub(crate) fn speed_onsets(
     estimate: &CoefficientUncertainty,
@@ -85,11 +78,7 @@ pub(crate) fn speed_onsets(
         });
         let (error, reason) = match judged {
             Ok((estimate, error)) => {
-                alone.push(SpeedEstimate {
-                    mean_speed_m_s,
-                    estimate,
-                    error: error.clone(),
-                });
+                alone.push((mean_speed_m_s, estimate, error.clone()));
                 (Some(error), None)
             }
             Err(error) => (None, Some(error.to_string())),
@@ -105,17 +94,17 @@ pub(crate) fn speed_onsets(
         .enumerate()
         .flat_map(|(i, a)| alone[i + 1..].iter().map(move |b| (a, b)));
     let worst = pairs
-        .map(|(a, b)| (z_of(&a.error, &b.error), a, b))
+        .map(|(a, b)| (z_of(&a.2, &b.2), a, b))
         .filter(|((z, limit), _, _)| z.abs() > *limit)
         .max_by(|x, y| x.0.0.abs().total_cmp(&y.0.0.abs()));
-    if let Some(((z, _), a, b)) = worst {
+    if let Some(((z, _), (v1, first, one), (v2, second, other))) = worst {
         let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
         let gradient = onset_gradient(estimate, structure, speed_m_s, omega)?;
-        let (force, motion) = greatest_part(estimate, &gradient, a, b);
-        let (k_low, k_high) = band(force, motion, tested, a, b)?;
+        let (force, motion) = greatest_part(estimate, &gradient, first, second);
+        let (k_low, k_high) = band(force, motion, tested, [first, second])?;
         found.contradiction = Some(Contradiction {
-            mean_speeds_m_s: [a.mean_speed_m_s, b.mean_speed_m_s],
-            onsets_m_s: [a.error.speed_m_s, b.error.speed_m_s],
+            mean_speeds_m_s: [*v1, *v2],
+            onsets_m_s: [one.speed_m_s, other.speed_m_s],
             z,
             force,
             motion,
@@ -156,10 +145,10 @@ fn z_of(a: &OnsetError, b: &OnsetError) -> (f64, f64) {
 fn greatest_part(
     estimate: &CoefficientUncertainty,
     gradient: &[f64],
-    a: &SpeedEstimate,
-    b: &SpeedEstimate,
+    a: &CoefficientUncertainty,
+    b: &CoefficientUncertainty,
 ) -> (Dof, Dof) {
-    let (a, b) = (a.estimate.values(), b.estimate.values());
+    let (a, b) = (a.values(), b.values());
     let own = estimate.own_coefficients();
     let n = estimate.dofs.len();
     let part = |list: &[usize]| -> f64 {
@@ -178,10 +167,9 @@ fn band(
     force: Dof,
     motion: Dof,
     tested: ReducedFrequencyRange,
-    a: &SpeedEstimate,
-    b: &SpeedEstimate,
+    speeds: [&CoefficientUncertainty; 2],
 ) -> Result<(f64, f64)> {
-    let ranges = [a, b].map(|s| s.estimate.tested_range().unwrap_or(tested));
+    let ranges = speeds.map(|s| s.tested_range().unwrap_or(tested));
     let low = ranges[0].min.full_width().max(ranges[1].min.full_width());
     let high = ranges[0].max.full_width().min(ranges[1].max.full_width());
     let (low, high) = if low < high {
@@ -189,11 +177,11 @@ fn band(
     } else {
         (tested.min.full_width(), tested.max.full_width())
     };
-    let dofs = &a.estimate.dofs;
+    let dofs = &speeds[0].dofs;
     let place = |dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
     let entry = (place(force), place(motion));
-    let model = |s: &SpeedEstimate| s.estimate.model_at(&s.estimate.values());
-    let (first, second) = (model(a)?, model(b)?);
+    let [first, second] = speeds.map(|s| s.model_at(&s.values()));
+    let (first, second) = (first?, second?);
     let mut differences = Vec::with_capacity(POINTS);
     let [min, max] = [low, high].map(ReducedFrequency::from_full_width);
     for k in spread_over(ReducedFrequencyRange::between(min, max), POINTS) {

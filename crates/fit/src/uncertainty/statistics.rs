@@ -1,8 +1,13 @@
 //! Distributions and statistics of samples: Student's t (few independent blocks make wide intervals), the normal one, confidence
 //! intervals of counted probabilities, quantiles of what was drawn, roots of covariances.
 
+use crate::error::{Error, Result};
+use crate::signal::mean_and_deviation;
 use crate::state_space::boundary;
 use nalgebra::{DMatrix, SymmetricEigen};
+use rand::Rng;
+use rand_distr::ChiSquared;
+use serde::Serialize;
 use statrs::function::beta::checked_beta_reg;
 use statrs::function::erf::erfc_inv;
 use std::convert::Infallible;
@@ -84,6 +89,67 @@ pub(super) fn covariance_root(covariance: DMatrix<f64>) -> Option<(DMatrix<f64>,
     Some((eigen.eigenvectors * roots, ends))
 }
 
+/// Mean, scatter and interval of the onsets of many samples.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SampledOnsets {
+    /// Mean, m/s.
+    pub mean_m_s: f64,
+    /// Standard deviation, m/s.
+    pub standard_deviation_m_s: f64,
+    /// 95 % of the samples lie between these, m/s.
+    pub interval_m_s: [f64; 2],
+    /// Samples without an onset up to the highest wind speed; they are not in the numbers above.
+    pub without_onset: usize,
+    /// The onset of each sample that has one, m/s, rising.
+    #[serde(skip)]
+    pub speeds_m_s: Vec<f64>,
+}
+
+impl From<Vec<Option<f64>>> for SampledOnsets {
+    /// NaN in place of what the onsets are too few for.
+    fn from(found: Vec<Option<f64>>) -> Self {
+        let mut speeds: Vec<f64> = found.iter().copied().flatten().collect();
+        speeds.sort_unstable_by(f64::total_cmp);
+        let (mean_m_s, standard_deviation_m_s) = mean_and_deviation(speeds.iter().copied());
+        let quantile = |p| sample_quantile(&speeds, speeds.len(), p).unwrap_or(f64::NAN);
+        Self {
+            mean_m_s,
+            standard_deviation_m_s,
+            interval_m_s: [0.025, 0.975].map(quantile),
+            without_onset: found.len() - speeds.len(),
+            speeds_m_s: speeds,
+        }
+    }
+}
+
+/// `√(ν/χ²_ν)`: Gaussian numbers times one of it are multivariate Student's t.
+#[derive(Debug, Clone, Copy)]
+pub struct StudentScale {
+    freedom: f64,
+    chi_squared: ChiSquared<f64>,
+}
+
+impl StudentScale {
+    /// With `freedom` degrees of freedom.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for a number that is not positive.
+    pub fn new(freedom: f64) -> Result<Self> {
+        let chi_squared = ChiSquared::new(freedom).map_err(|e| {
+            Error::Numerical(format!("draws with {freedom} degrees of freedom: {e}"))
+        })?;
+        Ok(Self {
+            freedom,
+            chi_squared,
+        })
+    }
+
+    /// One of it.
+    pub fn draw(&self, random: &mut impl Rng) -> f64 {
+        (self.freedom / random.sample(self.chi_squared)).sqrt()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,5 +207,14 @@ mod tests {
             clopper_pearson(100_000, 1_000_000, 0.95),
             (0.099_412_669_866_037_89, 0.100_589_648_187_425_52),
         );
+    }
+
+    #[test]
+    fn samples_without_an_onset_are_in_no_other_number() {
+        let onsets = SampledOnsets::from(vec![Some(3.0), None, Some(1.0)]);
+        assert_eq!(onsets.speeds_m_s, [1.0, 3.0]);
+        assert_eq!((onsets.without_onset, onsets.mean_m_s), (1, 2.0));
+        assert!((onsets.interval_m_s[0] - 1.05).abs() < 1e-12);
+        assert!(SampledOnsets::from(vec![None]).interval_m_s[1].is_nan());
     }
 }

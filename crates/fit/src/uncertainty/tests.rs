@@ -53,9 +53,10 @@ fn two_poles(poles: PoleSearch) -> FrequencyFit {
 
 /// The covariance of the blocks alone, for truths that do not differ between speeds.
 fn by_blocks(mut estimate: CoefficientUncertainty) -> CoefficientUncertainty {
-    let contributions = estimate.design.as_ref().unwrap().contributions();
+    let data = estimate.data.as_mut().unwrap();
+    let contributions = data.design.contributions();
     estimate.covariance = &contributions * contributions.transpose();
-    estimate.effects.clear();
+    data.effects.clear();
     estimate
 }
 

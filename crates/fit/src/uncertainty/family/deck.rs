@@ -1,7 +1,6 @@
 //! One deck of the family: section, truth, and a table of its tests.
 
 use super::super::speed_prior::SpeedPrior;
-use super::plan::FamilyPlan;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
@@ -25,6 +24,28 @@ const HIGHEST: f64 = 15.0;
 /// Variance of a fitted transfer function over that of a test point at eight test points a speed, in size or in phase: six
 /// coefficients from sixteen numbers.
 const OF_A_POINT: f64 = 6.0 / 16.0;
+
+/// A family of decks.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FamilyPlan {
+    /// Number of decks; ranges and numbers of motions take turns.
+    pub decks: usize,
+    /// Seed of the first deck; each has its own.
+    pub seed: u64,
+    /// Whether transfer functions scatter between mean speeds as those of measured decks do.
+    pub speeds_scatter: bool,
+}
+
+impl Default for FamilyPlan {
+    fn default() -> Self {
+        Self {
+            decks: 400,
+            seed: 1,
+            speeds_scatter: true,
+        }
+    }
+}
 
 /// Where the tests of a deck lie, seen from the reduced frequency of its true onset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -206,11 +206,6 @@ impl Tally {
         self.outside += usize::from(!start.in_tested_range);
     }
 
-    /// A sample without an onset up to a speed.
-    pub(super) fn stable(&mut self, judged_to_m_s: f64) {
-        self.stable.push(judged_to_m_s);
-    }
-
     pub(super) fn failure(&mut self, sample: usize, reason: String) {
         self.failed += 1;
         if self.failures.len() < NAMED_FAILURES {

@@ -9,7 +9,7 @@ use super::scatter::{CovarianceFactor, drawn_model};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::flutter::{
-    FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
+    CriticalPoint, FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
 };
 use crate::numbered::{OnDone, numbered_in_parts};
 use crate::section::SectionModel;
@@ -164,7 +164,7 @@ impl<'a> Finder<'a> {
                     match onset {
                         SweepOutcome::Onset(onset) => tally.onset(&onset),
                         SweepOutcome::UnstableAtOrBelow(start) => tally.unstable(&start),
-                        SweepOutcome::Stable { judged_to_m_s } => tally.stable(judged_to_m_s),
+                        SweepOutcome::Stable { judged_to_m_s } => tally.stable.push(judged_to_m_s),
                         SweepOutcome::Unresolved => {
                             tally.failure(index, "its modes cannot be resolved".to_owned());
                         }
@@ -197,20 +197,19 @@ impl<'a> Finder<'a> {
         let coupled = CoupledSection::with_model(&section.structure()?, &model)?;
         let tested = Some(self.model.tested_range);
         let found = find_onset(&self.model.name, &coupled, &self.search, tested)?;
+        let swept = |at: &CriticalPoint, tested: Option<bool>, spurious| SweptOnset {
+            speed_m_s: at.speed_m_s,
+            frequency_hz: at.frequency_hz,
+            in_tested_range: tested != Some(false),
+            spurious,
+        };
         Ok(match found {
-            FlutterSearch::Onset(o) => SweepOutcome::Onset(SweptOnset {
-                speed_m_s: o.at.speed_m_s,
-                frequency_hz: o.at.frequency_hz,
-                in_tested_range: o.in_tested_range != Some(false),
-                spurious: o.spurious_speeds_m_s.len(),
-            }),
+            FlutterSearch::Onset(o) => {
+                let spurious = o.spurious_speeds_m_s.len();
+                SweepOutcome::Onset(swept(&o.at, o.in_tested_range, spurious))
+            }
             FlutterSearch::UnstableAtOrBelow(start) => {
-                SweepOutcome::UnstableAtOrBelow(SweptOnset {
-                    speed_m_s: start.at.speed_m_s,
-                    frequency_hz: start.at.frequency_hz,
-                    in_tested_range: start.in_tested_range != Some(false),
-                    spurious: 0,
-                })
+                SweepOutcome::UnstableAtOrBelow(swept(&start.at, start.in_tested_range, 0))
             }
             FlutterSearch::StableUpTo(range) => SweepOutcome::Stable {
                 judged_to_m_s: range.to_m_s,
