@@ -34,7 +34,7 @@ use conic::shortest;
 use edge::TestedRangeEnd;
 pub use equations::Constraints;
 pub(crate) use equations::FitRequirements;
-use equations::{Equation, equations, satisfy};
+use equations::{equations, satisfy};
 use motions::Motions;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use report::GrowthLimit;
@@ -63,10 +63,11 @@ pub(crate) enum Strictness {
 
 /// The conditions on one model with given poles.
 pub(crate) struct Dissipation<'a> {
+    bases: &'a [Basis],
     k_max: f64,
     motions: Motions<'a>,
     conditions: Vec<Condition>,
-    equations: Vec<Equation>,
+    equations: Vec<(ActiveConstraint, f64)>,
 }
 
 /// The fit under the conditions.
@@ -94,6 +95,7 @@ impl<'a> Dissipation<'a> {
         Self {
             equations: equations(bases, motions.count, requirements),
             k_max: requirements.k_max,
+            bases,
             motions,
             conditions,
         }
@@ -120,7 +122,7 @@ impl<'a> Dissipation<'a> {
         let width = entries.iter().map(AffineMap::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let edges = self.edges(&alone);
-        let equalities = satisfy(&self.equations, entries, width)?;
+        let equalities = satisfy(&self.equations, self.bases, entries, width)?;
         let start = &equalities.start;
         let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(start)).collect();
         let mut conditions = self.conditions.clone();
@@ -198,7 +200,11 @@ impl<'a> Dissipation<'a> {
         mut space: AffineSpace,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-        let account = |e: &Equation| e.account(self.motions.count, &alone, &coefficients);
+        let account = |(equation, _): &(ActiveConstraint, f64)| ActiveConstraint {
+            alone: equation.value_in(self.bases, &alone),
+            held: equation.value_in(self.bases, &coefficients),
+            ..equation.clone()
+        };
         let mut active: Vec<_> = self.equations.iter().map(account).collect();
         for s in held {
             let (excesses, directions) = self.excesses(s, &coefficients, edges);

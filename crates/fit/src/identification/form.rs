@@ -209,7 +209,16 @@ impl Form {
             Self::TakenakaMalmquist { filters, .. } => {
                 format!("Takenaka–Malmquist, L = {filters}, {with}{own}")
             }
-            _ => self.describe_rational(),
+            _ => {
+                let (kind, whose) = match self {
+                    Self::RationalPerForce { .. } => ("rational functions", " of each force"),
+                    Self::MinimumState { .. } => ("minimum-state rational functions", ""),
+                    _ => ("rational functions", ""),
+                };
+                let with = if feed.e2 { "with" } else { "without" };
+                let count = counted(self.filters(), "lag");
+                format!("{kind}, {count}{whose}, {with} added mass")
+            }
         }
     }
 
@@ -257,25 +266,6 @@ impl Form {
     /// Whether every force has poles of its own.
     pub(crate) fn poles_per_force(&self) -> bool {
         matches!(self, Self::RationalPerForce { .. })
-    }
-
-    /// A rational form in words.
-    fn describe_rational(&self) -> String {
-        let (kind, whose) = match self {
-            Self::RationalPerForce { .. } => ("rational functions", " of each force"),
-            Self::MinimumState { .. } => ("minimum-state rational functions", ""),
-            _ => ("rational functions", ""),
-        };
-        let count = self.filters();
-        let with = if self.feed_through().e2 {
-            "with"
-        } else {
-            "without"
-        };
-        format!(
-            "{kind}, {}{whose}, {with} added mass",
-            counted(count, "lag")
-        )
     }
 
     /// Checks the form for a fit to records.

@@ -3,23 +3,22 @@
 mod joint;
 mod poles;
 
-use super::basis::{Basis, assemble};
-use super::constrained::LinearSolution;
+use super::basis::assemble;
 use super::degenerate::note_lags;
-use super::dissipative::{ConstraintReport, Constraints};
+use super::dissipative::{ConstraintReport, Constraints, Strictness};
 use super::entry_report::EntryReport;
 use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
-use super::report::{FitReport, Fitted, FittedTable, variance};
+use super::report::{FitReport, Fitted, FittedTable};
 use super::samples::{EntrySamples, sort_by_entry, state_requirements};
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use joint::{Joint, JointFit, by_noise};
+use joint::{Joint, JointFit};
 use poles::choose_poles;
 use std::collections::BTreeMap;
 
@@ -123,10 +122,8 @@ fn fit_linear(
 ) -> Result<FittedTable> {
     let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let (poles, search) = choose_poles(entries, &forms, fit, tested, None)?;
-    let mut reports = Vec::with_capacity(entries.len());
-    for (entry, poles) in entries.iter().zip(&poles) {
-        reports.push(fit_entry(entry, &fit.form, poles)?);
-    }
+    let by_themselves = JointFit::alone(entries, &fit.form, &poles, true)?;
+    let reports = by_themselves.reports()?;
     let alone = FittedTable {
         model: model_of(dofs, fit, &reports)?,
         reports,
@@ -139,16 +136,16 @@ fn fit_linear(
     let joint = Joint {
         entries,
         form: &fit.form,
-        shares: by_noise(entries, &fit.form, &poles)?,
+        shares: by_themselves.shares_by_noise(),
         requirements: fit.requirements(dofs, tested),
     };
-    let bound = joint.at(&poles)?;
+    let bound = by_themselves.held(&joint, Strictness::Everywhere)?;
     if bound.constrained.is_none() {
         return Ok(alone);
     }
     let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&joint, poles)))?;
     let together = joint.at(&poles)?;
-    let reports = constrained_reports(&together, entries, &poles)?;
+    let reports = together.reports()?;
     let model = model_of(dofs, fit, &reports)?;
     let active = together
         .constrained
@@ -177,76 +174,12 @@ fn model_of(dofs: &[Dof], fit: &FrequencyFit, reports: &[EntryReport]) -> Result
     assemble(&fit.form, dofs, &poles, &values)
 }
 
-/// Accounts of all entries of a fit that constraints hold together.
-fn constrained_reports(
-    together: &JointFit<'_>,
-    entries: &[EntrySamples],
-    poles: &[Vec<f64>],
-) -> Result<Vec<EntryReport>> {
-    let mut reports = Vec::new();
-    let mut variances = Vec::new();
-    for (e, entry) in entries.iter().enumerate() {
-        let (report, variance) = entry_report(
-            entry,
-            &together.bases[e],
-            &poles[e],
-            &together.solutions[e],
-            together.coefficients(e),
-        );
-        reports.push(report);
-        variances.push(variance);
-    }
-    let finish = |(e, report): (usize, EntryReport)| {
-        report.with_coefficients(
-            together.bases[e].names(),
-            together.coefficients(e),
-            together.covariance(e, &variances),
-        )
-    };
-    Ok(reports.into_iter().enumerate().map(finish).collect())
-}
-
 fn describe(weights: FrequencyWeights) -> &'static str {
     match weights {
         FrequencyWeights::None => "none: residuals of G",
         FrequencyWeights::Derivatives => "1/K²: residuals of the aerodynamic derivatives",
         FrequencyWeights::Relative => "1/|G| of the entry at its point: relative residuals",
     }
-}
-
-/// Account of one entry by itself, in the columns of the model.
-fn fit_entry(entry: &EntrySamples, form: &Form, poles: &[f64]) -> Result<EntryReport> {
-    let basis = Basis::new(form, poles)?;
-    let fit = entry.fit(&basis)?;
-    let (report, variance) = entry_report(entry, &basis, poles, &fit, &fit.coefficients);
-    let covariance = variance
-        .map(|v| fit.inverse_gram().map(|gram| gram * v))
-        .transpose()?;
-    Ok(report.with_coefficients(basis.names(), &fit.coefficients, covariance))
-}
-
-/// Account of given coefficients of one entry but for their covariance, and the variance of the weighted residuals.
-fn entry_report(
-    entry: &EntrySamples,
-    basis: &Basis,
-    poles: &[f64],
-    fit: &LinearSolution,
-    coefficients: &[f64],
-) -> (EntryReport, Option<f64>) {
-    let residuals = entry.residuals(basis, coefficients);
-    let unknowns = fit.unknowns;
-    let report = entry.report(&residuals, poles, fit);
-    let sum = if std::ptr::eq(coefficients, fit.coefficients.as_slice()) {
-        fit.factor.residual_sum(unknowns, 0)
-    } else {
-        let weighted = residuals
-            .iter()
-            .zip(&entry.rows)
-            .map(|(r, row)| r * row.weight);
-        let squares = weighted.chain(fit.penalty(coefficients)).map(|r| r * r);
-        squares.sum()
-    };
-    (report, variance(sum, entry.rows.len(), unknowns))
 }
 
 #[cfg(test)]

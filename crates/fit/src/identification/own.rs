@@ -152,13 +152,10 @@ pub(crate) fn entry_forms(
 
 /// Transfer functions whose poles are searched together: those that share theirs, and each of the others alone.
 pub(crate) fn searched_together(entries: &[EntryForm]) -> Vec<Vec<usize>> {
-    let searched = |alone: bool| {
-        let of_kind = move |e: &&usize| entries[**e].fixed.is_none() && entries[**e].alone == alone;
-        let all: Vec<usize> = (0..entries.len()).collect();
-        all.iter().filter(of_kind).copied().collect::<Vec<usize>>()
-    };
-    let mut groups = vec![searched(false)];
-    groups.extend(searched(true).into_iter().map(|e| vec![e]));
+    let searched = (0..entries.len()).filter(|e| entries[*e].fixed.is_none());
+    let (alone, together): (Vec<usize>, Vec<usize>) = searched.partition(|e| entries[*e].alone);
+    let mut groups = vec![together];
+    groups.extend(alone.into_iter().map(|e| vec![e]));
     groups.retain(|g| !g.is_empty());
     groups
 }

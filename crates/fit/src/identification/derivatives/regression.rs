@@ -115,17 +115,10 @@ impl<'a> TestPointEquations<'a> {
     /// The triangular factor of all runs, with the forces as right-hand sides.
     fn factor(&self) -> Result<Factor> {
         let mut qr = StreamingQr::new(self.columns, self.dofs.len());
-        let mut line = vec![0.0; self.columns + self.dofs.len()];
         for (forces, z) in self.forces.iter().zip(&self.rows) {
-            for k in 0..z.nrows() {
-                for (c, to) in line.iter_mut().enumerate().take(self.columns) {
-                    *to = z[(k, c)];
-                }
-                for (i, force) in forces.iter().enumerate() {
-                    line[self.columns + i] = force[k];
-                }
-                qr.push_row(&line);
-            }
+            let regressors = z.as_slice().chunks_exact(z.nrows().max(1));
+            let columns = regressors.chain(forces.iter().map(Vec::as_slice));
+            qr.push_columns(&columns.collect::<Vec<_>>());
         }
         let factor = qr.finish();
         if factor.undetermined(self.columns).is_some() || factor.condition(self.columns) > 1e6 {

@@ -56,85 +56,35 @@ impl FitRequirements {
     }
 }
 
-/// One equation: the sum of rows over the coefficients of transfer functions is `target`.
-#[derive(Debug, Clone)]
-pub(super) struct Equation {
-    kind: ConstraintKind,
-    /// Row and column of the transfer function that it names.
-    entry: (usize, usize),
-    rows: Vec<(usize, Vec<f64>)>,
-    target: f64,
-}
-
-/// The equations of a model with given bases, row by row.
+/// The equations of a model with given bases, row by row: what each holds, and at which value.
 pub(super) fn equations(
     bases: &[Basis],
     n: usize,
     requirements: &FitRequirements,
-) -> Vec<Equation> {
+) -> Vec<(ActiveConstraint, f64)> {
     let mut all = Vec::new();
+    let equation = |kind, i: usize, j: usize| ActiveConstraint {
+        kind,
+        k: None,
+        entry: Some((i, j)),
+        direction: vec![0.0; n],
+        alone: 0.0,
+        held: 0.0,
+        limit: None,
+    };
     if requirements.constraints == Constraints::Dissipative && bases[0].feed().e2 {
-        let row = |e: usize, sign: f64| {
-            let row = ConstraintKind::SymmetricAddedMass.row(None, &bases[e]);
-            (e, row.into_iter().map(|x| sign * x).collect())
-        };
+        let kind = ConstraintKind::SymmetricAddedMass;
         for i in 0..n {
-            all.extend((0..i).map(|j| Equation {
-                kind: ConstraintKind::SymmetricAddedMass,
-                entry: (i, j),
-                rows: vec![row(i * n + j, 1.0), row(j * n + i, -1.0)],
-                target: 0.0,
-            }));
+            all.extend((0..i).map(|j| (equation(kind, i, j), 0.0)));
         }
     }
     for (e, limits) in requirements.limits.iter().enumerate() {
-        for (kind, target) in [ConstraintKind::ValueAtZero, ConstraintKind::SlopeAtZero]
-            .into_iter()
-            .zip(limits)
-        {
-            all.extend(target.map(|target| Equation {
-                kind,
-                entry: (e / n, e % n),
-                rows: vec![(e, kind.row(None, &bases[e]))],
-                target,
-            }));
+        let kinds = [ConstraintKind::ValueAtZero, ConstraintKind::SlopeAtZero];
+        for (kind, target) in kinds.into_iter().zip(limits) {
+            all.extend(target.map(|target| (equation(kind, e / n, e % n), target)));
         }
     }
     all
-}
-
-impl Equation {
-    fn value(&self, coefficients: &[Vec<f64>]) -> f64 {
-        let dot = |(e, row): &(usize, Vec<f64>)| -> f64 {
-            row.iter().zip(&coefficients[*e]).map(|(a, c)| a * c).sum()
-        };
-        self.rows.iter().map(dot).sum()
-    }
-
-    fn gradient(&self, entries: &[AffineMap], width: usize) -> DVector<f64> {
-        let mut gradient = DVector::zeros(width);
-        for (e, row) in &self.rows {
-            entries[*e].add_gradient(row, 1.0, &mut gradient);
-        }
-        gradient
-    }
-
-    pub(crate) fn account(
-        &self,
-        n: usize,
-        alone: &[Vec<f64>],
-        held: &[Vec<f64>],
-    ) -> ActiveConstraint {
-        ActiveConstraint {
-            kind: self.kind,
-            k: None,
-            entry: Some(self.entry),
-            direction: vec![0.0; n],
-            alone: self.value(alone),
-            held: self.value(held),
-            limit: None,
-        }
-    }
 }
 
 /// The free numbers that satisfy the equations.
@@ -142,19 +92,27 @@ impl Equation {
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) for limits that the columns of the model cannot meet.
 pub(super) fn satisfy(
-    equations: &[Equation],
+    equations: &[(ActiveConstraint, f64)],
+    bases: &[Basis],
     entries: &[AffineMap],
     width: usize,
 ) -> Result<AffineSpace> {
     let mut space = AffineSpace::whole(width);
     let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-    for equation in equations {
-        let gradient = equation.gradient(entries, width);
-        let target = equation.target - equation.value(&alone);
+    let n = entries.len().isqrt();
+    for (equation, wanted) in equations {
+        let mut gradient = DVector::zeros(width);
+        for (e, (entry, basis)) in entries.iter().zip(bases).enumerate() {
+            if equation.weight(e / n, e % n) != 0.0 {
+                let row = equation.gradient(e / n, e % n, basis);
+                entry.add_gradient(&row, 1.0, &mut gradient);
+            }
+        }
+        let target = wanted - equation.value_in(bases, &alone);
         if !space.hold(&gradient, target, RANK_TOLERANCE) {
             let short = target - gradient.dot(&space.start);
             ensure(
-                short.abs() <= AGREEMENT * equation.target.abs().max(gradient.norm()),
+                short.abs() <= AGREEMENT * wanted.abs().max(gradient.norm()),
                 "limits",
                 "limits at K → 0 that the columns of the model can meet",
                 "a feed-through is missing, or one limit repeats another",

@@ -133,7 +133,8 @@ impl ActiveConstraint {
         gradient
     }
 
-    fn weight(&self, i: usize, j: usize) -> f64 {
+    /// What the row of entry `(i, j)` is multiplied with.
+    pub(super) fn weight(&self, i: usize, j: usize) -> f64 {
         match self.entry {
             Some(entry) if entry == (i, j) => 1.0,
             Some(entry) if entry == (j, i) && self.kind == ConstraintKind::SymmetricAddedMass => {
@@ -145,7 +146,7 @@ impl ActiveConstraint {
     }
 
     /// What it would hold in another model, from its bases and coefficients, row by row.
-    fn value_in(&self, bases: &[Basis], coefficients: &[Vec<f64>]) -> f64 {
+    pub(super) fn value_in(&self, bases: &[Basis], coefficients: &[Vec<f64>]) -> f64 {
         let n = self.direction.len();
         let part = |(e, (basis, values)): (usize, (&Basis, &Vec<f64>))| -> f64 {
             let gradient = self.gradient(e / n, e % n, basis);

@@ -5,8 +5,9 @@ use crate::identification::affine::AffineMap;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
 use crate::identification::dissipative::{Dissipation, FitRequirements, Solution, Strictness};
+use crate::identification::entry_report::EntryReport;
 use crate::identification::form::Form;
-use crate::identification::report::relative_noise;
+use crate::identification::report::{relative_noise, variance};
 use crate::identification::samples::{EntrySamples, shares};
 use nalgebra::{DMatrix, DVector};
 
@@ -18,106 +19,106 @@ pub(super) struct Joint<'a> {
     pub entries: &'a [EntrySamples],
     pub form: &'a Form,
     pub requirements: FitRequirements,
-    /// What the weighted residuals of each entry are multiplied with, see [`by_noise`].
+    /// What the weighted residuals of each entry are multiplied with, see [`JointFit::shares_by_noise`].
     pub shares: Vec<f64>,
 }
 
-/// All entries at given poles: each by itself, and together under the constraints where these bind.
+/// All entries at given poles: each by itself and, once they are held, together under the constraints where these bind.
 pub(super) struct JointFit<'a> {
     entries: &'a [EntrySamples],
-    shares: Vec<f64>,
     pub bases: Vec<Basis>,
-    pub solutions: Vec<LinearSolution>,
+    solutions: Vec<LinearSolution>,
+    shares: Vec<f64>,
+    /// The entries as they are held together; none before they are.
     linear: Vec<AffineMap>,
     pub constrained: Option<Solution>,
-}
-
-/// Shares of the entries by their own scatter instead of their own size: under constraints the poles and the coefficients of
-/// one entry depend on those of others, and an entry that scatters by half of its size is no reason to bend one that is known to
-/// a hundredth. The scatter is that of the fit without constraints at `poles`; of their fit all shares together say as much as
-/// those by size do.
-///
-/// # Errors
-/// Entries that cannot be fitted.
-pub(super) fn by_noise(
-    entries: &[EntrySamples],
-    form: &Form,
-    poles: &[Vec<f64>],
-) -> Result<Vec<f64>> {
-    let all: Vec<&EntrySamples> = entries.iter().collect();
-    let by_size = shares(&all);
-    let mut noisy = by_size.clone();
-    let (mut before, mut after) = (0.0, 0.0);
-    for (e, entry) in entries.iter().enumerate() {
-        let fit = entry.fit(&Basis::new(form, &poles[e])?)?;
-        let residual = fit.factor.residual_sum(fit.unknowns, 0);
-        noisy[e] /= relative_noise(residual, entry.total(), entry.rows.len(), fit.unknowns);
-        before += by_size[e].powi(2) * residual;
-        after += noisy[e].powi(2) * residual;
-    }
-    if after > 0.0 {
-        let scale = (before / after).sqrt();
-        noisy.iter_mut().for_each(|share| *share *= scale);
-    }
-    Ok(noisy)
 }
 
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
     pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
-        self.fit(poles, true, Strictness::Everywhere)
+        JointFit::alone(self.entries, self.form, poles, true)?.held(self, Strictness::Everywhere)
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
     pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);
-        Ok(self.fit(poles, native, Strictness::Sampled)?.residuals())
+        let alone = JointFit::alone(self.entries, self.form, poles, native)?;
+        Ok(alone.held(self, Strictness::Sampled)?.residuals())
     }
+}
 
-    fn fit(
-        &self,
+impl<'a> JointFit<'a> {
+    /// Each entry by itself, in the columns of the model or in orthonormal ones that span the same space.
+    pub(super) fn alone(
+        entries: &'a [EntrySamples],
+        form: &Form,
         poles: &[Vec<f64>],
         native: bool,
-        strictness: Strictness,
-    ) -> Result<JointFit<'a>> {
-        let basis = |poles: &Vec<f64>| {
-            if native {
-                Basis::new(self.form, poles)
-            } else {
-                Basis::orthonormal(self.form, poles)
-            }
+    ) -> Result<Self> {
+        let basis = |poles: &Vec<f64>| match native {
+            true => Basis::new(form, poles),
+            false => Basis::orthonormal(form, poles),
         };
         let bases = poles.iter().map(basis).collect::<Result<Vec<_>>>()?;
-        let shares = self.shares.clone();
-        let least = LEAST_SHARE * shares.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let (mut solutions, mut linear, mut at) = (Vec::new(), Vec::new(), 0);
-        for ((entry, basis), share) in self.entries.iter().zip(&bases).zip(&shares) {
-            let solution = entry.fit(basis)?;
-            linear.push(AffineMap {
+        let each = entries.iter().zip(&bases);
+        Ok(Self {
+            entries,
+            solutions: each.map(|(e, b)| e.fit(b)).collect::<Result<_>>()?,
+            bases,
+            shares: Vec::new(),
+            linear: Vec::new(),
+            constrained: None,
+        })
+    }
+
+    /// The same held together by what is asked of them.
+    pub(super) fn held(mut self, joint: &Joint<'_>, strictness: Strictness) -> Result<Self> {
+        self.shares.clone_from(&joint.shares);
+        let least = LEAST_SHARE
+            * self
+                .shares
+                .iter()
+                .copied()
+                .fold(f64::MIN_POSITIVE, f64::max);
+        let mut at = 0;
+        for (solution, share) in self.solutions.iter().zip(&self.shares) {
+            self.linear.push(AffineMap {
                 values: solution.coefficients.clone(),
                 spread: solution.spread()? / share.max(least),
                 at,
             });
             at += solution.unknowns;
-            solutions.push(solution);
         }
-        let constrained =
-            Dissipation::new(&bases, &self.requirements).solve(&linear, strictness)?;
-        Ok(JointFit {
-            entries: self.entries,
-            shares,
-            bases,
-            solutions,
-            linear,
-            constrained,
-        })
+        let conditions = Dissipation::new(&self.bases, &joint.requirements);
+        self.constrained = conditions.solve(&self.linear, strictness)?;
+        Ok(self)
     }
-}
 
-impl JointFit<'_> {
+    /// Shares of the entries by their own scatter instead of their own size: under constraints the poles and the coefficients of
+    /// one entry depend on those of others, and an entry that scatters by half of its size is no reason to bend one that is known to
+    /// a hundredth. The scatter is that of this fit, without constraints; of its residuals all shares together say as much as
+    /// those by size do.
+    pub(super) fn shares_by_noise(&self) -> Vec<f64> {
+        let by_size = shares(&self.entries.iter().collect::<Vec<_>>());
+        let mut noisy = by_size.clone();
+        let (mut before, mut after) = (0.0, 0.0);
+        for (e, (entry, fit)) in self.entries.iter().zip(&self.solutions).enumerate() {
+            let residual = fit.factor.residual_sum(fit.unknowns, 0);
+            noisy[e] /= relative_noise(residual, entry.total(), entry.rows.len(), fit.unknowns);
+            before += by_size[e].powi(2) * residual;
+            after += noisy[e].powi(2) * residual;
+        }
+        if after > 0.0 {
+            let scale = (before / after).sqrt();
+            noisy.iter_mut().for_each(|share| *share *= scale);
+        }
+        noisy
+    }
+
     /// Coefficients of an entry.
-    pub(crate) fn coefficients(&self, e: usize) -> &[f64] {
+    fn coefficients(&self, e: usize) -> &[f64] {
         match &self.constrained {
             Some(constrained) => &constrained.coefficients[e],
             None => &self.solutions[e].coefficients,
@@ -135,16 +136,48 @@ impl JointFit<'_> {
         DVector::from_vec(all)
     }
 
+    /// Accounts of all entries.
+    ///
+    /// # Errors
+    /// Coefficients that are not determined.
+    pub(super) fn reports(&self) -> Result<Vec<EntryReport>> {
+        let (mut reports, mut variances) = (Vec::new(), Vec::new());
+        for (e, entry) in self.entries.iter().enumerate() {
+            let (values, fit) = (self.coefficients(e), &self.solutions[e]);
+            let residuals = entry.residuals(&self.bases[e], values);
+            reports.push(entry.report(&residuals, self.bases[e].poles(), fit));
+            let weighted = residuals
+                .iter()
+                .zip(&entry.rows)
+                .map(|(r, row)| r * row.weight);
+            let sum = match self.constrained {
+                Some(_) => weighted.chain(fit.penalty(values)).map(|r| r * r).sum(),
+                None => fit.factor.residual_sum(fit.unknowns, 0),
+            };
+            variances.push(variance(sum, entry.rows.len(), fit.unknowns));
+        }
+        let finished = |(e, report): (usize, EntryReport)| {
+            let covariance = self.covariance(e, &variances)?;
+            Ok(report.with_coefficients(self.bases[e].names(), self.coefficients(e), covariance))
+        };
+        reports.into_iter().enumerate().map(finished).collect()
+    }
+
     /// Covariance of the coefficients of an entry from the variances of the weighted residuals of all entries: what the
     /// active constraints take is known.
-    pub(crate) fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Option<DMatrix<f64>> {
-        let constrained = self.constrained.as_ref()?;
-        variances[e]?;
+    fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Result<Option<DMatrix<f64>>> {
+        let Some(own) = variances[e] else {
+            return Ok(None);
+        };
+        if self.linear.is_empty() {
+            return Ok(Some(self.solutions[e].inverse_gram()? * own));
+        }
         let all = self.linear.iter().zip(&self.shares).zip(variances);
         let free = all.map(|((linear, share), v)| {
             let variance = v.unwrap_or(0.0) * share * share;
             (linear.spread.ncols(), variance)
         });
-        Some(constrained.space.covariance(&self.linear[e], free))
+        let constrained = self.constrained.as_ref();
+        Ok(constrained.map(|c| c.space.covariance(&self.linear[e], free)))
     }
 }
