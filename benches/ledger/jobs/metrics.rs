@@ -2,9 +2,8 @@
 
 use crate::entry::Job;
 use aerodeck::comparison::{
-    BicoherenceParameters, DensityParameters, PhaseParameters, SignalPair, StationarityParameters,
-    WarpingParameters, WaveletParameters, bicoherence, magnitude_warped, phase,
-    probability_density, stationarity, warping_path, wavelet,
+    BicoherenceParameters, PhaseParameters, SignalPair, StationarityParameters, WaveletParameters,
+    bicoherence, magnitude_warped, phase, probability_density, stationarity, warping_path, wavelet,
 };
 use serde_json::{Value, json};
 use std::cell::Cell;
@@ -62,7 +61,7 @@ pub(crate) fn metric_phase() -> Job {
 }
 
 pub(crate) fn metric_magnitude_warped() -> Job {
-    metric(|pair| Ok(magnitude_warped(pair, &WarpingParameters::default())?.value))
+    metric(|pair| Ok(magnitude_warped(pair, None)?.value))
 }
 
 pub(crate) fn metric_wavelet() -> Job {
@@ -70,7 +69,7 @@ pub(crate) fn metric_wavelet() -> Job {
 }
 
 pub(crate) fn metric_density() -> Job {
-    metric(|pair| Ok(probability_density(pair, &DensityParameters::default())?.value))
+    metric(|pair| Ok(probability_density(pair, true)?.value))
 }
 
 pub(crate) fn metric_stationarity() -> Job {

@@ -32,11 +32,10 @@ mod surrogates;
 mod wavelet;
 
 pub use amplitude::{
-    DistanceDetails, LevelDetails, WarpingDetails, WarpingParameters, magnitude, magnitude_warped,
-    peak, rms,
+    DistanceDetails, LevelDetails, WarpingDetails, magnitude, magnitude_warped, peak, rms,
 };
 pub use bicoherence::{BicoherenceDetails, BicoherenceParameters, Coupling, bicoherence};
-pub use density::{DensityDetails, DensityParameters, probability_density};
+pub use density::{DensityDetails, probability_density};
 pub use dtw::{WarpingPath, warping_path};
 pub use morlet::WaveletParameters;
 pub use phase::{LagEstimate, PhaseDetails, PhaseParameters, phase};

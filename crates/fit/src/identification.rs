@@ -28,8 +28,7 @@ mod testing;
 mod tests;
 pub(crate) mod time;
 
-pub use discrete::DiscreteFit;
-pub use discrete::fit_discrete;
+pub use discrete::{DiscreteFit, fit_discrete};
 pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints,
 };
@@ -49,5 +48,4 @@ pub use report::{
     StaticReport,
 };
 pub use samples::sample_model;
-pub use time::pass::FitProgress;
-pub use time::pass::OnProgress;
+pub use time::pass::{FitProgress, OnProgress};

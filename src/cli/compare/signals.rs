@@ -3,10 +3,9 @@
 use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
 use crate::comparison::{
-    BicoherenceParameters, DensityParameters, Metric, PhaseParameters, SignalPair,
-    StationarityParameters, WarpingParameters, WaveletParameters, bicoherence, magnitude,
-    magnitude_warped, peak, phase, probability_density, rms, stationarity, wavelet,
-    wavelet_normalised,
+    BicoherenceParameters, Metric, PhaseParameters, SignalPair, StationarityParameters,
+    WaveletParameters, bicoherence, magnitude, magnitude_warped, peak, phase, probability_density,
+    rms, stationarity, wavelet, wavelet_normalised,
 };
 use crate::error::{Error, Result, ensure, positive};
 use crate::files::lab::ChannelSet;
@@ -167,8 +166,8 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
         seed: args.seed,
         ..BicoherenceParameters::default()
     };
-    let warping = magnitude_warped(pair, &WarpingParameters::default());
-    let density = probability_density(pair, &DensityParameters::default());
+    let warping = magnitude_warped(pair, None);
+    let density = probability_density(pair, true);
     Ok(vec![
         Line::new("M_phi", "mean delay", phase(pair, &delay))?,
         Line::new("M_p", "largest absolute value", peak(pair))?,

@@ -116,13 +116,6 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Parameters of [`magnitude_warped`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct WarpingParameters {
-    /// Largest shift allowed, samples; default none, the global optimum as published.
-    pub band_samples: Option<usize>,
-}
-
 /// What [`magnitude_warped`] found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WarpingDetails {
@@ -139,7 +132,8 @@ pub struct WarpingDetails {
 }
 
 /// Warped magnitude metric `M_m = exp(−‖X₁ʷ − X₂ʷ‖₂/‖X₁ʷ‖₂)` of the signals stretched along the path of
-/// [`warping_path`], which matches `X₂` (rows) to `X₁` (columns).
+/// [`warping_path`], which matches `X₂` (rows) to `X₁` (columns). `band_samples` is the largest shift allowed; without one the path is
+/// the global optimum, as published.
 ///
 /// The order in which ties are resolved enters the path length and so the last digits of `‖X₁ʷ‖₂`.
 ///
@@ -147,9 +141,9 @@ pub struct WarpingDetails {
 /// [`crate::Error::Input`] if the reference is zero throughout, [`crate::Error::Numerical`] if the cost overflows.
 pub fn magnitude_warped(
     pair: &SignalPair<'_>,
-    parameters: &WarpingParameters,
+    band_samples: Option<usize>,
 ) -> Result<Metric<WarpingDetails>> {
-    let path = warping_path(pair.compared(), pair.reference(), parameters.band_samples)?;
+    let path = warping_path(pair.compared(), pair.reference(), band_samples)?;
     let matched = path
         .cells
         .iter()
@@ -231,7 +225,7 @@ mod tests {
         let x1: Vec<f64> = (0..500).map(|k| (0.05 * k as f64).sin()).collect();
         let x2: Vec<f64> = (0..500).map(|k| (0.05 * (k as f64 - 6.0)).sin()).collect();
         let pair = SignalPair::new(&x1, &x2, 0.005).unwrap();
-        let warped = magnitude_warped(&pair, &WarpingParameters::default()).unwrap();
+        let warped = magnitude_warped(&pair, None).unwrap();
         assert!(warped.value > magnitude(&pair).unwrap().value);
         // The distance along the path, summed here and in the recursion.
         assert_relative_eq!(
@@ -247,10 +241,7 @@ mod tests {
         let x1 = [1.0, 2.0, 3.0, 4.0];
         let x2 = [1.1, 2.2, 3.3, 4.4];
         let pair = SignalPair::new(&x1, &x2, 1.0).unwrap();
-        let parameters = WarpingParameters {
-            band_samples: Some(0),
-        };
-        let warped = magnitude_warped(&pair, &parameters).unwrap();
+        let warped = magnitude_warped(&pair, Some(0)).unwrap();
         assert_eq!(warped.value, magnitude(&pair).unwrap().value);
         assert!(warped.details.band_binds);
         assert_eq!(warped.details.largest_shift_samples, 0);

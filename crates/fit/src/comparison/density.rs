@@ -12,22 +12,6 @@ use crate::signal::{Complex64, Fourier, extremes, largest_magnitude, mean_and_de
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// Parameters of [`probability_density`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct DensityParameters {
-    /// Compare standard scores (mean removed, divided by the standard deviation), so that only the shape of the
-    /// distribution counts; default `true`.
-    pub standard_score: bool,
-}
-
-impl Default for DensityParameters {
-    fn default() -> Self {
-        Self {
-            standard_score: true,
-        }
-    }
-}
-
 /// What [`probability_density`] found, in standard deviations or in the unit of the signals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DensityDetails {
@@ -46,16 +30,17 @@ pub struct DensityDetails {
 /// Probability density metric, the Bhattacharyya coefficient `M_pdf = Σ √(p₁p₂) h`.
 ///
 /// Densities by diffusion (Botev, Grotowski and Kroese 2010) on 4096 points over the common range of both
-/// signals, from the smallest to the largest value of either.
+/// signals, from the smallest to the largest value of either. With `standard_score` those of the standard scores (mean removed,
+/// divided by the standard deviation), so that only the shape of the distribution counts.
 ///
 /// # Errors
 /// [`Error::Input`] if a signal is constant.
 pub fn probability_density(
     pair: &SignalPair<'_>,
-    parameters: &DensityParameters,
+    standard_score: bool,
 ) -> Result<Metric<DensityDetails>> {
-    let first = values("reference signal", pair.reference(), parameters)?;
-    let second = values("compared signal", pair.compared(), parameters)?;
+    let first = values("reference signal", pair.reference(), standard_score)?;
+    let second = values("compared signal", pair.compared(), standard_score)?;
     let (low, high) = extremes(first.iter().chain(&second).copied());
     let step = (high - low) / POINTS as f64;
     let [reference, compared] = [&first, &second].map(|x| Density::new(x, [low, high]));
@@ -78,7 +63,7 @@ pub fn probability_density(
 }
 
 /// The values themselves or their standard scores.
-fn values(place: &str, signal: &[f64], parameters: &DensityParameters) -> Result<Vec<f64>> {
+fn values(place: &str, signal: &[f64], standard_score: bool) -> Result<Vec<f64>> {
     let (mean, deviation) = mean_and_deviation(signal.iter().copied());
     let largest = largest_magnitude(signal);
     // The deviation of a constant is the rounding error of its mean.
@@ -93,7 +78,7 @@ fn values(place: &str, signal: &[f64], parameters: &DensityParameters) -> Result
             "{place}: the variance is too large for double precision"
         )));
     }
-    Ok(if parameters.standard_score {
+    Ok(if standard_score {
         signal.iter().map(|x| (x - mean) / deviation).collect()
     } else {
         signal.to_vec()
@@ -244,10 +229,6 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
     use std::f64::consts::TAU;
 
-    const AS_THEY_ARE: DensityParameters = DensityParameters {
-        standard_score: false,
-    };
-
     fn normal(count: usize, seed: u64) -> Vec<f64> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         (0..count)
@@ -272,7 +253,7 @@ mod tests {
         };
         let (x1, x2) = (wave(1.0, 0), wave(1.7, 37));
         let pair = SignalPair::new(&x1, &x2, 0.01).unwrap();
-        let metric = probability_density(&pair, &DensityParameters::default()).unwrap();
+        let metric = probability_density(&pair, true).unwrap();
         // Values at the edge of a cell fall to either side by rounding.
         assert_abs_diff_eq!(metric.value, 1.0, epsilon = 1e-3);
     }
@@ -290,8 +271,8 @@ mod tests {
         assert_eq!(distinct(&x1), 26);
         assert_eq!(distinct(&x2), 50);
         let pair = SignalPair::new(&x1, &x2, 0.01).unwrap();
-        for parameters in [DensityParameters::default(), AS_THEY_ARE] {
-            let metric = probability_density(&pair, &parameters).unwrap();
+        for standard_score in [true, false] {
+            let metric = probability_density(&pair, standard_score).unwrap();
             assert_abs_diff_eq!(metric.value, 1.0, epsilon = 0.02);
         }
         // numbers that differ stay as many as they are
@@ -304,10 +285,10 @@ mod tests {
         let (x1, mut x2) = (normal(20_000, 1), normal(20_000, 2));
         x2.iter_mut().for_each(|x| *x += 1.5);
         let pair = SignalPair::new(&x1, &x2, 0.01).unwrap();
-        let metric = probability_density(&pair, &AS_THEY_ARE).unwrap();
+        let metric = probability_density(&pair, false).unwrap();
         // Scatter of the estimate for 20 000 samples.
         assert_abs_diff_eq!(metric.value, (-1.5_f64.powi(2) / 8.0).exp(), epsilon = 5e-3);
-        let scored = probability_density(&pair, &DensityParameters::default()).unwrap();
+        let scored = probability_density(&pair, true).unwrap();
         assert!(scored.value > 0.998, "{}", scored.value);
     }
 
@@ -315,7 +296,7 @@ mod tests {
     fn densities_are_those_of_the_distribution() {
         let x = logistic(2000);
         let pair = SignalPair::new(&x, &x, 0.01).unwrap();
-        let metric = probability_density(&pair, &AS_THEY_ARE).unwrap();
+        let metric = probability_density(&pair, false).unwrap();
         assert_abs_diff_eq!(metric.value, 1.0, epsilon = 1e-12);
         let d = &metric.details;
         assert_abs_diff_eq!(
@@ -334,7 +315,7 @@ mod tests {
     fn constants_are_refused() {
         let (x, y) = ([0.1; 8], normal(8, 3));
         let pair = SignalPair::new(&x, &y, 0.01).unwrap();
-        assert!(probability_density(&pair, &DensityParameters::default()).is_err());
+        assert!(probability_density(&pair, true).is_err());
     }
 
     #[test]

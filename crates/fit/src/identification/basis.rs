@@ -3,6 +3,7 @@
 //! Orthonormal filters and Roger's lag terms differ only in the filter column; everything else of the identification
 //! is common to them.
 
+use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
 use crate::aerodynamics::laguerre::FilterTerm;
 use crate::aerodynamics::{FilterBank, Lags, LaguerreModel, RationalModel};
@@ -175,43 +176,52 @@ pub(crate) fn assemble(
         model.validate()?;
         return Ok(Model::Rational(model));
     }
+    let term = |(input, chain): (usize, &Vec<f64>)| {
+        let coefficient = |force: usize, l: usize| match poles[force * n + input] == *chain {
+            true => filter(force, input, l),
+            false => 0.0,
+        };
+        Ok(FilterTerm {
+            input,
+            poles: FilterBank::new(chain.clone())?,
+            coefficients: DMatrix::from_fn(n, chain.len(), coefficient),
+        })
+    };
     let model = LaguerreModel {
         dofs: dofs.to_vec(),
         e0: part(0),
         e1: part(1),
         e2: part(2),
-        terms: filter_terms(n, poles, &filter)?,
+        terms: once_an_input(n, poles)
+            .into_iter()
+            .map(term)
+            .collect::<Result<_>>()?,
     };
     model.validate()?;
     Ok(Model::Laguerre(model))
 }
 
-/// The filters of every input, with their coefficients `filter(force, input, l)`: one chain serves all forces that share
-/// its poles.
-fn filter_terms(
-    n: usize,
-    poles: &[Vec<f64>],
-    filter: &dyn Fn(usize, usize, usize) -> f64,
-) -> Result<Vec<FilterTerm>> {
-    let mut terms = Vec::new();
+/// The model that the accounts of its entries, row by row, describe.
+///
+/// # Errors
+/// As [`assemble`].
+pub(super) fn model_of(form: &Form, dofs: &[Dof], reports: &[EntryReport]) -> Result<Model> {
+    let poles: Vec<Vec<f64>> = reports.iter().map(|r| r.poles.clone()).collect();
+    let values: Vec<Vec<f64>> = reports.iter().map(EntryReport::values).collect();
+    assemble(form, dofs, &poles, &values)
+}
+
+/// What the transfer functions of every input have, row by row in `entries`, each once: one chain serves all forces that share it.
+pub(super) fn once_an_input<T: PartialEq>(n: usize, entries: &[T]) -> Vec<(usize, &T)> {
+    let mut all: Vec<(usize, &T)> = Vec::new();
     for input in 0..n {
-        let of_force: Vec<&Vec<f64>> = poles.iter().skip(input).step_by(n).collect();
-        for (i, chain) in of_force.iter().enumerate() {
-            if of_force[..i].contains(chain) {
-                continue;
+        for own in entries.iter().skip(input).step_by(n) {
+            if !all.contains(&(input, own)) {
+                all.push((input, own));
             }
-            let coefficient = |force: usize, l: usize| {
-                let own = of_force[force] == *chain;
-                if own { filter(force, input, l) } else { 0.0 }
-            };
-            terms.push(FilterTerm {
-                input,
-                poles: FilterBank::new(chain.to_vec())?,
-                coefficients: DMatrix::from_fn(n, chain.len(), coefficient),
-            });
         }
     }
-    Ok(terms)
+    all
 }
 
 /// Index of a degree of freedom in `dofs`.

@@ -1,5 +1,6 @@
 //! The thesis's discrete Laguerre model fitted to records (2.30–2.33, 3.2–3.6).
 
+use super::basis::once_an_input;
 use super::form::{PoleSearch, number_of_filters};
 use super::least_squares::BLOCK_ROWS;
 use super::options::TimeWeights;
@@ -16,7 +17,7 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -245,32 +246,24 @@ fn model(
     delta_s: f64,
 ) -> Result<DiscreteLaguerre> {
     let n = dofs.len();
-    let mut terms = Vec::new();
-    for input in 0..n {
-        let of_force: Vec<(f64, usize)> = (0..n).map(|i| parameters[i * n + input]).collect();
-        for (i, own) in of_force.iter().enumerate() {
-            if of_force[..i].contains(own) {
-                continue;
-            }
-            let (alpha, filters) = *own;
-            let mut coefficients = DMatrix::zeros(n, filters);
-            for row in (0..n).filter(|r| of_force[*r] == *own) {
-                for (l, value) in fitted.values(row, input).into_iter().enumerate() {
-                    coefficients[(row, l)] = value;
-                }
-            }
-            terms.push(DiscreteTerm {
-                input,
-                alpha,
-                coefficients,
-            });
+    let term = |(input, own): (usize, &(f64, usize))| {
+        let mut coefficients = DMatrix::zeros(n, own.1);
+        for row in (0..n).filter(|row| parameters[row * n + input] == *own) {
+            let values = DVector::from_vec(fitted.values(row, input));
+            coefficients.set_row(row, &values.transpose());
         }
-    }
+        DiscreteTerm {
+            input,
+            alpha: own.0,
+            coefficients,
+        }
+    };
+    let terms = once_an_input(n, parameters).into_iter().map(term);
     let constants = (0..n).map(|i| fitted.constant(i).unwrap_or(0.0));
     let model = DiscreteLaguerre {
         dofs: dofs.to_vec(),
         delta_s,
-        terms,
+        terms: terms.collect(),
         static_term: constants.collect(),
     };
     model.validate()?;

@@ -3,10 +3,9 @@
 mod joint;
 mod poles;
 
-use super::basis::assemble;
+use super::basis::model_of;
 use super::degenerate::note_lags;
 use super::dissipative::{ConstraintReport, Constraints, Strictness};
-use super::entry_report::EntryReport;
 use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
@@ -16,7 +15,6 @@ use super::samples::{EntrySamples, sort_by_entry, state_requirements};
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::trained_model::Model;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use joint::{Joint, JointFit};
 use poles::choose_poles;
@@ -125,7 +123,7 @@ fn fit_linear(
     let by_themselves = JointFit::alone(entries, &fit.form, &poles, true)?;
     let reports = by_themselves.reports()?;
     let alone = FittedTable {
-        model: model_of(dofs, fit, &reports)?,
+        model: model_of(&fit.form, dofs, &reports)?,
         reports,
         search,
         constraints: None,
@@ -146,7 +144,7 @@ fn fit_linear(
     let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&joint, poles)))?;
     let together = joint.at(&poles)?;
     let reports = together.reports()?;
-    let model = model_of(dofs, fit, &reports)?;
+    let model = model_of(&fit.form, dofs, &reports)?;
     let active = together
         .constrained
         .map(|solution| solution.active)
@@ -165,13 +163,6 @@ fn fit_linear(
         search,
         constraints: Some(constraints),
     })
-}
-
-/// The model that the accounts of its entries describe.
-fn model_of(dofs: &[Dof], fit: &FrequencyFit, reports: &[EntryReport]) -> Result<Model> {
-    let poles: Vec<Vec<f64>> = reports.iter().map(|r| r.poles.clone()).collect();
-    let values: Vec<Vec<f64>> = reports.iter().map(EntryReport::values).collect();
-    assemble(&fit.form, dofs, &poles, &values)
 }
 
 fn describe(weights: FrequencyWeights) -> &'static str {

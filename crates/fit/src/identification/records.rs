@@ -2,7 +2,7 @@
 //! passes over thinned rows, every sample fitted at these poles in one more pass, the fit put under constraints where they
 //! bind, and written down as model and report.
 
-use super::basis::{Basis, assemble};
+use super::basis::{Basis, model_of};
 use super::degenerate::note_lags;
 use super::dissipative::ConstraintReport;
 use super::entry_report::EntryReport;
@@ -18,7 +18,6 @@ use super::time::search::{EntryPoles, PASSES, choose_poles};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
-use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 
 /// Fits a continuous model to records of any speeds and sampling frequencies.
@@ -61,8 +60,8 @@ pub fn fit_records(
     // what the tests do not determine fails in the search of poles, in words that say nothing of it
     let chosen = choose_poles(&task, spanned).map_err(|e| task.too_few_numbers(e))?;
     let (found, search, constraints) = task.under_constraints(chosen)?;
-    let model = found.model()?;
     let entries = found.reports()?;
+    let model = model_of(&fit.form, &records.dofs, &entries)?;
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} record(s) in the time domain",
@@ -146,8 +145,8 @@ impl<'a> RecordFit<'a> {
         sets.into_iter().zip(counts).map(fit).collect()
     }
 
-    /// The fit that is wanted, of those at the poles that were chosen without constraints and, where some are asked for, under them: by least squares alone or, where
-    /// constraints are asked for and bind, under them; with the search that led there and what the constraints cost.
+    /// The fit that is wanted, of those at the chosen poles: by least squares alone or, where constraints are asked for and
+    /// bind, under them; with the search that led there and what the constraints cost.
     fn under_constraints(
         &'a self,
         mut chosen: Vec<EntryPoles>,
@@ -157,7 +156,8 @@ impl<'a> RecordFit<'a> {
         let mut fits = self.least_squares_at(&chosen)?.into_iter();
         let none = || Error::Numerical("fit to records: no fit".into());
         let mut found = fits.next().ok_or_else(none)?;
-        let (reports, model, bases) = (found.reports()?, found.model()?, found.bases()?);
+        let (reports, bases) = (found.reports()?, found.bases()?);
+        let model = model_of(&self.fit.form, dofs, &reports)?;
         if asked {
             found.fitted.constrain(&bases, &requirements)?;
         }
@@ -187,13 +187,6 @@ impl FitAtPoles<'_> {
     fn bases(&self) -> Result<Vec<Basis>> {
         let form = &self.task.fit.form;
         self.chains.iter().map(|c| Basis::new(form, c)).collect()
-    }
-
-    fn model(&self) -> Result<Model> {
-        let (form, dofs) = (&self.task.fit.form, &self.task.records.dofs);
-        let of_entry = |e| self.fitted.values(e / dofs.len(), e % dofs.len());
-        let values: Vec<Vec<f64>> = (0..self.chains.len()).map(of_entry).collect();
-        assemble(form, dofs, &self.chains, &values)
     }
 
     fn reports(&self) -> Result<Vec<EntryReport>> {

@@ -170,86 +170,82 @@ pub(crate) fn search_poles(
     entry: Option<(Dof, Dof)>,
     residuals: PoleResiduals<'_>,
 ) -> Result<SearchReport> {
-    let mut search = Search {
-        residuals,
-        points: Vec::new(),
-    };
+    let mut points = Vec::new();
     let starts = match &options.start {
         Some(start) => vec![bounds.inside(start)],
         None => bounds.grid(count, options.grid_points),
     };
-    search.evaluate_all(starts)?;
-    let chosen = if count == 1 {
-        search.golden(&bounds, options.grid_points)?
+    evaluate(starts, residuals, &mut points)?;
+    if count == 1 {
+        golden(&bounds, options.grid_points, residuals, &mut points)?;
     } else {
-        search.levenberg_marquardt(&bounds)?
-    };
+        levenberg_marquardt(&bounds, residuals, &mut points)?;
+    }
     Ok(SearchReport {
         entry,
         force: None,
         min: bounds.least,
         max: bounds.max,
-        points: search.points,
-        chosen,
+        chosen: best_of(&points)?,
+        points,
     })
 }
 
 /// Weighted residuals with the best coefficients for these poles.
 pub(crate) type PoleResiduals<'a> = &'a (dyn Fn(&[f64]) -> Result<DVector<f64>> + Sync);
 
-struct Search<'a> {
-    residuals: PoleResiduals<'a>,
-    points: Vec<SearchPoint>,
+fn evaluate(
+    sets: Vec<Vec<f64>>,
+    residuals: PoleResiduals<'_>,
+    points: &mut Vec<SearchPoint>,
+) -> Result<()> {
+    let objective = |at: usize| Ok(residuals(&sets[at])?.norm());
+    let found = numbered(sets.len(), &|_, _| (), objective)?;
+    let evaluated = sets.into_iter().zip(found);
+    points.extend(evaluated.map(|(poles, objective)| SearchPoint { poles, objective }));
+    Ok(())
 }
 
-impl Search<'_> {
-    fn evaluate_all(&mut self, sets: Vec<Vec<f64>>) -> Result<()> {
-        let objective = |at: usize| Ok((self.residuals)(&sets[at])?.norm());
-        let found = numbered(sets.len(), &|_, _| (), objective)?;
-        let points = sets.into_iter().zip(found);
-        self.points
-            .extend(points.map(|(poles, objective)| SearchPoint { poles, objective }));
-        Ok(())
-    }
+/// Golden sections between the neighbours of the best grid point (or around a stated start).
+fn golden(
+    bounds: &Bounds,
+    grid_points: usize,
+    residuals: PoleResiduals<'_>,
+    points: &mut Vec<SearchPoint>,
+) -> Result<()> {
+    let centre = best_of(points)?.poles[0].ln();
+    let (low, high) = (bounds.min.ln(), bounds.max.ln());
+    let step = if points.len() == 1 {
+        high - low
+    } else {
+        (high - low) / (grid_points as f64 - 1.0)
+    };
+    let ends = (centre - step).max(bounds.least.ln())..(centre + step).min(high);
+    let at = |x: f64| {
+        evaluate(vec![vec![x.exp()]], residuals, points)?;
+        Ok(points[points.len() - 1].objective)
+    };
+    golden_section(ends, at, f64::lt, |width, _, _| width <= GOLDEN_TOLERANCE)?;
+    Ok(())
+}
 
-    fn evaluate(&mut self, poles: &[f64]) -> Result<f64> {
-        self.evaluate_all(vec![poles.to_vec()])?;
-        Ok(self.points[self.points.len() - 1].objective)
-    }
-
-    fn best(&self) -> Result<SearchPoint> {
-        best_of(&self.points)
-    }
-
-    /// Golden sections between the neighbours of the best grid point (or around a stated start).
-    fn golden(&mut self, bounds: &Bounds, grid_points: usize) -> Result<SearchPoint> {
-        let centre = self.best()?.poles[0].ln();
-        let (low, high) = (bounds.min.ln(), bounds.max.ln());
-        let step = if self.points.len() == 1 {
-            high - low
-        } else {
-            (high - low) / (grid_points as f64 - 1.0)
-        };
-        let ends = (centre - step).max(bounds.least.ln())..(centre + step).min(high);
-        let at = |x: f64| self.evaluate(&[x.exp()]);
-        golden_section(ends, at, f64::lt, |width, _, _| width <= GOLDEN_TOLERANCE)?;
-        self.best()
-    }
-
-    fn levenberg_marquardt(&mut self, bounds: &Bounds) -> Result<SearchPoint> {
-        let mut starts = self.points.clone();
-        starts.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-        starts.truncate(STARTS);
-        let end = |start: &SearchPoint| {
-            let free = DVector::from_vec(bounds.free(&start.poles));
-            let found = descend(free, &|free| (self.residuals)(&bounds.poles(free)).ok());
-            let finite = found.iter().all(|x| x.is_finite());
-            finite.then(|| bounds.poles(found.as_slice()))
-        };
-        let ends: Vec<Vec<f64>> = starts.par_iter().filter_map(end).collect();
-        self.evaluate_all(ends)?;
-        self.best()
-    }
+/// Descents from the best points of the grid.
+fn levenberg_marquardt(
+    bounds: &Bounds,
+    residuals: PoleResiduals<'_>,
+    points: &mut Vec<SearchPoint>,
+) -> Result<()> {
+    let mut starts = points.clone();
+    starts.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    starts.truncate(STARTS);
+    let end = |start: &SearchPoint| {
+        let free = DVector::from_vec(bounds.free(&start.poles));
+        let found = descend(free, &|free| residuals(&bounds.poles(free)).ok());
+        let finite = found.iter().all(|x| x.is_finite());
+        finite.then(|| bounds.poles(found.as_slice()))
+    };
+    let ends: Vec<Vec<f64>> = starts.par_iter().filter_map(end).collect();
+    evaluate(ends, residuals, points)
 }
 
 /// Residuals at a point; `None` where there are none.

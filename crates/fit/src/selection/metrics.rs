@@ -5,9 +5,7 @@
 //! has lasted long enough there for the model's own transients to have died.
 
 use crate::aerodynamics::Transfer;
-use crate::comparison::{
-    PhaseParameters, SignalPair, WarpingParameters, magnitude, magnitude_warped, peak, phase,
-};
+use crate::comparison::{PhaseParameters, SignalPair, magnitude, magnitude_warped, peak, phase};
 use crate::error::{Error, Result, ensure};
 use crate::identification::{CellFit, Grid};
 use crate::numbered::numbered;
@@ -175,13 +173,10 @@ impl SteadySegment {
             ..PhaseParameters::default()
         };
         let band = (WARPING_PERIODS / self.frequency_hz / self.step_s).ceil() as usize;
-        let warping = WarpingParameters {
-            band_samples: Some(band),
-        };
         Ok(CellMetrics {
             phase: phase(&pair, &lag)?.value,
             peak: peak(&pair)?.value,
-            magnitude_warped: magnitude_warped(&pair, &warping)?.value,
+            magnitude_warped: magnitude_warped(&pair, Some(band))?.value,
             magnitude: magnitude(&pair)?.value,
         })
     }

@@ -30,10 +30,10 @@ pub(crate) struct Block {
     #[serde(with = "crate::state_space::rows")]
     pub rows: DMatrix<f64>,
     /// r.
-    #[serde(with = "super::columns_in_files::numbers")]
+    #[serde(with = "super::columns_in_files")]
     pub residual: DVector<f64>,
     /// Working variance of each row: relative sizes only.
-    #[serde(with = "super::columns_in_files::numbers")]
+    #[serde(with = "super::columns_in_files")]
     pub variance: DVector<f64>,
 }
 
@@ -198,26 +198,23 @@ impl Design {
     }
 
     /// The blocks put together in groups.
-    pub(crate) fn merged(self, groups: &[usize], names: &[String]) -> Vec<Block> {
-        let mut parts: Vec<Vec<Block>> = names.iter().map(|_| Vec::new()).collect();
-        for (block, group) in self.blocks.into_iter().zip(groups) {
-            parts[*group].push(block);
-        }
-        let zipped = parts.into_iter().zip(names);
-        zipped
-            .map(|(blocks, name)| Block::joined(name.clone(), &blocks))
+    pub(crate) fn merged(&self, groups: &[usize], names: Vec<String>) -> Vec<Block> {
+        let named = names.into_iter().enumerate();
+        named
+            .map(|(g, name)| Block::joined(name, &self.members(groups, g)))
             .collect()
+    }
+
+    fn members(&self, groups: &[usize], group: usize) -> Vec<Block> {
+        let own = self.blocks.iter().zip(groups).filter(|(_, g)| **g == group);
+        own.map(|(b, _)| b.clone()).collect()
     }
 
     /// The blocks of each of `count` groups as one block, with the residuals of the common fit.
     pub(crate) fn clusters(&self, groups: &[usize], count: usize) -> Vec<Block> {
-        let of = |group: usize| -> Vec<Block> {
-            let own = self.blocks.iter().zip(groups).filter(|(_, g)| **g == group);
-            own.map(|(b, _)| b.clone()).collect()
-        };
-        (0..count)
-            .map(|g| Block::joined(format!("group {}", g + 1), &of(g)).compressed())
-            .collect()
+        let names = (1..=count).map(|g| format!("group {g}")).collect();
+        let joined = self.merged(groups, names).into_iter();
+        joined.map(Block::compressed).collect()
     }
 
     /// The fit to the blocks of one group alone in the first `kept` columns, and how far it is from the common one.
@@ -230,13 +227,9 @@ impl Design {
         group: usize,
         kept: usize,
     ) -> Result<(Self, DVector<f64>)> {
-        let mut blocks: Vec<Block> = Vec::new();
-        for (block, _) in self.blocks.iter().zip(groups).filter(|(_, g)| **g == group) {
-            let rows = block.rows.columns(0, kept).into_owned();
-            blocks.push(Block {
-                rows,
-                ..block.clone()
-            });
+        let mut blocks = self.members(groups, group);
+        for block in &mut blocks {
+            block.rows = block.rows.columns(0, kept).into_owned();
         }
         let tangent = constrained_to_zero(&self.tangent, kept);
         // determines the parameters, or says that it does not

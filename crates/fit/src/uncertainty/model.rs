@@ -184,10 +184,8 @@ impl ModelUncertainty {
             return self.coefficients.interval_knowing(structure, onset, known);
         }
         let error = onset_error(&self.coefficients, structure, onset, known)?;
-        Ok(match self.spread_of(structure, onset)? {
-            Some(spread) => interval_with_forms(&error, &spread),
-            None => error.interval(),
-        })
+        let spread = self.spread_of(structure, onset)?;
+        Ok(interval_with_forms(&error, spread.as_ref()))
     }
 
     /// Reads what was saved.
@@ -216,10 +214,7 @@ impl ModelUncertainty {
     /// The onset's interval with its two checks, in words.
     pub fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
-        let stated = match &self.form_spread {
-            Some(spread) => interval_with_forms(onset, spread),
-            None => onset.interval(),
-        };
+        let stated = interval_with_forms(onset, self.form_spread.as_ref());
         let OnsetInterval::Known {
             low_m_s,
             high_m_s,
@@ -314,7 +309,13 @@ pub(crate) fn derivative_intervals(
 
 /// The interval of an onset with what the choice of its form leaves open: variances add, and degrees of freedom as Satterthwaite adds
 /// them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
-pub(crate) fn interval_with_forms(error: &OnsetError, spread: &FormSpread) -> OnsetInterval {
+pub(crate) fn interval_with_forms(
+    error: &OnsetError,
+    spread: Option<&FormSpread>,
+) -> OnsetInterval {
+    let Some(spread) = spread else {
+        return error.interval();
+    };
     let form_m_s = spread.deviation_from_m_s(error.speed_m_s);
     let parts = ErrorParts {
         scatter_m_s: error.standard_error_m_s,

@@ -74,7 +74,7 @@ pub(super) fn sandwich(
         "{either}; blocks are whole segments, since residuals repeat through them (ratio {ratio:.2}): what the model \
          cannot follow counts as scatter from segment to segment"
     );
-    Ok((Design::new(fine.merged(&segments, &names), tangent)?, text))
+    Ok((Design::new(fine.merged(&segments, names), tangent)?, text))
 }
 
 /// Rows of one force in one stretch of a record.

@@ -147,8 +147,11 @@ pub(super) fn between_speeds(
         design,
         at,
         common: common_points(shared_range(blocks, &groups), at),
+        values,
+        own,
+        n: dofs.len(),
     };
-    let n = dofs.len();
+    let n = judge.n;
     let spare = (n * (count - 1)) as f64;
     let mut scatter = SpeedScatter {
         speeds_m_s,
@@ -158,10 +161,8 @@ pub(super) fn between_speeds(
         degrees_of_freedom: prior.degrees_of_freedom + spare,
         forces: Vec::new(),
     };
-    let turns = [ScatterDirection::Size, ScatterDirection::Phase];
-    let units: Vec<[Option<UnitEffect>; 2]> = (0..n)
-        .map(|i| turns.map(|turn| judge.effect(i, n, turn, values, own)))
-        .collect();
+    let both = |i: usize| [false, true].map(|turned| judge.effect(i, turned));
+    let units: Vec<[Option<UnitEffect>; 2]> = (0..n).map(both).collect();
     let ratios: Vec<f64> = units
         .iter()
         .flatten()
@@ -215,13 +216,6 @@ fn common_points(shared: Option<(f64, f64)>, at: &[Slopes]) -> Vec<&Slopes> {
     }
 }
 
-/// In which direction a transfer function is moved.
-#[derive(Clone, Copy, PartialEq)]
-enum ScatterDirection {
-    Size,
-    Phase,
-}
-
 /// An effect of unit absolute standard deviation.
 struct UnitEffect {
     columns: DMatrix<f64>,
@@ -259,6 +253,11 @@ struct Judge<'a> {
     grams: Vec<DMatrix<f64>>,
     of_speeds: Option<DMatrix<f64>>,
     of_blocks: DMatrix<f64>,
+    /// The estimates, and the places of the coefficients of every transfer function among them, row by row.
+    values: &'a DVector<f64>,
+    own: &'a [Vec<usize>],
+    /// Number of motions.
+    n: usize,
 }
 
 impl Judge<'_> {
@@ -268,29 +267,21 @@ impl Judge<'_> {
         sum / self.common.len() as f64
     }
 
-    /// The effect of force `i` of `n`.
-    fn effect(
-        &self,
-        i: usize,
-        n: usize,
-        turn: ScatterDirection,
-        values: &DVector<f64>,
-        own: &[Vec<usize>],
-    ) -> Option<UnitEffect> {
-        let parameters = values.len();
+    /// The effect of force `i` in size or, where its transfer functions are `turned`, in phase.
+    fn effect(&self, i: usize, turned: bool) -> Option<UnitEffect> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let (mut of_speeds, mut of_blocks, mut weight) = (0.0, 0.0, 0.0);
-        for j in 0..n {
+        for j in 0..self.n {
             let size = self.mean_square(i, j);
-            let own = &own[i * n + j];
+            let own = &self.own[i * self.n + j];
             if size == 0.0 || own.is_empty() {
                 continue;
             }
-            let relative = self.relative_rows(i, j, turn, size.sqrt());
+            let relative = self.relative_rows(i, j, turned, size.sqrt());
             let square =
                 |m: &DMatrix<f64>| (&relative * m).norm_squared() / relative.nrows() as f64;
-            let moved = self.moved(i, j, turn, values, own, size.sqrt());
-            let mut scattered = DVector::zeros(parameters);
+            let moved = self.moved(i, j, turned, size.sqrt());
+            let mut scattered = DVector::zeros(self.values.len());
             for (p, value) in own.iter().zip(moved.iter()) {
                 scattered[*p] = *value;
             }
@@ -312,34 +303,23 @@ impl Judge<'_> {
     }
 
     /// Change of an entry relative to itself with all parameters, one row per common `K`.
-    fn relative_rows(&self, i: usize, j: usize, turn: ScatterDirection, size: f64) -> DMatrix<f64> {
+    fn relative_rows(&self, i: usize, j: usize, turned: bool, size: f64) -> DMatrix<f64> {
         let parameters = self.common[0].slopes.len();
         DMatrix::from_fn(self.common.len(), parameters, |q, p| {
             let s = self.common[q];
             let own = s.value[(i, j)];
             let ratio =
                 s.slopes[p][(i, j)] * own.conj() / own.norm_sqr().max((SMALL * size).powi(2));
-            match turn {
-                ScatterDirection::Size => ratio.re,
-                ScatterDirection::Phase => ratio.im,
-            }
+            if turned { ratio.im } else { ratio.re }
         })
     }
 
     /// Coefficients of an entry for the same entry, or for the entry turned by a right angle as well as its columns can
     /// over all tested `K`.
-    fn moved(
-        &self,
-        i: usize,
-        j: usize,
-        turn: ScatterDirection,
-        values: &DVector<f64>,
-        own: &[usize],
-        size: f64,
-    ) -> DVector<f64> {
-        let entry = (i, j);
-        let as_it_is = || DVector::from_iterator(own.len(), own.iter().map(|p| values[*p]));
-        if turn == ScatterDirection::Size {
+    fn moved(&self, i: usize, j: usize, turned: bool, size: f64) -> DVector<f64> {
+        let (entry, own) = ((i, j), &self.own[i * self.n + j]);
+        let as_it_is = || DVector::from_iterator(own.len(), own.iter().map(|p| self.values[*p]));
+        if !turned {
             return as_it_is();
         }
         let count = self.at.len();

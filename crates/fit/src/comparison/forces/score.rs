@@ -2,8 +2,8 @@
 
 use super::options::{CompareOptions, Scoring, TestedDeck};
 use crate::comparison::{
-    DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
-    magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
+    PhaseParameters, SignalPair, WaveletParameters, magnitude, magnitude_warped, peak, phase,
+    probability_density, rms, wavelet,
 };
 use crate::error::{Result, ensure, positive};
 use crate::files::text::csv_cell;
@@ -127,9 +127,9 @@ impl Scoring {
             peak: peak(&pair)?.value,
             rms: rms(&pair)?.value,
             magnitude: magnitude(&pair)?.value,
-            magnitude_warped: magnitude_warped(&pair, &WarpingParameters::default())?.value,
+            magnitude_warped: magnitude_warped(&pair, None)?.value,
             wavelet: wavelet(&pair, &levels)?.value,
-            probability_density: probability_density(&pair, &DensityParameters::default())?.value,
+            probability_density: probability_density(&pair, true)?.value,
             lag_deg: phase.details.lag_s * frequency_hz * 360.0,
         })
     }

@@ -9,6 +9,7 @@ use crate::identification::form::PoleSearch;
 use crate::identification::sample_model;
 use crate::identification::testing::{eight_k, onset_m_s, table_alone};
 use crate::section::SectionModel;
+use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
 
 fn flat_plate() -> Vec<TransferSample> {

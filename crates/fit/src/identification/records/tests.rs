@@ -5,6 +5,7 @@ use crate::identification::form::PoleSearch;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
 use crate::identification::{FitProgress, TimeWeights};
+use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
 

@@ -106,12 +106,12 @@ fn powers(signals: &Signals) -> Result<Vec<Vec<f64>>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::signals::SignalWriter;
+    use super::super::signals::Signals;
     use super::*;
 
     /// Of motions beside forces of zero.
     fn bands_of(motions: &[Vec<f64>]) -> Vec<Option<(f64, f64)>> {
-        let mut writer = SignalWriter::new(motions.len());
+        let mut writer = Signals::new(motions.len());
         let value = |c: usize, k: usize| motions.get(c).map_or(0.0, |m| m[k]);
         writer.extend(motions[0].len(), value).unwrap();
         let driven = driven_bands(&writer.finish().unwrap(), 1.0).unwrap();

@@ -1,7 +1,7 @@
 //! A record without dimensions.
 
 use super::driven::{driven_bands, driven_motions};
-use super::signals::{SignalWriter, Signals};
+use super::signals::Signals;
 use crate::error::{Error, Result, ensure, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
@@ -153,9 +153,9 @@ impl DimensionlessRecord {
         let header = record.header();
         let (width, speed) = (header.width_m, header.mean_speed_m_s);
         let pressure = 0.5 * header.air_density_kg_m3 * speed * speed;
-        let mut signals = SignalWriter::new(dofs.len());
+        let mut signals = Signals::new(dofs.len());
         record.for_each_block(&mut |block| {
-            let read = signals.rows();
+            let read = signals.len();
             check_lengths(&header.name, &block, dofs.len(), read)?;
             let (mut motions, mut forces) = (Vec::new(), Vec::new());
             for dof in dofs {
@@ -244,7 +244,7 @@ impl DimensionlessRecord {
         }
         let channels = self.signals.range(0..self.signals.len())?;
         let channels: Vec<Vec<f64>> = channels.iter().map(|c| resampled(c, ratio)).collect();
-        let mut signals = SignalWriter::new(self.signals.dofs());
+        let mut signals = Signals::new(self.signals.dofs());
         signals.extend(channels[0].len(), |c, k| channels[c][k])?;
         Ok((Some(signals.finish()?), self.step_s * ratio))
     }
@@ -302,7 +302,7 @@ mod tests {
     use super::*;
 
     fn signals(motion: Vec<Vec<f64>>) -> Signals {
-        let mut writer = SignalWriter::new(motion.len());
+        let mut writer = Signals::new(motion.len());
         let value = |c, k| motion.get(c).map_or(0.0, |m: &Vec<f64>| m[k]);
         writer.extend(motion[0].len(), value).unwrap();
         writer.finish().unwrap()

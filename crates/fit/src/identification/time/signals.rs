@@ -22,6 +22,8 @@ pub(crate) struct Signals {
     dofs: usize,
     rows: usize,
     store: Store,
+    /// The block that is being filled.
+    last: SignalBlock,
 }
 
 enum Store {
@@ -51,20 +53,13 @@ impl SignalBlock {
     }
 }
 
-/// Signals being filled.
-pub(crate) struct SignalWriter {
-    signals: Signals,
-    last: SignalBlock,
-}
-
-impl SignalWriter {
+impl Signals {
+    /// None yet.
     pub(crate) fn new(dofs: usize) -> Self {
         Self {
-            signals: Signals {
-                dofs,
-                rows: 0,
-                store: Store::Memory(Vec::new()),
-            },
+            dofs,
+            rows: 0,
+            store: Store::Memory(Vec::new()),
             last: SignalBlock {
                 first: 0,
                 channels: vec![Vec::new(); 2 * dofs],
@@ -72,12 +67,7 @@ impl SignalWriter {
         }
     }
 
-    /// Number of samples taken.
-    pub(crate) fn rows(&self) -> usize {
-        self.signals.rows + self.last.rows()
-    }
-
-    /// Takes samples of all channels, `value(channel, sample)`, the first `rows` of them.
+    /// Takes samples of all channels, `value(channel, sample)`, the first `rows` of them; [`Self::finish`] is to follow the last.
     pub(crate) fn extend(
         &mut self,
         rows: usize,
@@ -98,47 +88,46 @@ impl SignalWriter {
     }
 
     fn close(&mut self) -> Result<()> {
-        let signals = &mut self.signals;
-        if let Store::Memory(blocks) = &mut signals.store
+        if let Store::Memory(blocks) = &mut self.store
             && blocks.len() == IN_MEMORY
         {
             let mut file = tempfile::tempfile().map_err(io)?;
             for block in blocks {
                 block.write(&mut file)?;
             }
-            signals.store = Store::File(Mutex::new(file));
+            self.store = Store::File(Mutex::new(file));
         }
-        match &mut signals.store {
+        match &mut self.store {
             Store::Memory(blocks) => blocks.push(self.last.clone()),
             Store::File(file) => self.last.write(&mut locked(file))?,
         }
-        signals.rows += self.last.rows();
-        self.last.first = signals.rows;
+        self.rows += self.last.rows();
+        self.last.first = self.rows;
         self.last.channels.iter_mut().for_each(Vec::clear);
         Ok(())
     }
 
-    pub(crate) fn finish(mut self) -> Result<Signals> {
+    /// With what was taken last.
+    pub(crate) fn finish(mut self) -> Result<Self> {
         if self.last.rows() > 0 {
             self.close()?;
         }
-        Ok(self.signals)
+        self.last = SignalBlock::default();
+        Ok(self)
     }
-}
 
-impl Signals {
     /// All channels of a record in its own units, motions and then forces.
     ///
     /// # Errors
     /// Those of the record; [`Error::Input`] naming a sample that is not finite.
     pub(crate) fn from_record(record: &dyn RecordSource) -> Result<Self> {
         let header = record.header();
-        let mut signals = SignalWriter::new(header.dofs.len());
+        let mut signals = Signals::new(header.dofs.len());
         record.for_each_block(&mut |block| {
             let channels: Vec<&Vec<f64>> = block.motion.iter().chain(block.force).collect();
             for (c, channel) in channels.iter().enumerate() {
                 let place = format!("record {}, channel {}", header.name, c + 1);
-                check_finite(&place, signals.rows(), channel)?;
+                check_finite(&place, signals.len(), channel)?;
             }
             signals.extend(channels[0].len(), |c, k| channels[c][k])
         })?;
@@ -165,7 +154,7 @@ impl Signals {
 
     /// Number of samples.
     pub(crate) fn len(&self) -> usize {
-        self.rows
+        self.rows + self.last.rows()
     }
 
     /// Number of degrees of freedom.
@@ -274,7 +263,7 @@ mod tests {
     fn long_signals_are_those_that_were_written() {
         for rows in [10, 3 * SIGNAL_ROWS + 5, (IN_MEMORY + 2) * SIGNAL_ROWS + 7] {
             let value = |c: usize, k: usize| (10 * k + c) as f64 + 0.1;
-            let mut writer = SignalWriter::new(1);
+            let mut writer = Signals::new(1);
             for first in (0..rows).step_by(5000) {
                 let part = 5000.min(rows - first);
                 writer.extend(part, |c, k| value(c, first + k)).unwrap();

@@ -8,6 +8,7 @@ use crate::files::derivatives::embedded;
 use crate::identification::form::PoleSearch;
 use crate::identification::testing::{eight_k, onset_m_s, records_alone, table_alone};
 use crate::identification::{TimeFit, sample_model};
+use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
 
 fn flat_plate() -> Vec<TransferSample> {
