@@ -21,10 +21,10 @@ pub fn wavelet(
     pair: &SignalPair<'_>,
     parameters: &WaveletParameters,
 ) -> Result<Metric<DistanceDetails>> {
-    let transform = PairTransform::new(pair, parameters)?;
-    let sums = transform.plan.by_groups(|group| {
+    let plan = Morlet::new(parameters, pair.sample_count(), pair.time_step_s())?;
+    let sums = plan.by_groups(|group| {
         let (mut distance, mut reference) = (0.0, 0.0);
-        transform.for_each_inside(&group, |_, [first, second]| {
+        for_each_inside(&plan, pair, &group, |_, [first, second]| {
             distance += (first - second) * (first - second);
             reference += first * first;
         });
@@ -46,12 +46,16 @@ pub fn wavelet_normalised(
     pair: &SignalPair<'_>,
     parameters: &WaveletParameters,
 ) -> Result<Metric<NormalisedWaveletDetails>> {
-    let transform = PairTransform::new(pair, parameters)?;
-    let largest = transform.columns(
+    let plan = Morlet::new(parameters, pair.sample_count(), pair.time_step_s())?;
+    let largest = columns(
+        &plan,
+        pair,
         |_, cell, [first, second]| *cell = [cell[0].max(first), cell[1].max(second)],
         |a, b| [a[0].max(b[0]), a[1].max(b[1])],
     );
-    let sums = transform.columns(
+    let sums = columns(
+        &plan,
+        pair,
         |sample, cell, [first, second]| {
             let [first_largest, second_largest] = largest[sample];
             let first = normalised(first, first_largest);
@@ -85,61 +89,51 @@ fn normalised(modulus: f64, largest: f64) -> f64 {
     }
 }
 
-/// Both signals of a pair, transformed level by level.
-struct PairTransform<'a> {
-    plan: Morlet,
-    signals: [&'a [f64]; 2],
+/// Calls `visit(sample, [|W₁|, |W₂|])` for the samples inside the cone, level after level.
+fn for_each_inside(
+    plan: &Morlet,
+    pair: &SignalPair<'_>,
+    group: &LevelGroup<'_>,
+    mut visit: impl FnMut(usize, [f64; 2]),
+) {
+    let [first, second] = [pair.reference(), pair.compared()].map(|x| group.spectrum(x));
+    let [mut one, mut other] = [RowBuffer::default(), RowBuffer::default()];
+    for level in group.levels.clone() {
+        let inside = plan.inside(level);
+        if inside.is_empty() {
+            continue;
+        }
+        let kernel = group.kernel(level);
+        let first = group.row(&kernel, &first, &mut one);
+        let second = group.row(&kernel, &second, &mut other);
+        for sample in inside {
+            visit(sample, [first[sample].norm(), second[sample].norm()]);
+        }
+    }
 }
 
-impl<'a> PairTransform<'a> {
-    fn new(pair: &SignalPair<'a>, parameters: &WaveletParameters) -> Result<Self> {
-        Ok(Self {
-            plan: Morlet::new(parameters, pair.sample_count(), pair.time_step_s())?,
-            signals: [pair.reference(), pair.compared()],
-        })
-    }
-
-    /// Calls `visit(sample, [|W₁|, |W₂|])` for the samples inside the cone, level after level.
-    fn for_each_inside(&self, group: &LevelGroup<'_>, mut visit: impl FnMut(usize, [f64; 2])) {
-        let [first, second] = self.signals.map(|x| group.spectrum(x));
-        let mut buffers = [RowBuffer::default(), RowBuffer::default()];
-        for level in group.levels.clone() {
-            let inside = self.plan.inside(level);
-            if inside.is_empty() {
-                continue;
-            }
-            let kernel = group.kernel(level);
-            let [one, other] = &mut buffers;
-            let first = group.row(&kernel, &first, one);
-            let second = group.row(&kernel, &second, other);
-            for sample in inside {
-                visit(sample, [first[sample].norm(), second[sample].norm()]);
-            }
-        }
-    }
-
-    /// Two numbers per sample, gathered over the levels by `update(sample, numbers, [|W₁|, |W₂|])` from zero
-    /// on, and merged between groups of levels.
-    fn columns(
-        &self,
-        update: impl Fn(usize, &mut [f64; 2], [f64; 2]) + Sync,
-        merge: impl Fn([f64; 2], [f64; 2]) -> [f64; 2],
-    ) -> Vec<[f64; 2]> {
-        let groups = self.plan.by_groups(|group| {
-            let mut cells = vec![[0.0; 2]; self.plan.sample_count()];
-            self.for_each_inside(&group, |sample, moduli| {
-                update(sample, &mut cells[sample], moduli);
-            });
-            cells
+/// Two numbers per sample, gathered over the levels by `update(sample, numbers, [|W₁|, |W₂|])` from zero
+/// on, and merged between groups of levels.
+fn columns(
+    plan: &Morlet,
+    pair: &SignalPair<'_>,
+    update: impl Fn(usize, &mut [f64; 2], [f64; 2]) + Sync,
+    merge: impl Fn([f64; 2], [f64; 2]) -> [f64; 2],
+) -> Vec<[f64; 2]> {
+    let groups = plan.by_groups(|group| {
+        let mut cells = vec![[0.0; 2]; plan.sample_count()];
+        for_each_inside(plan, pair, &group, |sample, moduli| {
+            update(sample, &mut cells[sample], moduli);
         });
-        let mut total = vec![[0.0; 2]; self.plan.sample_count()];
-        for group in groups {
-            for (sum, cell) in total.iter_mut().zip(group) {
-                *sum = merge(*sum, cell);
-            }
+        cells
+    });
+    let mut total = vec![[0.0; 2]; plan.sample_count()];
+    for group in groups {
+        for (sum, cell) in total.iter_mut().zip(group) {
+            *sum = merge(*sum, cell);
         }
-        total
     }
+    total
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::identification::affine::AffineSpace;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{NOTHING_HELD, SAME_DIRECTION};
-use crate::identification::{ActiveConstraint, FitReport, Form, OwnFilters, PoleSearch};
+use crate::identification::{FitReport, Form, OwnFilters, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -238,7 +238,8 @@ impl FitParameters {
             for ((gradient, square), active) in each.zip(&constraints.active) {
                 let own = active.gradient_beyond_limit(i, j, &basis);
                 gradient.as_mut_slice()[self.first[e]..][..own.len()].copy_from_slice(&own);
-                *square += norm_squared(&active.gradient(i, j, &basis));
+                let held = active.gradient(i, j, &basis);
+                *square += held.iter().map(|x| x * x).sum::<f64>();
             }
             for (m, pole) in self.searched.iter().enumerate() {
                 if !pole.is_of(i, j) {
@@ -247,7 +248,11 @@ impl FitParameters {
                 let step = 2.0 * STEP * entry.poles[pole.index];
                 let (up, down) = moved_pole(&self.form, &entry.poles, pole.index)?;
                 for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
-                    let value = |b: &Basis| beyond_limit(active, i, j, b, &values);
+                    // what the transfer function adds to what the constraint holds beyond its limit
+                    let value = |b: &Basis| -> f64 {
+                        let gradient = active.gradient_beyond_limit(i, j, b);
+                        gradient.iter().zip(&values).map(|(g, v)| g * v).sum()
+                    };
                     let at = parameters - self.searched.len() + m;
                     gradient[at] += (value(&up) - value(&down)) / step;
                 }
@@ -268,22 +273,6 @@ pub(super) fn moved_pole(form: &Form, chain: &[f64], index: usize) -> Result<(Ba
     let moved =
         |factor: f64| Basis::new(form, &form.with_pole(chain, index, factor * chain[index]));
     Ok((moved(1.0 + STEP)?, moved(1.0 - STEP)?))
-}
-
-/// What a transfer function adds to what a constraint holds beyond its limit.
-fn beyond_limit(
-    active: &ActiveConstraint,
-    i: usize,
-    j: usize,
-    basis: &Basis,
-    values: &[f64],
-) -> f64 {
-    let gradient = active.gradient_beyond_limit(i, j, basis);
-    gradient.iter().zip(values).map(|(g, v)| g * v).sum()
-}
-
-fn norm_squared(numbers: &[f64]) -> f64 {
-    numbers.iter().map(|x| x * x).sum()
 }
 
 /// How active constraints enter, in words.

@@ -49,21 +49,14 @@ pub(super) enum Transform {
     Gaussian {
         mean: f64,
         deviation: f64,
-        ends: Option<Ends>,
+        /// Probabilities between which it is kept, counted from the lower tail or, with the sign −1, from the upper one.
+        ends: Option<([f64; 2], f64)>,
         exponential: bool,
     },
     Uniform {
         lower: f64,
         width: f64,
     },
-}
-
-/// Probabilities between which a Gaussian is kept, counted from the upper tail if `mirrored`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ends {
-    from: f64,
-    to: f64,
-    mirrored: bool,
 }
 
 impl Distribution {
@@ -168,7 +161,8 @@ fn gaussian(
         "bounds between which the distribution has some probability",
         format_args!("{} to {}", end(lower), end(upper)),
     )?;
-    Ok(transform(Some(Ends { from, to, mirrored })))
+    let sign = if mirrored { -1.0 } else { 1.0 };
+    Ok(transform(Some(([from, to], sign))))
 }
 
 impl Transform {
@@ -182,19 +176,15 @@ impl Transform {
                 ends,
                 exponential,
             } => {
-                let x = mean + deviation * ends.map_or(z, |ends| ends.inside(z));
+                // the standard normal variable between the ends for an unbounded one
+                let inside = |([from, to], sign): ([f64; 2], f64)| {
+                    let u = from + (to - from) * normal_cdf(sign * z);
+                    sign * normal_quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
+                };
+                let x = mean + deviation * ends.map_or(z, inside);
                 if exponential { x.exp() } else { x }
             }
         }
-    }
-}
-
-impl Ends {
-    /// The standard normal variable between the ends for an unbounded one.
-    fn inside(self, z: f64) -> f64 {
-        let sign = if self.mirrored { -1.0 } else { 1.0 };
-        let u = self.from + (self.to - self.from) * normal_cdf(sign * z);
-        sign * normal_quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
     }
 }
 
