@@ -234,7 +234,7 @@ impl Form {
     }
 
     /// Whether the number of filters is left to the data.
-    fn is_open(&self) -> bool {
+    pub(super) fn is_open(&self) -> bool {
         matches!(self, Self::Laguerre { filters: None, .. })
     }
 
@@ -251,12 +251,6 @@ impl Form {
         let determined = (rows / 2).saturating_sub(self.feed_through().count());
         let filters = determined.clamp(LEAST_CHOSEN, most);
         self.with_filters(filters).unwrap_or_default()
-    }
-
-    /// The form of a model whose transfer functions have the poles `poles`, with the number of filters that was chosen.
-    pub(crate) fn as_fitted(&self, poles: &[f64]) -> Self {
-        let fitted = self.is_open().then(|| self.with_filters(poles.len()));
-        fitted.flatten().unwrap_or_else(|| self.clone())
     }
 
     pub(crate) fn validate(&self) -> Result<()> {

@@ -98,13 +98,6 @@ pub struct MemoryReport {
     pub step_s: f64,
 }
 
-impl MemoryReport {
-    /// Whether nothing before the record is remembered when the motion starts.
-    pub(crate) fn is_sufficient(&self) -> bool {
-        self.available_samples >= self.memory_samples
-    }
-}
-
 /// The search of one set of poles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchReport {
@@ -158,16 +151,20 @@ impl FitReport {
     /// The form that was asked for, with the number of filters that the fit has chosen where it was left open and no force has
     /// filters of its own.
     pub(crate) fn form_fitted(&self, asked: &Form, own: &[OwnFilters]) -> Form {
-        match self.entries.first() {
-            Some(entry) if own.is_empty() => asked.as_fitted(&entry.poles),
-            _ => asked.clone(),
-        }
+        let first = self
+            .entries
+            .first()
+            .filter(|_| own.is_empty() && asked.is_open());
+        let fitted = first.and_then(|entry| asked.with_filters(entry.poles.len()));
+        fitted.unwrap_or_else(|| asked.clone())
     }
 
     /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
     pub(crate) fn judge(&mut self, poles: &PoleSearch) {
         let mut notes = Vec::new();
-        for memory in self.memory.iter().filter(|m| !m.is_sufficient()) {
+        // whether nothing before the record is remembered when the motion starts
+        let sufficient = |m: &&MemoryReport| m.available_samples >= m.memory_samples;
+        for memory in self.memory.iter().filter(|m| !sufficient(m)) {
             notes.push(format!(
                 "record {}: the filters remember {} samples ({:.2} s), but the motion starts after {} ({:.2} s): forces of \
                  a motion before the record may have entered the fit; record more rest, or discard_s",

@@ -95,7 +95,7 @@ impl KnownDeck {
             .ok_or_else(|| Error::Numerical("coverage: the truth does not flutter".into()))?
             .at
             .speed_m_s;
-        let (_, onset, tested) = campaign.fitted(campaign.records.straight())?;
+        let (_, onset, tested) = campaign.fitted(&campaign.records.straight)?;
         campaign.tested = tested;
         let onset = onset
             .ok_or_else(|| Error::Numerical("coverage: the fit without noise is stable".into()))?;

@@ -7,7 +7,6 @@
 use super::coefficients::CoefficientUncertainty;
 use super::draws::ModelDraws;
 use super::statistics::{SampledOnsets, two_sided_quantile};
-use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::flutter::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval, OnsetSearch, find_onset};
@@ -189,10 +188,12 @@ pub(crate) fn resample_onset(
         let Some(values) = drawn(estimate, &draws, plan, r)? else {
             return Ok(None);
         };
-        let model = draws.model_at(&values).ok();
-        Ok(Some(model.and_then(|m| {
-            solve(&m, structure, speed_m_s, omega, plan)
-        })))
+        // a draw that makes no model, or none that can be coupled, has no onset
+        let section = draws.model_at(&values);
+        let section = section.and_then(|m| CoupledSection::with_model(structure, &m));
+        let near = [speed_m_s, omega];
+        let found = section.and_then(|s| followed(&s, near, &plan.search, plan.tested));
+        Ok(Some(found.ok().flatten().map(|[speed, _]| speed)))
     };
     let found = numbered(plan.replicates, &|_, _| (), onset_of)?;
     let found: Option<Vec<Option<f64>>> = found.into_iter().collect();
@@ -205,20 +206,6 @@ pub(crate) fn resample_onset(
         low_m_s: onsets.interval_m_s[0],
         high_m_s: onsets.interval_m_s[1],
     }))
-}
-
-/// Onset of one draw.
-fn solve(
-    model: &dyn Realizable,
-    structure: &Structure,
-    speed_m_s: f64,
-    omega: f64,
-    plan: &ResamplingPlan,
-) -> Option<f64> {
-    let section = CoupledSection::with_model(structure, model).ok()?;
-    let near = [speed_m_s, omega];
-    let found = followed(&section, near, &plan.search, plan.tested);
-    found.ok().flatten().map(|[speed, _]| speed)
 }
 
 /// Parameters of one replicate; `None` for blocks of an estimate that no longer knows its data.

@@ -15,7 +15,8 @@ const STREAM: u64 = 1 << 40;
 /// Records without noise, and the same with every force turned by a right angle: together they make records of
 /// transfer functions of other size and phase.
 pub(super) struct ScatteredTunnel {
-    straight: Vec<Record>,
+    /// Records of the truth itself.
+    pub(super) straight: Vec<Record>,
     turned: Vec<Record>,
     /// Standard deviation of every transfer function between speeds, relative, in size and in phase.
     speeds: f64,
@@ -57,11 +58,6 @@ impl ScatteredTunnel {
             speeds,
             runs,
         })
-    }
-
-    /// Records of the truth itself.
-    pub(crate) fn straight(&self) -> &[Record] {
-        &self.straight
     }
 
     /// Records of one campaign.

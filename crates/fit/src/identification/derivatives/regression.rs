@@ -59,11 +59,10 @@ impl<'a> TestPointEquations<'a> {
         let columns = 2 * active.len() + 2 * group.len();
         let (mut rows, mut grams, mut forces) = (Vec::new(), Vec::new(), Vec::new());
         for (run, stretch) in group.iter().enumerate() {
-            let (motion, force) = stretch.samples()?;
-            let z = regressors(&motion, force[0].len(), run, &active, columns);
+            let z = regressors(&stretch.motions(), run, &active, columns);
             grams.push(z.tr_mul(&z));
             rows.push(z);
-            forces.push(force);
+            forces.push(stretch.forces()?);
         }
         Ok(Self {
             dofs,
@@ -86,7 +85,7 @@ impl<'a> TestPointEquations<'a> {
             let own = stretch.amplitude[stretch.driven];
             for j in (0..self.dofs.len()).filter(|j| !self.active.contains(j)) {
                 let part = stretch.amplitude[j] / own;
-                let (run, hertz) = (&stretch.run, stretch.frequency_hz);
+                let (run, hertz) = (&stretch.header.name, stretch.frequency_hz);
                 let (driven, other) = (self.dofs[stretch.driven].name(), self.dofs[j].name());
                 ensure(
                     part <= DRIVEN_TOO,
@@ -122,7 +121,7 @@ impl<'a> TestPointEquations<'a> {
         }
         let factor = qr.finish();
         if factor.undetermined(self.columns).is_some() || factor.condition(self.columns) > 1e6 {
-            let runs: Vec<&str> = self.group.iter().map(|s| s.run.as_str()).collect();
+            let runs: Vec<&str> = self.group.iter().map(|s| s.header.name.as_str()).collect();
             let hertz = self.group[0].frequency_hz;
             return Err(Error::input(
                 format!("runs {} at {hertz:.3} Hz", runs.join(", ")),
@@ -181,8 +180,8 @@ impl<'a> TestPointEquations<'a> {
         let v_hat = s.k.v_hat();
         let of = |part, c: usize| DerivativeEstimate {
             derivative: Derivative::from_entry(self.dofs[force], self.dofs[motion], part),
-            run: s.run.clone(),
-            mean_speed_m_s: s.speed_m_s,
+            run: s.header.name.clone(),
+            mean_speed_m_s: s.header.mean_speed_m_s,
             frequency_hz: s.frequency_hz,
             v_hat,
             value: coefficients[c] * v_hat * v_hat,
@@ -197,11 +196,11 @@ impl<'a> TestPointEquations<'a> {
 /// Rows of one run: motions and rates, then its own constant and trend.
 fn regressors(
     motion: &[[Vec<f64>; 2]],
-    count: usize,
     run: usize,
     active: &[usize],
     columns: usize,
 ) -> DMatrix<f64> {
+    let count = motion[0][0].len();
     let middle = 0.5 * (count as f64 - 1.0);
     DMatrix::from_fn(count, columns, |k, c| {
         if c < 2 * active.len() {

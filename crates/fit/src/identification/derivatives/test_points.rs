@@ -25,16 +25,14 @@ pub(super) const CROSS_TALK: f64 = 0.05;
 
 /// One run at one test point, without dimensions.
 pub(super) struct TestRun {
-    pub run: String,
     /// The motion that is driven, by its place among the degrees of freedom.
     pub driven: usize,
-    pub speed_m_s: f64,
     pub frequency_hz: f64,
     pub k: ReducedFrequency,
     pub periods: usize,
     /// Amplitude of each motion.
     pub amplitude: Vec<f64>,
-    header: RecordHeader,
+    pub header: RecordHeader,
     /// The whole record in its own units, and the samples of the run in it.
     signals: Arc<Signals>,
     samples: Range<usize>,
@@ -49,35 +47,41 @@ impl TestRun {
         (samples < SAMPLES_ENOUGH).then(|| {
             format!(
                 "run {} at {:.3} Hz has {samples:.1} samples in a period: harmonics of the motion are not told from it",
-                self.run, self.frequency_hz
+                self.header.name, self.frequency_hz
             )
         })
     }
 
-    /// What it says at each sample, without dimensions: `r_j` and `r_j'/K`, of which only the harmonics are free of noise, and `q_i`.
-    ///
-    /// # Errors
-    /// [`Error::Io`] for long records whose file cannot be read any more.
-    pub(super) fn samples(&self) -> Result<(Vec<[Vec<f64>; 2]>, Vec<Vec<f64>>)> {
+    /// Its motions at each sample without dimensions, `r_j` and `r_j'/K`: their harmonics, which alone are free of noise.
+    pub(super) fn motions(&self) -> Vec<[Vec<f64>; 2]> {
         let header = &self.header;
-        let (n, rate) = (header.dofs.len(), header.sampling_hz);
         let omega = std::f64::consts::TAU * self.frequency_hz;
         let motion_of = |j: usize| {
             let scale = header.dofs[j].motion_scale(header.width_m);
-            let time = (0..self.samples.len()).map(|k| k as f64 / rate);
+            let time = (0..self.samples.len()).map(|k| k as f64 / header.sampling_hz);
             let (value, slope): (Vec<f64>, Vec<f64>) = time
                 .map(|t| self.fits[j].oscillation(t))
                 .map(|(value, slope)| (scale * value, scale * slope / omega))
                 .unzip();
             [value, slope]
         };
+        (0..header.dofs.len()).map(motion_of).collect()
+    }
+
+    /// Its forces at each sample without dimensions, `q_i`.
+    ///
+    /// # Errors
+    /// [`Error::Io`] for long records whose file cannot be read any more.
+    pub(super) fn forces(&self) -> Result<Vec<Vec<f64>>> {
+        let header = &self.header;
         let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
-        let mut force = self.signals.range(self.samples.clone())?.split_off(n);
-        for (dof, force) in header.dofs.iter().zip(&mut force) {
+        let mut channels = self.signals.range(self.samples.clone())?;
+        let mut forces = channels.split_off(header.dofs.len());
+        for (dof, force) in header.dofs.iter().zip(&mut forces) {
             let factor = 1.0 / (pressure * dof.force_scale(header.width_m));
             force.iter_mut().for_each(|f| *f *= factor);
         }
-        Ok(((0..n).map(motion_of).collect(), force))
+        Ok(forces)
     }
 }
 
@@ -203,9 +207,7 @@ fn stretch(
     let amplitudes =
         amplitudes.map(|(dof, fit)| dof.motion_scale(header.width_m) * fit.fundamental().norm());
     Ok(Some(TestRun {
-        run: header.name.clone(),
         driven,
-        speed_m_s: header.mean_speed_m_s,
         frequency_hz,
         k: ReducedFrequency::from_hertz(frequency_hz, header.width_m, header.mean_speed_m_s),
         periods: p.periods,
@@ -229,15 +231,16 @@ fn driven_motion(header: &RecordHeader, motions: &[Vec<f64>]) -> Option<usize> {
 
 /// Into the group of the same frequency and the nearest speed, unless that motion is there already: repeated tests are points of their own.
 fn insert(groups: &mut Vec<Vec<TestRun>>, stretch: TestRun, options: &DerivativeOptions) {
+    let speed = |run: &TestRun| run.header.mean_speed_m_s;
     let near = |a: f64, b: f64, ratio: f64| (a / b).ln().abs() <= ratio.ln();
     let fits = |group: &&mut Vec<TestRun>| {
         let same = |s: &TestRun| {
-            near(s.speed_m_s, stretch.speed_m_s, options.same_speed)
+            near(speed(s), speed(&stretch), options.same_speed)
                 && near(s.frequency_hz, stretch.frequency_hz, options.same_frequency)
         };
         group.iter().all(same) && group.iter().all(|s| s.driven != stretch.driven)
     };
-    let off = |group: &&mut Vec<TestRun>| (group[0].speed_m_s / stretch.speed_m_s).ln().abs();
+    let off = |group: &&mut Vec<TestRun>| (speed(&group[0]) / speed(&stretch)).ln().abs();
     let nearest = groups
         .iter_mut()
         .filter(fits)
