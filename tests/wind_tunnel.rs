@@ -46,7 +46,7 @@ struct Errors {
 
 /// Dominant: |G| above 10 % of the largest of the same force in the same run group (speed).
 fn errors(made: &VirtualCampaign, found: &IdentifiedDerivatives) -> Errors {
-    let points = &made.truth.points;
+    let points = &made.points;
     let largest = |force: Dof| {
         points
             .iter()
@@ -102,7 +102,7 @@ fn measure(name: &str, seed: u64) -> (f64, f64) {
         identify_derivatives(&sources(&processed.records), &DerivativeOptions::default()).unwrap();
     let errors = errors(&made, &found);
     let onset = onset_m_s(&processed.records);
-    let clean = onset_m_s(&made.truth.records);
+    let clean = onset_m_s(&made.records);
     let off = onset / clean - 1.0;
     println!(
         "{name} seed {seed}: greatest {:.3} % ({}), RMS {:.3} % of {}; onset {onset:.3} against {clean:.3} m/s, {:+.3} %; lag {:.4} ms",

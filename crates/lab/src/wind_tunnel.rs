@@ -3,18 +3,17 @@
 mod broadband;
 pub mod campaign;
 mod motion;
-mod plan_checks;
 mod prediction;
 pub mod processing;
 mod raw;
 mod record_file;
 mod record_format;
 mod records;
+mod tunnel_plan;
 pub mod virtual_campaign;
 mod virtual_forces;
 mod virtual_tunnel;
 
-pub use motion::TrainingMotion;
 pub use prediction::predicted_forces;
 pub(crate) use raw::CELL_CHANNELS;
 pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};
@@ -22,4 +21,4 @@ pub use record_file::RecordFile;
 pub(crate) use record_file::SAMPLES_AT_LEAST;
 pub use record_file::{read_record, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
-pub use virtual_tunnel::TunnelPlan;
+pub use tunnel_plan::{TrainingMotion, TunnelPlan};

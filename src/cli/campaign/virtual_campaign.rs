@@ -88,7 +88,7 @@ pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Ans
     }
     let value = serde_json::json!({
         "section": made.raw.section,
-        "runs": made.truth.disturbances,
+        "runs": made.disturbances,
         "plan": plan,
     });
     out.answer(text, value)

@@ -4,13 +4,13 @@
 //! their coefficients best determined (thesis, section 2.4); a multi-sine puts all its power into chosen frequencies. Both
 //! start and end at rest with the ramps of the harmonic motions, and never exceed the amplitude of the plan.
 
-use super::motion::{Timing, TrainingMotion, UnitMotion, window};
+use super::motion::{UnitMotion, window};
 use super::records::Record;
-use super::virtual_tunnel::TunnelPlan;
+use super::tunnel_plan::{TrainingMotion, TunnelPlan};
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
-use crate::error::{Result, ensure, positive};
+use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::signal::{largest_magnitude, random_stream};
 use nalgebra::Complex;
@@ -20,78 +20,6 @@ use std::f64::consts::TAU;
 
 /// Stream of the random numbers that make a motion; the noise of the forces draws from others.
 const MOTION_STREAM: u64 = u64::MAX;
-
-impl TrainingMotion {
-    /// The motion in words.
-    pub(super) fn describe(&self) -> String {
-        match self {
-            Self::Harmonic {} => "harmonic motions".into(),
-            Self::MultiSine { .. } => "a multi-sine".into(),
-            Self::WhiteNoise { min_hz, max_hz, .. } => {
-                format!("white noise from {min_hz} to {max_hz} Hz")
-            }
-        }
-    }
-
-    /// Checks duration and band against the other keys of a plan.
-    pub(super) fn validate(&self, timing: Timing) -> Result<()> {
-        let duration = match self {
-            Self::Harmonic {} => return Ok(()),
-            Self::MultiSine { duration_s } => *duration_s,
-            Self::WhiteNoise {
-                min_hz,
-                max_hz,
-                duration_s,
-            } => {
-                positive("motion.min_hz", *min_hz)?;
-                let highest = 0.2 * timing.sampling_hz;
-                ensure(
-                    *max_hz > *min_hz && *max_hz <= highest,
-                    "motion.max_hz",
-                    format_args!(
-                        "more than min_hz and at most a fifth of sampling_hz ({highest} Hz)"
-                    ),
-                    max_hz,
-                )?;
-                *duration_s
-            }
-        };
-        positive("motion.duration_s", duration)?;
-        ensure(
-            2.0 * timing.ramp_s <= duration,
-            "motion.duration_s",
-            format_args!("at least two ramps ({} s)", 2.0 * timing.ramp_s),
-            duration,
-        )
-    }
-}
-
-impl UnitMotion {
-    /// Rest for `still_s`, then the motion, at most 1 in size; all of it `delay_s` later. Not for harmonic motions.
-    pub(super) fn broadband(
-        motion: &TrainingMotion,
-        frequencies_hz: &[f64],
-        timing: Timing,
-        seed: u64,
-    ) -> Self {
-        let (lines, duration_s) = Lines::new(motion, frequencies_hz, timing, seed);
-        let on_time = lines.samples(duration_s, timing, 0.0);
-        let largest = largest_magnitude(&on_time[0]);
-        let unit = |x: Vec<f64>| -> Vec<f64> {
-            let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
-            x.into_iter().map(|x| scale * x).collect()
-        };
-        let [displacement, velocity, acceleration] =
-            lines.samples(duration_s, timing, timing.delay_s).map(unit);
-        Self {
-            segments: Vec::new(),
-            segment_of: vec![None; displacement.len()],
-            displacement,
-            velocity,
-            acceleration,
-        }
-    }
-}
 
 impl TunnelPlan {
     /// Broadband records of one speed of a table.
@@ -124,40 +52,39 @@ impl TunnelPlan {
         Ok(records)
     }
 
-    /// The motion at unit amplitude; harmonic motions have the given frequencies.
+    /// The motion at unit amplitude, `delay_s` late: harmonic motions of the given frequencies; of broadband ones rest, then a motion
+    /// of at most 1 in size.
     pub(super) fn unit_motion(&self, frequencies_hz: &[f64], delay_s: f64) -> UnitMotion {
-        match &self.motion {
-            TrainingMotion::Harmonic {} => UnitMotion::new(frequencies_hz, self.timing(delay_s)),
-            motion => UnitMotion::broadband(
-                motion,
-                &self.frequencies_hz,
-                self.timing(delay_s),
-                self.seed,
-            ),
+        let Some(duration_s) = self.motion.duration_s() else {
+            return UnitMotion::harmonic(frequencies_hz, self, delay_s);
+        };
+        let lines = self.lines();
+        let on_time = self.run_of_lines(&lines, duration_s, 0.0);
+        let largest = largest_magnitude(&on_time[0]);
+        let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
+        let run = self.run_of_lines(&lines, duration_s, delay_s);
+        let [displacement, velocity, acceleration] =
+            run.map(|x| x.into_iter().map(|x| scale * x).collect::<Vec<f64>>());
+        UnitMotion {
+            segments: Vec::new(),
+            segment_of: vec![None; displacement.len()],
+            displacement,
+            velocity,
+            acceleration,
         }
     }
-}
 
-/// A sum of sines: circular frequency (rad/s) and complex amplitude, `Re Σ z e^{iωt}`.
-struct Lines(Vec<(f64, Complex<f64>)>);
-
-impl Lines {
-    /// The steady motion and its duration.
-    fn new(
-        motion: &TrainingMotion,
-        frequencies_hz: &[f64],
-        timing: Timing,
-        seed: u64,
-    ) -> (Self, f64) {
-        let mut random = random_stream(seed, MOTION_STREAM);
-        match motion {
-            TrainingMotion::Harmonic {} => (Self(Vec::new()), timing.segment_s),
-            TrainingMotion::MultiSine { duration_s } => {
+    /// The steady motion as a sum of sines: circular frequency (rad/s) and complex amplitude, `Re Σ z e^{iωt}`; none of harmonic motions.
+    fn lines(&self) -> Vec<(f64, Complex<f64>)> {
+        let mut random = random_stream(self.seed, MOTION_STREAM);
+        match self.motion {
+            TrainingMotion::Harmonic {} => Vec::new(),
+            TrainingMotion::MultiSine { .. } => {
                 let sine = |f: &f64| {
                     let phase = TAU * random.random::<f64>();
                     (TAU * f, Complex::from_polar(1.0, phase))
                 };
-                (Self(frequencies_hz.iter().map(sine).collect()), *duration_s)
+                self.frequencies_hz.iter().map(sine).collect()
             }
             TrainingMotion::WhiteNoise {
                 min_hz,
@@ -171,39 +98,40 @@ impl Lines {
                     let z = Complex::new(normal(), normal());
                     (TAU * bin as f64 / duration_s, z)
                 };
-                (Self(bins.map(line).collect()), *duration_s)
+                bins.map(line).collect()
             }
         }
     }
 
     /// Displacement, velocity (1/s) and acceleration (1/s²) of the whole run under its window.
-    fn samples(&self, duration_s: f64, timing: Timing, delay_s: f64) -> [Vec<f64>; 3] {
-        let count = ((timing.still_s + duration_s) * timing.sampling_hz).round() as usize;
-        let start = timing.still_s + delay_s;
+    fn run_of_lines(
+        &self,
+        lines: &[(f64, Complex<f64>)],
+        duration_s: f64,
+        delay_s: f64,
+    ) -> [Vec<f64>; 3] {
+        let rate = self.sampling_hz;
+        let count = ((self.still_s + duration_s) * rate).round() as usize;
+        let start = self.still_s + delay_s;
+        let first = (start * rate).ceil() as usize;
+        let t_first = first as f64 / rate - start;
         // e^{iωt} from sample to sample by one product
-        let turns: Vec<Complex<f64>> = self
-            .0
-            .iter()
-            .map(|(omega, _)| Complex::from_polar(1.0, omega / timing.sampling_hz))
-            .collect();
-        let first = (start * timing.sampling_hz).ceil() as usize;
-        let t_first = first as f64 / timing.sampling_hz - start;
-        let mut at: Vec<Complex<f64>> = self
-            .0
-            .iter()
-            .map(|(omega, z)| z * Complex::from_polar(1.0, omega * t_first))
-            .collect();
+        let line = |(omega, z): &(f64, Complex<f64>)| {
+            let at = z * Complex::from_polar(1.0, omega * t_first);
+            (*omega, at, Complex::from_polar(1.0, omega / rate))
+        };
+        let mut lines: Vec<_> = lines.iter().map(line).collect();
         let mut run: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; first.min(count)]);
         for sample in first..count {
-            let t = sample as f64 / timing.sampling_hz - start;
+            let t = sample as f64 / rate - start;
             let (mut x, mut v, mut a) = (0.0, 0.0, 0.0);
-            for ((z, turn), (omega, _)) in at.iter_mut().zip(&turns).zip(&self.0) {
+            for (omega, z, turn) in &mut lines {
                 x += z.re;
-                v -= omega * z.im;
-                a -= omega * omega * z.re;
-                *z *= turn;
+                v -= *omega * z.im;
+                a -= *omega * *omega * z.re;
+                *z *= *turn;
             }
-            let [w, w1, w2] = window(t, duration_s, timing.ramp_s);
+            let [w, w1, w2] = window(t, duration_s, self.ramp_s);
             let rates = [w * x, w1 * x + w * v, w2 * x + 2.0 * w1 * v + w * a];
             for (channel, value) in run.iter_mut().zip(rates) {
                 channel.push(value);
@@ -218,13 +146,14 @@ mod tests {
     use super::*;
     use crate::signal::Fourier;
 
-    const TIMING: Timing = Timing {
-        still_s: 8.0,
-        segment_s: 26.0,
-        ramp_s: 4.0,
-        sampling_hz: 200.0,
-        delay_s: 0.0,
-    };
+    /// Rest of 8 s, ramps of 4 s, 200 Hz.
+    fn plan(motion: TrainingMotion, seed: u64) -> TunnelPlan {
+        TunnelPlan {
+            motion,
+            seed,
+            ..TunnelPlan::default()
+        }
+    }
 
     /// Share of the power of a motion between two frequencies, Hz.
     fn power_between(motion: &[f64], low: f64, high: f64) -> f64 {
@@ -245,8 +174,9 @@ mod tests {
             max_hz: 3.0,
             duration_s: 200.0,
         };
-        motion.validate(TIMING).unwrap();
-        UnitMotion::broadband(&motion, &[], TIMING, seed)
+        let plan = plan(motion, seed);
+        plan.check_motion().unwrap();
+        plan.unit_motion(&[], 0.0)
     }
 
     #[test]
@@ -271,7 +201,9 @@ mod tests {
     #[test]
     fn a_multi_sine_moves_at_its_frequencies_at_once() {
         let motion = TrainingMotion::MultiSine { duration_s: 100.0 };
-        let unit = UnitMotion::broadband(&motion, &[0.5, 1.1, 2.0], TIMING, 3);
+        let mut plan = plan(motion, 3);
+        plan.frequencies_hz = vec![0.5, 1.1, 2.0];
+        let unit = plan.unit_motion(&[], 0.0);
         for f in [0.5, 1.1, 2.0] {
             let share = power_between(&unit.displacement, f - 0.2, f + 0.2);
             // equal amplitudes: a third each
@@ -287,11 +219,11 @@ mod tests {
             max_hz: 2.5,
             duration_s: 60.0,
         };
-        let fine = Timing {
+        let fine = TunnelPlan {
             sampling_hz: 2000.0,
-            ..TIMING
+            ..plan(motion, 4)
         };
-        let unit = UnitMotion::broadband(&motion, &[], fine, 4);
+        let unit = fine.unit_motion(&[], 0.0);
         let size = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         for (x, rate) in [
             (&unit.displacement, &unit.velocity),
@@ -304,7 +236,7 @@ mod tests {
             }
         }
         let delay_s = 0.03;
-        let late = UnitMotion::broadband(&motion, &[], Timing { delay_s, ..fine }, 4);
+        let late = fine.unit_motion(&[], delay_s);
         for k in 60..unit.displacement.len() {
             // rounding of tens of thousands of products
             assert!((late.displacement[k] - unit.displacement[k - 60]).abs() < 1e-9);
@@ -313,7 +245,7 @@ mod tests {
 
     #[test]
     fn impossible_motions_are_refused() {
-        let message = |motion: TrainingMotion| motion.validate(TIMING).unwrap_err().to_string();
+        let message = |motion| plan(motion, 1).check_motion().unwrap_err().to_string();
         let noise = |min_hz, max_hz, duration_s| TrainingMotion::WhiteNoise {
             min_hz,
             max_hz,

@@ -26,7 +26,7 @@ pub use make::VirtualCampaign;
 pub use plan::{
     Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence, VirtualCampaignPlan,
 };
-pub use truth::{AppliedDisturbances, AppliedSpike, CampaignTruth, TruthPoint};
+pub use truth::{AppliedDisturbances, AppliedSpike, TruthPoint};
 
 #[cfg(doc)]
 use super::TunnelPlan;

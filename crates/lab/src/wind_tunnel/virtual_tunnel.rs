@@ -15,90 +15,17 @@
 //! frequency of the segment is therefore `f = K V/(2πB)` with the point's own `K` and the record's `V`, within a
 //! per cent of the frequency that was driven, and the dimensionless force is exactly `G` at the point's own `K`.
 
-use super::motion::{Timing, TrainingMotion, UnitMotion};
+use super::motion::UnitMotion;
 use super::records::{Record, RecordHeader};
+use super::tunnel_plan::{TrainingMotion, TunnelPlan};
 use super::virtual_forces::{TransferColumn, unit_response};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Result, positive};
-use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::section::Dof;
 use crate::signal::{random_stream, root_mean_square};
 use rand_distr::{Distribution, StandardNormal};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-
-/// A series of forced-vibration tests; the default is Table 3.2 of the thesis.
-///
-/// ```
-/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
-/// use aerodeck::files::derivatives::embedded;
-/// use aerodeck::section::Dof;
-/// use aerodeck::wind_tunnel::TunnelPlan;
-///
-/// let plan = TunnelPlan { sampling_hz: 50.0, segment_s: 12.0, ..TunnelPlan::default() };
-/// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
-/// assert_eq!(records.len(), 4); // two motions at the two speeds of the table
-/// # Ok::<(), aerodeck::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct TunnelPlan {
-    /// How the section is moved.
-    pub motion: TrainingMotion,
-    /// Whether records of broadband motions may be made from a table, its derivatives taken as linear in `V̂` between the
-    /// test points of a speed and as constant beyond them.
-    pub interpolate_table: bool,
-    /// Frequencies of motion in test order, Hz. Records from a table take the frequencies of its points instead.
-    pub frequencies_hz: Vec<f64>,
-    /// Mean wind speeds, m/s. Records from a table take its speeds instead.
-    pub speeds_m_s: Vec<f64>,
-    /// Amplitude of heave, m.
-    pub vertical_amplitude_m: f64,
-    /// Amplitude of sway, m.
-    pub lateral_amplitude_m: f64,
-    /// Amplitude of rotation, degrees.
-    pub torsion_amplitude_deg: f64,
-    /// Sampling frequency, Hz.
-    pub sampling_hz: f64,
-    /// Rest before the first frequency, s.
-    pub still_s: f64,
-    /// Time at each frequency, ramps included, s.
-    pub segment_s: f64,
-    /// Ramp at either end of a segment, s.
-    pub ramp_s: f64,
-    /// Air density, kg/m³.
-    pub air_density_kg_m3: f64,
-    /// Standard deviation of the noise added to each force, as a fraction of the RMS of that force over the record; 0 for
-    /// none.
-    pub noise_fraction: f64,
-    /// Correlation time of the noise, s: its correlation falls as `e^(−|t|/τ)`; 0 for white noise.
-    pub noise_correlation_s: f64,
-    /// Seed of the noise and of broadband motions.
-    pub seed: u64,
-}
-
-impl Default for TunnelPlan {
-    fn default() -> Self {
-        Self {
-            motion: TrainingMotion::Harmonic {},
-            interpolate_table: false,
-            frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
-            speeds_m_s: vec![8.17, 4.0],
-            vertical_amplitude_m: 0.010,
-            lateral_amplitude_m: 0.020,
-            torsion_amplitude_deg: 1.0,
-            sampling_hz: 200.0,
-            still_s: 8.0,
-            segment_s: 26.0,
-            ramp_s: 4.0,
-            air_density_kg_m3: 1.19,
-            noise_fraction: 0.0,
-            noise_correlation_s: 0.0,
-            seed: 1,
-        }
-    }
-}
 
 impl TunnelPlan {
     /// One record per motion and speed group of `table`, forces from its derivatives at its own test points.
@@ -213,16 +140,6 @@ impl TunnelPlan {
                 table.width_m
             )
         })
-    }
-
-    pub(super) fn timing(&self, delay_s: f64) -> Timing {
-        Timing {
-            delay_s,
-            still_s: self.still_s,
-            segment_s: self.segment_s,
-            ramp_s: self.ramp_s,
-            sampling_hz: self.sampling_hz,
-        }
     }
 
     /// Amplitude of a motion: m, rad.

@@ -66,7 +66,7 @@ pub(super) fn rig(rig: &Rig) -> Rig {
 pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
     let rig = &made.raw.rig;
     let mut file = FileBuilder::new();
-    for (run, truth) in made.raw.runs.iter().zip(&made.truth.records) {
+    for (run, truth) in made.raw.runs.iter().zip(&made.records) {
         let moving: Vec<&str> = truth.moving().map(Dof::name).collect();
         let still = run.still_air.iter().map(|r| ("still", r));
         for (what, recording) in std::iter::once(("wind", &run.in_wind)).chain(still) {

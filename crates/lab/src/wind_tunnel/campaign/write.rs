@@ -76,7 +76,7 @@ fn write_truth(
     place: &mut dyn FnMut(&Path) -> Result<PathBuf>,
 ) -> Result<()> {
     let mut table = format!("{TRUTH_COLUMNS}\n");
-    for p in &made.truth.points {
+    for p in &made.points {
         let line = format!(
             "{},{},{},{},{},{},{}\n",
             csv_cell(&p.run),
@@ -90,10 +90,10 @@ fn write_truth(
         table.push_str(&line);
     }
     write_text(&place(Path::new("truth.csv"))?, &table)?;
-    let runs = BTreeMap::from([("runs", &made.truth.disturbances)]);
+    let runs = BTreeMap::from([("runs", &made.disturbances)]);
     let applied = json::write("disturbances", &runs)?;
     write_text(&place(Path::new("disturbances.json"))?, &applied)?;
-    for record in &made.truth.records {
+    for record in &made.records {
         let path =
             place(&Path::new("truth").join(format!("{}.csv", file_name(&record.header.name))))?;
         let file = File::create(&path).map_err(|e| Error::io(&path, e))?;
@@ -156,7 +156,7 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
             FileFormat::Csv => csv_map(&raw.rig),
             FileFormat::Ntnu => ChannelMap::default(),
         },
-        runs: raw.runs.iter().zip(&made.truth.records).map(run).collect(),
+        runs: raw.runs.iter().zip(&made.records).map(run).collect(),
         directory: PathBuf::new(),
     }
 }

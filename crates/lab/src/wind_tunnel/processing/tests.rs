@@ -50,7 +50,7 @@ fn a_campaign_without_disturbances_gives_the_truth_back() {
     assert_eq!(processed.records.len(), 2);
     for force in 0..2 {
         // the low-pass rounds the corners of the ramps, the drift takes a little of them
-        assert!(worst(&processed, &made.truth.records, force) < 1e-3);
+        assert!(worst(&processed, &made.records, force) < 1e-3);
     }
     for run in &processed.report.runs {
         assert!(run.warnings.is_empty(), "{:?}", run.warnings);
@@ -114,7 +114,7 @@ fn lag_offset_drift_and_spike_are_found() {
     assert!(error < 1e-4, "{error}");
     // four standard errors; 5e-6 s is what the ramps in the steady part cost
     assert!((report.lag_s - d.force_lag_s).abs() < 4.0 * error + 5e-6);
-    for (run, applied) in report.runs.iter().zip(&made.truth.disturbances) {
+    for (run, applied) in report.runs.iter().zip(&made.disturbances) {
         // the motions are without noise: interpolation alone
         let alignment = run.alignment.unwrap();
         assert!((alignment.offset_s - d.still_air_offset_s).abs() < 1e-8);
@@ -145,7 +145,7 @@ fn lag_offset_drift_and_spike_are_found() {
     }
     for force in 0..2 {
         // what is left of 5 % noise behind the low-pass: 4.5 standard deviations of 1.3 % of an RMS, ⅓ of the greatest force
-        assert!(worst(&processed, &made.truth.records, force) < 0.05);
+        assert!(worst(&processed, &made.records, force) < 0.05);
     }
     let text = serde_json::to_string(report).unwrap();
     assert_eq!(
@@ -165,7 +165,7 @@ fn a_stated_lag_is_taken_and_a_wrong_one_shows() {
             lag_s,
             ..ProcessingOptions::default()
         };
-        worst(&done(&made.raw, &options), &made.truth.records, 0)
+        worst(&done(&made.raw, &options), &made.records, 0)
     };
     assert!(with(Some(0.0017)) < 1e-3);
     assert!(with(None) < 1e-3);
@@ -373,5 +373,5 @@ fn a_short_clip_is_replaced() {
         said.len() == 2 && said[0].starts_with(&once("near")) && said[1].starts_with(&once("far")),
         "{said:?}"
     );
-    assert!(worst(&processed, &made.truth.records, 0) < 0.05);
+    assert!(worst(&processed, &made.records, 0) < 0.05);
 }

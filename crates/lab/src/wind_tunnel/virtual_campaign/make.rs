@@ -1,11 +1,11 @@
 //! Carrying out the plan of a virtual campaign.
 
 use super::forces::{
-    Drift, GustSamples, Kinematics, Wrench, gravity_and_inertia, noise, place_spike, readings,
-    spike_at, wind_coefficients,
+    drift, gravity_and_inertia, gusts, noise, place_spike, readings, section_wrench, spike_at,
+    wind_coefficients,
 };
 use super::plan::VirtualCampaignPlan;
-use super::truth::{AppliedDisturbances, CampaignTruth, TruthPoint};
+use super::truth::{AppliedDisturbances, TruthPoint};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
@@ -13,17 +13,23 @@ use crate::section::Dof;
 use crate::signal::{random_stream, root_mean_square};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::virtual_forces::TransferColumn;
-use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record};
+use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record, RecordHeader};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::PI;
 
-/// A raw campaign with the truth behind it.
+/// A raw campaign with the truth behind it: what processing should find, and what it should take away.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VirtualCampaign {
     /// What the load cells say.
     pub raw: RawCampaign,
-    /// What they should have said.
-    pub truth: CampaignTruth,
+    /// Motion and self-excited force of each run as in wind, per unit length, without lag, noise or anything else;
+    /// in the order of the runs.
+    pub records: Vec<Record>,
+    /// `G` at every test point.
+    pub points: Vec<TruthPoint>,
+    /// What was applied to each run, in the order of the runs.
+    pub disturbances: Vec<AppliedDisturbances>,
 }
 
 impl VirtualCampaignPlan {
@@ -80,31 +86,26 @@ impl VirtualCampaignPlan {
         late: &[Record],
         points: Vec<TruthPoint>,
     ) -> VirtualCampaign {
-        let header = records.first().map(|r| r.header.clone());
         let (mut runs, mut disturbances) = (Vec::new(), Vec::new());
         for (index, (record, late)) in records.iter().zip(late).enumerate() {
             let run = RunInMaking::new(self, index, record, late);
             runs.push(run.raw());
             disturbances.push(run.applied);
         }
+        let header = records.first().map(|r| &r.header);
+        let source = |h: &RecordHeader| format!("virtual campaign; {}", h.source);
         VirtualCampaign {
             raw: RawCampaign {
                 section: section.to_owned(),
-                source: header
-                    .as_ref()
-                    .map_or_else(String::new, |h| format!("virtual campaign; {}", h.source)),
-                licence: header
-                    .as_ref()
-                    .map_or_else(String::new, |h| h.licence.clone()),
+                source: header.map(source).unwrap_or_default(),
+                licence: header.map(|h| h.licence.clone()).unwrap_or_default(),
                 rig: self.rig(header.map_or(0.0, |h| h.width_m)),
                 forces: None,
                 runs,
             },
-            truth: CampaignTruth {
-                records,
-                points,
-                disturbances,
-            },
+            records,
+            points,
+            disturbances,
         }
     }
 }
@@ -144,13 +145,6 @@ struct RunInMaking<'a> {
     applied: AppliedDisturbances,
 }
 
-/// The two recordings of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum RecordingKind {
-    Wind,
-    Still,
-}
-
 impl<'a> RunInMaking<'a> {
     fn new(
         plan: &'a VirtualCampaignPlan,
@@ -187,8 +181,8 @@ impl<'a> RunInMaking<'a> {
         let header = &self.record.header;
         RawRun {
             name: header.name.clone(),
-            in_wind: self.recording(RecordingKind::Wind),
-            still_air: Some(self.recording(RecordingKind::Still)),
+            in_wind: self.recording(true),
+            still_air: Some(self.recording(false)),
             mean_speed_m_s: header.mean_speed_m_s,
             air_density_kg_m3: header.air_density_kg_m3,
         }
@@ -204,116 +198,105 @@ impl<'a> RunInMaking<'a> {
     }
 
     /// Each purpose in each recording of each run draws from a stream of its own.
-    fn random(&self, air: RecordingKind, purpose: u64) -> ChaCha8Rng {
-        let stream = (2 * self.index as u64 + u64::from(air == RecordingKind::Still)) * 8 + purpose;
+    fn random(&self, in_wind: bool, purpose: u64) -> ChaCha8Rng {
+        let stream = (2 * self.index as u64 + u64::from(!in_wind)) * 8 + purpose;
         random_stream(self.plan.tunnel.seed, stream)
     }
 
-    /// Displacement and rates of the run `delay_s` late, one per sample.
-    fn motion(&self, delay_s: f64) -> Vec<Kinematics> {
+    /// Displacement, velocity and acceleration of the three motions of the run `delay_s` late, one per sample.
+    fn motion(&self, delay_s: f64) -> Vec<[[f64; 3]; 3]> {
         let header = &self.record.header;
         let frequencies: Vec<f64> = header.segments.iter().map(|s| s.frequency_hz).collect();
         let tunnel = &self.plan.tunnel;
         let unit = tunnel.unit_motion(&frequencies, delay_s);
         let moving = header.dofs[self.index % header.dofs.len()];
         let amplitude = tunnel.amplitude(moving);
-        let one = |x: &Vec<f64>, i: usize| {
-            Dof::THREE.map(|d| if d == moving { amplitude * x[i] } else { 0.0 })
+        let at = |i: usize| {
+            let rates = [&unit.displacement, &unit.velocity, &unit.acceleration];
+            rates.map(|x| Dof::THREE.map(|d| if d == moving { amplitude * x[i] } else { 0.0 }))
         };
-        (0..unit.displacement.len())
-            .map(|i| Kinematics {
-                displacement: one(&unit.displacement, i),
-                velocity: one(&unit.velocity, i),
-                acceleration: one(&unit.acceleration, i),
-            })
-            .collect()
+        (0..unit.displacement.len()).map(at).collect()
     }
 
-    fn recording(&self, air: RecordingKind) -> RawRecording {
-        let (what, offset_s) = match air {
-            RecordingKind::Wind => ("in wind", 0.0),
-            RecordingKind::Still => ("still air", self.applied.still_air_offset_s),
+    /// The recording in wind, or the one of the same motion in still air.
+    fn recording(&self, in_wind: bool) -> RawRecording {
+        let (what, offset_s, turbulence) = match in_wind {
+            true => ("in wind", 0.0, self.plan.turbulence.as_ref()),
+            false => ("still air", self.applied.still_air_offset_s, None),
         };
         let header = &self.record.header;
         let seen = self.motion(offset_s);
         let felt = self.motion(offset_s + self.applied.force_lag_s);
         let travelled = header.mean_speed_m_s / header.sampling_hz;
-        let gusts = match air {
-            RecordingKind::Wind => self.plan.turbulence.as_ref(),
-            RecordingKind::Still => None,
-        };
-        let gusts = GustSamples::new(gusts, seen.len(), travelled, &mut self.random(air, 0));
+        let gusts = gusts(
+            turbulence,
+            seen.len(),
+            travelled,
+            &mut self.random(in_wind, 0),
+        );
         RawRecording {
             source: format!("{}, {what}", header.name),
             sampling_hz: header.sampling_hz,
-            motion: std::array::from_fn(|d| seen.iter().map(|k| k.displacement[d]).collect()),
-            cells: self.cells(air, &felt, &gusts),
-            wind_speed_m_s: self.wind_speed(air, &gusts),
+            motion: std::array::from_fn(|d| seen.iter().map(|[x, ..]| x[d]).collect()),
+            cells: self.cells(in_wind, &felt, &gusts),
+            wind_speed_m_s: self.wind_speed(in_wind, &gusts[0]),
         }
     }
 
-    fn wind_speed(&self, air: RecordingKind, gusts: &GustSamples) -> Vec<f64> {
-        let mean = match air {
-            RecordingKind::Wind => self.record.header.mean_speed_m_s,
-            RecordingKind::Still => 0.0,
+    /// The channel of the wind speed with the gusts `u`.
+    fn wind_speed(&self, in_wind: bool, u: &[f64]) -> Vec<f64> {
+        let mean = match in_wind {
+            true => self.record.header.mean_speed_m_s,
+            false => 0.0,
         };
-        let mut random = self.random(air, 1);
+        let mut random = self.random(in_wind, 1);
         let deviation = self.plan.disturbances.speed_noise_m_s;
         let mut one = |u: &f64| {
             let normal: f64 = StandardNormal.sample(&mut random);
             mean * (1.0 + u) + deviation * normal
         };
-        gusts.u.iter().map(&mut one).collect()
+        u.iter().map(&mut one).collect()
     }
 
     fn cells(
         &self,
-        air: RecordingKind,
-        felt: &[Kinematics],
-        gusts: &GustSamples,
+        in_wind: bool,
+        felt: &[[[f64; 3]; 3]],
+        gusts: &[Vec<f64>; 2],
     ) -> Vec<[Vec<f64>; 6]> {
-        let drifts: [Drift; 2] = {
-            let mut random = self.random(air, 2);
-            std::array::from_fn(|_| Drift::new(&self.plan.disturbances, &mut random))
-        };
-        let mut random = self.random(air, 3);
+        let plan = self.plan;
+        let mut random = self.random(in_wind, 2);
+        let drifts: [_; 2] = std::array::from_fn(|_| drift(&plan.disturbances, &mut random));
+        let mut random = self.random(in_wind, 3);
         let mut cells = vec![std::array::from_fn(|_| Vec::with_capacity(felt.len())); 2];
         for (sample, state) in felt.iter().enumerate() {
-            let mut wrench =
-                gravity_and_inertia(&self.plan.model, self.plan.support.model_length_m, state);
-            if air == RecordingKind::Wind {
-                self.add_wind(&mut wrench, sample, gusts);
+            let mut wrench = gravity_and_inertia(&plan.model, plan.support.model_length_m, state);
+            if in_wind {
+                let [u, w] = gusts.each_ref().map(|g| g[sample]);
+                wrench += section_wrench(self.wind_load(u, w));
+                wrench += section_wrench(self.excited(sample));
+                let spike = self.applied.spike.as_ref();
+                if let Some(knock) = spike.and_then(|s| spike_at(s, sample)) {
+                    wrench += knock;
+                }
             }
-            wrench.add(noise(self.applied.noise, &mut random));
-            let said = readings(&self.plan.support, &wrench, state.displacement[2]);
+            wrench += noise(self.applied.noise, &mut random);
+            let said = readings(&plan.support, &wrench, state[0][2]);
             let part = sample as f64 / felt.len() as f64;
             for ((cell, said), drift) in cells.iter_mut().zip(said).zip(&drifts) {
-                for (channel, value) in said.into_iter().enumerate() {
-                    cell[channel].push(value + drift.at(channel, part));
+                for ((channel, value), [rise, wave]) in cell.iter_mut().zip(said).zip(drift) {
+                    channel.push(value + (rise * part + wave * (PI * part).sin()));
                 }
             }
         }
         cells
     }
 
-    fn add_wind(&self, wrench: &mut Wrench, sample: usize, gusts: &GustSamples) {
-        let [drag, lift, moment] = self.wind_load(gusts.u[sample], gusts.w[sample]);
-        wrench.add(Wrench::section(drag, lift, moment));
+    /// Drag, lift (N) and moment (N·m) that the motion excites on the whole model, as the force channels see them.
+    fn excited(&self, sample: usize) -> [f64; 3] {
         let length = self.plan.support.model_length_m;
         let excited = |dof| force_of(self.late, dof).map_or(0.0, |f| length * f[sample]);
-        wrench.add(Wrench::section(
-            excited(Dof::Lateral),
-            excited(Dof::Vertical),
-            excited(Dof::Torsion),
-        ));
-        if let Some(knock) = self
-            .applied
-            .spike
-            .as_ref()
-            .and_then(|s| spike_at(s, sample))
-        {
-            wrench.add(knock);
-        }
+        [Dof::Lateral, Dof::Vertical, Dof::Torsion].map(excited)
     }
 }
 

@@ -68,8 +68,8 @@ fn in_wind_minus_still_air_is_static_and_self_excited_force() {
             .raw
             .runs
             .iter()
-            .zip(&made.truth.records)
-            .zip(&made.truth.disturbances)
+            .zip(&made.records)
+            .zip(&made.disturbances)
         {
             let wind = section_forces(&made.raw.rig, &run.in_wind);
             let still = section_forces(&made.raw.rig, run.still_air.as_ref().unwrap());
@@ -132,7 +132,7 @@ fn noise_is_that_of_the_sum_about_the_centre_of_rotation() {
     let (without, with) = (on_jones(&clean), on_jones(&noisy));
     let length = clean.support.model_length_m;
     for (i, run) in with.raw.runs.iter().enumerate() {
-        let truth = &with.truth.records[i];
+        let truth = &with.records[i];
         for (a, b) in [
             (&run.in_wind, &without.raw.runs[i].in_wind),
             (
@@ -149,7 +149,7 @@ fn noise_is_that_of_the_sum_about_the_centre_of_rotation() {
                 let ratio = rms(&noise) / (length * rms(&truth.force[row]));
                 // 3600 samples: 0.05/√7200 = 6e-4
                 assert!((ratio - 0.05).abs() < 2.5e-3, "{ratio}");
-                assert!((with.truth.disturbances[i].noise[c] / rms(&noise) - 1.0).abs() < 0.05);
+                assert!((with.disturbances[i].noise[c] / rms(&noise) - 1.0).abs() < 0.05);
                 let neighbours: f64 = noise.windows(2).map(|w| w[0] * w[1]).sum();
                 // white: 1/√3600
                 assert!((neighbours / (noise.len() as f64 * rms(&noise).powi(2))).abs() < 0.06);
@@ -203,7 +203,7 @@ fn lag_and_offset_are_those_of_the_plan() {
     let wind = lateness(&lift(&run.in_wind), &lift(&plain.in_wind));
     assert!((wind - 0.0017).abs() < 1e-6, "{wind}");
     // what the truth says is not late
-    assert_eq!(made.truth.records, on_jones(&short()).truth.records);
+    assert_eq!(made.records, on_jones(&short()).records);
 }
 
 #[test]
@@ -259,13 +259,13 @@ fn spike_and_drift_stand_where_the_truth_says() {
         let differing: Vec<usize> = (0..a.len())
             .filter(|k| (a[*k] - b[*k]).abs() > 1e-9)
             .collect();
-        let spike = made.truth.disturbances[i].spike.unwrap();
+        let spike = made.disturbances[i].spike.unwrap();
         // 0.06 s at 200 Hz about the middle of the first segment, 6 s
         assert_eq!((spike.first, spike.samples), (1194, 13));
         assert_eq!(differing, (1194..1207).collect::<Vec<_>>());
         let top = 1200;
         assert!(((a[top] - b[top]) / spike.height[1] - 1.0).abs() < 1e-9);
-        let lift = &made.truth.records[i].force[0][400..2000];
+        let lift = &made.records[i].force[0][400..2000];
         let largest = lift.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         assert!((spike.height[1] / (4.0 * 2.68 * largest) - 1.0).abs() < 1e-12);
         assert_eq!(run.still_air, plain.raw.runs[i].still_air);
@@ -294,8 +294,8 @@ fn the_truth_holds_the_transfer_matrix() {
     let table = embedded::deck("LN21-5200").unwrap();
     let made = plan.from_table(&table, &Dof::TWO).unwrap();
     // two motions, two speeds, eight frequencies, two forces
-    assert_eq!(made.truth.points.len(), 64);
-    for point in &made.truth.points {
+    assert_eq!(made.points.len(), 64);
+    for point in &made.points {
         let samples = table.samples(&Dof::TWO);
         let of_entry = samples
             .iter()
@@ -318,8 +318,8 @@ fn the_truth_holds_the_transfer_matrix() {
     }
     let jones = RationalModel::jones_flat_plate();
     let made = plan.from_model(&jones, "Jones", 0.5).unwrap();
-    assert_eq!(made.truth.points.len(), 64);
-    let p = &made.truth.points[1];
+    assert_eq!(made.points.len(), 64);
+    let p = &made.points[1];
     let k = TAU * 0.25 * 0.5 / 8.17;
     assert!((p.k - k).abs() < 1e-15 && p.run == "Jones-vertical-8.17");
     assert_eq!((p.force, p.motion), (Dof::Torsion, Dof::Vertical));

@@ -1,20 +1,7 @@
 //! The truth behind a virtual campaign.
 
 use crate::section::Dof;
-use crate::wind_tunnel::Record;
 use serde::{Deserialize, Serialize};
-
-/// What processing should find, and what it should take away.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CampaignTruth {
-    /// Motion and self-excited force of each run as in wind, per unit length, without lag, noise or anything else;
-    /// in the order of the runs.
-    pub records: Vec<Record>,
-    /// `G` at every test point.
-    pub points: Vec<TruthPoint>,
-    /// What was applied to each run, in the order of the runs.
-    pub disturbances: Vec<AppliedDisturbances>,
-}
 
 /// One entry of the transfer matrix at one test point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

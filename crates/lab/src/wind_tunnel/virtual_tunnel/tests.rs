@@ -1,10 +1,10 @@
 //! The records against closed forms, an integration in time, and each other.
 
-use super::super::motion::RampedSine;
+use super::super::motion::ramped_sine;
 use super::*;
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{RationalModel, Realizable, Realization};
-use crate::files::derivatives::embedded;
+use crate::files::derivatives::{TABLE_3_2_FREQUENCIES_HZ, embedded};
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -186,12 +186,9 @@ fn integrated(jones: &RationalModel, j: usize, plan: &TunnelPlan, speed: f64) ->
     let motion = |t: f64| {
         let t = t - plan.still_s;
         let index = ((t / plan.segment_s).max(0.0) as usize).min(7);
-        let sine = RampedSine {
-            omega_rad_s: TAU * plan.frequencies_hz[index],
-            duration_s: plan.segment_s,
-            ramp_s: plan.ramp_s,
-        };
-        sine.at(t - index as f64 * plan.segment_s)
+        let omega = TAU * plan.frequencies_hz[index];
+        let from_start = t - index as f64 * plan.segment_s;
+        ramped_sine(from_start, omega, plan.segment_s, plan.ramp_s)
     };
     let rate = |x: &DVector<f64>, t: f64| (&c.a * x + c.b.column(j) * motion(t)[0]) / scale;
     let mut x = DVector::zeros(c.a.nrows());

@@ -50,7 +50,7 @@ fn csv_reads_back_bit_for_bit() {
     assert_eq!(truth.lines().count(), 1 + 2 * 2 * 2);
     let file = RecordFile::open(folder.path().join("truth/Jones-torsion-8.17.csv")).unwrap();
     let record = Record::whole(&file).unwrap();
-    assert_eq!(record.force, made.truth.records[1].force);
+    assert_eq!(record.force, made.records[1].force);
     let applied = std::fs::read_to_string(folder.path().join("disturbances.json")).unwrap();
     assert!(applied.contains("\"force_lag_s\": 0.0017"));
 }

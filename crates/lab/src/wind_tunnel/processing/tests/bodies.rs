@@ -305,7 +305,7 @@ fn drift_is_removed_in_the_axes_of_the_cells() {
 fn without_still_air_the_forces_are_those_of_the_wind() {
     let made = made();
     let mut raw = made.raw.clone();
-    for (run, truth) in raw.runs.iter_mut().zip(&made.truth.records) {
+    for (run, truth) in raw.runs.iter_mut().zip(&made.records) {
         run.still_air = None;
         let length = raw.rig.model_length_m;
         let of = |row: usize, sign: f64| -> Vec<f64> {
@@ -327,7 +327,7 @@ fn without_still_air_the_forces_are_those_of_the_wind() {
     raw.rig.cells[0].turns_with_model = false;
     let processed = done(&raw, &ProcessingOptions::default());
     for force in 0..2 {
-        assert!(worst(&processed, &made.truth.records, force) < 1e-3);
+        assert!(worst(&processed, &made.records, force) < 1e-3);
     }
     assert!(
         processed
