@@ -36,7 +36,6 @@ pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, Spik
 pub use report::{
     DimensionlessFactors, ProcessingReport, RemovedDrift, RunReport, SignalToNoise, StageLevels,
 };
-pub(crate) use run::ProcessedRun;
 pub use run::StageSignals;
 pub use signals::{HarmonicSegment, SectionSignals, index};
 
@@ -100,20 +99,20 @@ pub fn process(
             Ok(run)
         })
         .collect();
-    let runs = all_or_errors::<ProcessedRun>(runs)?;
-    let delta_s = |r: &ProcessedRun| r.report.dimensionless.delta_s;
-    let report = ProcessingReport {
+    let mut report = ProcessingReport {
         section: campaign.section.clone(),
         options: options.clone(),
         lag_s,
         lag_standard_error_s,
-        common_delta_s: runs.iter().map(delta_s).fold(0.0, f64::max),
-        runs: runs.iter().map(|r| r.report.clone()).collect(),
+        common_delta_s: 0.0,
+        runs: Vec::new(),
     };
     let (mut records, mut stages) = (Vec::new(), Vec::new());
-    for run in runs {
-        records.extend(run.records);
-        stages.push(run.stages);
+    for (of_run, run, after_stages) in all_or_errors(runs)? {
+        report.common_delta_s = report.common_delta_s.max(run.dimensionless.delta_s);
+        records.extend(of_run);
+        report.runs.push(run);
+        stages.push(after_stages);
     }
     Ok(Processed {
         records,

@@ -20,59 +20,46 @@ pub struct ClippedStretch {
     pub samples: usize,
 }
 
-/// What was found in a run that can be processed.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct RunCheck {
-    /// Clipped stretches in wind.
-    pub clipped_in_wind: Vec<ClippedStretch>,
-    /// Clipped stretches in still air.
-    pub clipped_still_air: Vec<ClippedStretch>,
-    /// What the user should know.
-    pub warnings: Vec<String>,
-    /// What contradicts what is stated, or another run.
-    pub doubts: Vec<String>,
-}
-
-/// Checks both recordings of a run.
+/// Checks both recordings of a run: clipped stretches in wind and in still air, and what the user should know.
 ///
 /// # Errors
 /// [`Error::Input`] naming run, recording, channel and sample: a speed or density that is not positive, no cells, too few
 /// samples, channels of unequal length, numbers that are not finite, different sampling frequencies, no motion, channels
 /// at their limit for more than a short while.
-pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<RunCheck> {
+pub(super) fn check_run(
+    run: &RawRun,
+    rig: &Rig,
+) -> Result<([Vec<ClippedStretch>; 2], Vec<String>)> {
     let place = |what: &str| format!("run {}, {what}", run.name);
     positive(place("mean wind speed"), run.mean_speed_m_s)?;
     positive(place("air density"), run.air_density_kg_m3)?;
     let wind = &run.in_wind;
     check_recording(&place("in wind"), wind, rig)?;
-    let mut findings = RunCheck {
-        clipped_in_wind: clipped(&run.name, "in wind", wind, rig)?,
-        ..RunCheck::default()
-    };
+    let mut clipped_stretches = [clipped(&run.name, "in wind", wind, rig)?, Vec::new()];
+    let mut warnings = Vec::new();
     if let Some(still) = &run.still_air {
         check_recording(&place("still air"), still, rig)?;
         check_pair(&run.name, wind, still)?;
-        findings.clipped_still_air = clipped(&run.name, "still air", still, rig)?;
+        clipped_stretches[1] = clipped(&run.name, "still air", still, rig)?;
         if wind.sample_count() != still.sample_count() {
-            findings.warnings.push(format!(
+            warnings.push(format!(
                 "{} samples in wind, {} in still air: only the part that both cover is used",
                 wind.sample_count(),
                 still.sample_count()
             ));
         }
     }
-    let clipped = [&findings.clipped_in_wind, &findings.clipped_still_air];
-    let channels = clipped
-        .into_iter()
+    let channels = clipped_stretches
+        .iter()
         .flat_map(|c| c.chunk_by(|a, b| a.channel == b.channel));
-    findings.warnings.extend(channels.map(|stretches| {
+    warnings.extend(channels.map(|stretches| {
         let samples: usize = stretches.iter().map(|c| c.samples).sum();
         format!(
             "{}: {samples} samples from sample {} on stand at the limit of the channel; they are replaced",
             stretches[0].channel, stretches[0].first
         )
     }));
-    Ok(findings)
+    Ok((clipped_stretches, warnings))
 }
 
 /// Checks that the two recordings of a run can be of one motion.

@@ -48,7 +48,11 @@ pub(crate) fn remove_cell_drift(
     } else {
         cells::to_global(recording, rig, rotation_rad)
     };
-    let mut found: Vec<CellDrift> = rig.cells.iter().map(CellDrift::none).collect();
+    let none = |cell: &LoadCell| CellDrift {
+        cell: cell.name.clone(),
+        range: [0.0; CELL_CHANNELS.len()],
+    };
+    let mut found: Vec<CellDrift> = rig.cells.iter().map(none).collect();
     for (i, mut global) in global.into_iter().enumerate() {
         let cell = &rig.cells[i];
         cells::move_moment(&mut global, cell, rotation_rad, 1.0);
@@ -69,15 +73,6 @@ pub(crate) fn remove_cell_drift(
         }
     }
     Ok(found)
-}
-
-impl CellDrift {
-    fn none(cell: &LoadCell) -> Self {
-        Self {
-            cell: cell.name.clone(),
-            range: [0.0; CELL_CHANNELS.len()],
-        }
-    }
 }
 
 /// Where the amplitude changes: a force with a memory is no multiple of motion and rate there, and a polynomial takes the rest of it.

@@ -291,16 +291,10 @@ fn weighted_fit(
         .then_some(([result[0], result[1]], variance))
 }
 
-/// Lag of the force channels of a campaign behind its motion.
-pub(crate) struct CommonLag {
-    pub lag_s: f64,
-    /// `None` where it may be damping as well.
-    pub standard_error_s: Option<f64>,
-}
-
-/// One lag for a campaign: the mean of its runs by inverse variance; `None` when no run tells it. Runs that cannot tell it from
+/// One lag of the force channels behind the motion for a campaign, s, the mean of its runs by inverse variance, and its standard error,
+/// `None` where it may be damping as well; nothing when no run tells it. Runs that cannot tell it from
 /// damping are asked where there are no others.
-pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<CommonLag> {
+pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<(f64, Option<f64>)> {
     let told = |r: &&StillAirInertia| r.tells_lag(sampling_hz);
     let is_known = runs.iter().filter(told).any(|r| r.damping.is_some());
     let telling = || {
@@ -311,8 +305,5 @@ pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<C
     let weight = |r: &StillAirInertia| r.lag_standard_error_s.max(1e-12).powi(-2);
     let sum: f64 = telling().map(weight).sum();
     let mean = telling().map(|r| weight(r) * r.lag_s).sum::<f64>() / sum;
-    (sum > 0.0).then(|| CommonLag {
-        lag_s: mean,
-        standard_error_s: is_known.then(|| sum.sqrt().recip()),
-    })
+    (sum > 0.0).then(|| (mean, is_known.then(|| sum.sqrt().recip())))
 }

@@ -1,7 +1,7 @@
 //! The low-pass: zero phase, and the same on motion and force, so that their ratio stays what it was.
 
 use super::options::LowPassOptions;
-use super::signals::{HarmonicSegment, SectionSignals};
+use super::signals::HarmonicSegment;
 use crate::error::Result;
 use crate::signal::ButterworthLowPass;
 use serde::{Deserialize, Serialize};
@@ -24,25 +24,16 @@ pub struct AppliedLowPass {
     pub kept_at_highest: f64,
 }
 
-/// A filter with what it does.
-#[derive(Debug)]
-pub struct DesignedLowPass {
-    /// One passage.
-    pub filter: ButterworthLowPass,
-    /// What both do.
-    pub applied: AppliedLowPass,
-}
-
-/// The filter for a run; `None` when it is switched off or nothing says where it should cut.
+/// The filter for a run, one passage of it, and what both do; `None` when it is switched off or nothing says where it should cut.
 ///
 /// # Errors
 /// [`crate::Error::Input`] naming `run` for a cut-off at or above half the sampling frequency.
-pub fn design(
+pub(super) fn design(
     run: &str,
     options: &LowPassOptions,
     segments: &[HarmonicSegment],
     sampling_hz: f64,
-) -> Result<Option<DesignedLowPass>> {
+) -> Result<Option<(ButterworthLowPass, AppliedLowPass)>> {
     let highest = segments
         .iter()
         .map(|s| s.segment.frequency_hz)
@@ -59,7 +50,7 @@ pub fn design(
         cutoff_hz,
         kept_at_highest: filter.gain(highest, sampling_hz).powi(2),
     };
-    Ok(Some(DesignedLowPass { filter, applied }))
+    Ok(Some((filter, applied)))
 }
 
 impl AppliedLowPass {
@@ -73,12 +64,4 @@ impl AppliedLowPass {
             )
         })
     }
-}
-
-/// Filters motion and force alike.
-pub(crate) fn apply(signals: &mut SectionSignals, filter: &ButterworthLowPass) -> Result<()> {
-    for channel in signals.motion.iter_mut().chain(&mut signals.force) {
-        *channel = filter.zero_phase(channel)?;
-    }
-    Ok(())
 }

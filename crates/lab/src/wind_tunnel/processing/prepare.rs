@@ -1,7 +1,7 @@
 //! A run before any stage: checked, its test points found, its inertia asked for the lag.
 
 use super::body::StillAirInertia;
-use super::check::{RunCheck, check_run};
+use super::check::{ClippedStretch, check_run};
 use super::lag::{Ratios, still_air_inertia};
 use super::options::ProcessingOptions;
 use super::report::LAG_TURNS;
@@ -23,7 +23,12 @@ pub(super) struct PreparedRun<'a> {
     pub run: &'a RawRun,
     /// Degree of freedom that moves.
     pub dof: Dof,
-    pub findings: RunCheck,
+    /// Clipped stretches in wind and in still air.
+    pub clipped: [Vec<ClippedStretch>; 2],
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// What contradicts what is stated, or another run.
+    pub doubts: Vec<String>,
     /// In samples of the recording in wind.
     pub segments: Vec<HarmonicSegment>,
     /// In samples of the recording in still air; empty without one.
@@ -36,7 +41,7 @@ pub(super) struct PreparedRun<'a> {
 
 impl<'a> PreparedRun<'a> {
     pub(crate) fn new(run: &'a RawRun, rig: &Rig, options: &ProcessingOptions) -> Result<Self> {
-        let findings = check_run(run, rig)?;
+        let (clipped, warnings) = check_run(run, rig)?;
         let width = rig.model_width_m;
         let moving = |r: &RawRecording, what: &str| {
             let place = format!("run {}, {what}", run.name);
@@ -69,7 +74,9 @@ impl<'a> PreparedRun<'a> {
         Ok(Self {
             run,
             dof,
-            findings,
+            clipped,
+            warnings,
+            doubts: Vec::new(),
             segments,
             still_segments,
             ratios,
@@ -116,8 +123,9 @@ impl<'a> PreparedRun<'a> {
 
     /// Clipped stretches of both recordings in samples from the first covered one.
     pub(crate) fn clipped(&self, covered: &Range<usize>, offset: f64) -> Vec<Range<usize>> {
-        let wind = self.findings.clipped_in_wind.iter().map(|c| (c, 0.0));
-        let still = self.findings.clipped_still_air.iter().map(|c| (c, offset));
+        let [wind, still] = &self.clipped;
+        let wind = wind.iter().map(|c| (c, 0.0));
+        let still = still.iter().map(|c| (c, offset));
         let place = |x: f64| (x.max(0.0) as usize).min(covered.len());
         wind.chain(still)
             .map(|(c, late)| {
@@ -144,7 +152,7 @@ pub(super) fn judge_still_air(
             return Ok(());
         };
         let doubt = body::compare(&p.run.name, rig, found, p.run.air_density_kg_m3)?;
-        p.findings.doubts.extend(doubt);
+        p.doubts.extend(doubt);
         Ok(())
     });
     let mut judged: Vec<_> = judged.collect();
@@ -159,14 +167,14 @@ pub(super) fn judge_still_air(
                 hidden.map(|s| format!("{WEIGHT_IS_HIDDEN} ({:.4} kg·m² in all)", s.inertia));
             // the weight of a model that hangs low, or a sign that is reversed
             match hidden.is_some_and(|s| s.inertia < 0.0) {
-                true => first.findings.doubts.extend(said),
-                false => first.findings.warnings.extend(said),
+                true => first.doubts.extend(said),
+                false => first.warnings.extend(said),
             }
         }
         judged.push(doubt.map(|doubt| {
             if let Some((lowest, doubt)) = doubt {
                 let named = runs.iter_mut().filter(|p| p.run.name == lowest);
-                named.for_each(|p| p.findings.doubts.push(doubt.clone()));
+                named.for_each(|p| p.doubts.push(doubt.clone()));
             }
         }));
     }
@@ -182,7 +190,8 @@ pub(super) fn common_lag(
         return (stated, None);
     }
     let inertia: Vec<_> = runs.iter().filter_map(|p| p.still_air.clone()).collect();
-    let Some(found) = lag::common_lag(&inertia, runs[0].run.in_wind.sampling_hz) else {
+    let sampling_hz = runs[0].run.in_wind.sampling_hz;
+    let Some((lag_s, standard_error_s)) = lag::common_lag(&inertia, sampling_hz) else {
         return (0.0, None);
     };
     let unknown =
@@ -194,19 +203,19 @@ pub(super) fn common_lag(
     let unknown = runs.iter_mut().filter(unknown);
     let fastest = unknown.max_by(|a, b| highest_hz(a).total_cmp(&highest_hz(b)));
     // with a standard error the other motion tells the lag, and each run is asked what its own says
-    if let (None, Some(fastest)) = (found.standard_error_s, fastest) {
+    if let (None, Some(fastest)) = (standard_error_s, fastest) {
         let highest = highest_hz(fastest);
-        let turned = 360.0 * highest * found.lag_s;
+        let turned = 360.0 * highest * lag_s;
         let said = format!(
             "the runs of a motion have one frequency, which cannot tell a lag of the force channels from damping: {:.3} ms are taken \
              for lag; were it damping, the lag would be 0 and the forces are turned by {turned:.1}° too much at {highest:.3} Hz (a \
              stated `lag_s`, or another frequency, tells)",
-            1e3 * found.lag_s
+            1e3 * lag_s
         );
         match turned.abs() > LAG_TURNS.0 {
-            true => fastest.findings.doubts.push(said),
-            false => fastest.findings.warnings.push(said),
+            true => fastest.doubts.push(said),
+            false => fastest.warnings.push(said),
         }
     }
-    (found.lag_s, found.standard_error_s)
+    (lag_s, standard_error_s)
 }

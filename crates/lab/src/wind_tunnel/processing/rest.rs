@@ -75,25 +75,12 @@ pub struct RemovedMeans {
     pub at_rest: bool,
 }
 
-/// The samples that means are taken of.
-pub(crate) struct Rest {
-    pub samples: Range<usize>,
-    /// Whether nothing moves there.
-    pub at_rest: bool,
-}
-
-/// The samples before the first segment if they are long enough, or all.
-pub(crate) fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> Rest {
+/// The samples that means are taken of, and whether nothing moves there: those before the first segment if they are long enough, or all.
+pub(super) fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> (Range<usize>, bool) {
     let first = segments.first().map_or(0.0, |s| s.segment.start_s);
-    let at_rest = first >= REST_AT_LEAST_S;
-    let end = if at_rest {
-        (first * signals.sampling_hz) as usize
-    } else {
-        signals.len()
-    };
-    Rest {
-        samples: 0..end,
-        at_rest,
+    match first >= REST_AT_LEAST_S {
+        true => (0..(first * signals.sampling_hz) as usize, true),
+        false => (0..signals.len(), false),
     }
 }
 

@@ -4,7 +4,7 @@ use super::coherent::{Parts, Regressors};
 use super::options::ProcessingOptions;
 use super::prepare::PreparedRun;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
-use super::rest::{CrossTalk, RemovedMeans, Rest, remove_means, rest, still_the_rest};
+use super::rest::{CrossTalk, RemovedMeans, remove_means, rest, still_the_rest};
 use super::signals::{HarmonicSegment, SectionSignals};
 use super::still_air::{Alignment, RemovedInertia};
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
@@ -24,25 +24,15 @@ pub struct StageSignals {
     pub signals: SectionSignals,
 }
 
-/// One run, processed.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ProcessedRun {
-    /// One record, or one per segment when ramps are cut.
-    pub records: Vec<Record>,
-    /// What was done.
-    pub report: RunReport,
-    /// Signals after each stage.
-    pub stages: Vec<StageSignals>,
-}
-
-/// Takes a prepared run through all stages.
+/// Takes a prepared run through all stages: one record, or one per segment when ramps are cut, what was done, and the signals after each
+/// stage.
 pub(super) fn process_run(
     prepared: &PreparedRun<'_>,
     campaign: &RawCampaign,
     dofs: &[Dof],
     lag_s: f64,
     options: &ProcessingOptions,
-) -> Result<ProcessedRun> {
+) -> Result<(Vec<Record>, RunReport, Vec<StageSignals>)> {
     let mut run = RunInProgress::in_step(prepared, &campaign.rig, lag_s, options)?;
     run.remove_means();
     run.subtract_still_air()?;
@@ -57,11 +47,7 @@ pub(super) fn process_run(
         prepared.run,
         options.segments.ramps,
     );
-    Ok(ProcessedRun {
-        records,
-        report: run.report,
-        stages: run.stages,
-    })
+    Ok((records, run.report, run.stages))
 }
 
 /// A run on its way: every stage changes the signals and enters in the report what it did.
@@ -86,11 +72,12 @@ impl<'a> RunInProgress<'a> {
         lag_s: f64,
         options: &'a ProcessingOptions,
     ) -> Result<Self> {
-        let (run, findings) = (prepared.run, &prepared.findings);
+        let run = prepared.run;
         let ready = |recording: &RawRecording, segments: &[HarmonicSegment], what: &str| {
             let mut recording = without_lag(recording, lag_s);
             let motion = still_air::from_rest(&recording.motion[index(prepared.dof)]);
-            let (rotation, degree) = (rotation(&recording), options.drift_degree);
+            let rotation = motion_or_zeros(&recording, Dof::Torsion);
+            let degree = options.drift_degree;
             let drift =
                 drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)
                     .map_err(|e| of_recording(e, &run.name, what))?;
@@ -100,12 +87,12 @@ impl<'a> RunInProgress<'a> {
         let (mut covered, mut alignment, mut still) = (0..wind.sample_count(), None, None);
         if let Some(recording) = &run.still_air {
             let (recording, _) = ready(recording, &prepared.still_segments, "still air")?;
-            let aligned = still_air::align(&run.name, &wind, &recording, prepared.dof)?;
-            covered = aligned.covered;
-            alignment = Some(aligned.alignment);
+            let (aligned, both, found) =
+                still_air::align(&run.name, &wind, &recording, prepared.dof)?;
+            (covered, alignment) = (both, Some(found));
             let within = |x: &[f64]| x[covered.clone()].to_vec();
             wind = wind.map(within);
-            still = Some(aligned.still_air.map(within));
+            still = Some(aligned.map(within));
         }
         let (signals, cells) = on_the_model(&wind, rig);
         let still_air = match still {
@@ -116,7 +103,7 @@ impl<'a> RunInProgress<'a> {
             },
         };
         let segments = prepared.covered_segments(&covered)?;
-        let mut warnings = findings.warnings.clone();
+        let mut warnings = prepared.warnings.clone();
         let pairs = || segments.iter().zip(&prepared.segments);
         if pairs().any(|(used, all)| used.plateau.samples < all.plateau.samples) {
             let Range { start, end } = covered;
@@ -125,14 +112,13 @@ impl<'a> RunInProgress<'a> {
             ));
         }
         let offset = alignment.map_or(0.0, |a: Alignment| a.offset_samples);
-        let clipped = [&findings.clipped_in_wind, &findings.clipped_still_air];
         let report = RunReport {
             run: run.name.clone(),
             dof: prepared.dof,
             sampling_hz: signals.sampling_hz,
             samples: run.in_wind.sample_count(),
             cut: [covered.start, run.in_wind.sample_count() - covered.end],
-            clipped: clipped.into_iter().flatten().cloned().collect(),
+            clipped: prepared.clipped.iter().flatten().cloned().collect(),
             segments,
             still_air: prepared.still_air.clone(),
             lag_corrected_s: lag_s,
@@ -149,7 +135,7 @@ impl<'a> RunInProgress<'a> {
             dimensionless: DimensionlessFactors::new(run, rig),
             levels: Vec::new(),
             warnings,
-            doubts: findings.doubts.clone(),
+            doubts: prepared.doubts.clone(),
         };
         let mut under_way = Self {
             clipped: prepared.clipped(&covered, offset),
@@ -178,7 +164,7 @@ impl<'a> RunInProgress<'a> {
 
     /// Stage 7.
     fn remove_means(&mut self) {
-        let Rest { samples, at_rest } = rest(&self.report.segments, &self.signals);
+        let (samples, at_rest) = rest(&self.report.segments, &self.signals);
         let in_wind = remove_means(&mut self.signals, &samples);
         let still_air = remove_means(&mut self.still_air, &samples);
         let static_wind = std::array::from_fn(|d| in_wind[d] - still_air[d]);
@@ -217,15 +203,18 @@ impl<'a> RunInProgress<'a> {
         let name = &self.prepared.run.name;
         let (segments, rate) = (&self.report.segments, self.signals.sampling_hz);
         let designed = low_pass::design(name, &self.options.low_pass, segments, rate)?;
-        let filter = designed.as_ref().map(|low_pass| &low_pass.filter);
-        let parts = self.clean(filter)?;
+        let (filter, applied) = designed.unzip();
+        let parts = self.clean(filter.as_ref())?;
         let ratio = |run: &Self| noise_ratio(&run.signals, &parts, &run.report.segments);
         let before_low_pass_db = ratio(self);
         if let Some(filter) = filter {
-            low_pass::apply(&mut self.signals, filter)?;
+            let SectionSignals { motion, force, .. } = &mut self.signals;
+            for channel in motion.iter_mut().chain(force) {
+                *channel = filter.zero_phase(channel)?;
+            }
             self.done("low-pass");
         }
-        self.report.low_pass = designed.map(|low_pass| low_pass.applied);
+        self.report.low_pass = applied;
         self.report.signal_to_noise = SignalToNoise {
             before_low_pass_db,
             after_low_pass_db: ratio(self),
@@ -242,7 +231,7 @@ impl<'a> RunInProgress<'a> {
             &self.report.segments,
             degree,
         );
-        let cleaned = spikes::remove_spikes(
+        let (parts, replaced) = spikes::remove_spikes(
             &mut self.signals,
             &regressors,
             filter,
@@ -251,10 +240,10 @@ impl<'a> RunInProgress<'a> {
             &self.clipped,
         )
         .map_err(|e| of_recording(e, &self.prepared.run.name, "in wind"))?;
-        self.report.replaced = cleaned.replaced;
+        self.report.replaced = replaced;
         self.done("spikes replaced");
         let range = std::array::from_fn(|d| {
-            let drift = &cleaned.parts[d].drift;
+            let drift = &parts[d].drift;
             let force = &mut self.signals.force[d];
             force.iter_mut().zip(drift).for_each(|(f, x)| *f -= x);
             let (low, high) = extremes(drift.iter().copied());
@@ -262,7 +251,7 @@ impl<'a> RunInProgress<'a> {
         });
         self.report.drift = RemovedDrift { degree, range };
         self.done("drift removed");
-        Ok(cleaned.parts)
+        Ok(parts)
     }
 
     /// Stage 11.
@@ -295,27 +284,18 @@ fn without_lag(recording: &RawRecording, lag_s: f64) -> RawRecording {
     corrected
 }
 
-/// Rotation of the model at each sample, rad; zero where nobody measured it.
-fn rotation(recording: &RawRecording) -> Vec<f64> {
-    let x = &recording.motion[index(Dof::Torsion)];
-    if x.is_empty() {
-        vec![0.0; recording.sample_count()]
-    } else {
-        x.clone()
+/// A motion of the model at each sample; zero where nobody measured it.
+fn motion_or_zeros(recording: &RawRecording, dof: Dof) -> Vec<f64> {
+    let x = &recording.motion[index(dof)];
+    match x.is_empty() {
+        true => vec![0.0; recording.sample_count()],
+        false => x.clone(),
     }
 }
 
 /// Motion and force on the whole model, and the means of the cells.
 fn on_the_model(recording: &RawRecording, rig: &Rig) -> (SectionSignals, Vec<cells::CellShare>) {
-    let count = recording.sample_count();
-    let motion: [Vec<f64>; 3] = std::array::from_fn(|d| {
-        let x = &recording.motion[d];
-        if x.is_empty() {
-            vec![0.0; count]
-        } else {
-            x.clone()
-        }
-    });
+    let motion = Dof::THREE.map(|d| motion_or_zeros(recording, d));
     let rotation = &motion[index(Dof::Torsion)];
     let global = cells::to_global(recording, rig, rotation);
     let force = cells::sum_about_centre(&global, rig, rotation);

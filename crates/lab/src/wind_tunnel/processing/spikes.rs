@@ -40,15 +40,7 @@ pub struct Replaced {
     pub peak: [f64; 3],
 }
 
-/// What the search left.
-pub(crate) struct Cleaned {
-    /// Parts of each force.
-    pub parts: [Parts; 3],
-    /// What was replaced.
-    pub replaced: Vec<Replaced>,
-}
-
-/// Finds outliers and replaces them in `signals`; `clipped` are known outliers.
+/// Finds outliers and replaces them in `signals`, of which `clipped` are known: the parts of each force, and what was replaced.
 pub(crate) fn remove_spikes(
     signals: &mut SectionSignals,
     regressors: &Regressors,
@@ -56,7 +48,7 @@ pub(crate) fn remove_spikes(
     options: &SpikeOptions,
     width_m: f64,
     clipped: &[Range<usize>],
-) -> Result<Cleaned> {
+) -> Result<([Parts; 3], Vec<Replaced>)> {
     let count = signals.len();
     let guard = (options.guard_s * signals.sampling_hz).round() as usize;
     let edge = filter.map_or(0, ButterworthLowPass::padding);
@@ -95,7 +87,7 @@ pub(crate) fn remove_spikes(
         parts = fit_all(signals, regressors, &reasons)?;
     }
     let replaced = replace(signals, &parts, &reasons);
-    Ok(Cleaned { parts, replaced })
+    Ok((parts, replaced))
 }
 
 fn mark(
@@ -181,26 +173,23 @@ fn replace(
     reasons: &[Option<&'static str>],
 ) -> Vec<Replaced> {
     let mut replaced = Vec::new();
-    let mut at = 0;
-    while at < reasons.len() {
-        let Some(reason) = reasons[at] else {
-            at += 1;
-            continue;
-        };
-        let first = at;
+    let mut end = 0;
+    for stretch in reasons.chunk_by(|a, b| a == b) {
+        let first = end;
+        end += stretch.len();
+        let Some(reason) = stretch[0] else { continue };
         let mut peak = [0.0_f64; 3];
-        while at < reasons.len() && reasons[at] == Some(reason) {
+        for at in first..end {
             for d in 0..Dof::THREE.len() {
                 let instead = parts[d].coherent[at] + parts[d].drift[at];
                 let force = &mut signals.force[d][at];
                 peak[d] = peak[d].max((*force - instead).abs());
                 *force = instead;
             }
-            at += 1;
         }
         replaced.push(Replaced {
             first,
-            samples: at - first,
+            samples: stretch.len(),
             start_s: first as f64 / signals.sampling_hz,
             reason: reason.to_owned(),
             peak,

@@ -38,17 +38,8 @@ pub struct Alignment {
     pub amplitude_ratio: f64,
 }
 
-/// A still-air recording in step with the one in wind.
-pub(crate) struct Aligned {
-    /// The recording, as long as the one in wind.
-    pub still_air: RawRecording,
-    /// Samples of the recording in wind that both cover.
-    pub covered: Range<usize>,
-    /// What was found.
-    pub alignment: Alignment,
-}
-
-/// Moves `still_air` into step with `in_wind` by their motions in `dof`.
+/// Moves `still_air` into step with `in_wind` by their motions in `dof`: the recording, as long as the one in wind, samples of that which
+/// both cover, and what was found.
 ///
 /// # Errors
 /// [`Error::Input`] when the motions are not alike, naming `run`.
@@ -57,7 +48,7 @@ pub(crate) fn align(
     in_wind: &RawRecording,
     still_air: &RawRecording,
     dof: Dof,
-) -> Result<Aligned> {
+) -> Result<(RawRecording, Range<usize>, Alignment)> {
     let of = |r: &RawRecording| from_rest(&r.motion[super::index(dof)]);
     let (reference, compared) = (of(in_wind), of(still_air));
     let place = || format!("run {run}, still air, {} motion", dof.name());
@@ -85,17 +76,14 @@ pub(crate) fn align(
         format_args!("the motion of the recording in wind, correlation at least {ALIKE}"),
         format_args!("correlation {correlation:.3}"),
     )?;
-    Ok(Aligned {
-        still_air: moved_still,
-        covered,
-        alignment: Alignment {
-            offset_s: found.samples / in_wind.sampling_hz,
-            offset_samples: found.samples,
-            parabolic_samples: found.parabolic_samples,
-            correlation,
-            amplitude_ratio: dot(&a, &b) / dot(&b, &b),
-        },
-    })
+    let alignment = Alignment {
+        offset_s: found.samples / in_wind.sampling_hz,
+        offset_samples: found.samples,
+        parabolic_samples: found.parabolic_samples,
+        correlation,
+        amplitude_ratio: dot(&a, &b) / dot(&b, &b),
+    };
+    Ok((moved_still, covered, alignment))
 }
 
 /// The signal earlier by `samples`, cut or held to `count` samples.
