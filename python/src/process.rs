@@ -8,9 +8,9 @@ use crate::work::Work;
 use aerodeck::aerodynamics::derivatives::TableHeader;
 use aerodeck::aerodynamics::derivatives::notation::Convention;
 use aerodeck::identification::derivatives::{DerivativeOptions, identify_derivatives};
-use aerodeck::plausibility::of_table;
+use aerodeck::plausibility::{FindingSeverity, of_table};
 use aerodeck::wind_tunnel::RecordSource;
-use aerodeck::wind_tunnel::campaign::{LoadedCampaign, read_campaign};
+use aerodeck::wind_tunnel::campaign::Campaign;
 use aerodeck::wind_tunnel::processing::{self, ProcessingOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -89,11 +89,10 @@ pub fn process(
     };
     let work = Work::new(progress);
     let done = work.run(py, || {
-        let LoadedCampaign {
-            campaign: raw,
-            warnings,
-            mut doubts,
-        } = read_campaign(&campaign)?;
+        let reading = Campaign::read(&campaign)?.load()?;
+        let warnings = reading.words(FindingSeverity::Note);
+        let mut doubts = reading.words(FindingSeverity::Doubt);
+        let raw = reading.raw;
         let runs = raw.runs.len();
         let processed = processing::process(&raw, &options, &|done| work.tell(done, runs))?;
         let sources: Vec<&dyn RecordSource> = processed

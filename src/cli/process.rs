@@ -20,7 +20,7 @@ use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
 use crate::json;
-use crate::plausibility::{Finding, FindingKind, of_table, sentences};
+use crate::plausibility::{Finding, FindingKind, FindingSeverity, of_table, sentences};
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
     sections_page,
@@ -28,7 +28,7 @@ use crate::report::{
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
 use crate::units::group_of;
-use crate::wind_tunnel::campaign::read_campaign;
+use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, ProcessingReport, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource};
 use std::path::{Path, PathBuf};
@@ -82,15 +82,18 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
-    let mut read = progress.during("reading the campaign", || read_campaign(&args.campaign))?;
-    let raw = read.campaign;
+    let reading = progress.during("reading the campaign", || {
+        Campaign::read(&args.campaign)?.load()
+    })?;
+    let mut notes = reading.words(FindingSeverity::Note);
+    let mut doubts = reading.words(FindingSeverity::Doubt);
+    let raw = reading.raw;
     let total = raw.runs.len();
     let processed = progress.counting("processing", |on_done| {
         process(&raw, &options, &|done| on_done(done, total))
     });
     let processed = processed.map_err(|e| e.in_file(&args.campaign))?;
-    read.doubts.extend(processed.report.doubts());
-    let (mut notes, mut doubts) = (read.warnings, read.doubts);
+    doubts.extend(processed.report.doubts());
     notes.extend(processed.report.warnings());
     let derivatives = progress.during("derivatives", || derivatives(&processed, &mut notes))?;
     doubts.extend(

@@ -19,8 +19,7 @@ mod write;
 pub use channel_map::{SAME_RATE, sampling_by_time};
 pub use file::Campaign;
 pub use load::CampaignReading;
-pub use load::RecordingSummary;
-pub use load::{LoadedCampaign, read_campaign};
+pub use recording::RecordingSummary;
 pub use write::FileFormat;
 pub use write::write_virtual_campaign;
 

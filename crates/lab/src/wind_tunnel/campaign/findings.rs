@@ -10,7 +10,7 @@ use crate::plausibility::{
 };
 use crate::section::Dof;
 use crate::signal::{clipped_stretches, extremes, largest_magnitude, mean};
-use crate::wind_tunnel::{RawRecording, RawRun};
+use crate::wind_tunnel::RawRun;
 use serde::Serialize;
 use std::fmt;
 
@@ -203,8 +203,10 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
                 say(Note, what);
             }
         }
-        let of_motion = motion_hints(&run.name, name, recording, motion, width_m);
-        of_motion.into_iter().for_each(|f| say(f.severity, f.what));
+        for (dof, moves) in Dof::THREE.into_iter().zip(&recording.motion) {
+            let odd = odd_amplitude(name, dof, moves, motion.contains(&dof), width_m);
+            odd.into_iter().for_each(|what| say(Doubt, what));
+        }
     }
     Ok(found)
 }
@@ -272,42 +274,35 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
         .collect()
 }
 
-/// Hints about the motions of a recording, of which `stated` are meant to move.
-fn motion_hints(
-    run: &str,
+/// What is odd about the amplitude of a motion in the recording `name`, which is meant to be there where it `is_stated`.
+fn odd_amplitude(
     name: &str,
-    recording: &RawRecording,
-    stated: &[Dof],
+    dof: Dof,
+    motion: &[f64],
+    is_stated: bool,
     width_m: f64,
-) -> Vec<RunFinding> {
-    let mut found = Vec::new();
-    for (dof, motion) in Dof::THREE.into_iter().zip(&recording.motion) {
-        let (low, high) = extremes(motion.iter().copied());
-        let amplitude = 0.5 * (high - low);
-        let size = amplitude * dof.motion_scale(width_m);
-        let (unit, large, small, (least, most)) = match dof {
-            Dof::Torsion => (
-                "rad",
-                "degrees for radians",
-                "radians for degrees",
-                AMPLITUDES[1],
-            ),
-            _ => (
-                "m",
-                "millimetres for metres",
-                "metres for millimetres",
-                AMPLITUDES[0],
-            ),
-        };
-        let is_small = size > 0.0 && size < least && stated.contains(&dof);
-        if size > most || is_small {
-            let units = if is_small { small } else { large };
-            let what = format!(
-                "{name}: {} motion of {amplitude:.3e} {unit} in amplitude on a model of {width_m} m: {units}?",
-                dof.name()
-            );
-            found.push(RunFinding::of_run(run, FindingSeverity::Doubt, what));
-        }
-    }
-    found
+) -> Option<String> {
+    let (low, high) = extremes(motion.iter().copied());
+    let amplitude = 0.5 * (high - low);
+    let size = amplitude * dof.motion_scale(width_m);
+    let (unit, [large, small], (least, most)) = match dof {
+        Dof::Torsion => (
+            "rad",
+            ["degrees for radians", "radians for degrees"],
+            AMPLITUDES[1],
+        ),
+        _ => (
+            "m",
+            ["millimetres for metres", "metres for millimetres"],
+            AMPLITUDES[0],
+        ),
+    };
+    let is_small = size > 0.0 && size < least && is_stated;
+    let units = if is_small { small } else { large };
+    (size > most || is_small).then(|| {
+        format!(
+            "{name}: {} motion of {amplitude:.3e} {unit} in amplitude on a model of {width_m} m: {units}?",
+            dof.name()
+        )
+    })
 }

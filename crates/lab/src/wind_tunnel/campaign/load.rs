@@ -5,7 +5,7 @@ use super::channel_map::ChannelMap;
 use super::channel_map::SAME_RATE;
 use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
-use super::recording::LoadedRecording;
+use super::recording::RecordingSummary;
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, ensure, positive};
 use crate::plausibility::FindingSeverity;
@@ -43,43 +43,6 @@ pub struct RunSummary {
     pub still_air: Option<RecordingSummary>,
 }
 
-/// What a recording is.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RecordingSummary {
-    /// File and group.
-    pub source: String,
-    /// Number of samples.
-    pub samples: usize,
-    /// Sampling frequency, Hz.
-    pub sampling_hz: f64,
-    /// Channels that were taken, as the file names them.
-    pub channels: Vec<String>,
-}
-
-/// A campaign with what is odd about it.
-#[derive(Debug, Clone)]
-pub struct LoadedCampaign {
-    /// All recordings.
-    pub campaign: RawCampaign,
-    /// What is odd about them, in words.
-    pub warnings: Vec<String>,
-    /// What they contradict of what is stated.
-    pub doubts: Vec<String>,
-}
-
-/// All recordings that a campaign file names.
-///
-/// # Errors
-/// [`Error::Io`](crate::error::Error::Io); [`Error::Input`](crate::error::Error::Input) naming file, run, recording, channel and sample.
-pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<LoadedCampaign> {
-    let reading = Campaign::read(path)?.load()?;
-    Ok(LoadedCampaign {
-        warnings: reading.words(FindingSeverity::Note),
-        doubts: reading.words(FindingSeverity::Doubt),
-        campaign: reading.raw,
-    })
-}
-
 impl CampaignReading {
     /// The findings of this weight in words.
     pub fn words(&self, severity: FindingSeverity) -> Vec<String> {
@@ -98,15 +61,11 @@ impl Campaign {
     pub fn load(&self) -> Result<CampaignReading> {
         let map = self.channel_map();
         let rig = self.rig()?;
-        let read = self
-            .runs
-            .par_iter()
-            .map(|run| {
-                let path = self.directory.join(run.in_wind.file());
-                self.load_run(&rig, &map, run).map_err(|e| e.in_file(path))
-            })
-            .collect();
-        let read = all_or_errors(read)?;
+        let load = |run: &RunBlock| {
+            let path = self.directory.join(run.in_wind.file());
+            self.load_run(&rig, &map, run).map_err(|e| e.in_file(path))
+        };
+        let read = all_or_errors(self.runs.par_iter().map(load).collect())?;
         let mut reading = CampaignReading {
             raw: RawCampaign {
                 section: self.section.name.clone(),
@@ -119,12 +78,12 @@ impl Campaign {
             runs: Vec::new(),
             findings: file_hints(self),
         };
-        each_once(read.iter().map(|(run, ..)| run))?;
         for (run, summary, findings) in read {
             reading.raw.runs.push(run);
             reading.runs.push(summary);
             reading.findings.extend(findings);
         }
+        each_once(&reading.raw.runs)?;
         Ok(reading)
     }
 
@@ -135,47 +94,40 @@ impl Campaign {
         run: &RunBlock,
     ) -> Result<(RawRun, RunSummary, Vec<RunFinding>)> {
         let place = format!("run `{}`", run.name);
-        let wind = LoadedRecording::new(self, rig, map, run, &run.in_wind, "in wind")?;
-        let still = match &run.still_air {
-            Some(file) => Some(LoadedRecording::new(
-                self,
-                rig,
-                map,
-                run,
-                file,
-                "still air",
-            )?),
-            None => None,
-        };
-        let wind_hz = wind.recording.sampling_hz;
-        let still_hz = still.as_ref().map_or(wind_hz, |s| s.recording.sampling_hz);
+        let mut read = Vec::new();
+        let (wind, in_wind, air) =
+            self.read_recording(rig, map, run, &run.in_wind, "in wind", &mut read)?;
+        let still = run.still_air.as_ref();
+        let still =
+            still.map(|file| self.read_recording(rig, map, run, file, "still air", &mut read));
+        let (still, in_still_air) = still
+            .transpose()?
+            .map(|(s, summary, _)| (s, summary))
+            .unzip();
+        let wind_hz = wind.sampling_hz;
+        let still_hz = still
+            .as_ref()
+            .map_or(wind_hz, |s: &RawRecording| s.sampling_hz);
         ensure(
             (wind_hz / still_hz - 1.0).abs() <= SAME_RATE,
             place,
             "one sampling frequency in wind and in still air",
             format_args!("{wind_hz} Hz and {still_hz} Hz"),
         )?;
-        let mean_speed_m_s = mean_speed(run, &wind.recording)?;
-        let air_density_kg_m3 = self.density(map, run, &wind)?;
+        let mean_speed_m_s = mean_speed(run, &wind)?;
+        let air_density_kg_m3 = self.density(map, run, air)?;
         let summary = RunSummary {
             name: run.name.clone(),
             motion: run.motion.clone(),
             mean_speed_m_s,
             air_density_kg_m3,
-            in_wind: summary(&wind.recording, wind.channels),
-            still_air: still
-                .as_ref()
-                .map(|s| summary(&s.recording, s.channels.clone())),
+            in_wind,
+            still_air: in_still_air,
         };
-        let mut read = wind.findings;
-        let still_air = still.map(|s| {
-            read.extend(s.findings);
-            s.recording
-        });
         let raw = RawRun {
             name: run.name.clone(),
-            in_wind: wind.recording,
-            still_air,
+            in_wind: wind,
+            still_air: still,
             mean_speed_m_s,
             air_density_kg_m3,
         };
@@ -185,13 +137,7 @@ impl Campaign {
     }
 
     /// The air: what the run states, else what its file in wind holds, else what holds for all.
-    fn density(&self, map: &ChannelMap, run: &RunBlock, wind: &LoadedRecording) -> Result<f64> {
-        let by_file = Air {
-            density_kg_m3: wind.air[0],
-            temperature_c: wind.air[1],
-            pressure_pa: wind.air[2],
-            relative_humidity: None,
-        };
+    fn density(&self, map: &ChannelMap, run: &RunBlock, by_file: Air) -> Result<f64> {
         let common = Air::over(by_file, self.air);
         let has_map = map.air_density.is_some() || map.temperature.is_some();
         let place = if run.air.is_empty() && !has_map {
@@ -204,10 +150,9 @@ impl Campaign {
 }
 
 /// Refuses samples that stand twice, under whatever name: noise never repeats.
-fn each_once<'a>(runs: impl Iterator<Item = &'a RawRun>) -> Result<()> {
-    let runs: Vec<&RawRun> = runs.collect();
+fn each_once(runs: &[RawRun]) -> Result<()> {
     for (i, run) in runs.iter().enumerate() {
-        let same = |other: &&&RawRun| {
+        let same = |other: &&RawRun| {
             let (a, b) = (&other.in_wind, &run.in_wind);
             a.motion == b.motion && a.cells == b.cells
         };
@@ -219,15 +164,6 @@ fn each_once<'a>(runs: impl Iterator<Item = &'a RawRun>) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn summary(recording: &RawRecording, channels: Vec<String>) -> RecordingSummary {
-    RecordingSummary {
-        source: recording.source.clone(),
-        samples: recording.sample_count(),
-        sampling_hz: recording.sampling_hz,
-        channels,
-    }
 }
 
 fn mean_speed(run: &RunBlock, wind: &RawRecording) -> Result<f64> {

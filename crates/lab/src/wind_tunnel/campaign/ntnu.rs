@@ -101,16 +101,16 @@ pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
                 .with_f64_data(&motion(recording))
                 .with_shape(&[n, 3])
                 .set_attr("units", units(&["m", "m", "rad"]));
-            for (name, about) in [
-                ("forces_global_coord", About::Cell),
-                ("forces_global_coord_center", About::Centre),
+            for (name, about_centre) in [
+                ("forces_global_coord", false),
+                ("forces_global_coord_center", true),
             ] {
                 let dataset = group.create_dataset(name);
                 dataset
-                    .with_f64_data(&forces(recording, rig, about))
+                    .with_f64_data(&forces(recording, rig, about_centre))
                     .with_shape(&[n, 6 * CELLS as u64])
                     .set_attr("units", units(&of_cells));
-                if about == About::Centre {
+                if about_centre {
                     dataset.set_attr("eccentricity", AttrValue::F64Array(eccentricity(rig)));
                 }
             }
@@ -138,17 +138,9 @@ fn motion(recording: &RawRecording) -> Vec<f64> {
         .collect()
 }
 
-/// Where the moments are taken about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum About {
-    /// The place of the cell at rest.
-    Cell,
-    /// The axis of rotation; along the span, as in the laboratory's own import, the place of the cell.
-    Centre,
-}
-
-/// Rows of the six channels of each cell in fixed axes.
-fn forces(recording: &RawRecording, rig: &Rig, about: About) -> Vec<f64> {
+/// Rows of the six channels of each cell in fixed axes. Moments are those about the place of the cell at rest, or `about_centre` of
+/// rotation; along the span, as in the laboratory's own import, always about the place of the cell.
+fn forces(recording: &RawRecording, rig: &Rig, about_centre: bool) -> Vec<f64> {
     let to_lab = Matrix3::from_fn(|i, j| AXES[j][i]);
     let mut rows = Vec::with_capacity(recording.sample_count() * 6 * CELLS);
     for i in 0..recording.sample_count() {
@@ -161,9 +153,9 @@ fn forces(recording: &RawRecording, rig: &Rig, about: About) -> Vec<f64> {
             let [fx, fy, fz, mx, my, mz] = channels;
             let force = to_global * Vector3::new(fx[i], fy[i], fz[i]);
             let [x, y, z] = cell.position_m;
-            let origin = match about {
-                About::Cell => Vector3::new(x, y, z),
-                About::Centre => Vector3::new(0.0, 0.0, z),
+            let origin = match about_centre {
+                true => Vector3::new(0.0, 0.0, z),
+                false => Vector3::new(x, y, z),
             };
             let arm = cell.position_at(theta) - origin;
             let moment = to_global * Vector3::new(mx[i], my[i], mz[i]) + arm.cross(&force);

@@ -1,5 +1,6 @@
 //! One recording: channels taken out of a file by the map, in SI units, of one length, all of it numbers.
 
+use super::air::Air;
 use super::channel::{CellChannel, ChannelRef};
 use super::channel_map::{
     ChannelMap, SAME_RATE, cell_quantity, described, sampling_by_time, sampling_of,
@@ -12,29 +13,36 @@ use crate::files::lab::ChannelSet;
 use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
+use serde::Serialize;
 
-/// One recording with what was found on the way.
-pub(super) struct LoadedRecording {
-    pub recording: RawRecording,
+/// What a recording is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordingSummary {
+    /// File and group.
+    pub source: String,
+    /// Number of samples.
+    pub samples: usize,
+    /// Sampling frequency, Hz.
+    pub sampling_hz: f64,
+    /// Channels that were taken, as the file names them.
     pub channels: Vec<String>,
-    /// Density, temperature, pressure as the file has them.
-    pub air: [Option<f64>; 3],
-    pub findings: Vec<RunFinding>,
 }
 
-impl LoadedRecording {
-    /// Reads the file, or the group of it.
-    pub(crate) fn new(
-        campaign: &Campaign,
+impl Campaign {
+    /// Reads a file, or a group of it: the recording, what it is, and the air that the file in wind states. What is odd is added to
+    /// `findings`.
+    pub(super) fn read_recording(
+        &self,
         rig: &Rig,
         map: &ChannelMap,
         run: &RunBlock,
         file: &FileRef,
         what: &'static str,
-    ) -> Result<Self> {
-        let path = campaign.directory.join(file.file());
+        findings: &mut Vec<RunFinding>,
+    ) -> Result<(RawRecording, RecordingSummary, Air)> {
+        let path = self.directory.join(file.file());
         let place = format!("run `{}`, {what}", run.name);
-        let read = || {
+        let mut read = || {
             let set = ChannelSet::read(&path, file.group()).map_err(|e| below(&place, e))?;
             let mut taking = ChannelExtraction {
                 map,
@@ -43,15 +51,17 @@ impl LoadedRecording {
                 of: (&run.name, what),
                 first: None,
                 channels: Vec::new(),
-                findings: Vec::new(),
+                findings,
             };
-            let recording = taking.recording(campaign, rig, file.to_string())?;
-            Ok(Self {
-                recording,
-                air: taking.air(what == "in wind")?,
+            let recording = taking.recording(self, rig, file.to_string())?;
+            let air = taking.air(what == "in wind")?;
+            let summary = RecordingSummary {
+                source: recording.source.clone(),
+                samples: recording.sample_count(),
+                sampling_hz: recording.sampling_hz,
                 channels: taking.channels,
-                findings: taking.findings,
-            })
+            };
+            Ok((recording, summary, air))
         };
         read().map_err(|e: Error| e.in_file(&path))
     }
@@ -75,7 +85,7 @@ struct ChannelExtraction<'a> {
     /// Length and description of the first channel; all others must have it.
     first: Option<(usize, String)>,
     channels: Vec<String>,
-    findings: Vec<RunFinding>,
+    findings: &'a mut Vec<RunFinding>,
 }
 
 impl ChannelExtraction<'_> {
@@ -250,24 +260,24 @@ impl ChannelExtraction<'_> {
         }
     }
 
-    fn air(&self, is_needed: bool) -> Result<[Option<f64>; 3]> {
+    /// What the file states of the air, where that is needed.
+    fn air(&self, is_needed: bool) -> Result<Air> {
+        let number = |key: &str, channel: &Option<ChannelRef>, quantity| {
+            let channel = channel.as_ref().filter(|_| is_needed);
+            let number = channel.map(|c| c.number(key, quantity, self.set));
+            number.transpose().map_err(|e| below(self.place, e))
+        };
         let map = self.map;
-        let mut air = [None; 3];
-        let channels = [
-            ("channels.air_density", &map.air_density, Quantity::Density),
-            (
+        let air = Air {
+            density_kg_m3: number("channels.air_density", &map.air_density, Quantity::Density)?,
+            temperature_c: number(
                 "channels.temperature",
                 &map.temperature,
                 Quantity::Temperature,
-            ),
-            ("channels.pressure", &map.pressure, Quantity::Pressure),
-        ];
-        for (value, (key, channel, quantity)) in air.iter_mut().zip(channels) {
-            if let Some(channel) = channel.as_ref().filter(|_| is_needed) {
-                let number = channel.number(key, quantity, self.set);
-                *value = Some(number.map_err(|e| below(self.place, e))?);
-            }
-        }
+            )?,
+            pressure_pa: number("channels.pressure", &map.pressure, Quantity::Pressure)?,
+            relative_humidity: None,
+        };
         Ok(air)
     }
 }

@@ -106,7 +106,6 @@ fn write_truth(
 fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
     let raw = &made.raw;
     let first = raw.runs.first();
-    let density = first.map(|r| r.air_density_kg_m3);
     let run = |(run, truth): (&RawRun, &crate::wind_tunnel::Record)| {
         let file = |what: &str| match format {
             FileFormat::Csv => FileRef::File(PathBuf::from(format!(
@@ -127,6 +126,20 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
             air: Air::default(),
         }
     };
+    let (air, layout, rig, channels) = match format {
+        FileFormat::Csv => {
+            let air = Air {
+                density_kg_m3: first.map(|r| r.air_density_kg_m3),
+                ..Air::default()
+            };
+            (air, None, raw.rig.clone(), csv_map(&raw.rig))
+        }
+        // the air is in the file
+        FileFormat::Ntnu => {
+            let (air, layout) = (Air::default(), Some(RecordingLayout::Ntnu));
+            (air, layout, ntnu::rig(&raw.rig), ChannelMap::default())
+        }
+    };
     Campaign {
         schema: CAMPAIGN_SCHEMA,
         section: SectionBlock {
@@ -136,26 +149,13 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
             width_m: None,
             length_m: None,
         },
-        air: match format {
-            FileFormat::Csv => Air {
-                density_kg_m3: density,
-                ..Air::default()
-            },
-            // in the file
-            FileFormat::Ntnu => Air::default(),
-        },
+        air,
         recording: RecordingBlock {
             sampling_hz: first.map(|r| r.in_wind.sampling_hz),
-            layout: (format == FileFormat::Ntnu).then_some(RecordingLayout::Ntnu),
+            layout,
         },
-        rig: match format {
-            FileFormat::Csv => Some(raw.rig.clone()),
-            FileFormat::Ntnu => Some(ntnu::rig(&raw.rig)),
-        },
-        channels: match format {
-            FileFormat::Csv => csv_map(&raw.rig),
-            FileFormat::Ntnu => ChannelMap::default(),
-        },
+        rig: Some(rig),
+        channels,
         runs: raw.runs.iter().zip(&made.records).map(run).collect(),
         directory: PathBuf::new(),
     }
