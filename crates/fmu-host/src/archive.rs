@@ -51,7 +51,7 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
         }
         make_folders(folder.path(), inside.parent().unwrap_or(Path::new("")))?;
         let stated = entry.size();
-        left = write(&mut entry, &name, &target, Room { stated, left })?;
+        left = write(&mut entry, &name, &target, stated, left)?;
         names.push(name.replace('\\', "/"));
     }
     Ok((folder, names, findings))
@@ -112,17 +112,9 @@ fn method(name: &str, method: CompressionMethod, findings: &mut FmuFindings) {
     }
 }
 
-/// How many bytes an entry may have.
-struct Room {
-    /// By its own statement.
-    stated: u64,
-    /// By the limit of the archive.
-    left: u64,
-}
-
-/// Returns how many bytes are left for other entries.
-fn write(entry: &mut impl Read, name: &str, target: &Path, room: Room) -> Result<u64> {
-    let Room { stated, left } = room;
+/// Writes an entry that is `stated` to have so many bytes, where `left` remain of the limit of the archive; returns how many are left for
+/// other entries.
+fn write(entry: &mut impl Read, name: &str, target: &Path, stated: u64, left: u64) -> Result<u64> {
     if stated > left {
         let expected = format!("at most {MAX_BYTES} bytes unpacked in all");
         return Err(refused(name, expected, "more"));

@@ -127,7 +127,6 @@ fn point(speed_m_s: f64, growth: &Growth) -> GrowthPoint {
 /// One instance, run again and again.
 struct Run {
     slave: Slave,
-    fresh: bool,
     step: f64,
     /// References of displacement and rate, for each motion in turn.
     references: Vec<u32>,
@@ -164,7 +163,6 @@ impl Run {
         }
         Ok(Self {
             slave: fmu.instantiate("growth")?,
-            fresh: true,
             step,
             references,
             release,
@@ -176,10 +174,9 @@ impl Run {
 
     /// Growth at one wind speed, from windows that lie later and later until two agree.
     fn growth(&mut self, speed: f64) -> Result<At> {
-        if !self.fresh {
+        if self.steps > 0 {
             self.slave.reset()?;
         }
-        self.fresh = false;
         let mut values = self.release.clone();
         values.push(("wind_speed".to_owned(), Value::Real(speed)));
         let endless = Times {

@@ -77,15 +77,6 @@ const fn native() -> (&'static [&'static str], &'static str) {
     }
 }
 
-/// What a binary says of itself.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Versions {
-    /// Platform of its types, `default`; FMI 3.0 knows no other.
-    pub types_platform: String,
-    /// Version of the standard, `2.0` or one that begins with `3.`.
-    pub standard: String,
-}
-
 /// An unpacked FMU.
 pub struct Fmu {
     path: PathBuf,
@@ -249,22 +240,20 @@ impl Fmu {
         Slave::new(&self.load()?, name, guid, false)
     }
 
-    /// What the binary says of itself.
+    /// What the binary says of itself: the platform of its types, `default` (FMI 3.0 knows no other), and the version of the standard,
+    /// `2.0` or one that begins with `3.`.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no binary for this machine or it does not load.
-    pub fn versions(&self) -> Result<Versions> {
+    pub(crate) fn versions(&self) -> Result<(String, String)> {
         let loaded = self.load()?;
-        let functions = &loaded.binary.functions;
         // SAFETY: both take nothing and answer with a constant C string
         Ok(unsafe {
-            Versions {
-                types_platform: match &functions.own {
-                    OwnFunctions::Two(own) => log::text((own.get_types_platform)()),
-                    OwnFunctions::Three(_) => "default".to_owned(),
-                },
-                standard: log::text((functions.shared.get_version)()),
-            }
+            let platform = match &loaded.binary.own {
+                OwnFunctions::Two(own) => log::text((own.get_types_platform)()),
+                OwnFunctions::Three(_) => "default".to_owned(),
+            };
+            (platform, log::text((loaded.binary.shared.get_version)()))
         })
     }
 

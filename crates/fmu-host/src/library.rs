@@ -143,7 +143,6 @@ functions! { Fmi3Functions,
 }
 
 /// Functions that differ between the versions.
-#[derive(Clone)]
 pub(super) enum OwnFunctions {
     Two(Fmi2Functions),
     Three(Box<Fmi3Functions>),
@@ -156,30 +155,27 @@ pub(super) type Getter =
 pub(super) type Setter =
     unsafe extern "C" fn(Component, *const ValueReference, usize, *const c_void, usize) -> Int;
 
-/// All functions of a binary.
-#[derive(Clone)]
-pub(super) struct Functions {
+/// A loaded binary with all its functions.
+pub(super) struct Binary {
     pub shared: SharedFunctions,
     pub own: OwnFunctions,
     /// Of FMI 3.0, in the order of [`NUMERIC`].
     pub getters: Vec<Getter>,
     pub setters: Vec<Setter>,
+    // unloaded after the last use of the functions
+    _library: Library,
 }
 
-impl Functions {
-    fn load(library: &Library, is_fmi3: bool) -> Result<Self> {
-        let shared = SharedFunctions::load(library, is_fmi3)?;
+impl Binary {
+    /// Loads the library and looks all functions up.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with what the loader said, or naming the function that is missing.
+    pub(super) fn load(path: &Path, is_fmi3: bool) -> Result<Self> {
+        let library = open(path)?;
+        let shared = SharedFunctions::load(&library, is_fmi3)?;
         let (mut getters, mut setters) = (Vec::new(), Vec::new());
-        if !is_fmi3 {
-            let own = OwnFunctions::Two(Fmi2Functions::load(library, false)?);
-            return Ok(Self {
-                shared,
-                own,
-                getters,
-                setters,
-            });
-        }
-        for (name, _) in NUMERIC {
+        for (name, _) in NUMERIC.iter().filter(|_| is_fmi3) {
             let missing = |symbol: &str, e: libloading::Error| {
                 Error::input(symbol, "this function in the binary", e.to_string())
             };
@@ -189,12 +185,16 @@ impl Functions {
             // SAFETY: as above
             setters.push(*unsafe { library.get(set.as_bytes()) }.map_err(|e| missing(&set, e))?);
         }
-        let own = OwnFunctions::Three(Box::new(Fmi3Functions::load(library, true)?));
+        let own = match is_fmi3 {
+            false => OwnFunctions::Two(Fmi2Functions::load(&library, false)?),
+            true => OwnFunctions::Three(Box::new(Fmi3Functions::load(&library, true)?)),
+        };
         Ok(Self {
             shared,
             own,
             getters,
             setters,
+            _library: library,
         })
     }
 }
@@ -211,28 +211,6 @@ fn symbols(is_fmi3: bool) -> Vec<String> {
         names.extend([format!("fmi3Get{name}"), format!("fmi3Set{name}")]);
     }
     names
-}
-
-/// A loaded binary with its functions.
-pub(super) struct Binary {
-    pub functions: Functions,
-    // unloaded after the last use of the functions
-    _library: Library,
-}
-
-impl Binary {
-    /// Loads the library and looks all functions up.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with what the loader said, or naming the function that is missing.
-    pub(super) fn load(path: &Path, is_fmi3: bool) -> Result<Self> {
-        let library = open(path)?;
-        let functions = Functions::load(&library, is_fmi3)?;
-        Ok(Self {
-            functions,
-            _library: library,
-        })
-    }
 }
 
 /// Adds a finding for each function that is missing; loading problems come as one finding.

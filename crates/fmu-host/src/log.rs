@@ -3,7 +3,7 @@
 use super::library::{Int, LoggerPointer, Text};
 use super::status::Status;
 use std::ffi::{CStr, c_void};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
 
 /// Messages kept; a chatty FMU must not fill the memory.
 const KEPT: usize = 1000;
@@ -26,23 +26,11 @@ impl std::fmt::Display for LogMessage {
 }
 
 /// The book of one instance. FMUs may log from any thread.
-#[derive(Debug, Default)]
-pub(super) struct LogBook(Mutex<Vec<LogMessage>>);
+pub(super) type LogBook = Mutex<Vec<LogMessage>>;
 
-impl LogBook {
-    pub(super) fn messages(&self) -> Vec<LogMessage> {
-        self.lock().clone()
-    }
-
-    pub(super) fn take(&self) -> Vec<LogMessage> {
-        std::mem::take(&mut *self.lock())
-    }
-
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<LogMessage>> {
-        self.0
-            .lock()
-            .unwrap_or_else(|poisoned| poisoned.into_inner())
-    }
+/// The messages of a book.
+pub(super) fn messages_of(book: &LogBook) -> MutexGuard<'_, Vec<LogMessage>> {
+    book.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 /// The logger as the FMU calls it.
@@ -77,14 +65,16 @@ pub(super) unsafe extern "C" fn collect_plain(
     let Some(book) = (unsafe { environment.cast::<LogBook>().as_ref() }) else {
         return;
     };
-    let mut messages = book.lock();
+    let mut messages = messages_of(book);
     if messages.len() < KEPT {
         messages.push(LogMessage {
             status: Status::from_code(status),
             // SAFETY: C strings or null, as the standard has it
             category: unsafe { text(category) },
-            // SAFETY: a C string, or null, that lives through the call
-            text: plain(&unsafe { text(message) }),
+            // SAFETY: a C string, or null, that lives through the call; doubled are the signs of the format (`%%`) and of references (`##`)
+            text: unsafe { text(message) }
+                .replace("%%", "%")
+                .replace("##", "#"),
         });
     }
 }
@@ -101,11 +91,6 @@ pub(super) unsafe fn text(pointer: Text) -> String {
     unsafe { CStr::from_ptr(pointer) }
         .to_string_lossy()
         .into_owned()
-}
-
-/// The message without the doubled signs of the format (`%%`) and of variable references (`##`).
-fn plain(format: &str) -> String {
-    format.replace("%%", "%").replace("##", "#")
 }
 
 #[cfg(test)]
@@ -135,10 +120,10 @@ mod tests {
                 std::ptr::null(),
             );
         }
-        let messages = book.take();
+        let messages = std::mem::take(&mut *messages_of(&book));
         assert_eq!(messages[0].status, Status::Error);
         assert_eq!(messages[0].to_string(), "[logStatusError] 100 % of %s, #");
         assert_eq!(messages[1].to_string(), "[] ");
-        assert_eq!(book.messages(), []);
+        assert_eq!(*messages_of(&book), []);
     }
 }

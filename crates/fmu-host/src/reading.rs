@@ -25,7 +25,7 @@ const ROOT_CHILDREN: [&str; 9] = [
 
 /// Reads the description, with findings for everything that could not be read as the standard has it.
 pub(super) fn read(root: &Element) -> (ModelDescription, FmuFindings) {
-    let mut r = Reading(FmuFindings::default());
+    let mut r = FmuFindings::default();
     r.root(root);
     let below = |outer: &str, inner: &'static str| -> Vec<&Element> {
         root.child(outer)
@@ -81,26 +81,23 @@ pub(super) fn read(root: &Element) -> (ModelDescription, FmuFindings) {
         initial_unknowns,
         elements: Vec::new(),
     };
-    (description, r.0)
+    (description, r)
 }
 
-struct Reading(FmuFindings);
-
-impl Reading {
+impl FmuFindings {
     fn root(&mut self, root: &Element) {
         if root.name != "fmiModelDescription" {
-            self.0
-                .error(place(root), "<fmiModelDescription>", tag(&root.name));
+            self.error(place(root), "<fmiModelDescription>", tag(&root.name));
         }
         let mut last = 0;
         for child in &root.children {
             match ROOT_CHILDREN.iter().position(|n| *n == child.name) {
-                None => self.0.error(
+                None => self.error(
                     place(child),
                     "an element of the FMI 2.0 schema",
                     tag(&child.name),
                 ),
-                Some(position) if position < last => self.0.error(
+                Some(position) if position < last => self.error(
                     place(child),
                     format!("{} before {}", tag(&child.name), tag(ROOT_CHILDREN[last])),
                     "it after that",
@@ -110,7 +107,7 @@ impl Reading {
         }
         for needed in ["ModelVariables", "ModelStructure"] {
             if root.child(needed).is_none() {
-                self.0.error(FILE, tag(needed), "none");
+                self.error(FILE, tag(needed), "none");
             }
         }
         for list in [
@@ -120,16 +117,14 @@ impl Reading {
             "ModelVariables",
         ] {
             if let Some(empty) = root.child(list).filter(|l| l.children.is_empty()) {
-                self.0
-                    .error(place(empty), "at least one entry", "an empty list");
+                self.error(place(empty), "at least one entry", "an empty list");
             }
         }
     }
 
     fn required(&mut self, e: &Element, name: &str) -> String {
         text(e, name).unwrap_or_else(|| {
-            self.0
-                .error(place(e), format!("the attribute `{name}`"), "none");
+            self.error(place(e), format!("the attribute `{name}`"), "none");
             String::new()
         })
     }
@@ -143,7 +138,7 @@ impl Reading {
     }
 
     fn not_a(&mut self, e: &Element, name: &str, what: &str, found: &str) {
-        self.0.error(
+        self.error(
             format!("{}, attribute `{name}`", place(e)),
             what,
             format!("`{found}`"),
@@ -240,7 +235,7 @@ impl Reading {
     fn simple_type(&mut self, e: &Element) -> Option<SimpleType> {
         let name = self.required(e, "name");
         let Some((kind, child)) = typed_child(e) else {
-            self.0.error(
+            self.error(
                 place(e),
                 "one of Real, Integer, Boolean, String, Enumeration",
                 "none",
@@ -268,7 +263,7 @@ impl Reading {
 
     fn variable(&mut self, e: &Element) -> ScalarVariable {
         let (kind, child) = typed_child(e).unwrap_or_else(|| {
-            self.0.error(
+            self.error(
                 place(e),
                 "one of Real, Integer, Boolean, String, Enumeration",
                 "none",

@@ -11,7 +11,6 @@ use super::trials::check_starts;
 use crate::error::{Error, Place, Result, ensure};
 use crate::xml::Element;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
 
 /// The folder of the files in the archive.
 pub const LS_REF: &str = "extra/org.fmi-standard.fmi-ls-ref";
@@ -50,10 +49,9 @@ pub struct ReplayedRun {
 /// [`Error::Input`] for an archive without experiments, for start values that no instance has, and for files of it that cannot be read;
 /// those of [`Fmu::instantiate`] and of a run.
 pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
-    let manifest = fmu.folder().join(LS_REF_MANIFEST);
     let none =
         || Error::input("archive", "reference runs (FMI-LS-REF)", "none").in_file(fmu.path());
-    if !manifest.is_file() {
+    if !fmu.folder().join(LS_REF_MANIFEST).is_file() {
         return Err(none());
     }
     let mut runs = Vec::new();
@@ -61,12 +59,12 @@ pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
         let role = e.attribute("role").unwrap_or_default();
         role == "experiment" || role.starts_with("experiment/")
     };
-    let root = element(&manifest, LS_REF_MANIFEST)?;
+    let root = element(fmu, "fmi-ls-manifest.xml", LS_REF_MANIFEST)?;
     for related in root.children_named("Related").filter(of_experiments) {
-        let file = Referred::new(fmu, related)?;
-        let experiments = element(&file.path, &file.name)?;
+        let file = referred(fmu, related)?;
+        let experiments = element(fmu, file, file)?;
         for experiment in experiments.children_named("Experiment") {
-            runs.push(repeated(fmu, &file.name, experiment)?);
+            runs.push(repeated(fmu, file, experiment)?);
         }
     }
     if runs.is_empty() {
@@ -79,66 +77,49 @@ pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
     Ok(runs)
 }
 
-/// A file of the archive that another one names.
-struct Referred {
-    name: String,
-    path: PathBuf,
-}
-
-impl Referred {
-    /// What the attribute `source` says, relative to the folder of the files.
-    fn new(fmu: &Fmu, element: &Element) -> Result<Self> {
-        let name = element.attribute("source").unwrap_or_default().to_owned();
-        let inside = !name.is_empty() && !name.contains([':', '\\']) && !name.starts_with('/');
-        let path = fmu.folder().join(LS_REF).join(&name);
-        // the archive itself may be named in another spelling
-        let within = || {
-            Some(
-                path.canonicalize()
-                    .ok()?
-                    .starts_with(fmu.folder().canonicalize().ok()?),
-            )
-        };
-        if inside && within() == Some(true) {
-            return Ok(Self { name, path });
-        }
-        let place = format!("{LS_REF}, line {}, {}", element.line, element.name);
-        Err(Error::input(
-            place,
-            "`source`, a file of the archive",
-            format!("`{name}`"),
-        ))
+/// The file of the archive that the attribute `source` names, relative to the folder of the files.
+fn referred<'e>(fmu: &Fmu, element: &'e Element) -> Result<&'e str> {
+    let name = element.attribute("source").unwrap_or_default();
+    let inside = !name.is_empty() && !name.contains([':', '\\']) && !name.starts_with('/');
+    let path = fmu.folder().join(LS_REF).join(name);
+    // the archive itself may be named in another spelling
+    let within = || {
+        let folder = fmu.folder().canonicalize().ok()?;
+        Some(path.canonicalize().ok()?.starts_with(folder))
+    };
+    if inside && within() == Some(true) {
+        return Ok(name);
     }
+    let place = format!("{LS_REF}, line {}, {}", element.line, element.name);
+    let found = format!("`{name}`");
+    Err(Error::input(
+        place,
+        "`source`, a file of the archive",
+        found,
+    ))
 }
 
-fn text_of(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|e| Error::io(path, e))
+/// The text of a file in the folder of the files.
+fn text_of(fmu: &Fmu, name: &str) -> Result<String> {
+    let path = fmu.folder().join(LS_REF).join(name);
+    std::fs::read_to_string(&path).map_err(|e| Error::io(path, e))
 }
 
-fn element(path: &Path, name: &str) -> Result<Element> {
-    Element::parse(&text_of(path)?).map_err(|e| e.in_file(name))
+fn element(fmu: &Fmu, name: &str, shown: &str) -> Result<Element> {
+    Element::parse(&text_of(fmu, name)?).map_err(|e| e.in_file(shown))
 }
 
 fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> {
-    let read = |name: &str| -> Result<Option<Referred>> {
-        experiment
-            .child(name)
-            .map(|e| Referred::new(fmu, e))
-            .transpose()
+    let read = |name: &str| {
+        let child = experiment.child(name);
+        child.map(|e| referred(fmu, e)).transpose()
     };
-    let expected = match read("References")? {
-        Some(of) => table(&of)?,
-        None => {
-            return Err(Error::input(
-                file,
-                "<References> of each experiment",
-                "none",
-            ));
-        }
-    };
-    let stimuli = read("Stimuli")?.map(|of| table(&of)).transpose()?;
+    let references = read("References")?
+        .ok_or_else(|| Error::input(file, "<References> of each experiment", "none"))?;
+    let expected = table(fmu, references)?;
+    let stimuli = read("Stimuli")?.map(|of| table(fmu, of)).transpose()?;
     let values = match read("Parameters")? {
-        Some(of) => parameters(&element(&of.path, &of.name)?).map_err(|e| e.in_file(&of.name))?,
+        Some(of) => parameters(&element(fmu, of, of)?).map_err(|e| e.in_file(of))?,
         None => Vec::new(),
     };
     let times = times(fmu, experiment)?;
@@ -202,12 +183,11 @@ fn parameters(root: &Element) -> Result<Vec<(String, Value)>> {
 }
 
 /// A CSV of numbers: names in quotes or without, the time first.
-fn table(of: &Referred) -> Result<ValueTable> {
-    let text = text_of(&of.path)?;
+fn table(fmu: &Fmu, name: &str) -> Result<ValueTable> {
+    let text = text_of(fmu, name)?;
     let mut lines = text.lines().enumerate();
     let refused = |line: usize, expected: &str, found: &str| {
-        Error::input(Place::line(line + 1), expected, format!("`{found}`"))
-            .in_file(of.name.as_str())
+        Error::input(Place::line(line + 1), expected, format!("`{found}`")).in_file(name)
     };
     let head = lines.next().map_or("", |(_, head)| head);
     let names = split(head);

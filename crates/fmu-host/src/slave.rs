@@ -7,12 +7,12 @@ mod values;
 
 pub use states::FmuState;
 
-use super::description::{ModelDescription, ScalarVariable, Value, VariableType};
+use super::description::{ModelDescription, ScalarVariable};
 use super::library::{
-    Binary, CallbackFunctions, Component, Fmi2Functions, Functions, Int, OwnFunctions,
-    SharedFunctions, Text, spelt,
+    Binary, CallbackFunctions, Component, Fmi2Functions, Int, OwnFunctions, SharedFunctions, Text,
+    spelt,
 };
-use super::log::{LogBook, LogMessage, collect_plain, logger};
+use super::log::{LogBook, LogMessage, collect_plain, logger, messages_of};
 use super::status::Status;
 use crate::error::{Error, Result};
 use late_calls::LateCalls;
@@ -42,8 +42,8 @@ struct FmuComponent {
 }
 
 impl FmuComponent {
-    fn functions(&self) -> &Functions {
-        &self.loaded.binary.functions
+    fn functions(&self) -> &Binary {
+        &self.loaded.binary
     }
 }
 
@@ -83,13 +83,13 @@ impl Slave {
             step_finished: None,
             environment: std::ptr::from_ref(&*log).cast_mut().cast::<c_void>(),
         });
-        let functions = &loaded.binary.functions;
+        let functions = &loaded.binary;
         let texts = [c_name.as_ptr(), c_guid.as_ptr(), c_resources.as_ptr()];
         let component = instantiated(functions, texts, &callbacks, logging);
         if component.is_null() {
             return Err(Error::Numerical(with_log(
                 format!("`{name}` was not instantiated"),
-                &log.messages(),
+                &messages_of(&log),
             )));
         }
         Ok(Self {
@@ -111,20 +111,20 @@ impl Slave {
 
     /// Messages logged so far.
     pub fn log(&self) -> Vec<LogMessage> {
-        self.core.log.messages()
+        messages_of(&self.core.log).clone()
     }
 
     /// Messages logged so far, which are then forgotten.
     pub(crate) fn take_log(&self) -> Vec<LogMessage> {
-        self.core.log.take()
+        std::mem::take(&mut *messages_of(&self.core.log))
     }
 
-    fn functions(&self) -> &Functions {
+    fn functions(&self) -> &Binary {
         self.core.functions()
     }
 
     /// Turns an answer into a status; calls after a fatal one are refused here.
-    fn status(&self, call: impl FnOnce(&Functions, Component) -> Int) -> Status {
+    fn status(&self, call: impl FnOnce(&Binary, Component) -> Int) -> Status {
         if self.core.fatal.get() {
             return Status::Fatal;
         }
@@ -177,7 +177,7 @@ impl Slave {
         let name = self.name_of(suffix);
         Error::Numerical(with_log(
             format!("{name} answered {status:?}"),
-            &self.core.log.messages(),
+            &messages_of(&self.core.log),
         ))
     }
 
@@ -192,7 +192,7 @@ impl Slave {
         tolerance: Option<f64>,
     ) -> Result<()> {
         if self.model_description().is_fmi3() {
-            self.late.experiment(start_s, stop_s, tolerance);
+            self.late.experiment = (start_s, stop_s, tolerance);
             return Ok(());
         }
         // SAFETY: plain values; so for every call below, with slices of the stated length
@@ -234,22 +234,17 @@ impl Slave {
     /// # Errors
     /// [`Error::Numerical`] with status and log when the answer is an error.
     pub fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Status> {
-        let status = self.try_step(time_s, step_s);
+        let status = match &self.functions().own {
+            // SAFETY: the component lives; plain values
+            OwnFunctions::Two(own) => {
+                self.status(|_, c| unsafe { (own.do_step)(c, time_s, step_s, 1) })
+            }
+            OwnFunctions::Three(own) => self.step_of_three(own, time_s, step_s),
+        };
         if status.is_good() || status == Status::Discard {
             Ok(status)
         } else {
             Err(self.failed("DoStep", status))
-        }
-    }
-
-    /// As [`Slave::do_step`], whatever the answer.
-    pub(crate) fn try_step(&mut self, time_s: f64, step_s: f64) -> Status {
-        match &self.functions().own {
-            OwnFunctions::Two(own) => {
-                // SAFETY: the component lives; plain values
-                self.status(|_, c| unsafe { (own.do_step)(c, time_s, step_s, 1) })
-            }
-            OwnFunctions::Three(own) => self.step_of_three(own, time_s, step_s),
         }
     }
 
@@ -266,59 +261,11 @@ impl Slave {
         self.late = LateCalls::new(self.model_description());
         Ok(())
     }
-
-    /// Value of the variable of that name, whatever its type.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a name that is not there.
-    pub fn get(&self, name: &str) -> Result<Value> {
-        let (kind, reference) = self.lookup(name)?;
-        self.get_by_reference(kind, reference)
-    }
-
-    pub(super) fn get_by_reference(&self, kind: VariableType, reference: u32) -> Result<Value> {
-        let one = &[reference];
-        Ok(match kind {
-            VariableType::Real => Value::Real(self.get_real(one)?[0]),
-            VariableType::Integer | VariableType::Enumeration => {
-                Value::Integer(self.get_integer(one)?[0])
-            }
-            VariableType::Boolean => Value::Boolean(self.get_boolean(one)?[0]),
-            VariableType::String => Value::String(self.get_string(one)?.swap_remove(0)),
-        })
-    }
-
-    /// Sets the variable of that name; a whole number also sets a Real.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a name that is not there or a value of another type.
-    pub fn set(&mut self, name: &str, value: &Value) -> Result<()> {
-        let (kind, reference) = self.lookup(name)?;
-        let one = &[reference];
-        match (kind, value) {
-            (VariableType::Real, Value::Real(v)) => self.set_real(one, &[*v]),
-            (VariableType::Real, Value::Integer(v)) => self.set_real(one, &[f64::from(*v)]),
-            (VariableType::Integer | VariableType::Enumeration, Value::Integer(v)) => {
-                self.set_integer(one, &[*v])
-            }
-            (VariableType::Boolean, Value::Boolean(v)) => self.set_boolean(one, &[*v]),
-            (VariableType::String, Value::String(v)) => self.set_string(one, &[v]),
-            _ => Err(Error::input(
-                format!("variable `{name}`"),
-                format!("a value of type {kind:?}"),
-                format!("`{value}`"),
-            )),
-        }
-    }
-
-    fn lookup(&self, name: &str) -> Result<(VariableType, u32)> {
-        find(self.model_description(), name).map(|v| (v.kind, v.value_reference))
-    }
 }
 
 /// A new component, or null; `texts` are name, fingerprint and place of the resources.
 fn instantiated(
-    functions: &Functions,
+    functions: &Binary,
     [name, guid, resources]: [Text; 3],
     callbacks: &CallbackFunctions,
     logging: bool,

@@ -5,7 +5,7 @@ use super::findings::{FmuFindings, Trial};
 use super::simulation::{Simulation, Times, ValueTable, recorded, run as step_through, start};
 use super::slave::Slave;
 use super::status::Status;
-use super::{Fmu, LogMessage, Versions};
+use super::{Fmu, LogMessage};
 use crate::error::{Error, Result};
 
 /// Most communication steps of a trial.
@@ -92,10 +92,7 @@ fn wrong_guid(fmu: &Fmu, findings: &mut FmuFindings) {
 }
 
 fn versions(fmu: &Fmu) -> Result<String> {
-    let Versions {
-        types_platform: platform,
-        standard: version,
-    } = fmu.versions()?;
+    let (platform, version) = fmu.versions()?;
     let expected = match fmu.description.is_fmi3() {
         false => version == "2.0",
         true => version.starts_with("3."),
@@ -375,7 +372,7 @@ fn output_derivatives(plan: &Plan<'_>) -> Result<String> {
         .filter(|(_, kind, _)| *kind == VariableType::Real)
         .map(|(.., r)| *r)
         .collect();
-    let derivatives = slave.output_derivatives(&references, &vec![1; references.len()])?;
+    let derivatives = slave.output_derivatives(&references)?;
     match derivatives.iter().position(|v| !v.is_finite()) {
         None => Ok(format!(
             "{} outputs, highest order {}",

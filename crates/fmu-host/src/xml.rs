@@ -93,11 +93,15 @@ impl Element {
             return Err(malformed(line, &forbidden(c)));
         }
         let mut reader = Reader::from_str(text);
-        let mut lines = LineCounter::new(text);
+        // positions only grow
+        let (mut line, mut position) = (1, 0);
         let mut open: Vec<Element> = Vec::new();
         loop {
             let event = reader.read_event();
-            let line = lines.at(reader.buffer_position());
+            let end = usize::try_from(reader.buffer_position()).unwrap_or(text.len());
+            let passed = text.as_bytes().get(position..end).unwrap_or_default();
+            line += passed.iter().filter(|b| **b == b'\n').count();
+            position = end.max(position);
             let closed = match event.map_err(|e| malformed(line, &e))? {
                 Event::Start(tag) => {
                     if open.len() == MAX_DEPTH {
@@ -177,33 +181,6 @@ fn forbidden(c: char) -> String {
 
 fn malformed(line: usize, found: &dyn std::fmt::Display) -> Error {
     Error::input(Place::line(line), "well-formed XML", found.to_string())
-}
-
-/// Line numbers of positions that only grow.
-struct LineCounter<'a> {
-    text: &'a [u8],
-    position: usize,
-    line: usize,
-}
-
-impl<'a> LineCounter<'a> {
-    fn new(text: &'a str) -> Self {
-        Self {
-            text: text.as_bytes(),
-            position: 0,
-            line: 1,
-        }
-    }
-
-    fn at(&mut self, position: u64) -> usize {
-        let end = usize::try_from(position)
-            .unwrap_or(usize::MAX)
-            .min(self.text.len());
-        let passed = self.text.get(self.position..end).unwrap_or_default();
-        self.line += passed.iter().filter(|b| **b == b'\n').count();
-        self.position = end.max(self.position);
-        self.line
-    }
 }
 
 #[cfg(test)]

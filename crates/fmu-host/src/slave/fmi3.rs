@@ -10,13 +10,6 @@ use crate::log::text;
 use crate::reading_fmi3::NUMERIC;
 use crate::status::Status;
 
-/// An instance of FMI 3.0.
-#[derive(Clone, Copy)]
-pub(super) struct Fmi3Calls<'a> {
-    slave: &'a Slave,
-    own: &'a Fmi3Functions,
-}
-
 /// Arrays that hold some elements, as one call reads them.
 struct WholeArrays {
     references: Vec<u32>,
@@ -27,10 +20,11 @@ struct WholeArrays {
 }
 
 impl Slave {
-    pub(super) fn three(&self) -> Option<Fmi3Calls<'_>> {
+    /// The functions of an instance of FMI 3.0.
+    pub(super) fn three(&self) -> Option<&Fmi3Functions> {
         match &self.functions().own {
             OwnFunctions::Two(_) => None,
-            OwnFunctions::Three(own) => Some(Fmi3Calls { slave: self, own }),
+            OwnFunctions::Three(own) => Some(own),
         }
     }
 
@@ -58,7 +52,7 @@ impl Slave {
             for place in places {
                 let all = first(*place)..first(*place) + element(*place).size;
                 let whole: Vec<u32> = all.clone().map(|p| p as u32).collect();
-                if let Some(now) = self.three().and_then(|t| t.numbers(&whole).ok()) {
+                if let Ok(now) = self.numbers(&whole) {
                     self.late.kept[all].copy_from_slice(&now);
                 }
             }
@@ -74,17 +68,13 @@ impl Slave {
             }
             done = from;
             let now = &self.late.kept[from..from + element(*place).size];
-            if let Some(three) = self.three() {
-                three.set_array(element(*place), now)?;
-            }
+            self.set_array(element(*place), now)?;
         }
         Ok(())
     }
-}
 
-impl Fmi3Calls<'_> {
     fn element(&self, place: u32) -> Result<ArrayElement> {
-        let all = &self.slave.core.loaded.description.elements;
+        let all = &self.core.loaded.description.elements;
         all.get(place as usize).copied().ok_or_else(|| {
             let expected = format!("a place below {}", all.len());
             Error::input("variable", expected, place.to_string())
@@ -130,9 +120,9 @@ impl Fmi3Calls<'_> {
             let own: Vec<u32> = chosen.iter().map(|i| places[*i]).collect();
             let whole = self.whole(&own)?;
             let mut bytes = vec![0_u64; whole.count];
-            let get = self.slave.functions().getters[function];
+            let get = self.functions().getters[function];
             // SAFETY: the component lives; eight bytes are enough for every type
-            let status = self.slave.status(|_, c| unsafe {
+            let status = self.status(|_, c| unsafe {
                 let to = bytes.as_mut_ptr().cast();
                 get(
                     c,
@@ -142,7 +132,7 @@ impl Fmi3Calls<'_> {
                     whole.count,
                 )
             });
-            self.slave.answered(&format!("Get{name}"), status)?;
+            self.answered(&format!("Get{name}"), status)?;
             let numbers = read_numbers(function, &bytes);
             for (at, place) in chosen.iter().zip(&whole.places) {
                 values[*at] = numbers[*place];
@@ -156,9 +146,9 @@ impl Fmi3Calls<'_> {
             return Err(Error::input("variable", "a number", "a string"));
         };
         let bytes = written_numbers(function, values);
-        let set = self.slave.functions().setters[function];
+        let set = self.functions().setters[function];
         // SAFETY: the component lives, and the array has the length that is passed
-        let status = self.slave.status(|_, c| unsafe {
+        let status = self.status(|_, c| unsafe {
             set(
                 c,
                 &element.reference,
@@ -167,52 +157,34 @@ impl Fmi3Calls<'_> {
                 values.len(),
             )
         });
-        self.slave
-            .answered(&format!("Set{}", NUMERIC[function].0), status)
+        self.answered(&format!("Set{}", NUMERIC[function].0), status)
     }
 
-    pub(super) fn texts(&self, places: &[u32]) -> Result<Vec<String>> {
-        let whole = self.whole(places)?;
+    /// A string.
+    pub(super) fn text_at(&self, own: &Fmi3Functions, place: u32) -> Result<String> {
+        let whole = self.whole(&[place])?;
         let mut values: Vec<Text> = vec![std::ptr::null(); whole.count];
         // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.slave.status(|_, c| unsafe {
-            let count = whole.references.len();
-            (self.own.get_string)(
-                c,
-                whole.references.as_ptr(),
-                count,
-                values.as_mut_ptr(),
-                whole.count,
-            )
+        let status = self.status(|_, c| unsafe {
+            let (references, to) = (whole.references.as_ptr(), values.as_mut_ptr());
+            (own.get_string)(c, references, whole.references.len(), to, whole.count)
         });
-        self.slave.answered("GetString", status)?;
-        // SAFETY: strings of the FMU, copied before the next call, which may free them
-        let copied = whole.places.iter().map(|p| unsafe { text(values[*p]) });
-        Ok(copied.collect())
+        self.answered("GetString", status)?;
+        // SAFETY: a string of the FMU, copied before the next call, which may free it
+        Ok(unsafe { text(values[whole.places[0]]) })
     }
 
-    /// Strings that are no elements of arrays.
-    pub(super) fn set_texts(&self, places: &[u32], values: &[Text]) -> Result<()> {
-        let references: Result<Vec<u32>> = places
-            .iter()
-            .map(|p| Ok(self.element(*p)?.reference))
-            .collect();
-        let references = references?;
+    /// Sets a string that is no element of an array.
+    pub(super) fn set_text(&self, own: &Fmi3Functions, place: u32, value: Text) -> Result<()> {
+        let reference = self.element(place)?.reference;
         // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.slave.status(|_, c| unsafe {
-            (self.own.set_string)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_ptr(),
-                values.len(),
-            )
-        });
-        self.slave.answered("SetString", status)
+        let status = self.status(|_, c| unsafe { (own.set_string)(c, &reference, 1, &value, 1) });
+        self.answered("SetString", status)
     }
 
-    pub(super) fn directional_derivative(
+    pub(super) fn derivative_of_three(
         &self,
+        own: &Fmi3Functions,
         unknowns: &[u32],
         knowns: &[u32],
         seed: &[f64],
@@ -224,8 +196,8 @@ impl Fmi3Calls<'_> {
         }
         let mut values = vec![0.0; of.count];
         // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.slave.status(|_, c| unsafe {
-            (self.own.get_directional_derivative)(
+        let status = self.status(|_, c| unsafe {
+            (own.get_directional_derivative)(
                 c,
                 of.references.as_ptr(),
                 of.references.len(),
@@ -237,18 +209,21 @@ impl Fmi3Calls<'_> {
                 of.count,
             )
         });
-        self.slave.answered("GetDirectionalDerivative", status)?;
+        self.answered("GetDirectionalDerivative", status)?;
         Ok(of.places.iter().map(|p| values[*p]).collect())
     }
 
-    pub(super) fn output_derivatives(&self, places: &[u32], orders: &[i32]) -> Result<Vec<f64>> {
+    pub(super) fn output_derivatives_of_three(
+        &self,
+        own: &Fmi3Functions,
+        places: &[u32],
+    ) -> Result<Vec<f64>> {
         let whole = self.whole(places)?;
-        let order = orders.first().copied().unwrap_or(1);
-        let orders = vec![order; whole.references.len()];
+        let orders = vec![1; whole.references.len()];
         let mut values = vec![0.0; whole.count];
         // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.slave.status(|_, c| unsafe {
-            (self.own.get_output_derivatives)(
+        let status = self.status(|_, c| unsafe {
+            (own.get_output_derivatives)(
                 c,
                 whole.references.as_ptr(),
                 whole.references.len(),
@@ -257,7 +232,7 @@ impl Fmi3Calls<'_> {
                 whole.count,
             )
         });
-        self.slave.answered("GetOutputDerivatives", status)?;
+        self.answered("GetOutputDerivatives", status)?;
         Ok(whole.places.iter().map(|p| values[*p]).collect())
     }
 }

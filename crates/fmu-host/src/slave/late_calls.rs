@@ -7,9 +7,8 @@ use crate::library::{Component, Fmi3Functions, Int};
 pub(super) struct LateCalls {
     /// What each number was set to last, at first its start value: an element is set along with its whole array.
     pub(super) kept: Vec<f64>,
-    start_s: f64,
-    stop_s: Option<f64>,
-    tolerance: Option<f64>,
+    /// Start and stop, s, and tolerance.
+    pub(super) experiment: (f64, Option<f64>, Option<f64>),
     /// Whether the initialisation has begun, so that all numbers can be read.
     pub(super) begun: bool,
 }
@@ -24,28 +23,22 @@ impl LateCalls {
         };
         Self {
             kept: (0..description.elements.len()).map(start).collect(),
-            start_s: 0.0,
-            stop_s: None,
-            tolerance: None,
+            experiment: (0.0, None, None),
             begun: false,
         }
     }
 
-    pub(super) fn experiment(&mut self, start_s: f64, stop_s: Option<f64>, tolerance: Option<f64>) {
-        (self.start_s, self.stop_s, self.tolerance) = (start_s, stop_s, tolerance);
-    }
-
     pub(super) fn enter_initialization(&self, own: &Fmi3Functions, component: Component) -> Int {
         let stated = |number: Option<f64>| (u8::from(number.is_some()), number.unwrap_or(0.0));
-        let ((with_tolerance, tolerance), (with_stop, stop)) =
-            (stated(self.tolerance), stated(self.stop_s));
+        let (start_s, stop_s, tolerance) = self.experiment;
+        let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop_s));
         // SAFETY: the component lives; plain values
         unsafe {
             (own.enter_initialization_mode)(
                 component,
                 with_tolerance,
                 tolerance,
-                self.start_s,
+                start_s,
                 with_stop,
                 stop,
             )

@@ -1,8 +1,9 @@
 //! Values and derivatives of variables by value reference.
 
-use super::Slave;
+use super::{Slave, find};
+use crate::description::{Value, VariableType};
 use crate::error::{Error, Result};
-use crate::library::{Component, Fmi2Functions, Int, Text, ValueReference};
+use crate::library::{Component, Fmi2Functions, Int, ValueReference};
 use crate::log::text;
 use std::ffi::CString;
 
@@ -56,44 +57,52 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
-        if let Some(three) = self.three() {
-            values.copy_from_slice(&three.numbers(references)?);
+        if self.three().is_some() {
+            values.copy_from_slice(&self.numbers(references)?);
             return Ok(());
         }
         self.read("GetReal", references, values, |f| f.get_real)
     }
 
-    /// `fmi2GetInteger`.
-    pub(crate) fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
-        if let Some(three) = self.three() {
-            let numbers = three.numbers(references)?;
-            return Ok(numbers.into_iter().map(|v| v as i32).collect());
-        }
-        let mut values = vec![0; references.len()];
-        self.read("GetInteger", references, &mut values, |f| f.get_integer)?;
-        Ok(values)
+    /// Value of the variable of that name, whatever its type.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that is not there.
+    pub fn get(&self, name: &str) -> Result<Value> {
+        let v = find(self.model_description(), name)?;
+        self.get_by_reference(v.kind, v.value_reference)
     }
 
-    /// `fmi2GetBoolean`.
-    pub(crate) fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
-        if let Some(three) = self.three() {
-            let numbers = three.numbers(references)?;
-            return Ok(numbers.into_iter().map(|v| v != 0.0).collect());
-        }
-        let mut values: Vec<Int> = vec![0; references.len()];
-        self.read("GetBoolean", references, &mut values, |f| f.get_boolean)?;
-        Ok(values.into_iter().map(|v| v != 0).collect())
-    }
-
-    /// `fmi2GetString`.
-    pub(crate) fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
-        if let Some(three) = self.three() {
-            return three.texts(references);
-        }
-        let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
-        self.read("GetString", references, &mut values, |f| f.get_string)?;
-        // SAFETY: strings of the FMU, copied before the next call, which may free them
-        Ok(values.into_iter().map(|v| unsafe { text(v) }).collect())
+    /// Value of a variable of that type: `fmi2GetInteger`, `fmi2GetBoolean`, `fmi2GetString`.
+    pub(crate) fn get_by_reference(&self, kind: VariableType, reference: u32) -> Result<Value> {
+        let one = &[reference];
+        let is_fmi3 = self.three().is_some();
+        Ok(match kind {
+            VariableType::Real => Value::Real(self.get_real(one)?[0]),
+            VariableType::Integer | VariableType::Enumeration if is_fmi3 => {
+                Value::Integer(self.numbers(one)?[0] as i32)
+            }
+            VariableType::Integer | VariableType::Enumeration => {
+                let mut value = [0];
+                self.read("GetInteger", one, &mut value, |f| f.get_integer)?;
+                Value::Integer(value[0])
+            }
+            VariableType::Boolean if is_fmi3 => Value::Boolean(self.numbers(one)?[0] != 0.0),
+            VariableType::Boolean => {
+                let mut value = [0];
+                self.read("GetBoolean", one, &mut value, |f| f.get_boolean)?;
+                Value::Boolean(value[0] != 0)
+            }
+            VariableType::String => Value::String(match self.three() {
+                Some(three) => self.text_at(three, reference)?,
+                None => {
+                    let mut value = [std::ptr::null()];
+                    self.read("GetString", one, &mut value, |f| f.get_string)?;
+                    // SAFETY: a string of the FMU, copied before the next call, which may free it
+                    unsafe { text(value[0]) }
+                }
+            }),
+        })
     }
 
     /// `fmi2SetReal`.
@@ -108,42 +117,40 @@ impl Slave {
         self.write("SetReal", references, values, |f| f.set_real)
     }
 
-    /// `fmi2SetInteger`.
-    pub(crate) fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
-        same_length(references, values.len())?;
-        if self.three().is_some() {
-            let numbers: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
-            return self.set_numbers(references, &numbers);
-        }
-        self.write("SetInteger", references, values, |f| f.set_integer)
-    }
-
-    /// `fmi2SetBoolean`.
-    pub(crate) fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
-        same_length(references, values.len())?;
-        if self.three().is_some() {
-            let numbers: Vec<f64> = values.iter().map(|v| f64::from(u8::from(*v))).collect();
-            return self.set_numbers(references, &numbers);
-        }
-        let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
-        self.write("SetBoolean", references, &values, |f| f.set_boolean)
-    }
-
-    /// `fmi2SetString`.
+    /// Sets the variable of that name; a whole number also sets a Real.
     ///
     /// # Errors
-    /// [`Error::Input`] when the lengths differ, and for a text with a zero byte.
-    pub(crate) fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
-        same_length(references, values.len())?;
-        let wrong = |text: &str| Error::input("fmi2SetString", "text without a zero byte", text);
-        let owned = values
-            .iter()
-            .map(|v| CString::new(*v).map_err(|_| wrong(v)));
-        let owned: Vec<CString> = owned.collect::<Result<_>>()?;
-        let values: Vec<Text> = owned.iter().map(|v| v.as_ptr()).collect();
-        match self.three() {
-            Some(three) => three.set_texts(references, &values),
-            None => self.write("SetString", references, &values, |f| f.set_string),
+    /// [`Error::Input`] for a name that is not there, a value of another type, and a text with a zero byte.
+    pub fn set(&mut self, name: &str, value: &Value) -> Result<()> {
+        let v = find(self.model_description(), name)?;
+        let (kind, reference) = (v.kind, v.value_reference);
+        let one = &[reference];
+        let is_fmi3 = self.three().is_some();
+        match (kind, value) {
+            (VariableType::Real, Value::Real(v)) => self.set_real(one, &[*v]),
+            (VariableType::Real, Value::Integer(v)) => self.set_real(one, &[f64::from(*v)]),
+            (VariableType::Integer | VariableType::Enumeration, Value::Integer(v)) => match is_fmi3
+            {
+                true => self.set_numbers(one, &[f64::from(*v)]),
+                false => self.write("SetInteger", one, &[*v], |f| f.set_integer),
+            },
+            (VariableType::Boolean, Value::Boolean(v)) => match is_fmi3 {
+                true => self.set_numbers(one, &[f64::from(u8::from(*v))]),
+                false => self.write("SetBoolean", one, &[Int::from(*v)], |f| f.set_boolean),
+            },
+            (VariableType::String, Value::String(v)) => {
+                let wrong = |_| Error::input("fmi2SetString", "text without a zero byte", v);
+                let owned = CString::new(v.as_str()).map_err(wrong)?;
+                match self.three() {
+                    Some(three) => self.set_text(three, reference, owned.as_ptr()),
+                    None => self.write("SetString", one, &[owned.as_ptr()], |f| f.set_string),
+                }
+            }
+            _ => Err(Error::input(
+                format!("variable `{name}`"),
+                format!("a value of type {kind:?}"),
+                format!("`{value}`"),
+            )),
         }
     }
 
@@ -156,7 +163,7 @@ impl Slave {
     ) -> Result<Vec<f64>> {
         same_length(knowns, seed.len())?;
         if let Some(three) = self.three() {
-            return three.directional_derivative(unknowns, knowns, seed);
+            return self.derivative_of_three(three, unknowns, knowns, seed);
         }
         let mut values = vec![0.0; unknowns.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
@@ -174,16 +181,12 @@ impl Slave {
         Ok(values)
     }
 
-    /// `fmi2GetRealOutputDerivatives` of the given orders.
-    pub(crate) fn output_derivatives(
-        &self,
-        references: &[u32],
-        orders: &[i32],
-    ) -> Result<Vec<f64>> {
-        same_length(references, orders.len())?;
+    /// `fmi2GetRealOutputDerivatives` of the first order.
+    pub(crate) fn output_derivatives(&self, references: &[u32]) -> Result<Vec<f64>> {
         if let Some(three) = self.three() {
-            return three.output_derivatives(references, orders);
+            return self.output_derivatives_of_three(three, references);
         }
+        let orders = vec![1; references.len()];
         let mut values = vec![0.0; references.len()];
         // SAFETY: the component lives, and the slices have the length that is passed
         self.good_two("GetRealOutputDerivatives", |f, c| unsafe {
