@@ -5,7 +5,7 @@
 //! The tables in `data/decks` were made with it. An existing file is not overwritten.
 
 use aerodeck::aerodynamics::derivatives::TableHeader;
-use aerodeck::files::derivatives::WorkbookOptions;
+use aerodeck::files::derivatives::ReadOptions;
 use aerodeck::files::derivatives::read_workbook;
 use aerodeck::files::derivatives::write_csv;
 use std::error::Error;
@@ -26,9 +26,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         model_length_m: length.first().map(|text| text.parse()).transpose()?,
         ..TableHeader::default()
     };
-    let options = WorkbookOptions {
+    let options = ReadOptions {
         header,
-        ..WorkbookOptions::default()
+        ..ReadOptions::default()
     };
     let table = read_workbook(workbook, &options)?;
     let mut file = BufWriter::new(File::create_new(out)?);

@@ -149,6 +149,7 @@ impl TableArgs {
                 missing: self.missing,
                 frequencies_hz: (!self.frequencies_hz.is_empty())
                     .then(|| self.frequencies_hz.clone()),
+                ..ReadOptions::default()
             };
             return read_table_with(named_sheet(&self.table, self.sheet.as_deref()), &options);
         }

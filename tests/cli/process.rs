@@ -75,7 +75,7 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
     );
     // the workbook is one that the program reads, and the study gives an onset
     let table = aerodeck::files::derivatives::read_table(out.join("derivatives.csv")).unwrap();
-    let options = aerodeck::files::derivatives::WorkbookOptions {
+    let options = aerodeck::files::derivatives::ReadOptions {
         width_m: Some(table.width_m),
         ..Default::default()
     };

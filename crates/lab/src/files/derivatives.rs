@@ -9,20 +9,16 @@ mod workbook;
 mod workbook_writer;
 mod xlsx_cells;
 
-pub use csv_file::write_points;
 pub(crate) use csv_file::{parse_csv, read_csv_with};
-pub use csv_file::{parse_csv_in, read_csv, write_csv, write_csv_in};
+pub use csv_file::{parse_csv_in, read_csv, write_csv, write_csv_in, write_points};
 pub use csv_header::{ReadOptions, TableInConvention, WIDTH_ASSUMED};
 pub use workbook::TABLE_3_2_FREQUENCIES_HZ;
-pub use workbook::WorkbookOptions;
-pub use workbook_writer::workbook_bytes;
-pub use workbook_writer::{template_bytes, workbook_bytes_in};
+pub use workbook_writer::{template_bytes, workbook_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result, ensure};
 use std::path::Path;
-use xlsx_cells::CheckedWorkbook;
 
 /// Endings of workbooks.
 const WORKBOOKS: [&str; 3] = [".xlsx", ".xls", ".ods"];
@@ -128,14 +124,7 @@ pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<
     if !is_workbook(file) {
         return read_csv_with(path, options);
     }
-    let options = WorkbookOptions {
-        width_m: options.width_m,
-        convention: options.convention,
-        frequencies_hz: options.frequencies_hz.clone(),
-        missing: options.missing,
-        ..WorkbookOptions::default()
-    };
-    read_workbook_in(file, sheet, &options)
+    read_workbook_in(file, sheet, options)
 }
 
 /// Reads a workbook of derivatives in the layout of NTNU, or with one row per reduced velocity.
@@ -143,7 +132,7 @@ pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<
 /// # Errors
 /// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
 /// of a number, sheets of unequal length, no common width, points out of order or twice.
-pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
+pub fn read_workbook(path: impl AsRef<Path>, options: &ReadOptions) -> Result<DerivativeTable> {
     read_workbook_in(path, None, options).map(|read| read.table)
 }
 
@@ -152,11 +141,11 @@ pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Resul
 pub(crate) fn read_workbook_in(
     path: impl AsRef<Path>,
     sheet: Option<&str>,
-    options: &WorkbookOptions,
+    options: &ReadOptions,
 ) -> Result<TableInConvention> {
     let path = path.as_ref();
     let read = || {
-        let mut book = CheckedWorkbook::open(path)?;
+        let mut book = xlsx_cells::open(path)?;
         if sheet.is_none() && workbook::has_three_sheets(&book) {
             return workbook::read_three_sheets(&mut book, path, options);
         }

@@ -21,8 +21,8 @@ mod matlab5;
 mod tdms;
 mod tdms_bytes;
 
-pub(crate) use channels::Channel;
 pub use channels::ChannelSet;
+pub(crate) use channels::{Attribute, Channel};
 pub(crate) use matlab5::matlab_array;
 
 use crate::error::{Error, Result, ensure};

@@ -29,7 +29,9 @@ use crate::aerodynamics::derivatives::notation::{
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result, ensure};
-use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, write_head};
+use crate::files::derivatives::csv_header::{
+    ReadOptions, TableInConvention, provenance, read_head, stated, width_m, write_head,
+};
 use crate::files::derivatives::csv_wide::{self, Rows};
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
 use crate::files::text::read_text;
@@ -51,20 +53,7 @@ const BYTES_AT_MOST: u64 = 100 << 20;
 /// # Errors
 /// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
 pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
-    read_csv_in(path, StatedConvention::default()).map(|read| read.table)
-}
-
-/// Reads a table in this project's CSV whose convention the caller states, all of it or in part; the second value is
-/// the convention that the file is in.
-pub(crate) fn read_csv_in(
-    path: impl AsRef<Path>,
-    stated: StatedConvention,
-) -> Result<TableInConvention> {
-    let options = ReadOptions {
-        convention: stated,
-        ..ReadOptions::default()
-    };
-    read_csv_with(path, &options)
+    read_csv_with(path, &ReadOptions::default()).map(|read| read.table)
 }
 
 /// Reads a CSV table, this project's or a wide one (one row per reduced velocity, one column per derivative), with what the
@@ -117,11 +106,11 @@ pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConve
 }
 
 fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
-    let head = Head::read(text)?;
+    let head = read_head(text)?;
     let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();
     let line = head.lines() + 1;
-    let mut in_file = head.stated()?;
+    let mut in_file = stated(&head)?;
     let column = find_argument(&names, line)?;
     let said = in_file.argument.unwrap_or(column);
     ensure(
@@ -137,10 +126,10 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let columns = find_columns(&names, wanted, line)?;
     let rows = read_rows(&mut reader, &columns, &convention)?;
     let mut points = csv_wide::checked(rows, &convention)?;
-    let mut header = head.provenance()?;
+    let mut header = provenance(&head)?;
     header.notes.extend(fill_in(&mut points, options.missing));
-    let width = head.width_m(options.width_m)?;
-    let table = DerivativeTable::new(head.name()?, width, header, points)?;
+    let width = width_m(&head, options.width_m)?;
+    let table = DerivativeTable::new(head.required("name")?.value.clone(), width, header, points)?;
     Ok(TableInConvention { table, convention })
 }
 

@@ -22,14 +22,19 @@ pub struct TableInConvention {
 /// What a file of derivatives does not say of itself.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadOptions {
+    /// Name of the deck of a workbook; `None` takes the file name without `AerodynamicDerivatives_` and extension.
+    pub name: Option<String>,
     /// Notation, argument and axes; what the file states must not contradict them.
     pub convention: StatedConvention,
-    /// Width of the section model, m.
+    /// Width of the section model, m; `None` takes it from the file, or derives it from `frequencies_hz`.
     pub width_m: Option<f64>,
-    /// Frequencies of motion of a workbook in test order, Hz, from which its width follows.
+    /// Frequencies of motion of a workbook in test order, Hz, repeated for every further speed, from which its width follows; `None` tries
+    /// those of Table 3.2.
     pub frequencies_hz: Option<Vec<f64>>,
     /// What stands for H4*, A4* when there are none; zero when nothing is stated.
     pub missing: Option<Missing>,
+    /// Provenance of a workbook; an empty `source` is filled with the file name, an empty `generator` with this program.
+    pub header: TableHeader,
 }
 
 /// What is said when nothing gives the width.
@@ -66,105 +71,83 @@ const REPEATED: [&str; 2] = ["note", "doubt"];
 const UNITS_WRITTEN: &str =
     "mean_speed_m_s in m/s; reduced velocity or frequency and value dimensionless";
 
-/// The header of a file of derivatives.
-pub(super) struct Head {
-    header: CommentHeader,
+/// Reads the comment lines at the head of `text`, a file of derivatives.
+pub(super) fn read_head(text: &str) -> Result<CommentHeader> {
+    CommentHeader::read(text, &FORMATS, &KEYS, &REPEATED)
 }
 
-impl Head {
-    /// Reads the comment lines at the head of `text`.
-    pub(crate) fn read(text: &str) -> Result<Self> {
-        let header = CommentHeader::read(text, &FORMATS, &KEYS, &REPEATED)?;
-        Ok(Self { header })
+/// What the header says about the convention.
+///
+/// # Errors
+/// [`Error::Input`] with the line that says what cannot be, or contradicts another.
+pub(super) fn stated(head: &CommentHeader) -> Result<StatedConvention> {
+    let mut stated = StatedConvention::default();
+    if head.optional("sign_convention").is_some() {
+        head.must_say("sign_convention", SIGN_CONVENTION)?;
+        stated = Convention::default().into();
     }
-
-    /// Number of comment lines.
-    pub(crate) fn lines(&self) -> usize {
-        self.header.lines()
+    if let Some(entry) = head.optional("units")
+        && ![UNITS, UNITS_WRITTEN].contains(&entry.value.as_str())
+    {
+        return Err(entry.wrong(&format!("`{UNITS_WRITTEN}`")));
     }
-
-    /// What the header says about the convention.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with the line that says what cannot be, or contradicts another.
-    pub(crate) fn stated(&self) -> Result<StatedConvention> {
-        let head = &self.header;
-        let mut stated = StatedConvention::default();
-        if head.optional("sign_convention").is_some() {
-            head.must_say("sign_convention", SIGN_CONVENTION)?;
-            stated = Convention::default().into();
-        }
-        if let Some(entry) = head.optional("units")
-            && ![UNITS, UNITS_WRITTEN].contains(&entry.value.as_str())
-        {
-            return Err(entry.wrong(&format!("`{UNITS_WRITTEN}`")));
-        }
-        stated.notation = read_one::<Notation>(head.optional("notation"), stated.notation)?;
-        stated.argument = read_one::<Argument>(head.optional("argument"), stated.argument)?;
-        stated.axes = read_one::<Axes>(head.optional("axes"), stated.axes)?;
-        if let Some(definition) = head.optional("definition") {
-            let notation = stated.notation.ok_or_else(|| {
-                let expected = "a line `# notation: …` with it";
-                Error::input(definition.place(), expected, "none")
-            })?;
-            if definition.value != notation.definition() {
-                let expected = format!("that of {notation}, `{}`", notation.definition());
-                return Err(definition.wrong(&expected));
-            }
-        }
-        Ok(stated)
-    }
-
-    /// Name of the table.
-    pub(crate) fn name(&self) -> Result<String> {
-        Ok(self.header.required("name")?.value.clone())
-    }
-
-    /// Width `B`, m, of a file that must state it unless the caller does.
-    pub(crate) fn width_m(&self, stated: Option<f64>) -> Result<f64> {
-        match self.width_stated(stated)? {
-            Some(width) => Ok(width),
-            None => self.header.required("width_m")?.positive(),
+    stated.notation = read_one::<Notation>(head.optional("notation"), stated.notation)?;
+    stated.argument = read_one::<Argument>(head.optional("argument"), stated.argument)?;
+    stated.axes = read_one::<Axes>(head.optional("axes"), stated.axes)?;
+    if let Some(definition) = head.optional("definition") {
+        let notation = stated.notation.ok_or_else(|| {
+            let expected = "a line `# notation: …` with it";
+            Error::input(definition.place(), expected, "none")
+        })?;
+        if definition.value != notation.definition() {
+            let expected = format!("that of {notation}, `{}`", notation.definition());
+            return Err(definition.wrong(&expected));
         }
     }
+    Ok(stated)
+}
 
-    /// Width `B`, m, if the file or the caller states it; they may not contradict each other.
-    pub(crate) fn width_stated(&self, stated: Option<f64>) -> Result<Option<f64>> {
-        let stated = stated
-            .map(|width| crate::error::positive("width_m", width))
-            .transpose()?;
-        let Some(entry) = self.header.optional("width_m") else {
-            return Ok(stated);
-        };
-        let width = entry.positive()?;
-        match stated {
-            Some(other) if other != width => {
-                Err(entry.wrong(&format!("{other} as stated on import")))
-            }
-            _ => Ok(Some(width)),
-        }
+/// Width `B`, m, of a file that must state it unless the caller does.
+pub(super) fn width_m(head: &CommentHeader, stated: Option<f64>) -> Result<f64> {
+    match width_stated(head, stated)? {
+        Some(width) => Ok(width),
+        None => head.required("width_m")?.positive(),
     }
+}
 
-    /// Where the table comes from.
-    pub(crate) fn provenance(&self) -> Result<TableHeader> {
-        let head = &self.header;
-        let texts = |key| head.all(key).map(|e| e.value.clone()).collect();
-        let stated = |key| head.optional(key).filter(|e| !e.value.is_empty());
-        Ok(TableHeader {
-            source: head.text("source"),
-            licence: head.text("licence"),
-            generator: head.text("generator"),
-            model_length_m: stated("model_length_m")
-                .map(HeaderLine::positive)
-                .transpose()?,
-            angle_deg: stated("angle_deg").map(angle_deg).transpose()?,
-            rotation_amplitude_deg: stated("rotation_amplitude_deg")
-                .map(HeaderLine::positive)
-                .transpose()?,
-            notes: texts("note"),
-            doubts: texts("doubt"),
-        })
+/// Width `B`, m, if the file or the caller states it; they may not contradict each other.
+pub(super) fn width_stated(head: &CommentHeader, stated: Option<f64>) -> Result<Option<f64>> {
+    let stated = stated
+        .map(|width| crate::error::positive("width_m", width))
+        .transpose()?;
+    let Some(entry) = head.optional("width_m") else {
+        return Ok(stated);
+    };
+    let width = entry.positive()?;
+    match stated {
+        Some(other) if other != width => Err(entry.wrong(&format!("{other} as stated on import"))),
+        _ => Ok(Some(width)),
     }
+}
+
+/// Where the table comes from.
+pub(super) fn provenance(head: &CommentHeader) -> Result<TableHeader> {
+    let texts = |key| head.all(key).map(|e| e.value.clone()).collect();
+    let stated = |key| head.optional(key).filter(|e| !e.value.is_empty());
+    Ok(TableHeader {
+        source: head.text("source"),
+        licence: head.text("licence"),
+        generator: head.text("generator"),
+        model_length_m: stated("model_length_m")
+            .map(HeaderLine::positive)
+            .transpose()?,
+        angle_deg: stated("angle_deg").map(angle_deg).transpose()?,
+        rotation_amplitude_deg: stated("rotation_amplitude_deg")
+            .map(HeaderLine::positive)
+            .transpose()?,
+        notes: texts("note"),
+        doubts: texts("doubt"),
+    })
 }
 
 /// The mean angle of tests; beyond a right angle it is in another unit.

@@ -17,7 +17,10 @@ use crate::aerodynamics::derivatives::notation::{Argument, Convention, Expressed
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use crate::error::{Error, Place, Result, counted, ensure, positive};
-use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, WIDTH_ASSUMED};
+use crate::files::derivatives::csv_header::{
+    ReadOptions, TableInConvention, WIDTH_ASSUMED, provenance, read_head, stated, width_stated,
+};
+use crate::files::header_csv::CommentHeader;
 use crate::files::header_csv::number;
 use crate::files::text::is_blank;
 use std::collections::BTreeMap;
@@ -65,7 +68,7 @@ pub(super) fn is_wide(text: &str) -> bool {
 /// [`Error::Input`] naming line, column, expectation and finding.
 pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let text = text.trim_start_matches('\u{feff}');
-    let head = Head::read(text)?;
+    let head = read_head(text)?;
     let mut lines = (1..)
         .zip(text.lines())
         .skip(head.lines())
@@ -75,11 +78,11 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
         .ok_or_else(|| Error::input("", "a row of column names", "an empty file"))?;
     let between = separator(row);
     let names: Vec<&str> = cells(row, between).into_iter().map(without_unit).collect();
-    let mut stated = head.stated()?;
+    let mut in_file = stated(&head)?;
     let said = options.convention.argument;
-    stated.argument =
-        argument_of(&names, said, stated.argument).map_err(|e| e.at(Place::line(line)))?;
-    let convention = options.convention.with_file(stated)?;
+    in_file.argument =
+        argument_of(&names, said, in_file.argument).map_err(|e| e.at(Place::line(line)))?;
+    let convention = options.convention.with_file(in_file)?;
     let columns = find_columns(&names, line, &convention)?;
     let mut rows = Rows::new();
     let decimal_comma = between != ','
@@ -199,13 +202,13 @@ pub(super) fn checked(rows: Rows, convention: &Convention) -> Result<Points> {
 
 /// The table, with notes on what had to be taken for granted.
 fn finished(
-    head: &Head,
+    head: &CommentHeader,
     mut points: Points,
     others: Vec<String>,
     stem: &str,
     options: &ReadOptions,
 ) -> Result<DerivativeTable> {
-    let mut header = head.provenance()?;
+    let mut header = provenance(head)?;
     header.notes.extend(fill_in(&mut points, options.missing));
     if !others.is_empty() {
         let note = format!("columns that were not read: {}", others.join(", "));
@@ -214,11 +217,12 @@ fn finished(
     if header.source.is_empty() {
         header.source = format!("table {stem}");
     }
-    let stated = head.width_stated(options.width_m)?;
+    let stated = width_stated(head, options.width_m)?;
     if stated.is_none() {
         header.notes.push(WIDTH_ASSUMED.to_owned());
     }
-    let name = head.name().unwrap_or_else(|_| stem.to_owned());
+    let name = head.required("name");
+    let name = name.map_or_else(|_| stem.to_owned(), |line| line.value.clone());
     DerivativeTable::new(name, stated.unwrap_or(1.0), header, points)
 }
 

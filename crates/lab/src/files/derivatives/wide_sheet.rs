@@ -6,10 +6,12 @@
 
 use super::csv_header::{ReadOptions, TableInConvention};
 use super::csv_wide::{self, plain_name};
-use super::workbook::{WorkbookOptions, notes_of};
-use super::xlsx_cells::{CellContent, CheckedWorkbook, DATE, Sheet, cell_name};
+use super::workbook::{convention_in, notes_of, number_in};
+use super::xlsx_cells::{DATE, OpenWorkbook, Sheet, cell_name, sheet_of};
 use crate::aerodynamics::derivatives::notation::Notation;
 use crate::error::{Error, Result, positive};
+use crate::files::lab::Attribute;
+use calamine::Reader;
 
 /// The row of names as it may stand in a sheet.
 const EXAMPLE: &str = "a row of names such as `V*`, `H1*`, `H2*`, …, `A4*` above the numbers";
@@ -19,24 +21,24 @@ const EXAMPLE: &str = "a row of names such as `V*`, `H1*`, `H2*`, …, `A4*` abo
 /// # Errors
 /// [`Error::Input`] with sheet and row.
 pub(super) fn read(
-    book: &mut CheckedWorkbook,
+    book: &mut OpenWorkbook,
     sheet: Option<&str>,
     stem: &str,
-    options: &WorkbookOptions,
+    options: &ReadOptions,
 ) -> Result<TableInConvention> {
     let stated = options.convention.notation;
     let (name, cells, names) = chosen(book, sheet, stated)?;
     let notes = notes_of(book)?;
-    let convention = options.convention.and_file(notes.convention()?)?;
-    let width = notes.number("width_m")?;
+    let convention = options.convention.and_file(convention_in(&notes)?)?;
+    let width = number_in(&notes, "width_m")?;
     let width_m = options.width_m.or(width).map(|w| positive("width_m", w));
     let options = ReadOptions {
         convention,
         width_m: width_m.transpose()?,
-        frequencies_hz: None,
         missing: options.missing,
+        ..ReadOptions::default()
     };
-    let stem = match book.names().len() {
+    let stem = match book.sheet_names().len() {
         1 => stem.to_owned(),
         _ => format!("{stem}, {name}"),
     };
@@ -49,17 +51,17 @@ pub(super) fn read(
 
 /// Name, cells and row of names of the sheet that is meant.
 fn chosen(
-    book: &mut CheckedWorkbook,
+    book: &mut OpenWorkbook,
     wanted: Option<&str>,
     notation: Option<Notation>,
 ) -> Result<(String, Sheet, u32)> {
-    let names = book.names();
+    let names = book.sheet_names();
     let mut found = Vec::new();
     for name in &names {
         if wanted.is_some_and(|w| !name.trim().eq_ignore_ascii_case(w.trim())) {
             continue;
         }
-        let cells = book.sheet(name.trim())?.unwrap_or_default();
+        let cells = sheet_of(book, name.trim())?.unwrap_or_default();
         let row = row_of_names(&cells, notation);
         match row {
             Some(row) => found.push((name.clone(), cells, row)),
@@ -112,7 +114,7 @@ fn row_of_names(sheet: &Sheet, notation: Option<Notation>) -> Option<u32> {
         if *row != row_and_count.0 {
             row_and_count = (*row, 0);
         }
-        if matches!(cell, CellContent::Text(text) if is_named(text)) {
+        if matches!(cell, Attribute::Text(text) if is_named(text)) {
             row_and_count.1 += 1;
         }
         if row_and_count.1 == 2 {
@@ -127,7 +129,7 @@ fn refuse_two_marks(sheet: &Sheet, names: u32) -> Result<()> {
     let first = |mark: char| {
         let mut below = sheet.cells.range((names + 1, 0)..);
         below.find_map(|((row, column), cell)| match cell {
-            CellContent::Text(text) if text.contains(mark) && is_number(&cell_text(cell)) => {
+            Attribute::Text(text) if text.contains(mark) && is_number(&cell_text(cell)) => {
                 Some((cell_name(*row, *column), text))
             }
             _ => None,
@@ -174,7 +176,7 @@ fn is_number(text: &str) -> bool {
 }
 
 /// A cell in a row of text: a number that was typed with a comma is one.
-fn cell_text(cell: &CellContent) -> String {
+fn cell_text(cell: &Attribute) -> String {
     let text = cell.text().replace(['\t', '\n', '\r', ';'], " ");
     let number = text.trim().replace(',', ".");
     if is_number(&number) { number } else { text }

@@ -14,12 +14,12 @@
 use crate::aerodynamics::derivatives::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, StatedConvention};
 use crate::aerodynamics::derivatives::table::check_point_count;
-use crate::aerodynamics::derivatives::{
-    Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader,
-};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result, ensure, positive};
-use crate::files::derivatives::csv_header::{TableInConvention, WIDTH_ASSUMED};
-use crate::files::derivatives::xlsx_cells::{CellContent, CheckedWorkbook, Sheet, cell_name};
+use crate::files::derivatives::csv_header::{ReadOptions, TableInConvention, WIDTH_ASSUMED};
+use crate::files::derivatives::xlsx_cells::{OpenWorkbook, Sheet, cell_name, sheet_of};
+use crate::files::lab::Attribute;
+use calamine::Reader;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -43,43 +43,26 @@ pub(super) const SPEEDS: (&str, &str) = ("Mean wind velocity", "MeanWind_");
 pub(super) const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred_");
 pub(super) const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
 
-/// What a workbook does not say of itself.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct WorkbookOptions {
-    /// Name of the deck; `None` takes the file name without `AerodynamicDerivatives_` and extension.
-    pub name: Option<String>,
-    /// Width of the section model, m; `None` takes it from the workbook or derives it from `frequencies_hz`.
-    pub width_m: Option<f64>,
-    /// Notation, argument and axes of the figures, as far as they are known; a sheet `Notes` must not contradict it.
-    pub convention: StatedConvention,
-    /// Frequencies of motion, Hz, in test order, repeated for every further speed; `None` tries those of Table 3.2.
-    pub frequencies_hz: Option<Vec<f64>>,
-    /// What stands for H4*, A4* when there are none.
-    pub missing: Option<Missing>,
-    /// Provenance; an empty `source` is filled with the file name, an empty `generator` with this program.
-    pub header: TableHeader,
-}
-
 /// Whether the workbook is to be read by the three sheets of NTNU's.
-pub(super) fn has_three_sheets(book: &CheckedWorkbook) -> bool {
+pub(super) fn has_three_sheets(book: &OpenWorkbook) -> bool {
     let kinds = [SPEEDS, REDUCED_VELOCITIES, DERIVATIVES];
-    let names = book.names();
+    let names = book.sheet_names();
     let named = |kind: &str| names.iter().any(|n| n.trim().eq_ignore_ascii_case(kind));
     kinds.iter().any(|(kind, _)| named(kind))
 }
 
 /// Reads the three sheets of an opened workbook.
 pub(super) fn read_three_sheets(
-    book: &mut CheckedWorkbook,
+    book: &mut OpenWorkbook,
     path: &Path,
-    options: &WorkbookOptions,
+    options: &ReadOptions,
 ) -> Result<TableInConvention> {
     let notes = notes_of(book)?;
     let convention = convention_of(options.convention, &notes)?;
     let mut points = read_sheets(book, &convention)?;
     let mut header = options.header.clone();
     header.notes.extend(fill_in(&mut points, options.missing));
-    let doubts = notes.0.get(DOUBTS).into_iter().flat_map(|d| d.lines());
+    let doubts = notes.get(DOUBTS).into_iter().flat_map(|d| d.lines());
     header.doubts.extend(doubts.map(str::to_owned));
     let stated = width_in_book(book, &notes)?;
     let table = table_from(path, options, header, points, stated)?;
@@ -87,43 +70,41 @@ pub(super) fn read_three_sheets(
 }
 
 /// Keys and values of the sheet `Notes`, the first two columns.
-pub(super) struct Notes(BTreeMap<String, String>);
+type Notes = BTreeMap<String, String>;
 
 /// The sheet `Notes`; nothing where there is none.
-pub(super) fn notes_of(book: &mut CheckedWorkbook) -> Result<Notes> {
-    let sheet = book.sheet(NOTES)?.unwrap_or_default();
-    let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(CellContent::text);
+pub(super) fn notes_of(book: &mut OpenWorkbook) -> Result<Notes> {
+    let sheet = sheet_of(book, NOTES)?.unwrap_or_default();
+    let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(Attribute::text);
     let rows = sheet.cells.keys().filter(|(_, column)| *column == 0);
     let pairs = rows.filter_map(|(row, _)| Some((cell(*row, 0)?, cell(*row, 1)?)));
-    Ok(Notes(pairs.collect()))
+    Ok(pairs.collect())
 }
 
-impl Notes {
-    /// What they say of the convention.
-    pub(super) fn convention(&self) -> Result<StatedConvention> {
-        Ok(StatedConvention {
-            notation: parse_note(&self.0, "notation")?,
-            argument: parse_note(&self.0, "argument")?,
-            axes: parse_note(&self.0, "axes")?,
-        })
-    }
+/// What the notes say of the convention.
+pub(super) fn convention_in(notes: &Notes) -> Result<StatedConvention> {
+    Ok(StatedConvention {
+        notation: parse_note(notes, "notation")?,
+        argument: parse_note(notes, "argument")?,
+        axes: parse_note(notes, "axes")?,
+    })
+}
 
-    /// A number.
-    pub(super) fn number(&self, key: &str) -> Result<Option<f64>> {
-        let Some(text) = self.0.get(key) else {
-            return Ok(None);
-        };
-        let place = format!("sheet {NOTES}, {key}");
+/// A number of the notes.
+pub(super) fn number_in(notes: &Notes, key: &str) -> Result<Option<f64>> {
+    let parse = |text: &String| {
         let number = text.parse();
-        number
-            .map(Some)
-            .map_err(|_| Error::input(place, "a number", format!("`{text}`")))
-    }
+        number.map_err(|_| {
+            let place = format!("sheet {NOTES}, {key}");
+            Error::input(place, "a number", format!("`{text}`"))
+        })
+    };
+    notes.get(key).map(parse).transpose()
 }
 
 /// The width that the workbook states, m, and where.
-fn width_in_book(book: &mut CheckedWorkbook, notes: &Notes) -> Result<Option<(f64, String)>> {
-    if let Some(sheet) = book.sheet(DIMENSIONS)? {
+fn width_in_book(book: &mut OpenWorkbook, notes: &Notes) -> Result<Option<(f64, String)>> {
+    if let Some(sheet) = sheet_of(book, DIMENSIONS)? {
         let place = || format!("sheet {DIMENSIONS}, B");
         let column = sheet.titles().into_iter().find(|t| t.1.trim() == "B");
         if let Some((column, _)) = column {
@@ -132,13 +113,13 @@ fn width_in_book(book: &mut CheckedWorkbook, notes: &Notes) -> Result<Option<(f6
         }
     }
     let place = format!("sheet {NOTES}, width_m");
-    let width = notes.number("width_m")?.map(|w| positive(&place, w));
+    let width = number_in(notes, "width_m")?.map(|w| positive(&place, w));
     Ok(width.transpose()?.map(|w| (w, place)))
 }
 
 /// What the notes and the caller say of the convention; when neither says anything, it is NTNU's, this project's own.
 fn convention_of(stated: StatedConvention, notes: &Notes) -> Result<Convention> {
-    let mut file = notes.convention()?;
+    let mut file = convention_in(notes)?;
     if file.is_empty() && stated.notation.is_none() {
         // without a notation the workbook is NTNU's in all that is not stated otherwise
         let own = Convention::default();
@@ -151,10 +132,7 @@ fn convention_of(stated: StatedConvention, notes: &Notes) -> Result<Convention> 
     stated.with_file(file)
 }
 
-fn parse_note<T: std::str::FromStr<Err = Error>>(
-    notes: &BTreeMap<String, String>,
-    key: &str,
-) -> Result<Option<T>> {
+fn parse_note<T: std::str::FromStr<Err = Error>>(notes: &Notes, key: &str) -> Result<Option<T>> {
     let there = |e: Error| e.at(format!("sheet {NOTES}, {key}"));
     let parse = |text: &String| text.parse().map_err(there);
     notes.get(key).map(parse).transpose()
@@ -162,11 +140,11 @@ fn parse_note<T: std::str::FromStr<Err = Error>>(
 
 type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 
-fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Points> {
+fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Points> {
     let mut sheet = |kind: (&str, &str)| -> Result<Sheet> {
-        book.sheet(kind.0)?.ok_or_else(|| {
+        sheet_of(book, kind.0)?.ok_or_else(|| {
             let expected = format!("a sheet `{}`", kind.0);
-            let found = format!("`{}`", book.names().join("`, `"));
+            let found = format!("`{}`", book.sheet_names().join("`, `"));
             Error::input("workbook", expected, found)
         })
     };
@@ -270,9 +248,9 @@ fn read_columns(
 
 fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {
     let found = match sheet.cells.get(&(row, column)) {
-        Some(CellContent::Number(x)) => return Ok(*x),
+        Some(Attribute::Number(x)) => return Ok(*x),
         None => "an empty cell".to_owned(),
-        Some(CellContent::Text(text)) => format!("`{text}`"),
+        Some(Attribute::Text(text)) => format!("`{text}`"),
     };
     let place = format!("sheet {name}, cell {}", cell_name(row, column));
     Err(Error::input(place, "a number", found))
@@ -280,7 +258,7 @@ fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {
 
 fn table_from(
     path: &Path,
-    options: &WorkbookOptions,
+    options: &ReadOptions,
     mut header: TableHeader,
     points: Points,
     in_book: Option<(f64, String)>,

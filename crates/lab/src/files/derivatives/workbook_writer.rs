@@ -45,7 +45,21 @@ pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Re
         let sheet = book.add_worksheet();
         write_sheet(sheet, name, prefix, &expressed, value).map_err(failed)?;
     }
-    write_notes(book.add_worksheet(), table, convention).map_err(failed)?;
+    let header = &table.header;
+    let (width, doubts) = (table.width_m.to_string(), header.doubts.join("\n"));
+    let mut lines = vec![
+        ("name", table.name.as_str()),
+        ("width_m", &width),
+        ("source", &header.source),
+        ("licence", &header.licence),
+        ("generator", &header.generator),
+        ("notation", convention.notation.name()),
+        ("argument", convention.argument.definition()),
+        ("axes", convention.axes.words()),
+        ("definition", convention.notation.definition()),
+    ];
+    lines.extend((!doubts.is_empty()).then_some((DOUBTS, doubts.as_str())));
+    write_notes(book.add_worksheet(), &lines).map_err(failed)?;
     book.save_to_buffer().map_err(failed)
 }
 
@@ -66,29 +80,15 @@ fn write_sheet(
     Ok(())
 }
 
+/// Writes keys and their values into the sheet of notes.
 fn write_notes(
     sheet: &mut Worksheet,
-    table: &DerivativeTable,
-    convention: &Convention,
+    lines: &[(&str, &str)],
 ) -> std::result::Result<(), XlsxError> {
     sheet.set_name(NOTES)?;
-    let header = &table.header;
-    let lines = [
-        ("name", table.name.clone()),
-        ("width_m", table.width_m.to_string()),
-        ("source", header.source.clone()),
-        ("licence", header.licence.clone()),
-        ("generator", header.generator.clone()),
-        ("notation", convention.notation.name().to_owned()),
-        ("argument", convention.argument.definition().to_owned()),
-        ("axes", convention.axes.words().to_owned()),
-        ("definition", convention.notation.definition().to_owned()),
-    ];
-    let doubts = [(DOUBTS, header.doubts.join("\n"))];
-    let doubts = doubts.into_iter().filter(|(_, text)| !text.is_empty());
-    for (row, (key, value)) in (0_u32..).zip(lines.into_iter().chain(doubts)) {
-        sheet.write_string(row, 0, key)?;
-        sheet.write_string(row, 1, value)?;
+    for (row, (key, value)) in (0_u32..).zip(lines) {
+        sheet.write_string(row, 0, *key)?;
+        sheet.write_string(row, 1, *value)?;
     }
     Ok(())
 }
@@ -122,16 +122,12 @@ fn template(convention: &Convention) -> std::result::Result<Vec<u8>, XlsxError> 
     }
     sheet.set_freeze_panes(1, 1)?;
     let notes = book.add_worksheet();
-    notes.set_name(NOTES)?;
     let lines = [
         ("notation", convention.notation.name()),
         ("argument", convention.argument.definition()),
         ("axes", convention.axes.words()),
     ];
-    for (row, (key, value)) in (0_u32..).zip(lines) {
-        notes.write_string(row, 0, key)?;
-        notes.write_string(row, 1, value)?;
-    }
+    write_notes(notes, &lines)?;
     notes.write_string(3, 0, "width_m")?;
     let text = book.add_worksheet();
     text.set_name("Instructions")?;
@@ -143,7 +139,7 @@ fn template(convention: &Convention) -> std::result::Result<Vec<u8>, XlsxError> 
 
 #[cfg(test)]
 mod tests {
-    use crate::files::derivatives::WorkbookOptions;
+    use crate::files::derivatives::ReadOptions;
     use crate::files::derivatives::embedded;
     use crate::files::derivatives::read_workbook;
     use crate::files::derivatives::workbook_writer::*;
@@ -153,9 +149,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("AerodynamicDerivatives_round.xlsx");
         std::fs::write(&path, workbook_bytes(table).unwrap()).unwrap();
-        let options = WorkbookOptions {
+        let options = ReadOptions {
             width_m: Some(table.width_m),
-            ..WorkbookOptions::default()
+            ..ReadOptions::default()
         };
         read_workbook(&path, &options).unwrap()
     }
@@ -185,7 +181,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");
         std::fs::write(&path, workbook_bytes(&table).unwrap()).unwrap();
-        let again = read_workbook(&path, &WorkbookOptions::default()).unwrap();
+        let again = read_workbook(&path, &ReadOptions::default()).unwrap();
         assert!((again.width_m / table.width_m - 1.0).abs() < 1e-12);
     }
 
@@ -219,13 +215,13 @@ mod tests {
             let TableInConvention {
                 table: again,
                 convention: said,
-            } = read_workbook_in(&path, None, &WorkbookOptions::default()).unwrap();
+            } = read_workbook_in(&path, None, &ReadOptions::default()).unwrap();
             assert_eq!(said, convention);
             same(&table, &again);
         }
-        let options = WorkbookOptions {
+        let options = ReadOptions {
             convention: StatedConvention::notation(Notation::Polimi),
-            ..WorkbookOptions::default()
+            ..ReadOptions::default()
         };
         let message = read_workbook(&path, &options).unwrap_err().to_string();
         let expected = "notation: expected `polimi` as stated on import, found `starossek`";

@@ -2,6 +2,7 @@
 //! a cell whose dense range fills the memory.
 
 use crate::error::{Error, Result, ensure};
+use crate::files::lab::Attribute;
 use calamine::{Data, DataRef, Reader, Sheets, Xlsx, XlsxError, open_workbook_auto};
 use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
@@ -22,27 +23,10 @@ const NO_VALUE: &str = "a formula without a value: save the workbook once in a s
 /// The same of a date, as of 1.3 that a spreadsheet took for the first of March.
 pub(super) const DATE: &str = "a date";
 
-/// The content of a cell.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum CellContent {
-    Number(f64),
-    Text(String),
-}
-
-impl CellContent {
-    /// The content as text.
-    pub(crate) fn text(&self) -> String {
-        match self {
-            Self::Number(x) => x.to_string(),
-            Self::Text(text) => text.clone(),
-        }
-    }
-}
-
 /// The cells of a sheet that hold something, by row and column from 0.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sheet {
-    pub cells: BTreeMap<(u32, u32), CellContent>,
+    pub cells: BTreeMap<(u32, u32), Attribute>,
 }
 
 impl Sheet {
@@ -76,20 +60,20 @@ impl Sheet {
     ) -> Result<()> {
         let content = match value {
             DataRef::Empty => return Ok(()),
-            DataRef::Float(x) => CellContent::Number(*x),
+            DataRef::Float(x) => Attribute::Number(*x),
             #[expect(
                 clippy::cast_precision_loss,
                 reason = "no measured figure has 16 digits before the point"
             )]
-            DataRef::Int(x) => CellContent::Number(*x as f64),
-            DataRef::String(text) => CellContent::Text(text.clone()),
-            DataRef::SharedString(text) => CellContent::Text((*text).to_owned()),
+            DataRef::Int(x) => Attribute::Number(*x as f64),
+            DataRef::String(text) => Attribute::Text(text.clone()),
+            DataRef::SharedString(text) => Attribute::Text((*text).to_owned()),
             DataRef::DateTime(_) | DataRef::DateTimeIso(_) | DataRef::DurationIso(_) => {
-                CellContent::Text(DATE.to_owned())
+                Attribute::Text(DATE.to_owned())
             }
-            other => CellContent::Text(Data::from(other.clone()).to_string()),
+            other => Attribute::Text(Data::from(other.clone()).to_string()),
         };
-        if matches!(&content, CellContent::Text(text) if text.trim().is_empty()) {
+        if matches!(&content, Attribute::Text(text) if text.trim().is_empty()) {
             return Ok(());
         }
         self.cells.insert((row, column), content);
@@ -110,63 +94,53 @@ impl Sheet {
 }
 
 /// A workbook that has been checked to fit into memory.
-pub(super) struct CheckedWorkbook {
-    book: Sheets<BufReader<File>>,
+pub(super) type OpenWorkbook = Sheets<BufReader<File>>;
+
+/// Opens a workbook.
+///
+/// # Errors
+/// [`Error::Io`] for a file that is not there; [`Error::Input`] for one that is no workbook or unpacks to more than any
+/// table of derivatives needs.
+pub(super) fn open(path: &Path) -> Result<OpenWorkbook> {
+    let file = File::open(path).map_err(|e| Error::io(path, e))?;
+    let is_old = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("xls"));
+    if is_old {
+        let size = file.metadata().map_err(|e| Error::io(path, e))?.len();
+        ensure(
+            size <= OLD_BYTES_AT_MOST,
+            "",
+            format_args!("a workbook of at most {} MiB", OLD_BYTES_AT_MOST >> 20),
+            format_args!("{} MiB", size >> 20),
+        )?;
+    } else {
+        check_size(file)?;
+    }
+    open_workbook_auto(path).map_err(|e| no_workbook(&e))
 }
 
-impl CheckedWorkbook {
-    /// Opens a workbook.
-    ///
-    /// # Errors
-    /// [`Error::Io`] for a file that is not there; [`Error::Input`] for one that is no workbook or unpacks to more than any
-    /// table of derivatives needs.
-    pub(crate) fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|e| Error::io(path, e))?;
-        let is_old = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("xls"));
-        if is_old {
-            let size = file.metadata().map_err(|e| Error::io(path, e))?.len();
-            ensure(
-                size <= OLD_BYTES_AT_MOST,
-                "",
-                format_args!("a workbook of at most {} MiB", OLD_BYTES_AT_MOST >> 20),
-                format_args!("{} MiB", size >> 20),
-            )?;
-        } else {
-            check_size(file)?;
-        }
-        let book = open_workbook_auto(path).map_err(|e| no_workbook(&e))?;
-        Ok(Self { book })
-    }
-
-    /// Names of the sheets.
-    pub(crate) fn names(&self) -> Vec<String> {
-        self.book.sheet_names()
-    }
-
-    /// The sheet of this name, whose capitals do not count; `None` when there is none.
-    pub(crate) fn sheet(&mut self, wanted: &str) -> Result<Option<Sheet>> {
-        let names = self.book.sheet_names();
-        let found = names.iter().find(|n| n.trim().eq_ignore_ascii_case(wanted));
-        let Some(name) = found else { return Ok(None) };
-        let place = || format!("sheet {wanted}");
-        let unreadable =
-            |e: &dyn std::fmt::Display| Error::input(place(), "readable cells", e.to_string());
-        let mut sheet = Sheet::default();
-        match &mut self.book {
-            Sheets::Xlsx(book) => read_xlsx(book, name, &place, &mut sheet)?,
-            other => {
-                let range = other.worksheet_range(name).map_err(|e| unreadable(&e))?;
-                let (row, column) = range.start().unwrap_or_default();
-                for (r, c, value) in range.used_cells() {
-                    let (row, column) = (row + index(r), column + index(c));
-                    sheet.insert(&place, row, column, &as_reference(value))?;
-                }
+/// The sheet of this name, whose capitals do not count; `None` when there is none.
+pub(super) fn sheet_of(book: &mut OpenWorkbook, wanted: &str) -> Result<Option<Sheet>> {
+    let names = book.sheet_names();
+    let found = names.iter().find(|n| n.trim().eq_ignore_ascii_case(wanted));
+    let Some(name) = found else { return Ok(None) };
+    let place = || format!("sheet {wanted}");
+    let mut sheet = Sheet::default();
+    match book {
+        Sheets::Xlsx(book) => read_xlsx(book, name, &place, &mut sheet)?,
+        other => {
+            let range = other.worksheet_range(name);
+            let range =
+                range.map_err(|e| Error::input(place(), "readable cells", e.to_string()))?;
+            let (row, column) = range.start().unwrap_or_default();
+            for (r, c, value) in range.used_cells() {
+                let (row, column) = (row + index(r), column + index(c));
+                sheet.insert(&place, row, column, &as_reference(value))?;
             }
         }
-        Ok(Some(sheet))
     }
+    Ok(Some(sheet))
 }
 
 /// The cells of a sheet one by one, then those of its formulas that nobody evaluated.

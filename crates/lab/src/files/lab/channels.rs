@@ -36,6 +36,16 @@ pub enum Attribute {
     Text(String),
 }
 
+impl Attribute {
+    /// The value as text.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Self::Number(x) => x.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
 /// Numbers in one file, or one group of it, at most: all channels of 46 for an hour at 200 Hz. With it each reader works within
 /// 1 GiB for files of 100 MB.
 pub(super) const NUMBERS_AT_MOST: u64 = 32 << 20;

@@ -12,14 +12,14 @@ fn fixture(name: &str) -> PathBuf {
         .collect()
 }
 
-fn three_frequencies() -> WorkbookOptions {
-    WorkbookOptions {
+fn three_frequencies() -> ReadOptions {
+    ReadOptions {
         frequencies_hz: Some(vec![0.5, 1.0, 2.0]),
-        ..WorkbookOptions::default()
+        ..ReadOptions::default()
     }
 }
 
-fn refused(name: &str, options: &WorkbookOptions) -> String {
+fn refused(name: &str, options: &ReadOptions) -> String {
     let path = fixture(name);
     let message = read_workbook(&path, options).unwrap_err().to_string();
     let place = message.strip_prefix(&format!("{}: ", path.display()));
@@ -65,10 +65,10 @@ fn workbook_to_csv_and_back_is_bit_exact() {
 
 #[test]
 fn a_stated_width_is_taken() {
-    let options = WorkbookOptions {
+    let options = ReadOptions {
         width_m: Some(0.51),
         name: Some("deck".to_owned()),
-        ..WorkbookOptions::default()
+        ..ReadOptions::default()
     };
     let table = read_workbook(fixture("workbook.xlsx"), &options).unwrap();
     assert_eq!((table.width_m, table.name.as_str()), (0.51, "deck"));
@@ -106,9 +106,9 @@ fn missing_sheets_and_columns_are_named() {
 
 #[test]
 fn frequencies_that_do_not_fit_are_refused() {
-    let options = |frequencies_hz| WorkbookOptions {
+    let options = |frequencies_hz| ReadOptions {
         frequencies_hz: Some(frequencies_hz),
-        ..WorkbookOptions::default()
+        ..ReadOptions::default()
     };
     let message = refused("workbook.xlsx", &options(TABLE_3_2_FREQUENCIES_HZ.to_vec()));
     assert!(
@@ -122,7 +122,7 @@ fn frequencies_that_do_not_fit_are_refused() {
 /// Three frequencies that nobody states: everything but the width is there, and a note says what was taken for it.
 #[test]
 fn other_frequencies_are_read_with_a_note_on_the_width() {
-    let table = read_workbook(fixture("workbook.xlsx"), &WorkbookOptions::default()).unwrap();
+    let table = read_workbook(fixture("workbook.xlsx"), &ReadOptions::default()).unwrap();
     assert_eq!(table.width_m, 1.0);
     let [note] = &table.header.notes[..] else {
         panic!("{:?}", table.header.notes)
@@ -167,7 +167,7 @@ fn workbooks_of_the_laboratorys_package_are_read() {
             }
         }
         book.save(&path).unwrap();
-        let table = read_workbook(&path, &WorkbookOptions::default()).unwrap();
+        let table = read_workbook(&path, &ReadOptions::default()).unwrap();
         assert_eq!(table.width_m, 0.75);
         let notes = table.header.notes.join("; ");
         assert!(
@@ -179,9 +179,9 @@ fn workbooks_of_the_laboratorys_package_are_read() {
             "{notes}"
         );
         assert!(table.points(Derivative::A4).iter().all(|p| p.value == 0.0));
-        let quasi_steady = WorkbookOptions {
-            missing: Some(Missing::QuasiSteady),
-            ..WorkbookOptions::default()
+        let quasi_steady = ReadOptions {
+            missing: Some(crate::aerodynamics::derivatives::Missing::QuasiSteady),
+            ..ReadOptions::default()
         };
         let table = read_workbook(&path, &quasi_steady).unwrap();
         let values = table.points(Derivative::H4).iter().map(|p| p.value);
@@ -206,7 +206,7 @@ fn workbooks_that_would_fill_the_memory_are_bounded() {
         sheet.write_number(1_048_575, 16_383, 1.0).unwrap();
     }
     book.save(&far).unwrap();
-    let table = read_workbook(&far, &WorkbookOptions::default()).unwrap();
+    let table = read_workbook(&far, &ReadOptions::default()).unwrap();
     assert_eq!(table.points(Derivative::A4).len(), 1);
 
     let bomb = dir.path().join("bomb.xlsx");
@@ -222,7 +222,7 @@ fn workbooks_that_would_fill_the_memory_are_bounded() {
     }
     zip.finish().unwrap();
     assert!(std::fs::metadata(&bomb).unwrap().len() < 200_000);
-    let message = read_workbook(&bomb, &WorkbookOptions::default())
+    let message = read_workbook(&bomb, &ReadOptions::default())
         .unwrap_err()
         .to_string();
     assert!(
@@ -263,8 +263,8 @@ fn a_date_is_no_number() {
         .write_datetime_with_format(1, 1, &date, &format)
         .unwrap();
     book.save(&path).unwrap();
-    let mut book = CheckedWorkbook::open(&path).unwrap();
-    let sheet = book.sheet(DERIVATIVES.0).unwrap().unwrap();
+    let mut book = crate::files::derivatives::xlsx_cells::open(&path).unwrap();
+    let sheet = sheet_of(&mut book, DERIVATIVES.0).unwrap().unwrap();
     let refused = number(&sheet, DERIVATIVES.0, 1, 1).unwrap_err().to_string();
     assert_eq!(
         refused,
@@ -276,10 +276,10 @@ fn a_date_is_no_number() {
 /// its argument stated, and columns are looked for by its names.
 #[test]
 fn a_stated_convention_is_obeyed() {
-    let options = |stated| WorkbookOptions {
+    let options = |stated| ReadOptions {
         width_m: Some(0.5),
         convention: stated,
-        ..WorkbookOptions::default()
+        ..ReadOptions::default()
     };
     let stated = StatedConvention {
         argument: Some(Argument::VStar),
