@@ -14,7 +14,7 @@
 
 use crate::aerodynamics::GustSeries;
 use crate::error::{Place, Result, ensure, finite};
-use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
+use crate::files::header_csv::{CommentHeader, number_rows};
 use crate::files::text::read_text;
 use std::io::Write;
 use std::path::Path;
@@ -50,19 +50,13 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
     let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
     header.must_say("units", UNITS)?;
     header.must_say("sign_convention", SIGNS)?;
-    let mut reader = table_reader(text);
-    let names = reader.headers().map_err(csv_error)?.clone();
-    let columns = find_columns(&names, GUST_COLUMNS, header.lines() + 1)?;
     let (mut along, mut vertical, mut step) = (Vec::new(), Vec::new(), 0.0);
-    for record in reader.records() {
-        let record = record.map_err(csv_error)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let cell = |i: usize| -> Result<f64> {
-            let place = Place::line(line).column(GUST_COLUMNS[i]);
-            let value = number(&place, record.get(columns[i]).unwrap_or(""))?;
-            finite(place, value)
-        };
-        let time = cell(0)?;
+    for row in number_rows(text, GUST_COLUMNS, header.lines() + 1)? {
+        let (line, row) = row?;
+        for (name, value) in GUST_COLUMNS.iter().zip(row) {
+            finite(Place::line(line).column(name), value)?;
+        }
+        let [time, u, w] = row;
         if along.len() == 1 {
             step = crate::error::positive(Place::line(line).column("time_s"), time)?;
         }
@@ -73,8 +67,8 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
             format_args!("{expected} (equal steps from zero)"),
             time,
         )?;
-        along.push(cell(1)?);
-        vertical.push(cell(2)?);
+        along.push(u);
+        vertical.push(w);
     }
     ensure(
         along.len() >= 2,
@@ -92,10 +86,13 @@ pub fn write_gusts(
     gusts: &GustSeries,
     out: &mut dyn Write,
 ) -> std::io::Result<()> {
-    CommentHeader::write_format(out, FORMAT)?;
-    for (key, value) in KEYS.iter().zip([name, source, UNITS, SIGNS]) {
-        CommentHeader::write_line(out, key, value)?;
-    }
+    let entries = [
+        ("name", name),
+        ("source", source),
+        ("units", UNITS),
+        ("sign_convention", SIGNS),
+    ];
+    CommentHeader::write(out, FORMAT, &entries)?;
     writeln!(out, "{}", GUST_COLUMNS.join(","))?;
     let pairs = gusts.along_m_s().iter().zip(gusts.vertical_m_s());
     for (i, (u, w)) in pairs.enumerate() {

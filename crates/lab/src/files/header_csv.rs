@@ -12,6 +12,26 @@ pub(crate) fn table_reader(text: &str) -> csv::Reader<&[u8]> {
         .from_reader(text.as_bytes())
 }
 
+/// The `wanted` columns, which may stand in any order, of the table below the header of `text`: row by row the line and the numbers.
+pub(crate) fn number_rows<const N: usize>(
+    text: &str,
+    wanted: [&'static str; N],
+    names_line: usize,
+) -> Result<impl Iterator<Item = Result<(u64, [f64; N])>>> {
+    let mut reader = table_reader(text);
+    let columns = find_columns(reader.headers().map_err(csv_error)?, wanted, names_line)?;
+    Ok(reader.into_records().map(move |record| {
+        let record = record.map_err(csv_error)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let mut row = [0.0; N];
+        for (cell, (column, name)) in row.iter_mut().zip(columns.iter().zip(wanted)) {
+            let place = Place::line(line).column(name);
+            *cell = number(place, record.get(*column).unwrap_or(""))?;
+        }
+        Ok((line, row))
+    }))
+}
+
 /// One header line.
 #[derive(Debug, Clone)]
 pub(crate) struct HeaderLine {
@@ -140,9 +160,17 @@ impl CommentHeader {
         Err(entry.wrong(&format!("`{expected}`")))
     }
 
-    /// Writes the first line of a file.
-    pub(crate) fn write_format(out: &mut dyn Write, format: &str) -> std::io::Result<()> {
-        writeln!(out, "# {format}")
+    /// Writes the first line of a file and one for each key.
+    pub(crate) fn write(
+        out: &mut dyn Write,
+        format: &str,
+        entries: &[(&str, &str)],
+    ) -> std::io::Result<()> {
+        writeln!(out, "# {format}")?;
+        for (key, value) in entries {
+            Self::write_line(out, key, value)?;
+        }
+        Ok(())
     }
 
     /// Writes one line; a line break inside `value` would end the comment and becomes a blank.

@@ -66,18 +66,14 @@ fn column(table: &Table, expected: &str) -> Result<Vec<f64>> {
 
 fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {
     let node = table.required(&["node", "label"])?;
-    let names = [
-        ["U1", "ux"],
-        ["U2", "uy"],
-        ["U3", "uz"],
-        ["UR1", "rx"],
-        ["UR2", "ry"],
-        ["UR3", "rz"],
-    ];
-    let mut columns = [0; 6];
-    for (column, name) in columns.iter_mut().zip(&names) {
-        *column = table.required(name)?;
-    }
+    let columns = table.columns([
+        &["U1", "ux"],
+        &["U2", "uy"],
+        &["U3", "uz"],
+        &["UR1", "rx"],
+        &["UR2", "ry"],
+        &["UR3", "rz"],
+    ])?;
     let mut at: HashMap<String, [f64; 6]> = HashMap::new();
     let names: Vec<String> = table.rows.iter().map(|row| row.name(node)).collect();
     table.each_once(names.iter().map(String::as_str))?;
@@ -89,11 +85,7 @@ fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {
             "a node of nodes.csv",
             format_args!("node {name}"),
         )?;
-        let mut values = [0.0; 6];
-        for (value, column) in values.iter_mut().zip(columns) {
-            *value = row.number(column)?;
-        }
-        at.insert(name, values);
+        at.insert(name, row.numbers(columns)?);
     }
     let of_node = |(name, _): &(String, [f64; 3])| {
         at.get(name).copied().ok_or_else(|| {

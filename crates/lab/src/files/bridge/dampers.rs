@@ -15,22 +15,16 @@ pub struct DamperBlock {
     /// What it acts against. A mass against `torsion` is a pair: half of it on either side, each moving up and down.
     pub motion: Dof,
     /// Distance of the halves of a pair from the axis of the node, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arm_m: Option<f64>,
     /// Mass, of a pair both together, kg.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
     /// Natural frequency while the girder is held, Hz.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequency_hz: Option<f64>,
     /// Ratio to critical damping.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_ratio: Option<f64>,
     /// Force of a link over its speed, N·s/m; against torsion N·m·s/rad.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coefficient: Option<f64>,
     /// Name of the node at the other end of a link; left out, the ground.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<String>,
 }
 

@@ -41,10 +41,7 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
 }
 
 fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
-    let one = |row: &TableRow| {
-        let at = [row.number(1)?, row.number(2)?, row.number(3)?];
-        Ok((row.name(0), at))
-    };
+    let one = |row: &TableRow| Ok((row.name(0), row.numbers([1, 2, 3])?));
     table.rows.iter().map(one).collect()
 }
 
@@ -83,12 +80,6 @@ fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {
             row.cells.len().to_string(),
         ));
     };
-    let part = |n: usize| {
-        let mut u = [0.0; 6];
-        for (d, value) in u.iter_mut().enumerate() {
-            *value = row.number(leading + 6 * n + d)?;
-        }
-        Ok(u)
-    };
+    let part = |n: usize| row.numbers(std::array::from_fn(|d| leading + 6 * n + d));
     (0..nodes).map(part).collect()
 }

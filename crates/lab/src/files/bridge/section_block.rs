@@ -18,19 +18,15 @@ pub struct BridgeSectionBlock {
     /// Width `B`, m.
     pub width_m: f64,
     /// Name of the first node; left out, the first of the bridge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
     /// Name of the last node; left out, the last of the bridge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<String>,
     /// Embedded deck or file of a derivative table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivatives: Option<String>,
     /// Notation, argument and axes of the table, as far as it does not state them itself.
     #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
     pub convention: StatedConvention,
     /// Mean angle of the section in the tests, deg, nose-up positive; left out, what the table states, or 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
     /// How the table is read between its points.
     #[serde(default)]
@@ -39,16 +35,14 @@ pub struct BridgeSectionBlock {
     #[serde(default = "three")]
     pub filters: usize,
     /// How the model is fitted to the table, as in a study; before `filters`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fit: Option<toml::Table>,
     /// Motions with self-excited forces.
     #[serde(default = "two")]
     pub motions: Vec<Dof>,
     /// File of a trained model.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<PathBuf>,
     /// Static coefficients; without `derivatives` and `model` the forces are quasi-steady.
-    #[serde(default, rename = "static", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "static")]
     pub statics: Option<StaticBlock>,
 }
 

@@ -51,16 +51,15 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     header.must_say("axes", AXES)?;
     header.must_say("units", UNITS)?;
     let table = Table::parse(text)?;
-    let [name, along, length] = ["node", "along_m", "length_m"].map(|n| table.required(&[n]));
-    let (name, along, length) = (name?, along?, length?);
-    let mut nodes = Vec::with_capacity(table.rows.len());
-    for row in &table.rows {
-        nodes.push(Node {
+    let [name, along, length] = table.columns([&["node"], &["along_m"], &["length_m"]])?;
+    let node = |row: &TableRow| {
+        Ok(Node {
             name: of_csv_cell(&row.name(name)).to_owned(),
             along_m: row.number(along)?,
             length_m: row.number(length)?,
-        });
-    }
+        })
+    };
+    let nodes: Vec<Node> = table.rows.iter().map(node).collect::<Result<_>>()?;
     table.each_once(nodes.iter().map(|n| n.name.as_str()))?;
     let offsets_m = offsets(&table)?;
     check_order(&nodes)?;
@@ -74,16 +73,15 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
         let place = entry.place();
         positive(format!("{place}, frequency"), frequency_hz)?;
         positive(format!("{place}, generalised mass"), generalised_mass)?;
-        let columns = PARTS.map(|part| table.required(&[&format!("{part}_{number}")]));
-        let [v, l, r] = columns;
-        let (v, l, r) = (v?, l?, r?);
-        let at = |row: &TableRow| Ok([row.number(v)?, row.number(l)?, row.number(r)?]);
+        let names = PARTS.map(|part| format!("{part}_{number}"));
+        let [v, l, r] = names.each_ref().map(String::as_str);
+        let columns = table.columns([&[v], &[l], &[r]])?;
         Ok(BridgeMode {
             number,
             frequency_hz,
             generalised_mass,
             damping_ratio: 0.0,
-            shape: table.rows.iter().map(at).collect::<Result<_>>()?,
+            shape: table.all(columns)?,
         })
     });
     let modes = modes.collect::<Result<Vec<_>>>()?;
@@ -123,10 +121,8 @@ fn offsets(table: &Table) -> Result<Vec<[f64; 2]>> {
     if OFFSETS.iter().all(|name| table.column(&[name]).is_none()) {
         return Ok(Vec::new());
     }
-    let [downwind, up] = OFFSETS.map(|name| table.required(&[name]));
-    let (downwind, up) = (downwind?, up?);
-    let at = |row: &TableRow| Ok([row.number(downwind)?, row.number(up)?]);
-    table.rows.iter().map(at).collect()
+    let [downwind, up] = OFFSETS;
+    table.all(table.columns([&[downwind], &[up]])?)
 }
 
 fn mode_line(value: &str) -> Option<(usize, f64, f64)> {
@@ -147,12 +143,14 @@ pub fn write_modes(
     generator: &str,
     out: &mut dyn Write,
 ) -> std::io::Result<()> {
-    CommentHeader::write_format(out, FORMAT)?;
-    CommentHeader::write_line(out, "source", &modes.source)?;
-    CommentHeader::write_line(out, "licence", licence)?;
-    CommentHeader::write_line(out, "axes", AXES)?;
-    CommentHeader::write_line(out, "units", UNITS)?;
-    CommentHeader::write_line(out, "generator", generator)?;
+    let entries = [
+        ("source", modes.source.as_str()),
+        ("licence", licence),
+        ("axes", AXES),
+        ("units", UNITS),
+        ("generator", generator),
+    ];
+    CommentHeader::write(out, FORMAT, &entries)?;
     for m in &modes.modes {
         let line = format!(
             "{}, {} Hz, {} kg",

@@ -132,6 +132,15 @@ impl Table {
         })
     }
 
+    /// Places of columns that must be there, each by one of its names.
+    pub(super) fn columns<const N: usize>(&self, names: [&[&str]; N]) -> Result<[usize; N]> {
+        let mut columns = [0; N];
+        for (column, names) in columns.iter_mut().zip(names) {
+            *column = self.required(names)?;
+        }
+        Ok(columns)
+    }
+
     /// Refuses a node in two rows; `names` are those of the nodes, row by row.
     pub(super) fn each_once<'n>(&self, names: impl Iterator<Item = &'n str>) -> Result<()> {
         let mut known = HashSet::new();
@@ -144,6 +153,11 @@ impl Table {
             )?;
         }
         Ok(())
+    }
+
+    /// The numbers in these columns of all rows.
+    pub(super) fn all<const N: usize>(&self, columns: [usize; N]) -> Result<Vec<[f64; N]>> {
+        self.rows.iter().map(|row| row.numbers(columns)).collect()
     }
 
     /// All numbers of all rows, in order.
@@ -172,6 +186,15 @@ impl TableRow {
         number
             .filter(|x| x.is_finite())
             .ok_or_else(|| Error::input(place, "a finite number", format!("`{cell}`")))
+    }
+
+    /// The numbers in some cells.
+    pub(super) fn numbers<const N: usize>(&self, columns: [usize; N]) -> Result<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for (number, column) in numbers.iter_mut().zip(columns) {
+            *number = self.number(column)?;
+        }
+        Ok(numbers)
     }
 
     /// The whole number in a cell.

@@ -28,23 +28,24 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
 
 /// Nodes with their places.
 pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
-    let node = table.required(&["node", "tag", "label"])?;
-    let x = table.required(&["x_m", "x"])?;
-    let y = table.required(&["y_m", "y"])?;
-    let z = table.required(&["z_m", "z"])?;
-    let one = |row: &TableRow| {
-        let at = [row.number(x)?, row.number(y)?, row.number(z)?];
-        Ok((row.name(node), at))
-    };
+    let [node, x, y, z] = table.columns([
+        &["node", "tag", "label"],
+        &["x_m", "x"],
+        &["y_m", "y"],
+        &["z_m", "z"],
+    ])?;
+    let one = |row: &TableRow| Ok((row.name(node), row.numbers([x, y, z])?));
     let nodes: Vec<(String, [f64; 3])> = table.rows.iter().map(one).collect::<Result<_>>()?;
     table.each_once(nodes.iter().map(|n| n.0.as_str()))?;
     Ok(nodes)
 }
 
 fn modes(table: &Table, nodes: usize) -> Result<Vec<RawMode>> {
-    let mode = table.required(&["mode"])?;
-    let frequency = table.required(&["frequency_hz"])?;
-    let mass = table.required(&["generalised_mass_kg", "generalised_mass"])?;
+    let [mode, frequency, mass] = table.columns([
+        &["mode"],
+        &["frequency_hz"],
+        &["generalised_mass_kg", "generalised_mass"],
+    ])?;
     let one = |row: &TableRow| {
         Ok(RawMode {
             number: row.count(mode)?,
@@ -66,11 +67,8 @@ fn modes(table: &Table, nodes: usize) -> Result<Vec<RawMode>> {
 }
 
 fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> Result<()> {
-    let columns =
-        ["mode", "node", "ux", "uy", "uz", "rx", "ry", "rz"].map(|n| table.required(&[n]));
-    let [mode, node, ux, uy, uz, rx, ry, rz] = columns;
-    let parts = [ux?, uy?, uz?, rx?, ry?, rz?];
-    let (mode, node) = (mode?, node?);
+    let [mode, node] = table.columns([&["mode"], &["node"]])?;
+    let parts = table.columns([&["ux"], &["uy"], &["uz"], &["rx"], &["ry"], &["rz"]])?;
     let place_of: HashMap<&str, usize> = nodes
         .iter()
         .enumerate()
@@ -105,9 +103,7 @@ fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> R
             "each node once in a mode",
             format_args!("node {name} of mode {number} twice"),
         )?;
-        for (value, column) in values.iter_mut().zip(parts) {
-            *value = row.number(column)?;
-        }
+        *values = row.numbers(parts)?;
     }
     for m in modes {
         if let Some(missing) = m.shape.iter().position(|u| u[0].is_nan()) {

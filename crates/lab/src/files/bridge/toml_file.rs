@@ -41,7 +41,6 @@ pub struct BridgeFile {
     #[serde(default)]
     pub flutter: SearchBlock,
     /// Turbulence, as the room of buffeting reads it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buffeting: Option<toml::Table>,
     /// Whose report it is.
     #[serde(default, skip_serializing_if = "ReportBlock::is_empty")]
@@ -66,15 +65,12 @@ pub struct ModesBlock {
     /// File or folder, or the name of an embedded bridge (`langenuen`).
     pub path: PathBuf,
     /// Up and downwind in the axes of the files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<WindAxes>,
     /// Damping ratio of all modes, or a list of one per mode.
     pub damping_ratio: DampingRatios,
     /// Numbers of the modes that take part; left out, all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select: Option<Vec<usize>>,
     /// Span and masses, for files that do not know them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub span: Option<SpanBlock>,
 }
 
@@ -150,7 +146,6 @@ pub struct SearchBlock {
     /// Speeds between still air and the highest.
     pub speeds: usize,
     /// Nothing critical may begin below this wind speed, m/s: the criterion of a code. The search always reaches it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub required_speed_m_s: Option<f64>,
 }
 

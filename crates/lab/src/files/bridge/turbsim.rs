@@ -19,46 +19,15 @@ const SAME_HEIGHT: f64 = 1e-2;
 /// The components that act on a girder: along the mean wind, and up.
 const ALONG_AND_UP: [usize; 2] = [0, 2];
 
-/// Bytes that are read in turn.
-struct TurbSimBytes<'a> {
-    all: &'a [u8],
-    at: usize,
-}
-
-impl TurbSimBytes<'_> {
-    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {
-        let found = self.all.get(self.at..).and_then(|rest| rest.first_chunk());
-        let found = found.ok_or_else(|| {
-            let place = format!("byte {}", self.at);
-            Error::input(place, what, format!("the end at {}", self.all.len()))
-        })?;
-        self.at += N;
-        Ok(*found)
-    }
-
-    fn short(&mut self, what: &str) -> Result<i16> {
-        Ok(i16::from_le_bytes(self.take(what)?))
-    }
-
-    /// A number of `lowest` or more.
-    fn count(&mut self, what: &str, lowest: i32) -> Result<usize> {
-        let place = self.at;
-        let count = i32::from_le_bytes(self.take(what)?);
-        match usize::try_from(count) {
-            Ok(fits) if count >= lowest => Ok(fits),
-            _ => Err(Error::input(
-                format!("byte {place}, {what}"),
-                format!("{lowest} or more"),
-                count.to_string(),
-            )),
-        }
-    }
-
-    fn number(&mut self, what: &str) -> Result<f64> {
-        let place = self.at;
-        let number = f64::from(f32::from_le_bytes(self.take(what)?));
-        finite(format_args!("byte {place}, {what}"), number)
-    }
+/// The next bytes, which are to be `what`.
+fn take<const N: usize>(all: &[u8], at: &mut usize, what: &str) -> Result<[u8; N]> {
+    let found = all.get(*at..).and_then(|rest| rest.first_chunk());
+    let found = found.ok_or_else(|| {
+        let place = format!("byte {at}");
+        Error::input(place, what, format!("the end at {}", all.len()))
+    })?;
+    *at += N;
+    Ok(*found)
 }
 
 /// The head of a file.
@@ -79,35 +48,49 @@ struct TurbSimHeader {
 
 impl TurbSimHeader {
     fn read(all: &[u8]) -> Result<Self> {
-        let mut bytes = TurbSimBytes { all, at: 0 };
-        let kind = bytes.short("the kind of file")?;
+        let at = &mut 0;
+        let kind = i16::from_le_bytes(take(all, at, "the kind of file")?);
         ensure(
             KINDS.contains(&kind),
             "byte 0",
             "7 or 8, a full-field file of TurbSim",
             kind,
         )?;
+        // a number of `lowest` or more
+        let count = |at: &mut usize, what: &str, lowest: i32| {
+            let place = format!("byte {at}, {what}");
+            let count = i32::from_le_bytes(take(all, at, what)?);
+            match usize::try_from(count) {
+                Ok(fits) if count >= lowest => Ok(fits),
+                _ => {
+                    let expected = format!("{lowest} or more");
+                    Err(Error::input(place, expected, count.to_string()))
+                }
+            }
+        };
+        let number = |at: &mut usize, what: &str| {
+            let place = format!("byte {at}, {what}");
+            finite(place, f64::from(f32::from_le_bytes(take(all, at, what)?)))
+        };
         let counts = [
-            bytes.count("points upwards", 1)?,
-            bytes.count("points across", 2)?,
-            bytes.count("points of the tower", 0)?,
-            bytes.count("time steps", 3)?,
+            count(at, "points upwards", 1)?,
+            count(at, "points across", 2)?,
+            count(at, "points of the tower", 0)?,
+            count(at, "time steps", 3)?,
         ];
         let steps = [
-            bytes.number("distance upwards")?,
-            bytes.number("distance across")?,
-            bytes.number("time step")?,
+            number(at, "distance upwards")?,
+            number(at, "distance across")?,
+            number(at, "time step")?,
         ];
-        let mean_speed_m_s = bytes.number("mean wind")?;
-        let (hub_height_m, lowest_m) = (
-            bytes.number("height of the hub")?,
-            bytes.number("lowest height")?,
-        );
+        let mean_speed_m_s = number(at, "mean wind")?;
+        let hub_height_m = number(at, "height of the hub")?;
+        let lowest_m = number(at, "lowest height")?;
         let mut scales = [[0.0; 2]; COMPONENTS];
         for scale in &mut scales {
-            *scale = [bytes.number("slope")?, bytes.number("intercept")?];
+            *scale = [number(at, "slope")?, number(at, "intercept")?];
         }
-        let text = bytes.count("characters of the description", 0)?;
+        let text = count(at, "characters of the description", 0)?;
         let head = Self {
             counts,
             steps,
@@ -115,7 +98,7 @@ impl TurbSimHeader {
             hub_height_m,
             lowest_m,
             scales,
-            end: bytes.at.saturating_add(text),
+            end: at.saturating_add(text),
         };
         head.check(all.len())?;
         Ok(head)

@@ -19,7 +19,7 @@ use crate::aerodynamics::quasi_steady::{
     CoefficientRow, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION, TABLE_UNITS,
 };
 use crate::error::{Place, Result};
-use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
+use crate::files::header_csv::{CommentHeader, number_rows};
 use crate::files::text::read_text;
 use std::io::Write;
 use std::path::Path;
@@ -54,7 +54,17 @@ pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoeffici
 /// convention or other units, text or NaN in numbers, angles that do not rise, fewer than four rows.
 pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
     let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
-    let (rows, lines) = read_rows(text, header.lines() + 1)?;
+    let (mut rows, mut lines) = (Vec::new(), Vec::new());
+    for row in number_rows(text, COEFFICIENT_COLUMNS, header.lines() + 1)? {
+        let (line, [angle_deg, drag, lift, moment]) = row?;
+        rows.push(CoefficientRow {
+            angle_deg,
+            drag,
+            lift,
+            moment,
+        });
+        lines.push(line);
+    }
     let no_row = header.lines() as u64 + 1;
     check_rows(&rows, |i| {
         Place::line(lines.get(i).copied().unwrap_or(no_row))
@@ -71,48 +81,21 @@ pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
 
 /// Writes a table; `parse_coefficients` gives the same table back, bit for bit.
 pub fn write_coefficients(table: &StaticCoefficients, out: &mut dyn Write) -> std::io::Result<()> {
-    CommentHeader::write_format(out, FORMAT)?;
     let header = table.header();
     let entries = [
-        table.name(),
-        &header.source,
-        &header.licence,
-        TABLE_UNITS,
-        TABLE_SIGN_CONVENTION,
-        &header.generator,
+        ("name", table.name()),
+        ("source", &header.source),
+        ("licence", &header.licence),
+        ("units", TABLE_UNITS),
+        ("sign_convention", TABLE_SIGN_CONVENTION),
+        ("generator", &header.generator),
     ];
-    for (key, value) in KEYS.iter().zip(entries) {
-        CommentHeader::write_line(out, key, value)?;
-    }
+    CommentHeader::write(out, FORMAT, &entries)?;
     writeln!(out, "{}", COEFFICIENT_COLUMNS.join(","))?;
     for r in table.rows() {
         writeln!(out, "{},{},{},{}", r.angle_deg, r.drag, r.lift, r.moment)?;
     }
     Ok(())
-}
-
-/// The rows and the lines they stand on.
-fn read_rows(text: &str, names_line: usize) -> Result<(Vec<CoefficientRow>, Vec<u64>)> {
-    let mut reader = table_reader(text);
-    let names = reader.headers().map_err(csv_error)?.clone();
-    let columns = find_columns(&names, COEFFICIENT_COLUMNS, names_line)?;
-    let (mut rows, mut lines) = (Vec::new(), Vec::new());
-    for record in reader.records() {
-        let record = record.map_err(csv_error)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let cell = |i: usize| {
-            let place = Place::line(line).column(COEFFICIENT_COLUMNS[i]);
-            number(&place, record.get(columns[i]).unwrap_or(""))
-        };
-        rows.push(CoefficientRow {
-            angle_deg: cell(0)?,
-            drag: cell(1)?,
-            lift: cell(2)?,
-            moment: cell(3)?,
-        });
-        lines.push(line);
-    }
-    Ok((rows, lines))
 }
 
 #[cfg(test)]

@@ -183,12 +183,11 @@ pub(super) fn write_head(
     header: &TableHeader,
     convention: &Convention,
 ) -> std::io::Result<()> {
-    CommentHeader::write_format(out, FORMATS[0])?;
     let length = header
         .model_length_m
         .map_or_else(String::new, |l| l.to_string());
     let width = width_m.to_string();
-    for (key, value) in [
+    let entries = [
         ("name", name),
         ("source", &header.source),
         ("licence", &header.licence),
@@ -200,9 +199,8 @@ pub(super) fn write_head(
         ("generator", &header.generator),
         ("width_m", &width),
         ("model_length_m", &length),
-    ] {
-        CommentHeader::write_line(out, key, value)?;
-    }
+    ];
+    CommentHeader::write(out, FORMATS[0], &entries)?;
     for (key, value) in [
         ("angle_deg", header.angle_deg),
         ("rotation_amplitude_deg", header.rotation_amplitude_deg),

@@ -5,21 +5,13 @@ use super::channels::{Attribute, ChannelSet};
 /// More channels than this in one array are taken for an image or a table, not for channels.
 const CHANNELS_AT_MOST: usize = 512;
 
-/// Order of the elements of an array.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Order {
-    /// The first index runs fastest (MATLAB).
-    FirstFastest,
-    /// The last index runs fastest (HDF5).
-    LastFastest,
-}
-
-/// Adds an array of `shape` under `name`: a number, a channel or several.
+/// Adds an array of `shape` under `name`: a number, a channel or several. The first index of its elements runs fastest (MATLAB), or the
+/// last (HDF5).
 pub(super) fn push_array(
     set: &mut ChannelSet,
     name: &str,
     shape: &[usize],
-    order: Order,
+    first_is_fastest: bool,
     values: Vec<f64>,
     units: &[String],
 ) {
@@ -30,7 +22,7 @@ pub(super) fn push_array(
         all if all.len() == columns => Some(all[column].clone()),
         _ => None,
     };
-    match (sides[..].len(), &sides[..]) {
+    match (sides.len(), &sides[..]) {
         _ if values.is_empty() => set.leave_out(name, "empty"),
         (0, _) => {
             set.attributes
@@ -38,31 +30,21 @@ pub(super) fn push_array(
         }
         (1, _) => set.push(name, values, unit(0, 1)),
         (2, &[rows, columns]) => {
-            // as if stored with the first index fastest
-            let (fast, slow) = match order {
-                Order::FirstFastest => (rows, columns),
-                Order::LastFastest => (columns, rows),
+            let (fast, slow) = match first_is_fastest {
+                true => (rows, columns),
+                false => (columns, rows),
             };
-            let time_is_fast = match order {
-                Order::FirstFastest => fast >= slow,
-                Order::LastFastest => fast > slow,
-            };
-            let (samples, channels) = if time_is_fast {
-                (fast, slow)
-            } else {
-                (slow, fast)
-            };
+            let (samples, channels) = (rows.max(columns), rows.min(columns));
+            // of equal sides it is the first
+            let time_is_fast = fast > slow || (first_is_fastest && fast == slow);
             if channels > CHANNELS_AT_MOST {
                 set.leave_out(name, format!("{rows} × {columns} numbers"));
                 return;
             }
             for c in 0..channels {
-                let at = |i: usize| {
-                    values[if time_is_fast {
-                        c * fast + i
-                    } else {
-                        i * fast + c
-                    }]
+                let at = |i: usize| match time_is_fast {
+                    true => values[c * fast + i],
+                    false => values[i * fast + c],
                 };
                 let column = (0..samples).map(at).collect();
                 set.push(format!("{name}[{}]", c + 1), column, unit(c, channels));

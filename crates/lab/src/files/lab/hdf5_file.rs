@@ -1,7 +1,7 @@
 //! HDF5, and MATLAB v7.3, which is HDF5 with MATLAB's dimensions reversed, by `hdf5-pure`.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use super::columns::{Order, push_array};
+use super::columns::push_array;
 use super::guarded::guarded;
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
@@ -132,8 +132,7 @@ impl Hdf5Reader {
             return Ok(());
         }
         let units = units(&attributes);
-        let order = Order::LastFastest;
-        push_array(&mut self.set, path, &shape, order, values, &units);
+        push_array(&mut self.set, path, &shape, false, values, &units);
         Ok(())
     }
 

@@ -4,7 +4,7 @@
 //! no integers; all three are seen to here.
 
 use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
-use super::columns::{Order, push_array};
+use super::columns::push_array;
 use super::guarded::guarded;
 use crate::error::{Error, Result, ensure};
 use matrw::{MatFile, MatVariable, MatlabType};
@@ -61,7 +61,7 @@ pub(crate) fn matlab_array(mut bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>
     };
     check_count(name, count(&MatVariable::NumericArray(array.clone())))?;
     match numbers(array.numeric_type()) {
-        Numbers::Values(values) if !array.is_complex() => Ok((array.dim.clone(), values)),
+        Ok(values) if !array.is_complex() => Ok((array.dim.clone(), values)),
         _ => Err(missing()),
     }
 }
@@ -189,12 +189,10 @@ fn push(set: &mut ChannelSet, name: &str, variable: &MatVariable) {
             set.leave_out(name, "complex numbers");
         }
         MatVariable::NumericArray(array) => match numbers(array.numeric_type()) {
-            Numbers::Values(values) => {
-                push_array(set, name, &array.dim, Order::FirstFastest, values, &[]);
-            }
-            Numbers::Text(text) => {
-                set.attributes
-                    .insert(name.to_owned(), Attribute::Text(text));
+            Ok(values) => push_array(set, name, &array.dim, true, values, &[]),
+            Err(text) => {
+                let text = Attribute::Text(text);
+                set.attributes.insert(name.to_owned(), text);
             }
         },
         MatVariable::Structure(inner) => {
@@ -218,28 +216,23 @@ fn push(set: &mut ChannelSet, name: &str, variable: &MatVariable) {
     }
 }
 
-enum Numbers {
-    Values(Vec<f64>),
-    Text(String),
-}
-
-/// All numeric types as doubles; 64-bit integers beyond 2⁵³ are rounded.
-fn numbers(values: &MatlabType) -> Numbers {
-    fn wide<T: Copy + Into<f64>>(values: &[T]) -> Numbers {
-        Numbers::Values(values.iter().map(|x| (*x).into()).collect())
+/// All numeric types as doubles, or the text that stands there; 64-bit integers beyond 2⁵³ are rounded.
+fn numbers(values: &MatlabType) -> std::result::Result<Vec<f64>, String> {
+    fn wide<T: Copy + Into<f64>>(values: &[T]) -> Vec<f64> {
+        values.iter().map(|x| (*x).into()).collect()
     }
-    match values {
+    Ok(match values {
         MatlabType::U8(v) => wide(v),
         MatlabType::I8(v) => wide(v),
         MatlabType::U16(v) => wide(v),
         MatlabType::I16(v) => wide(v),
         MatlabType::U32(v) => wide(v),
         MatlabType::I32(v) => wide(v),
-        MatlabType::U64(v) => Numbers::Values(v.iter().map(|x| *x as f64).collect()),
-        MatlabType::I64(v) => Numbers::Values(v.iter().map(|x| *x as f64).collect()),
+        MatlabType::U64(v) => v.iter().map(|x| *x as f64).collect(),
+        MatlabType::I64(v) => v.iter().map(|x| *x as f64).collect(),
         MatlabType::F32(v) => wide(v),
-        MatlabType::F64(v) => Numbers::Values(v.clone()),
-        MatlabType::BOOL(v) => Numbers::Values(v.iter().map(|x| f64::from(u8::from(*x))).collect()),
-        MatlabType::UTF8(v) | MatlabType::UTF16(v) => Numbers::Text(v.iter().collect()),
-    }
+        MatlabType::F64(v) => v.clone(),
+        MatlabType::BOOL(v) => v.iter().map(|x| f64::from(u8::from(*x))).collect(),
+        MatlabType::UTF8(v) | MatlabType::UTF16(v) => return Err(v.iter().collect()),
+    })
 }
