@@ -21,10 +21,10 @@ const MAX_ENTRIES: usize = 100_000;
 pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)> {
     let file = File::open(path).map_err(|e| Error::io(path, e))?;
     let mut zip = ZipArchive::new(BufReader::new(file))
-        .map_err(|e| refused("", "a ZIP archive", e.to_string()))?;
+        .map_err(|e| Error::input("", "a ZIP archive", e.to_string()))?;
     if zip.len() > MAX_ENTRIES {
         let expected = format!("at most {MAX_ENTRIES} entries");
-        return Err(refused("", expected, zip.len().to_string()));
+        return Err(Error::input("", expected, zip.len().to_string()));
     }
     let folder = tempfile::Builder::new()
         .prefix("aerodeck-fmu-")
@@ -32,16 +32,16 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
         .map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let (mut names, mut findings, mut left) = (Vec::new(), FmuFindings::default(), MAX_BYTES);
     for index in 0..zip.len() {
-        let mut entry = zip
-            .by_index(index)
-            .map_err(|e| refused(&format!("entry {index}"), "a readable entry", e.to_string()))?;
+        let mut entry = zip.by_index(index).map_err(|e| {
+            Error::input(format!("entry {index}"), "a readable entry", e.to_string())
+        })?;
         let name = entry
             .name()
-            .map_err(|e| refused(&format!("entry {index}"), "a name in UTF-8", e.to_string()))?
+            .map_err(|e| Error::input(format!("entry {index}"), "a name in UTF-8", e.to_string()))?
             .into_owned();
         let inside = safe_path(&name, &mut findings)?;
         if entry.is_symlink() {
-            return Err(refused(&name, "a file or a folder", "a link"));
+            return Err(Error::input(&name, "a file or a folder", "a link"));
         }
         method(&name, entry.compression(), &mut findings);
         let target = folder.path().join(&inside);
@@ -57,10 +57,6 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
     Ok((folder, names, findings))
 }
 
-fn refused(place: &str, expected: impl Into<String>, found: impl Into<String>) -> Error {
-    Error::input(place, expected, found)
-}
-
 fn safe_path(name: &str, findings: &mut FmuFindings) -> Result<PathBuf> {
     if name.contains('\\') {
         findings.error(
@@ -74,8 +70,8 @@ fn safe_path(name: &str, findings: &mut FmuFindings) -> Result<PathBuf> {
         && !name.contains(['\0', ':'])
         && !name.split('/').any(|part| part == "..");
     if !harmless || name.is_empty() {
-        return Err(refused(
-            &format!("entry {name:?}"),
+        return Err(Error::input(
+            format!("entry {name:?}"),
             "a path inside the archive",
             "one that leads outside",
         ));
@@ -117,15 +113,15 @@ fn method(name: &str, method: CompressionMethod, findings: &mut FmuFindings) {
 fn write(entry: &mut impl Read, name: &str, target: &Path, stated: u64, left: u64) -> Result<u64> {
     if stated > left {
         let expected = format!("at most {MAX_BYTES} bytes unpacked in all");
-        return Err(refused(name, expected, "more"));
+        return Err(Error::input(name, expected, "more"));
     }
     let mut file = File::create_new(target).map_err(|e| Error::io(target, e))?;
     // the size in the directory is only a claim
     let written = std::io::copy(&mut entry.take(stated + 1), &mut file)
-        .map_err(|e| refused(name, "an entry that unpacks", e.to_string()))?;
+        .map_err(|e| Error::input(name, "an entry that unpacks", e.to_string()))?;
     if written > stated {
         let expected = format!("the {stated} bytes that the archive states");
-        return Err(refused(name, expected, "more"));
+        return Err(Error::input(name, expected, "more"));
     }
     Ok(left - written)
 }

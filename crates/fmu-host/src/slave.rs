@@ -1,7 +1,6 @@
 //! A running instance of an FMU, driven through its C interface.
 
 mod fmi3;
-mod late_calls;
 mod states;
 mod values;
 
@@ -15,7 +14,6 @@ use super::library::{
 use super::log::{LogBook, LogMessage, collect_plain, logger, messages_of};
 use super::status::Status;
 use crate::error::{Error, Result};
-use late_calls::LateCalls;
 use std::cell::Cell;
 use std::ffi::{CString, c_void};
 use std::rc::Rc;
@@ -59,8 +57,12 @@ impl Drop for FmuComponent {
 /// A running instance. A call that it answers with neither OK nor a warning returns [`Error::Numerical`] with status and log.
 pub struct Slave {
     core: Rc<FmuComponent>,
-    /// What FMI 3.0 needs to be told at other times.
-    late: LateCalls,
+    /// Of FMI 3.0, what each number was set to last, at first its start value: an element is set along with its whole array.
+    kept: Vec<f64>,
+    /// Start and stop, s, and tolerance, which FMI 3.0 is told at the initialisation.
+    experiment: (f64, Option<f64>, Option<f64>),
+    /// Whether the initialisation of FMI 3.0 has begun, so that all numbers can be read.
+    begun: bool,
 }
 
 impl Slave {
@@ -100,7 +102,9 @@ impl Slave {
                 _callbacks: callbacks,
                 log,
             }),
-            late: LateCalls::new(&loaded.description),
+            kept: fmi3::start_values(&loaded.description),
+            experiment: (0.0, None, None),
+            begun: false,
         })
     }
 
@@ -192,7 +196,7 @@ impl Slave {
         tolerance: Option<f64>,
     ) -> Result<()> {
         if self.model_description().is_fmi3() {
-            self.late.experiment = (start_s, stop_s, tolerance);
+            self.experiment = (start_s, stop_s, tolerance);
             return Ok(());
         }
         // SAFETY: plain values; so for every call below, with slices of the stated length
@@ -212,9 +216,8 @@ impl Slave {
     pub fn enter_initialization(&mut self) -> Result<()> {
         let suffix = "EnterInitializationMode";
         if let OwnFunctions::Three(own) = &self.functions().own {
-            let status = self.status(|_, c| self.late.enter_initialization(own, c));
-            self.answered(suffix, status)?;
-            self.late.begun = true;
+            self.answered(suffix, self.initialization_of_three(own))?;
+            self.begun = true;
             return Ok(());
         }
         // SAFETY: the component lives; plain values
@@ -258,7 +261,8 @@ impl Slave {
     pub fn reset(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
         self.good("Reset", |f, c| unsafe { (f.reset)(c) })?;
-        self.late = LateCalls::new(self.model_description());
+        self.kept = fmi3::start_values(self.model_description());
+        (self.experiment, self.begun) = ((0.0, None, None), false);
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 //! References are places in the list of variables, where each element of an array is one.
 
 use super::Slave;
-use crate::description::ArrayElement;
+use crate::description::{ArrayElement, ModelDescription, Value};
 use crate::error::{Error, Result};
 use crate::library::{Fmi3Functions, OwnFunctions, Text};
 use crate::log::text;
@@ -19,6 +19,17 @@ struct WholeArrays {
     count: usize,
 }
 
+/// The start values of all numbers of an FMU of FMI 3.0.
+pub(super) fn start_values(description: &ModelDescription) -> Vec<f64> {
+    let start = |at: usize| match &description.variables[at].start {
+        Some(Value::Real(x)) => *x,
+        Some(Value::Integer(x)) => f64::from(*x),
+        Some(Value::Boolean(x)) => f64::from(u8::from(*x)),
+        _ => 0.0,
+    };
+    (0..description.elements.len()).map(start).collect()
+}
+
 impl Slave {
     /// The functions of an instance of FMI 3.0.
     pub(super) fn three(&self) -> Option<&Fmi3Functions> {
@@ -26,6 +37,17 @@ impl Slave {
             OwnFunctions::Two(_) => None,
             OwnFunctions::Three(own) => Some(own),
         }
+    }
+
+    /// `fmi3EnterInitializationMode`, with what FMI 2.0 is told before.
+    pub(super) fn initialization_of_three(&self, own: &Fmi3Functions) -> Status {
+        let stated = |number: Option<f64>| (u8::from(number.is_some()), number.unwrap_or(0.0));
+        let (start_s, stop_s, tolerance) = self.experiment;
+        let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop_s));
+        // SAFETY: the component lives; plain values
+        self.status(|_, c| unsafe {
+            (own.enter_initialization_mode)(c, with_tolerance, tolerance, start_s, with_stop, stop)
+        })
     }
 
     /// A step; one that ends early or asks for the end of the run was not done.
@@ -47,18 +69,18 @@ impl Slave {
         let elements = &self.core.loaded.description.elements;
         let element = |place: u32| elements[place as usize];
         let first = |place: u32| place as usize - element(place).element;
-        if self.late.begun && places.iter().any(|p| element(*p).size > places.len()) {
+        if self.begun && places.iter().any(|p| element(*p).size > places.len()) {
             // the other elements stay as they are, wherever a restored state has put them
             for place in places {
                 let all = first(*place)..first(*place) + element(*place).size;
                 let whole: Vec<u32> = all.clone().map(|p| p as u32).collect();
                 if let Ok(now) = self.numbers(&whole) {
-                    self.late.kept[all].copy_from_slice(&now);
+                    self.kept[all].copy_from_slice(&now);
                 }
             }
         }
         for (place, value) in places.iter().zip(values) {
-            self.late.kept[*place as usize] = *value;
+            self.kept[*place as usize] = *value;
         }
         let mut done = usize::MAX;
         for place in places {
@@ -67,7 +89,7 @@ impl Slave {
                 continue;
             }
             done = from;
-            let now = &self.late.kept[from..from + element(*place).size];
+            let now = &self.kept[from..from + element(*place).size];
             self.set_array(element(*place), now)?;
         }
         Ok(())

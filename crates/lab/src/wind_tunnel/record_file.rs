@@ -4,13 +4,13 @@
 //!
 //! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
 
-use super::record_format::{RecordColumns, read_head, text, write_head};
+use super::record_format::{RecordFile, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
 use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Fewest samples that a record may have.
 pub(crate) const SAMPLES_AT_LEAST: usize = 64;
@@ -24,14 +24,6 @@ const JITTER: f64 = 0.25;
 /// The mean sampling frequency may differ from the stated one by this fraction.
 const DRIFT: f64 = 1e-3;
 
-/// A record in a CSV file, read block by block whenever asked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordFile {
-    path: PathBuf,
-    header: RecordHeader,
-    columns: RecordColumns,
-}
-
 impl RecordFile {
     /// Opens a record and reads its header; the samples are checked whenever they are read.
     ///
@@ -39,17 +31,9 @@ impl RecordFile {
     /// [`Error::Io`]; [`Error::Input`] with file and line for a header line or column that is missing, unknown or
     /// wrong.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref().to_path_buf();
-        let file = File::open(&path).map_err(|e| Error::io(&path, e))?;
-        let read = || -> Result<Self> {
-            let (header, columns) = read_head(&path, &mut BufReader::new(file))?;
-            Ok(Self {
-                path: path.clone(),
-                header,
-                columns,
-            })
-        };
-        read().map_err(|e| e.in_file(&path))
+        let path = path.as_ref();
+        let file = File::open(path).map_err(|e| Error::io(path, e))?;
+        read_head(path, &mut BufReader::new(file)).map_err(|e| e.in_file(path))
     }
 }
 
@@ -65,9 +49,9 @@ impl RecordSource for RecordFile {
     fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
         let io = |e| Error::io(&self.path, e);
         let mut file = File::open(&self.path).map_err(io)?;
-        file.seek(SeekFrom::Start(self.columns.start)).map_err(io)?;
+        file.seek(SeekFrom::Start(self.start)).map_err(io)?;
         let mut reader = BufReader::with_capacity(1 << 16, file);
-        let mut rows = RecordRows::new(&self.header, &self.columns);
+        let mut rows = RecordRows::new(self);
         let mut line = Vec::new();
         loop {
             line.clear();
@@ -164,8 +148,7 @@ fn cells(line: &str) -> impl Iterator<Item = &str> {
 
 /// Rows being collected into a block.
 struct RecordRows<'a> {
-    header: &'a RecordHeader,
-    columns: &'a RecordColumns,
+    file: &'a RecordFile,
     line: usize,
     motion: Vec<Vec<f64>>,
     force: Vec<Vec<f64>>,
@@ -175,12 +158,11 @@ struct RecordRows<'a> {
 }
 
 impl<'a> RecordRows<'a> {
-    fn new(header: &'a RecordHeader, columns: &'a RecordColumns) -> Self {
-        let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); header.dofs.len()];
+    fn new(file: &'a RecordFile) -> Self {
+        let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); file.header.dofs.len()];
         Self {
-            header,
-            columns,
-            line: columns.names_line,
+            file,
+            line: file.names_line,
             motion: block(),
             force: block(),
             read: 0,
@@ -217,12 +199,12 @@ impl<'a> RecordRows<'a> {
             return Ok(());
         }
         let mut cells = cells(line);
-        for (column, channel) in self.columns.channels.iter().enumerate() {
+        for (column, channel) in self.file.channels.iter().enumerate() {
             let cell = cells.next().ok_or_else(|| self.unequal(line))?;
             let value = cell.parse().or_else(|_| cell.trim().parse::<f64>());
             let value = value.ok().filter(|x| x.is_finite());
             let value = value.ok_or_else(|| {
-                let place = Place::line(self.line).column(&self.columns.names[column]);
+                let place = Place::line(self.line).column(&self.file.names[column]);
                 Error::input(place, "a finite number", format!("`{}`", cell.trim()))
             })?;
             let n = self.motion.len();
@@ -242,7 +224,7 @@ impl<'a> RecordRows<'a> {
     fn unequal(&self, line: &str) -> Error {
         Error::input(
             Place::line(self.line),
-            counted(self.columns.channels.len(), "column"),
+            counted(self.file.channels.len(), "column"),
             line.split(',').count().to_string(),
         )
     }
@@ -252,8 +234,8 @@ impl<'a> RecordRows<'a> {
             self.first_time = time_s;
         } else {
             let step = time_s - self.last_time;
-            if (step * self.header.sampling_hz - 1.0).abs() > JITTER {
-                let sampling = self.header.sampling_hz;
+            if (step * self.file.header.sampling_hz - 1.0).abs() > JITTER {
+                let sampling = self.file.header.sampling_hz;
                 return Err(Error::input(
                     Place::line(self.line).column("time_s"),
                     format!(
@@ -278,12 +260,15 @@ impl<'a> RecordRows<'a> {
         )?;
         let mean = (self.read - 1) as f64 / (self.last_time - self.first_time);
         ensure(
-            (mean / self.header.sampling_hz - 1.0).abs() <= DRIFT,
+            (mean / self.file.header.sampling_hz - 1.0).abs() <= DRIFT,
             "column time_s",
-            format_args!("samples at {} Hz as in the header", self.header.sampling_hz),
+            format_args!(
+                "samples at {} Hz as in the header",
+                self.file.header.sampling_hz
+            ),
             format_args!("{mean:.4} Hz"),
         )?;
-        self.header.check_ends(self.read)
+        self.file.header.check_ends(self.read)
     }
 }
 

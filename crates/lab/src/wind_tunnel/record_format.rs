@@ -21,7 +21,7 @@ use crate::error::{Error, Place, Result, ensure};
 use crate::files::header_csv::{CommentHeader, HeaderLine};
 use crate::section::Dof;
 use std::io::{BufRead, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// First line of the file.
 const FORMAT: &str = "aerodeck record 1";
@@ -43,37 +43,35 @@ const KEYS: [&str; 10] = [
     "segment",
 ];
 
-/// Where the samples stand.
+/// A record in a CSV file, read block by block whenever asked.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct RecordColumns {
+pub struct RecordFile {
+    pub(super) path: PathBuf,
+    pub(super) header: RecordHeader,
     /// Byte at which the first row begins.
-    pub start: u64,
+    pub(super) start: u64,
     /// Line of the column names, from 1.
-    pub names_line: usize,
+    pub(super) names_line: usize,
     /// Names of the columns.
-    pub names: Vec<String>,
+    pub(super) names: Vec<String>,
     /// Channel of each column: `None` for the time, else motions and then forces in the order of the header.
-    pub channels: Vec<Option<usize>>,
+    pub(super) channels: Vec<Option<usize>>,
 }
 
 /// Writes everything above the samples.
 pub(super) fn write_head(header: &RecordHeader, out: &mut dyn Write) -> std::io::Result<()> {
-    CommentHeader::write_format(out, FORMAT)?;
-    let dofs: Vec<&str> = header.dofs.iter().map(|d| d.name()).collect();
-    let values = [
-        header.name.clone(),
-        dofs.join(", "),
-        header.width_m.to_string(),
-        header.air_density_kg_m3.to_string(),
-        header.mean_speed_m_s.to_string(),
-        header.sampling_hz.to_string(),
-        SIGN_CONVENTION.to_owned(),
-        header.source.clone(),
-        header.licence.clone(),
+    let entries = [
+        ("name", header.name.as_str()),
+        ("dofs", &Dof::names(&header.dofs)),
+        ("width_m", &header.width_m.to_string()),
+        ("air_density_kg_m3", &header.air_density_kg_m3.to_string()),
+        ("mean_speed_m_s", &header.mean_speed_m_s.to_string()),
+        ("sampling_hz", &header.sampling_hz.to_string()),
+        ("sign_convention", SIGN_CONVENTION),
+        ("source", &header.source),
+        ("licence", &header.licence),
     ];
-    for (key, value) in KEYS.iter().zip(values) {
-        CommentHeader::write_line(out, key, value)?;
-    }
+    CommentHeader::write(out, FORMAT, &entries)?;
     for s in &header.segments {
         let text = format!(
             "{} Hz from {} s to {} s",
@@ -104,10 +102,7 @@ fn column_names(dofs: &[Dof]) -> Vec<&'static str> {
 }
 
 /// Reads everything above the samples.
-pub(super) fn read_head(
-    path: &Path,
-    reader: &mut dyn BufRead,
-) -> Result<(RecordHeader, RecordColumns)> {
+pub(super) fn read_head(path: &Path, reader: &mut dyn BufRead) -> Result<RecordFile> {
     let mut head = CommentHeader::new(&[FORMAT], &KEYS, &["segment"]);
     let (mut start, mut line) = (0, Vec::new());
     let names = loop {
@@ -134,13 +129,14 @@ pub(super) fn read_head(
     let header = record_header(&head)?;
     let names_line = head.lines() + 1;
     let channels = find_channels(&names, &header.dofs, names_line)?;
-    let columns = RecordColumns {
+    Ok(RecordFile {
+        path: path.to_path_buf(),
+        header,
         start,
         names_line,
         names,
         channels,
-    };
-    Ok((header, columns))
+    })
 }
 
 fn record_header(head: &CommentHeader) -> Result<RecordHeader> {

@@ -52,19 +52,19 @@ pub(crate) fn align(
     let of = |r: &RawRecording| from_rest(&r.motion[super::index(dof)]);
     let (reference, compared) = (of(in_wind), of(still_air));
     let place = || format!("run {run}, still air, {} motion", dof.name());
-    let found = delay(&reference, &compared).ok_or_else(|| {
+    let (late, parabolic_samples) = delay(&reference, &compared).ok_or_else(|| {
         let expected = "the motion of the recording in wind";
         Error::input(place(), expected, "one that is nowhere like it")
     })?;
     let count = in_wind.sample_count();
-    let moved_still = still_air.map(|x| moved(x, found.samples, count));
+    let moved_still = still_air.map(|x| moved(x, late, count));
     // an offset of rounding costs no sample
-    let first = (-found.samples - ROUNDING).ceil().max(0.0) as usize;
-    let end = (still_air.sample_count() as f64 - found.samples + ROUNDING)
+    let first = (-late - ROUNDING).ceil().max(0.0) as usize;
+    let end = (still_air.sample_count() as f64 - late + ROUNDING)
         .floor()
         .max(0.0) as usize;
     let covered = first.min(count)..end.min(count);
-    let aligned_motion = moved(&compared, found.samples, count);
+    let aligned_motion = moved(&compared, late, count);
     let inside = |x: &[f64]| x[covered.clone()].to_vec();
     let (a, b) = (inside(&reference), inside(&aligned_motion));
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
@@ -77,9 +77,9 @@ pub(crate) fn align(
         format_args!("correlation {correlation:.3}"),
     )?;
     let alignment = Alignment {
-        offset_s: found.samples / in_wind.sampling_hz,
-        offset_samples: found.samples,
-        parabolic_samples: found.parabolic_samples,
+        offset_s: late / in_wind.sampling_hz,
+        offset_samples: late,
+        parabolic_samples,
         correlation,
         amplitude_ratio: dot(&a, &b) / dot(&b, &b),
     };
