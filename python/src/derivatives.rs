@@ -77,7 +77,7 @@ impl Derivatives {
     #[staticmethod]
     fn _from_state(state: &str) -> PyResult<Self> {
         let (text, findings): (String, _) = restored(state)?;
-        let read = parse_csv_in(&text, StatedConvention::default()).map_err(raised)?;
+        let read = parse_csv_in(&text, &ReadOptions::default()).map_err(raised)?;
         Ok(Self(read.table, findings))
     }
 

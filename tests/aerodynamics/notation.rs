@@ -6,7 +6,7 @@ use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::aerodynamics::derivatives::notation::*;
 use aerodeck::aerodynamics::derivatives::{Derivative, Part};
 use aerodeck::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
-use aerodeck::files::derivatives::{TableInConvention, parse_csv_in, write_csv_in};
+use aerodeck::files::derivatives::{ReadOptions, TableInConvention, parse_csv_in, write_csv_in};
 use aerodeck::section::Dof;
 use aerodeck::units::ReducedFrequency;
 use rand::{Rng, SeedableRng};
@@ -173,7 +173,7 @@ fn every_pair_of_conventions_round_trips() {
             let TableInConvention {
                 table: read,
                 convention: said,
-            } = parse_csv_in(&text, StatedConvention::default()).unwrap();
+            } = parse_csv_in(&text, &ReadOptions::default()).unwrap();
             assert_eq!(said, from);
             assert_same(&table, &read, &from.to_string());
             for to in all_conventions() {
@@ -212,11 +212,21 @@ fn headers_state_the_convention_in_words() {
     }
 }
 
+fn stating(convention: StatedConvention) -> ReadOptions {
+    ReadOptions {
+        convention,
+        ..ReadOptions::default()
+    }
+}
+
 #[test]
 fn contradictions_are_refused() {
     let polimi = written(&Convention::usual(Notation::Polimi));
-    let says =
-        |text: &str, stated: StatedConvention| parse_csv_in(text, stated).unwrap_err().to_string();
+    let says = |text: &str, stated: StatedConvention| {
+        parse_csv_in(text, &stating(stated))
+            .unwrap_err()
+            .to_string()
+    };
     let nothing = StatedConvention::default();
     let as_scanlan = StatedConvention::notation(Notation::Scanlan);
     assert_eq!(
@@ -286,10 +296,10 @@ fn contradictions_are_refused() {
         .collect();
     assert!(says(&silent, nothing).starts_with("notation: expected it stated in the file or"));
     let stated = StatedConvention::notation(Notation::Polimi);
-    let table = parse_csv_in(&silent, stated).unwrap().table;
+    let table = parse_csv_in(&silent, &stating(stated)).unwrap().table;
     assert_same(
         &table,
-        &parse_csv_in(&polimi, nothing).unwrap().table,
+        &parse_csv_in(&polimi, &stating(nothing)).unwrap().table,
         "stated",
     );
     let over_k = written(&Convention::usual(Notation::Starossek));

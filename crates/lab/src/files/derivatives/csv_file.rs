@@ -23,9 +23,7 @@
 //! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
 
 use crate::aerodynamics::derivatives::missing::fill_in;
-use crate::aerodynamics::derivatives::notation::{
-    Argument, Convention, ExpressedPoint, StatedConvention,
-};
+use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result, ensure};
@@ -78,7 +76,7 @@ pub(crate) fn read_csv_with(
     let table = if csv_wide::is_wide(&text) {
         csv_wide::parse(&text, &stem, options)
     } else {
-        parse_long(&text, options)
+        parse_csv_in(&text, options)
     };
     table.map_err(|e| e.in_file(path))
 }
@@ -90,22 +88,14 @@ pub(crate) fn read_csv_with(
 /// is not stated or contradicts itself, text in numbers, points out of order or twice, `V̂` not positive or not monotone
 /// in a speed group, missing derivatives.
 pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
-    parse_csv_in(text, StatedConvention::default()).map(|read| read.table)
+    parse_csv_in(text, &ReadOptions::default()).map(|read| read.table)
 }
 
-/// A table from text in our own format, with what the caller states about the convention; the second value is the one the text is in.
+/// A table from text in our own format, with what the caller states.
 ///
 /// # Errors
 /// As [`read_csv`]; a stated convention that contradicts the text.
-pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
-    let options = ReadOptions {
-        convention: stated,
-        ..ReadOptions::default()
-    };
-    parse_long(text, &options)
-}
-
-fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
+pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let head = read_head(text)?;
     let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();

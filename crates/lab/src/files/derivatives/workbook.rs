@@ -171,8 +171,8 @@ fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Point
         read_columns(sheet, name, prefix, &given, convention)
     };
     let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);
-    let points = given.iter().map(|&d| {
-        let (speeds, arguments, values) = (&speeds[&d], &arguments[&d], &values[&d]);
+    let points = given.iter().enumerate().map(|(i, &d)| {
+        let (speeds, arguments, values) = (&speeds[i], &arguments[i], &values[i]);
         for (sheet, column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
             ensure(
                 column.len() == speeds.len(),
@@ -222,7 +222,7 @@ fn read_columns(
     prefix: &str,
     given: &[Derivative],
     convention: &Convention,
-) -> Result<BTreeMap<Derivative, Vec<f64>>> {
+) -> Result<Vec<Vec<f64>>> {
     let column = |d: &Derivative| {
         let derivative = convention.notation.name_of(*d);
         column_of(sheet, prefix, derivative).ok_or_else(|| {
@@ -234,16 +234,11 @@ fn read_columns(
     let columns: Vec<u32> = given.iter().map(column).collect::<Result<_>>()?;
     let rows = sheet.first_row() + 1..sheet.last_row(&columns) + 1;
     check_point_count(format!("sheet {name}"), rows.len())?;
-    let numbers = |column: u32| {
+    let numbers = |column: &u32| {
         let rows = rows.clone();
-        rows.map(|row| number(sheet, name, row, column))
-            .collect::<Result<Vec<f64>>>()
+        rows.map(|row| number(sheet, name, row, *column)).collect()
     };
-    given
-        .iter()
-        .zip(&columns)
-        .map(|(d, column)| Ok((*d, numbers(*column)?)))
-        .collect()
+    columns.iter().map(numbers).collect()
 }
 
 fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {

@@ -21,20 +21,13 @@ pub struct ChannelRef {
 
 /// A channel of a cell, or the statement that there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
 pub enum CellChannel {
-    /// Measured.
-    Measured(ChannelRef),
     /// Not measured: `"none"`. Taken as zero.
-    NotMeasured(NotMeasured),
-}
-
-/// The word that says so.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum NotMeasured {
-    /// `"none"`.
-    None,
+    #[serde(rename = "none")]
+    NotMeasured,
+    /// Measured.
+    #[serde(untagged)]
+    Measured(ChannelRef),
 }
 
 fn one() -> f64 {

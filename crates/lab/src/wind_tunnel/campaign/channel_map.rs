@@ -112,7 +112,7 @@ impl ChannelMap {
                 .iter()
                 .filter_map(move |(key, channel)| match channel {
                     CellChannel::Measured(c) => Some((self.cell_key(cell, key), c.name.as_str())),
-                    CellChannel::NotMeasured(_) => None,
+                    CellChannel::NotMeasured => None,
                 })
         });
         let mut used = BTreeMap::new();
@@ -153,7 +153,7 @@ impl ChannelMap {
         for key in CELL_CHANNELS {
             match map.get(key) {
                 None => return Err(Error::input(&place, all(), format!("no `{key}`"))),
-                Some(CellChannel::NotMeasured(_)) => {}
+                Some(CellChannel::NotMeasured) => {}
                 Some(CellChannel::Measured(channel)) => {
                     channel.validate(&self.cell_key(cell, key), cell_quantity(key))?;
                 }

@@ -1,6 +1,6 @@
 //! Forces on the whole section in place of load cells, as a computation has them.
 
-use super::channel::{CellChannel, ChannelRef, NotMeasured};
+use super::channel::{CellChannel, ChannelRef};
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, LoadCell};
 use serde::{Deserialize, Serialize};
@@ -63,22 +63,17 @@ impl SectionForces {
                 ..c.clone()
             })
         };
-        let measured = |key: &str| match key {
-            "fx" => of(Dof::Lateral, 1.0),
-            "fy" => of(Dof::Vertical, 1.0),
-            "mz" => of(Dof::Torsion, -1.0),
-            _ => None,
+        let channel = |key: &str| {
+            let measured = match key {
+                "fx" => of(Dof::Lateral, 1.0),
+                "fy" => of(Dof::Vertical, 1.0),
+                "mz" => of(Dof::Torsion, -1.0),
+                _ => None,
+            };
+            let channel = measured.map_or(CellChannel::NotMeasured, CellChannel::Measured);
+            (key.to_owned(), channel)
         };
-        CELL_CHANNELS
-            .iter()
-            .map(|key| {
-                let channel = measured(key).map_or(
-                    CellChannel::NotMeasured(NotMeasured::None),
-                    CellChannel::Measured,
-                );
-                ((*key).to_owned(), channel)
-            })
-            .collect()
+        CELL_CHANNELS.into_iter().map(channel).collect()
     }
 
     /// The key of the campaign file behind a channel of that cell.

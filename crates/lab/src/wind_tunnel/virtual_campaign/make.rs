@@ -6,14 +6,15 @@ use super::forces::{
 };
 use super::plan::VirtualCampaignPlan;
 use super::truth::{AppliedDisturbances, TruthPoint};
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::signal::{random_stream, root_mean_square};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::virtual_forces::TransferColumn;
-use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record, RecordHeader};
+use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record, RecordHeader, Segment};
+use nalgebra::Complex;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::PI;
@@ -37,19 +38,13 @@ impl VirtualCampaignPlan {
     pub fn from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<VirtualCampaign> {
         self.validate()?;
         let clean = |delay_s| self.tunnel.clean_from_table(table, dofs, delay_s);
-        let records = clean(0.0)?;
-        let late = clean(self.disturbances.force_lag_s)?;
-        let mut points = Vec::new();
-        for (i, record) in records.iter().enumerate() {
+        self.carry_out(&table.name, dofs, clean, |i, _| {
             let group = table.at_speed_group(i / dofs.len())?;
-            let moving = dofs[i % dofs.len()];
-            let at = TransferColumn::new(&group, dofs, moving)?;
-            for (p, k) in at.k.iter().enumerate() {
-                let column: Vec<_> = at.g.iter().map(|row| row[p]).collect();
-                push_points(&mut points, record, moving, p, *k, &column);
-            }
-        }
-        Ok(self.carry_out(&table.name, records, &late, points))
+            let at = TransferColumn::new(&group, dofs, dofs[i % dofs.len()])?;
+            let column = |p: usize| at.g.iter().map(|row| row[p]).collect();
+            let points = at.k.iter().enumerate();
+            Ok(points.map(|(p, k)| (*k, column(p))).collect())
+        })
     }
 
     /// A campaign on a deck of `width_m` with the forces of `model`, one run per motion and speed of the plan.
@@ -61,40 +56,55 @@ impl VirtualCampaignPlan {
     ) -> Result<VirtualCampaign> {
         self.validate()?;
         let clean = |delay_s| self.tunnel.clean_from_model(model, name, width_m, delay_s);
-        let records = clean(0.0)?;
-        let late = clean(self.disturbances.force_lag_s)?;
-        let mut points = Vec::new();
         let dofs = model.dofs();
-        for (i, record) in records.iter().enumerate() {
-            let j = i % dofs.len();
-            for (p, segment) in record.header.segments.iter().enumerate() {
-                let speed = record.header.mean_speed_m_s;
+        self.carry_out(name, dofs, clean, |i, header| {
+            let at = |segment: &Segment| {
+                let speed = header.mean_speed_m_s;
                 let k = ReducedFrequency::from_hertz(segment.frequency_hz, width_m, speed);
-                let g: TransferMatrix = model.transfer(k)?;
-                let column: Vec<_> = g.column(j).iter().copied().collect();
-                push_points(&mut points, record, dofs[j], p, k, &column);
-            }
-        }
-        Ok(self.carry_out(name, records, &late, points))
+                let g = model.transfer(k)?;
+                Ok((k, g.column(i % dofs.len()).iter().copied().collect()))
+            };
+            header.segments.iter().map(at).collect()
+        })
     }
 
-    /// `late` holds the records as the force channels see them.
+    /// Records of motions among `dofs` by `clean`, given by how much the force channels are late; `points` says for each record, by its
+    /// number and its header, at which reduced frequencies it was tested and the column of `G` there.
     fn carry_out(
         &self,
         section: &str,
-        records: Vec<Record>,
-        late: &[Record],
-        points: Vec<TruthPoint>,
-    ) -> VirtualCampaign {
+        dofs: &[Dof],
+        clean: impl Fn(f64) -> Result<Vec<Record>>,
+        points_of: impl Fn(usize, &RecordHeader) -> Result<Vec<(ReducedFrequency, Vec<Complex<f64>>)>>,
+    ) -> Result<VirtualCampaign> {
+        let records = clean(0.0)?;
+        let late = clean(self.disturbances.force_lag_s)?;
+        let mut points = Vec::new();
+        for (i, record) in records.iter().enumerate() {
+            let header = &record.header;
+            // broadband motions have no test points
+            for ((k, column), segment) in points_of(i, header)?.iter().zip(&header.segments) {
+                let point = |(force, g): (&Dof, &Complex<f64>)| TruthPoint {
+                    run: header.name.clone(),
+                    frequency_hz: segment.frequency_hz,
+                    k: k.full_width(),
+                    force: *force,
+                    motion: dofs[i % dofs.len()],
+                    real: g.re,
+                    imaginary: g.im,
+                };
+                points.extend(header.dofs.iter().zip(column).map(point));
+            }
+        }
         let (mut runs, mut disturbances) = (Vec::new(), Vec::new());
-        for (index, (record, late)) in records.iter().zip(late).enumerate() {
+        for (index, (record, late)) in records.iter().zip(&late).enumerate() {
             let run = RunInMaking::new(self, index, record, late);
             runs.push(run.raw());
             disturbances.push(run.applied);
         }
         let header = records.first().map(|r| &r.header);
         let source = |h: &RecordHeader| format!("virtual campaign; {}", h.source);
-        VirtualCampaign {
+        Ok(VirtualCampaign {
             raw: RawCampaign {
                 section: section.to_owned(),
                 source: header.map(source).unwrap_or_default(),
@@ -106,33 +116,7 @@ impl VirtualCampaignPlan {
             records,
             points,
             disturbances,
-        }
-    }
-}
-
-fn push_points(
-    points: &mut Vec<TruthPoint>,
-    record: &Record,
-    motion: Dof,
-    segment: usize,
-    k: ReducedFrequency,
-    column: &[nalgebra::Complex<f64>],
-) {
-    let header = &record.header;
-    // broadband motions have no test points
-    let Some(frequency_hz) = header.segments.get(segment).map(|s| s.frequency_hz) else {
-        return;
-    };
-    for (force, g) in header.dofs.iter().zip(column) {
-        points.push(TruthPoint {
-            run: header.name.clone(),
-            frequency_hz,
-            k: k.full_width(),
-            force: *force,
-            motion,
-            real: g.re,
-            imaginary: g.im,
-        });
+        })
     }
 }
 

@@ -141,7 +141,7 @@ fn first_format() -> String {
 fn files_of_the_first_format_are_still_read() {
     let old = first_format();
     let TableInConvention { table, convention } =
-        parse_csv_in(&old, StatedConvention::default()).unwrap();
+        parse_csv_in(&old, &ReadOptions::default()).unwrap();
     assert_eq!(convention, Convention::default());
     let embedded = embedded::deck("LN21-5200").unwrap();
     for d in Derivative::ALL {
