@@ -1,7 +1,7 @@
 //! Unpacking an FMU into a temporary directory: nothing outside it, nothing without a limit.
 
 use super::findings::FmuFindings;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -22,10 +22,8 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
     let file = File::open(path).map_err(|e| Error::io(path, e))?;
     let mut zip = ZipArchive::new(BufReader::new(file))
         .map_err(|e| Error::input("", "a ZIP archive", e.to_string()))?;
-    if zip.len() > MAX_ENTRIES {
-        let expected = format!("at most {MAX_ENTRIES} entries");
-        return Err(Error::input("", expected, zip.len().to_string()));
-    }
+    let most = format_args!("at most {MAX_ENTRIES} entries");
+    ensure(zip.len() <= MAX_ENTRIES, "", most, zip.len())?;
     let folder = tempfile::Builder::new()
         .prefix("aerodeck-fmu-")
         .tempdir()
@@ -40,9 +38,8 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
             .map_err(|e| Error::input(format!("entry {index}"), "a name in UTF-8", e.to_string()))?
             .into_owned();
         let inside = safe_path(&name, &mut findings)?;
-        if entry.is_symlink() {
-            return Err(Error::input(&name, "a file or a folder", "a link"));
-        }
+        let is_plain = !entry.is_symlink();
+        ensure(is_plain, &name, "a file or a folder", "a link")?;
         method(&name, entry.compression(), &mut findings);
         let target = folder.path().join(&inside);
         if entry.is_dir() {
@@ -69,13 +66,12 @@ fn safe_path(name: &str, findings: &mut FmuFindings) -> Result<PathBuf> {
     let harmless = !name.starts_with('/')
         && !name.contains(['\0', ':'])
         && !name.split('/').any(|part| part == "..");
-    if !harmless || name.is_empty() {
-        return Err(Error::input(
-            format!("entry {name:?}"),
-            "a path inside the archive",
-            "one that leads outside",
-        ));
-    }
+    ensure(
+        harmless && !name.is_empty(),
+        format_args!("entry {name:?}"),
+        "a path inside the archive",
+        "one that leads outside",
+    )?;
     Ok(name
         .split('/')
         .filter(|p| !p.is_empty() && *p != ".")
@@ -111,18 +107,14 @@ fn method(name: &str, method: CompressionMethod, findings: &mut FmuFindings) {
 /// Writes an entry that is `stated` to have so many bytes, where `left` remain of the limit of the archive; returns how many are left for
 /// other entries.
 fn write(entry: &mut impl Read, name: &str, target: &Path, stated: u64, left: u64) -> Result<u64> {
-    if stated > left {
-        let expected = format!("at most {MAX_BYTES} bytes unpacked in all");
-        return Err(Error::input(name, expected, "more"));
-    }
+    let most = format_args!("at most {MAX_BYTES} bytes unpacked in all");
+    ensure(stated <= left, name, most, "more")?;
     let mut file = File::create_new(target).map_err(|e| Error::io(target, e))?;
     // the size in the directory is only a claim
     let written = std::io::copy(&mut entry.take(stated + 1), &mut file)
         .map_err(|e| Error::input(name, "an entry that unpacks", e.to_string()))?;
-    if written > stated {
-        let expected = format!("the {stated} bytes that the archive states");
-        return Err(Error::input(name, expected, "more"));
-    }
+    let expected = format_args!("the {stated} bytes that the archive states");
+    ensure(written <= stated, name, expected, "more")?;
     Ok(left - written)
 }
 

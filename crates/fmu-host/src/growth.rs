@@ -15,7 +15,7 @@ use super::description::{Value, VariableType};
 use super::simulation::{Times, start};
 use super::slave::{Slave, find};
 use super::status::Status;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::flutter::StableRange;
 use std::f64::consts::TAU;
 
@@ -153,14 +153,8 @@ impl Run {
             }
         }
         find(d, "wind_speed")?;
-        if names.is_empty() {
-            return Err(Error::input(
-                "FMU",
-                "the outputs rotation and rotation_rate, or heave and heave_rate",
-                "neither",
-            )
-            .in_file(fmu.path()));
-        }
+        let expected = "the outputs rotation and rotation_rate, or heave and heave_rate";
+        ensure(!names.is_empty(), "FMU", expected, "neither").map_err(|e| e.in_file(fmu.path()))?;
         Ok(Self {
             slave: fmu.instantiate("growth")?,
             step,

@@ -3,8 +3,7 @@
 use super::Fmu;
 use super::description::{Causality, ModelDescription, Value, VariableType};
 use super::slave::{Slave, find};
-use super::status::Status;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use serde::Serialize;
 
 /// What to run. The default is the FMU's default experiment.
@@ -54,10 +53,9 @@ impl Times {
         let start = s.start_s.or(e.start_time).unwrap_or(0.0);
         let stop = s.stop_s.or(e.stop_time).unwrap_or(start + 1.0);
         let step = s.step_s.or(e.step_size).unwrap_or((stop - start) / 500.0);
-        if !(start.is_finite() && stop.is_finite() && stop > start) {
-            let found = format!("{start} s to {stop} s");
-            return Err(Error::input("simulation", "a stop after the start", found));
-        }
+        let rises = start.is_finite() && stop.is_finite() && stop > start;
+        let found = format_args!("{start} s to {stop} s");
+        ensure(rises, "simulation", "a stop after the start", found)?;
         crate::error::positive("communication step", step)?;
         Ok(Self { start, stop, step })
     }
@@ -123,13 +121,12 @@ pub(super) fn start(slave: &mut Slave, times: &Times, values: &[(String, Value)]
     };
     for (name, value) in values {
         let variable = find(slave.model_description(), name)?;
-        if !variable.settable() {
-            return Err(Error::input(
-                format!("variable `{name}`"),
-                "one that can be set",
-                format!("{:?} {:?}", variable.causality, variable.variability).to_lowercase(),
-            ));
-        }
+        ensure(
+            variable.settable(),
+            format_args!("variable `{name}`"),
+            "one that can be set",
+            format!("{:?} {:?}", variable.causality, variable.variability).to_lowercase(),
+        )?;
         if !is_input(slave, name)? {
             slave.set(name, value)?;
         }
@@ -159,14 +156,7 @@ pub(super) fn run(
         let (from, to) = (times.at(point), times.at(point + 1));
         before(slave, from)?;
         // the constant step rather than the difference of two rounded times: it may not vary in the last bits
-        let status = slave.do_step(from, times.step)?;
-        if status == Status::Discard {
-            return Err(Error::Numerical(format!(
-                "{} discarded the step from {from} s over {} s",
-                slave.name_of("DoStep"),
-                times.step
-            )));
-        }
+        slave.whole_step(from, times.step)?;
         rows.push(row(slave, to, record)?);
     }
     Ok(ValueTable { names, rows })

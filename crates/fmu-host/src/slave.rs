@@ -173,7 +173,7 @@ impl Slave {
     }
 
     /// A function as the version of the FMU spells it.
-    pub(super) fn name_of(&self, suffix: &str) -> String {
+    fn name_of(&self, suffix: &str) -> String {
         spelt(suffix, self.model_description().is_fmi3())
     }
 
@@ -238,8 +238,8 @@ impl Slave {
     /// [`Error::Numerical`] with status and log when the answer is an error.
     pub fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Status> {
         let status = match &self.functions().own {
-            // SAFETY: the component lives; plain values
             OwnFunctions::Two(own) => {
+                // SAFETY: the component lives; plain values
                 self.status(|_, c| unsafe { (own.do_step)(c, time_s, step_s, 1) })
             }
             OwnFunctions::Three(own) => self.step_of_three(own, time_s, step_s),
@@ -248,6 +248,17 @@ impl Slave {
             Ok(status)
         } else {
             Err(self.failed("DoStep", status))
+        }
+    }
+
+    /// As [`Slave::do_step`], where a step that is discarded is an error.
+    pub(super) fn whole_step(&mut self, time_s: f64, step_s: f64) -> Result<()> {
+        match self.do_step(time_s, step_s)? {
+            Status::Discard => Err(Error::Numerical(format!(
+                "{} discarded the step from {time_s} s over {step_s} s",
+                self.name_of("DoStep")
+            ))),
+            _ => Ok(()),
         }
     }
 

@@ -4,9 +4,8 @@ use super::description::{Causality, CoSimulation, FILE, Initial, Value, Variable
 use super::findings::{FmuFindings, Trial};
 use super::simulation::{Simulation, Times, ValueTable, recorded, run as step_through, start};
 use super::slave::Slave;
-use super::status::Status;
 use super::{Fmu, LogMessage};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 
 /// Most communication steps of a trial.
 const MAX_STEPS: usize = 1000;
@@ -97,15 +96,13 @@ fn versions(fmu: &Fmu) -> Result<String> {
         false => version == "2.0",
         true => version.starts_with("3."),
     };
-    if platform == "default" && expected {
-        Ok(format!("platform {platform}, version {version}"))
-    } else {
-        Err(Error::input(
-            "fmi2GetTypesPlatform, fmi2GetVersion, fmi3GetVersion",
-            "`default`, the version of the description",
-            format!("`{platform}`, `{version}`"),
-        ))
-    }
+    ensure(
+        platform == "default" && expected,
+        "fmi2GetTypesPlatform, fmi2GetVersion, fmi3GetVersion",
+        "`default`, the version of the description",
+        format_args!("`{platform}`, `{version}`"),
+    )?;
+    Ok(format!("platform {platform}, version {version}"))
 }
 
 /// What all trials share.
@@ -227,13 +224,12 @@ fn compared(what: &str, names: &[String], a: &[Vec<f64>], b: &[Vec<f64>]) -> Res
             let (p, q) = (x[at], y[at]);
             identical &= p.to_bits() == q.to_bits();
             let scale = p.abs().max(q.abs()).max(f64::MIN_POSITIVE);
-            if (p - q).abs() > SAME * scale {
-                return Err(Error::input(
-                    format!("{what}, output `{}` at {} s", names[at], x[0]),
-                    format!("{p} as before"),
-                    q.to_string(),
-                ));
-            }
+            ensure(
+                (p - q).abs() <= SAME * scale || (p - q).is_nan(),
+                format_args!("{what}, output `{}` at {} s", names[at], x[0]),
+                format_args!("{p} as before"),
+                q,
+            )?;
         }
     }
     let steps = a.len().min(b.len()).saturating_sub(1);
@@ -300,12 +296,7 @@ fn changing_steps(plan: &Plan<'_>) -> Result<String> {
         if time + step > plan.times.stop || steps == MAX_STEPS {
             break;
         }
-        if slave.do_step(time, step)? == Status::Discard {
-            return Err(Error::Numerical(format!(
-                "{} discarded the step from {time} s over {step} s",
-                slave.name_of("DoStep")
-            )));
-        }
+        slave.whole_step(time, step)?;
         time += step;
         steps += 1;
     }
@@ -350,13 +341,12 @@ fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
                 &[known.value_reference],
                 &[1.0],
             )?;
-            if !answer[0].is_finite() {
-                return Err(Error::input(
-                    format!("derivative of `{}` along `{}`", v.name, known.name),
-                    "a finite number",
-                    answer[0].to_string(),
-                ));
-            }
+            ensure(
+                answer[0].is_finite(),
+                format_args!("derivative of `{}` along `{}`", v.name, known.name),
+                "a finite number",
+                answer[0],
+            )?;
             tried += 1;
         }
     }

@@ -1,6 +1,6 @@
 //! What a search by stepping is asked, and what it answers.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::flutter::StableRange;
 use serde::Serialize;
 
@@ -35,14 +35,12 @@ impl SteppingSearch {
         positive("speed_min_m_s", self.speed_min_m_s)?;
         positive("communication_step_s", self.communication_step_s)?;
         positive("tolerance", self.tolerance)?;
-        if self.speed_max_m_s.is_finite() && self.speed_max_m_s > self.speed_min_m_s {
-            return Ok(());
-        }
-        Err(Error::input(
+        ensure(
+            self.speed_max_m_s.is_finite() && self.speed_max_m_s > self.speed_min_m_s,
             "speed_max_m_s",
-            format!("a finite number above {}", self.speed_min_m_s),
-            self.speed_max_m_s.to_string(),
-        ))
+            format_args!("a finite number above {}", self.speed_min_m_s),
+            self.speed_max_m_s,
+        )
     }
 }
 

@@ -1,7 +1,7 @@
 //! Saving, restoring and serialising the state of an instance.
 
 use super::{FmuComponent, Slave};
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::library::StatePointer;
 use std::rc::Rc;
 
@@ -56,15 +56,9 @@ impl Slave {
     }
 
     fn own(&self, state: &FmuState) -> Result<()> {
-        if Rc::ptr_eq(&self.core, &state.core) {
-            Ok(())
-        } else {
-            Err(Error::input(
-                "FMU state",
-                "a state of this instance",
-                "one of another",
-            ))
-        }
+        let is_own = Rc::ptr_eq(&self.core, &state.core);
+        let expected = "a state of this instance";
+        ensure(is_own, "FMU state", expected, "one of another")
     }
 
     /// `fmi2SerializeFMUstate`: the state as bytes.

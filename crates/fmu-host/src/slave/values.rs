@@ -2,7 +2,7 @@
 
 use super::{Slave, find};
 use crate::description::{Value, VariableType};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::library::{Component, Fmi2Functions, Int, ValueReference};
 use crate::log::text;
 use std::ffi::CString;
@@ -203,13 +203,6 @@ impl Slave {
 }
 
 fn same_length(references: &[u32], values: usize) -> Result<()> {
-    if references.len() == values {
-        Ok(())
-    } else {
-        Err(Error::input(
-            "values",
-            format!("{} of them, one for each reference", references.len()),
-            values.to_string(),
-        ))
-    }
+    let expected = format_args!("{} of them, one for each reference", references.len());
+    ensure(references.len() == values, "values", expected, values)
 }

@@ -58,13 +58,11 @@ impl WindBlock {
                 return Err(Error::input(place, expected, point.along_m.to_string()));
             }
         }
-        if !points.is_empty() && points.iter().all(|p| p.factor == 0.0) {
-            return Err(Error::input(
-                "wind.profile",
-                "wind somewhere along the bridge",
-                "zero everywhere",
-            ));
-        }
-        Ok(())
+        ensure(
+            points.is_empty() || points.iter().any(|p| p.factor != 0.0),
+            "wind.profile",
+            "wind somewhere along the bridge",
+            "zero everywhere",
+        )
     }
 }

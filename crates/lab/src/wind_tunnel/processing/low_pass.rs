@@ -1,7 +1,7 @@
 //! The low-pass: zero phase, and the same on motion and force, so that their ratio stays what it was.
 
 use super::options::LowPassOptions;
-use super::signals::HarmonicSegment;
+use super::signals::{HarmonicSegment, highest_hz};
 use crate::error::Result;
 use crate::signal::ButterworthLowPass;
 use serde::{Deserialize, Serialize};
@@ -34,10 +34,7 @@ pub(super) fn design(
     segments: &[HarmonicSegment],
     sampling_hz: f64,
 ) -> Result<Option<(ButterworthLowPass, AppliedLowPass)>> {
-    let highest = segments
-        .iter()
-        .map(|s| s.segment.frequency_hz)
-        .fold(0.0, f64::max);
+    let highest = highest_hz(segments);
     let default = (CUTOFF_OVER_HIGHEST * highest).min(CUTOFF_OVER_SAMPLING * sampling_hz);
     let cutoff_hz = options.cutoff_hz.unwrap_or(default);
     if options.order == 0 || (options.cutoff_hz.is_none() && segments.is_empty()) {

@@ -6,7 +6,7 @@ use super::lag::{Ratios, still_air_inertia};
 use super::options::ProcessingOptions;
 use super::report::LAG_TURNS;
 use super::segmentation::{find_segments, moving_dof, whole_periods};
-use super::signals::HarmonicSegment;
+use super::signals::{HarmonicSegment, highest_hz};
 use super::{body, index, lag, still_air};
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
@@ -196,15 +196,12 @@ pub(super) fn common_lag(
     };
     let unknown =
         |p: &&mut PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| s.damping.is_none());
-    let highest_hz = |p: &PreparedRun<'_>| {
-        let frequencies = p.segments.iter().map(|s| s.segment.frequency_hz);
-        frequencies.fold(0.0, f64::max)
-    };
     let unknown = runs.iter_mut().filter(unknown);
-    let fastest = unknown.max_by(|a, b| highest_hz(a).total_cmp(&highest_hz(b)));
+    let fastest =
+        unknown.max_by(|a, b| highest_hz(&a.segments).total_cmp(&highest_hz(&b.segments)));
     // with a standard error the other motion tells the lag, and each run is asked what its own says
     if let (None, Some(fastest)) = (standard_error_s, fastest) {
-        let highest = highest_hz(fastest);
+        let highest = highest_hz(&fastest.segments);
         let turned = 360.0 * highest * lag_s;
         let said = format!(
             "the runs of a motion have one frequency, which cannot tell a lag of the force channels from damping: {:.3} ms are taken \

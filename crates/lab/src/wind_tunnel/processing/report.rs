@@ -8,7 +8,7 @@ use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
-use super::signals::{HarmonicSegment, SectionSignals};
+use super::signals::{HarmonicSegment, SectionSignals, highest_hz};
 use super::spikes::{CLIPPED, Replaced};
 use super::still_air::{Alignment, RemovedInertia};
 use crate::error::{Result, ensure};
@@ -215,8 +215,7 @@ impl RunReport {
         if off <= errors * found.lag_standard_error_s || off * self.sampling_hz <= samples {
             return Ok(());
         }
-        let frequencies = self.segments.iter().map(|s| s.segment.frequency_hz);
-        let highest = frequencies.fold(0.0, f64::max);
+        let highest = highest_hz(&self.segments);
         let turned = 360.0 * highest * off;
         let (grave, most) = LAG_TURNS;
         let corrected = 1e3 * self.lag_corrected_s;

@@ -34,6 +34,12 @@ impl HarmonicSegment {
     }
 }
 
+/// The highest frequency of segments, Hz; zero of none.
+pub(super) fn highest_hz(segments: &[HarmonicSegment]) -> f64 {
+    let frequencies = segments.iter().map(|s| s.segment.frequency_hz);
+    frequencies.fold(0.0, f64::max)
+}
+
 /// Motion of the section and force on the cells by the whole model, each vertical, lateral, torsion; of one length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionSignals {
