@@ -311,6 +311,17 @@ impl ModelDescription {
         self.fmi_version.starts_with('3')
     }
 
+    /// The start values of all numbers of an FMU of FMI 3.0, in the order of its elements.
+    pub(super) fn start_values(&self) -> Vec<f64> {
+        let start = |at: usize| match &self.variables[at].start {
+            Some(Value::Real(x)) => *x,
+            Some(Value::Integer(x)) => f64::from(*x),
+            Some(Value::Boolean(x)) => f64::from(u8::from(*x)),
+            _ => 0.0,
+        };
+        (0..self.elements.len()).map(start).collect()
+    }
+
     /// The variable of that name.
     pub fn variable(&self, name: &str) -> Option<&ScalarVariable> {
         self.variables.iter().find(|v| v.name == name)

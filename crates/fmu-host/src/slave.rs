@@ -102,7 +102,7 @@ impl Slave {
                 _callbacks: callbacks,
                 log,
             }),
-            kept: fmi3::start_values(&loaded.description),
+            kept: loaded.description.start_values(),
             experiment: (0.0, None, None),
             begun: false,
         })
@@ -272,7 +272,7 @@ impl Slave {
     pub fn reset(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
         self.good("Reset", |f, c| unsafe { (f.reset)(c) })?;
-        self.kept = fmi3::start_values(self.model_description());
+        self.kept = self.model_description().start_values();
         (self.experiment, self.begun) = ((0.0, None, None), false);
         Ok(())
     }

@@ -3,7 +3,7 @@
 //! References are places in the list of variables, where each element of an array is one.
 
 use super::Slave;
-use crate::description::{ArrayElement, ModelDescription, Value};
+use crate::description::ArrayElement;
 use crate::error::{Error, Result};
 use crate::library::{Fmi3Functions, OwnFunctions, Text};
 use crate::log::text;
@@ -17,17 +17,6 @@ struct WholeArrays {
     places: Vec<usize>,
     /// Values of all arrays.
     count: usize,
-}
-
-/// The start values of all numbers of an FMU of FMI 3.0.
-pub(super) fn start_values(description: &ModelDescription) -> Vec<f64> {
-    let start = |at: usize| match &description.variables[at].start {
-        Some(Value::Real(x)) => *x,
-        Some(Value::Integer(x)) => f64::from(*x),
-        Some(Value::Boolean(x)) => f64::from(u8::from(*x)),
-        _ => 0.0,
-    };
-    (0..description.elements.len()).map(start).collect()
 }
 
 impl Slave {

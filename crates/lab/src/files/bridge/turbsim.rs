@@ -30,6 +30,24 @@ fn take<const N: usize>(all: &[u8], at: &mut usize, what: &str) -> Result<[u8; N
     Ok(*found)
 }
 
+/// A number of `lowest` or more.
+fn count(all: &[u8], at: &mut usize, what: &str, lowest: i32) -> Result<usize> {
+    let place = format!("byte {at}, {what}");
+    let count = i32::from_le_bytes(take(all, at, what)?);
+    match usize::try_from(count) {
+        Ok(fits) if count >= lowest => Ok(fits),
+        _ => {
+            let expected = format!("{lowest} or more");
+            Err(Error::input(place, expected, count.to_string()))
+        }
+    }
+}
+
+fn number(all: &[u8], at: &mut usize, what: &str) -> Result<f64> {
+    let place = format!("byte {at}, {what}");
+    finite(place, f64::from(f32::from_le_bytes(take(all, at, what)?)))
+}
+
 /// The head of a file.
 struct TurbSimHeader {
     /// Points upwards, across, on the tower below, and in time.
@@ -56,41 +74,25 @@ impl TurbSimHeader {
             "7 or 8, a full-field file of TurbSim",
             kind,
         )?;
-        // a number of `lowest` or more
-        let count = |at: &mut usize, what: &str, lowest: i32| {
-            let place = format!("byte {at}, {what}");
-            let count = i32::from_le_bytes(take(all, at, what)?);
-            match usize::try_from(count) {
-                Ok(fits) if count >= lowest => Ok(fits),
-                _ => {
-                    let expected = format!("{lowest} or more");
-                    Err(Error::input(place, expected, count.to_string()))
-                }
-            }
-        };
-        let number = |at: &mut usize, what: &str| {
-            let place = format!("byte {at}, {what}");
-            finite(place, f64::from(f32::from_le_bytes(take(all, at, what)?)))
-        };
         let counts = [
-            count(at, "points upwards", 1)?,
-            count(at, "points across", 2)?,
-            count(at, "points of the tower", 0)?,
-            count(at, "time steps", 3)?,
+            count(all, at, "points upwards", 1)?,
+            count(all, at, "points across", 2)?,
+            count(all, at, "points of the tower", 0)?,
+            count(all, at, "time steps", 3)?,
         ];
         let steps = [
-            number(at, "distance upwards")?,
-            number(at, "distance across")?,
-            number(at, "time step")?,
+            number(all, at, "distance upwards")?,
+            number(all, at, "distance across")?,
+            number(all, at, "time step")?,
         ];
-        let mean_speed_m_s = number(at, "mean wind")?;
-        let hub_height_m = number(at, "height of the hub")?;
-        let lowest_m = number(at, "lowest height")?;
+        let mean_speed_m_s = number(all, at, "mean wind")?;
+        let hub_height_m = number(all, at, "height of the hub")?;
+        let lowest_m = number(all, at, "lowest height")?;
         let mut scales = [[0.0; 2]; COMPONENTS];
         for scale in &mut scales {
-            *scale = [number(at, "slope")?, number(at, "intercept")?];
+            *scale = [number(all, at, "slope")?, number(all, at, "intercept")?];
         }
-        let text = count(at, "characters of the description", 0)?;
+        let text = count(all, at, "characters of the description", 0)?;
         let head = Self {
             counts,
             steps,
