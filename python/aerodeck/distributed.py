@@ -5,6 +5,8 @@ matters. A part is done on one core: start workers with one thread each (`LocalC
 worker was doing when it was lost is done again elsewhere.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from ._aerodeck import Onsets, _monte_carlo_of, _monte_carlo_part, onsets, process
@@ -107,8 +109,8 @@ def grid(client, section, model, axes, *, speed_max_m_s=None, part=20_000, progr
     futures = [client.submit(_onsets, shared, *range_, pure=False) for range_ in ranges]
     parts = _gathered(client, futures, [last - first for first, last in ranges], progress)
     columns = ("speed_m_s", "frequency_hz", "tested", "unstable", "judged")
-    of_all = (np.concatenate([getattr(p, name) for p in parts]) for name in columns)
-    return Onsets._from_parts(*of_all, parts[0].searched_to_m_s)
+    of_all = {name: np.concatenate([getattr(p, name) for p in parts]) for name in columns}
+    return Onsets._from_parts(SimpleNamespace(searched_to_m_s=parts[0].searched_to_m_s, **of_all))
 
 
 def campaign(client, campaigns, *, progress=None, **options):

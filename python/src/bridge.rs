@@ -1,6 +1,6 @@
 //! `Bridge`: modes and strips of a whole bridge.
 
-use crate::bridge_scatter::{BridgeScatter, Derivatives};
+use crate::bridge_scatter::{BridgeScatter, derivative_scatter};
 use crate::buffeting::Buffeting;
 use crate::convert::{Reduced, list, reduced, restored, shown};
 use crate::error::{raised, warned, wrong};
@@ -13,7 +13,9 @@ use aerodeck::flutter::{find_onset, trace_modes_watched};
 use aerodeck::fmu::package::{
     FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
 };
-use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy, Scatter, bridge_flutter};
+use aerodeck::study::bridge::{
+    BridgeExportOptions, BridgeStudy, DerivativeScatter, Scatter, bridge_flutter,
+};
 use aerodeck::verdict::Verdict;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -211,7 +213,7 @@ impl Bridge {
     /// Returns
     /// -------
     /// BridgeScatter
-    #[pyo3(signature = (samples = 1000, *, frequency = 0.02, damping = 0.3, derivatives = Derivatives::Relative(0.05), seed = 1,
+    #[pyo3(signature = (samples = 1000, *, frequency = 0.02, damping = 0.3, derivatives = None, seed = 1,
         progress = None), text_signature = "($self, samples=1000, *, frequency=0.02, damping=0.3, derivatives=0.05, seed=1, progress=None)")]
     #[allow(clippy::too_many_arguments)] // keywords of Python, not positions
     fn scatter(
@@ -220,14 +222,15 @@ impl Bridge {
         samples: usize,
         frequency: f64,
         damping: f64,
-        derivatives: Derivatives,
+        derivatives: Option<&Bound<'_, PyAny>>,
         seed: u64,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<BridgeScatter> {
         let scatter = Scatter {
             frequency,
             damping,
-            derivatives: derivatives.scatter()?,
+            derivatives: derivatives
+                .map_or(Ok(DerivativeScatter::Relative(0.05)), derivative_scatter)?,
             samples,
             seed,
         };

@@ -7,30 +7,23 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 /// Standard deviation over the mean, or the word for the covariance of the fits.
-#[derive(FromPyObject)]
-pub enum Derivatives {
-    Relative(f64),
-    Word(String),
-}
-
-impl Derivatives {
-    /// What the library takes.
-    ///
-    /// # Errors
-    /// A word that is none.
-    pub fn scatter(&self) -> PyResult<DerivativeScatter> {
-        match self {
-            Self::Relative(part) => Ok(DerivativeScatter::Relative(*part)),
-            Self::Word(word) => word.parse().map_err(|_| {
-                let expected = "a standard deviation over the mean, or measured";
-                wrong("derivatives", expected, format!("`{word}`"))
-            }),
-        }
+///
+/// # Errors
+/// What is neither, and a word that is none.
+pub fn derivative_scatter(stated: &Bound<'_, PyAny>) -> PyResult<DerivativeScatter> {
+    if let Ok(part) = stated.extract() {
+        return Ok(DerivativeScatter::Relative(part));
     }
+    let word: String = stated.extract()?;
+    word.parse().map_err(|_| {
+        let expected = "a standard deviation over the mean, or measured";
+        wrong("derivatives", expected, format!("`{word}`"))
+    })
 }
 
 /// Onsets of a bridge whose frequencies, damping and self-excited forces scatter.
 #[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(FromPyObject)]
 pub struct BridgeScatter {
     /// Onset of each sample that has one, m/s, rising; shape (k,).
     speeds_m_s: Py<PyArray1<f64>>,
@@ -60,31 +53,12 @@ impl BridgeScatter {
 #[pymethods]
 impl BridgeScatter {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        let names = [
-            "speeds_m_s",
-            "mean_m_s",
-            "standard_deviation_m_s",
-            "interval_m_s",
-            "without_onset",
-        ];
-        parts(slf, &names)
+        parts(slf)
     }
 
     #[staticmethod]
-    fn _from_parts(
-        speeds_m_s: Py<PyArray1<f64>>,
-        mean_m_s: f64,
-        standard_deviation_m_s: f64,
-        interval_m_s: [f64; 2],
-        without_onset: usize,
-    ) -> Self {
-        Self {
-            speeds_m_s,
-            mean_m_s,
-            standard_deviation_m_s,
-            interval_m_s: interval_m_s.into(),
-            without_onset,
-        }
+    fn _from_parts(parts: Self) -> Self {
+        parts
     }
 
     fn __repr__(&self) -> String {

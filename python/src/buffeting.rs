@@ -6,38 +6,29 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 
 /// Response of a bridge to turbulence: vertical (m), lateral (m) and rotation (rad) at n nodes, by two ways.
-#[pyclass(frozen, module = "aerodeck")]
+#[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(FromPyObject)]
 pub struct Buffeting {
     /// Mean wind speed, m/s.
-    #[pyo3(get)]
     speed_m_s: f64,
     /// Names of the nodes.
-    #[pyo3(get)]
     nodes: Vec<String>,
     /// Root mean square, by spectra; shape (n, 3).
-    #[pyo3(get)]
     rms: Py<PyArray2<f64>>,
     /// Root mean square, by records in time; shape (n, 3). `None` where the models grow and the tables do not.
-    #[pyo3(get)]
     rms_of_records: Option<Py<PyArray2<f64>>>,
     /// Standard error of `rms_of_records`; shape (n, 3).
-    #[pyo3(get)]
     standard_error: Option<Py<PyArray2<f64>>>,
     /// Root mean square by spectra with the models that are stepped in time, over `rms`, less 1; shape (n, 3). `None`
     /// without tables.
-    #[pyo3(get)]
     model_change: Option<Py<PyArray2<f64>>>,
     /// Mean frequency of upward crossings of the mean, Hz; shape (n, 3).
-    #[pyo3(get)]
     crossing_frequency_hz: Py<PyArray2<f64>>,
     /// Expected greatest departure over the root mean square in the length of a record, by spectra; shape (n, 3).
-    #[pyo3(get)]
     expected_peak_factor: Py<PyArray2<f64>>,
     /// The same by records; shape (n, 3).
-    #[pyo3(get)]
     peak_factor: Option<Py<PyArray2<f64>>>,
-    #[pyo3(get, name = "_all")]
-    all: Py<PyAny>,
+    _all: Py<PyAny>,
 }
 
 impl Buffeting {
@@ -56,7 +47,7 @@ impl Buffeting {
             crossing_frequency_hz: array(&frequency.crossing_frequency_hz)?,
             expected_peak_factor: array(&found.expected_peak_factor)?,
             peak_factor: time.map(|t| array(&t.peak_factor)).transpose()?,
-            all: to_python(py, found)?.unbind(),
+            _all: to_python(py, found)?.unbind(),
         })
     }
 }
@@ -64,53 +55,18 @@ impl Buffeting {
 #[pymethods]
 impl Buffeting {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        let names = [
-            "speed_m_s",
-            "nodes",
-            "rms",
-            "rms_of_records",
-            "standard_error",
-            "model_change",
-            "crossing_frequency_hz",
-            "expected_peak_factor",
-            "peak_factor",
-            "_all",
-        ];
-        parts(slf, &names)
+        parts(slf)
     }
 
     #[staticmethod]
-    #[allow(clippy::too_many_arguments)] // attributes, in the order of `__reduce__`
-    fn _from_parts(
-        speed_m_s: f64,
-        nodes: Vec<String>,
-        rms: Py<PyArray2<f64>>,
-        rms_of_records: Option<Py<PyArray2<f64>>>,
-        standard_error: Option<Py<PyArray2<f64>>>,
-        model_change: Option<Py<PyArray2<f64>>>,
-        crossing_frequency_hz: Py<PyArray2<f64>>,
-        expected_peak_factor: Py<PyArray2<f64>>,
-        peak_factor: Option<Py<PyArray2<f64>>>,
-        all: Py<PyAny>,
-    ) -> Self {
-        Self {
-            speed_m_s,
-            nodes,
-            rms,
-            rms_of_records,
-            standard_error,
-            model_change,
-            crossing_frequency_hz,
-            expected_peak_factor,
-            peak_factor,
-            all,
-        }
+    fn _from_parts(parts: Self) -> Self {
+        parts
     }
 
     /// Everything, as `bridge_buffeting.json` of the command line holds it.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("copy")?
-            .call_method1("deepcopy", (self.all.bind(py),))
+            .call_method1("deepcopy", (self._all.bind(py),))
     }
 
     fn __repr__(&self) -> String {

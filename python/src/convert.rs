@@ -34,18 +34,28 @@ pub fn restored<T: DeserializeOwned>(state: &str) -> PyResult<T> {
     serde_json::from_str(state).map_err(|e| wrong("state", "one of this version", e.to_string()))
 }
 
-/// The same of an object of arrays: `_from_parts` of its class and the arrays.
+/// The same of an object of arrays: `_from_parts` of its class and the attributes, which are all of it.
 pub type Parts<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 /// The attributes of an object for `__reduce__`.
-pub fn parts<'py, T: pyo3::PyClass>(slf: &Bound<'py, T>, names: &[&str]) -> PyResult<Parts<'py>> {
-    let slf = slf.as_any();
-    let parts = names.iter().map(|name| slf.getattr(*name));
-    let parts = parts.collect::<PyResult<Vec<_>>>()?;
-    Ok((
-        slf.get_type().getattr("_from_parts")?,
-        PyTuple::new(slf.py(), parts)?,
-    ))
+pub fn parts<'py, T: pyo3::PyClass>(slf: &Bound<'py, T>) -> PyResult<Parts<'py>> {
+    let (py, slf) = (slf.py(), slf.as_any());
+    let class = slf.get_type();
+    let all = PyDict::new(py);
+    for entry in class
+        .getattr("__dict__")?
+        .call_method0("items")?
+        .try_iter()?
+    {
+        let (name, of): (String, Bound<'_, PyAny>) = entry?.extract()?;
+        let kind = of.get_type().name()?;
+        if ["getset_descriptor", "member_descriptor"].contains(&kind.to_str()?) {
+            all.set_item(&name, slf.getattr(&name)?)?;
+        }
+    }
+    let parts = py.import("types")?.getattr("SimpleNamespace")?;
+    let parts = PyTuple::new(py, [parts.call((), Some(&all))?])?;
+    Ok((class.getattr("_from_parts")?, parts))
 }
 
 /// Keys and values as a value of the library, with the words of a study file; `place` is named when they do not fit.

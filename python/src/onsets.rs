@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 
 /// Onsets of many sections, one entry each.
 #[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(FromPyObject)]
 pub struct Onsets {
     /// Onset speeds, m/s; NaN where there is none up to `searched_to_m_s`, and where that cannot be judged (see `judged`); shape (n,).
     speed_m_s: Py<PyArray1<f64>>,
@@ -30,36 +31,12 @@ pub struct Onsets {
 #[pymethods]
 impl Onsets {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        parts(
-            slf,
-            &[
-                "speed_m_s",
-                "frequency_hz",
-                "tested",
-                "unstable",
-                "judged",
-                "searched_to_m_s",
-            ],
-        )
+        parts(slf)
     }
 
     #[staticmethod]
-    fn _from_parts(
-        speed_m_s: Py<PyArray1<f64>>,
-        frequency_hz: Py<PyArray1<f64>>,
-        tested: Py<PyArray1<bool>>,
-        unstable: Py<PyArray1<bool>>,
-        judged: Py<PyArray1<bool>>,
-        searched_to_m_s: f64,
-    ) -> Self {
-        Self {
-            speed_m_s,
-            frequency_hz,
-            tested,
-            unstable,
-            judged,
-            searched_to_m_s,
-        }
+    fn _from_parts(parts: Self) -> Self {
+        parts
     }
 
     /// The onsets as a pandas DataFrame, a row for every section.

@@ -18,6 +18,7 @@ use std::path::PathBuf;
 
 /// Records and derivatives of a campaign.
 #[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(FromPyObject)]
 pub struct Processing {
     /// Self-excited forces, one record per run.
     records: Py<Records>,
@@ -34,25 +35,12 @@ pub struct Processing {
 #[pymethods]
 impl Processing {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        let names = ["records", "derivatives", "estimates", "report", "warnings"];
-        parts(slf, &names)
+        parts(slf)
     }
 
     #[staticmethod]
-    fn _from_parts(
-        records: Py<Records>,
-        derivatives: Py<Derivatives>,
-        estimates: Py<PyAny>,
-        report: Py<PyAny>,
-        warnings: Vec<String>,
-    ) -> Self {
-        Self {
-            records,
-            derivatives,
-            estimates,
-            report,
-            warnings,
-        }
+    fn _from_parts(parts: Self) -> Self {
+        parts
     }
 
     fn __repr__(&self) -> String {

@@ -18,6 +18,7 @@ const MAX_STEPS: f64 = 1e7;
 
 /// Motion of a section over time; columns in the order of `dofs`.
 #[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(FromPyObject)]
 pub struct Motion {
     /// Instants, s; shape (n,).
     time_s: Py<PyArray1<f64>>,
@@ -38,37 +39,12 @@ pub struct Motion {
 #[pymethods]
 impl Motion {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        let names = [
-            "time_s",
-            "displacement",
-            "rate",
-            "acceleration",
-            "force",
-            "dofs",
-            "wind_speed_m_s",
-        ];
-        parts(slf, &names)
+        parts(slf)
     }
 
     #[staticmethod]
-    fn _from_parts(
-        time_s: Py<PyArray1<f64>>,
-        displacement: Py<PyArray2<f64>>,
-        rate: Py<PyArray2<f64>>,
-        acceleration: Py<PyArray2<f64>>,
-        force: Py<PyArray2<f64>>,
-        dofs: Vec<String>,
-        wind_speed_m_s: f64,
-    ) -> Self {
-        Self {
-            time_s,
-            displacement,
-            rate,
-            acceleration,
-            force,
-            dofs,
-            wind_speed_m_s,
-        }
+    fn _from_parts(parts: Self) -> Self {
+        parts
     }
 
     fn __repr__(&self) -> String {

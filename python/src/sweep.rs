@@ -13,6 +13,7 @@ use pyo3::types::PyDict;
 
 /// Frequencies and damping ratios of the modes over wind speed.
 #[pyclass(frozen, module = "aerodeck", get_all)]
+#[derive(FromPyObject)]
 pub struct Sweep {
     /// Wind speeds, m/s; shape (n,).
     speed_m_s: Py<PyArray1<f64>>,
@@ -31,36 +32,12 @@ pub struct Sweep {
 #[pymethods]
 impl Sweep {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Parts<'py>> {
-        parts(
-            slf,
-            &[
-                "speed_m_s",
-                "frequency_hz",
-                "damping_ratio",
-                "tested",
-                "modes",
-                "ended",
-            ],
-        )
+        parts(slf)
     }
 
     #[staticmethod]
-    fn _from_parts(
-        speed_m_s: Py<PyArray1<f64>>,
-        frequency_hz: Py<numpy::PyArray2<f64>>,
-        damping_ratio: Py<numpy::PyArray2<f64>>,
-        tested: Py<numpy::PyArray2<bool>>,
-        modes: Vec<String>,
-        ended: Option<String>,
-    ) -> Self {
-        Self {
-            speed_m_s,
-            frequency_hz,
-            damping_ratio,
-            tested,
-            modes,
-            ended,
-        }
+    fn _from_parts(parts: Self) -> Self {
+        parts
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
