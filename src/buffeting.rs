@@ -17,6 +17,7 @@ mod stability;
 mod synthesis;
 mod time;
 
+pub use crate::aerodynamics::GustComponent;
 pub use admittance::Admittance;
 pub use coherence::Coherence;
 pub(crate) use covariance::ModalCovariance;
@@ -26,7 +27,7 @@ pub use periodic::{SpanEnsemble, SpanPlan, SpanRecord, span_record};
 pub use problem::{BuffetingProblem, Gust, Turbulence};
 pub use response::{BuffetingResponse, SpanResponse, SpectrumCurve};
 pub(crate) use response::{part, peak_factor};
-pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
+pub use spectrum::{GustSpectrum, SpectrumFormula, SpectrumShape};
 pub use synthesis::{TurbulenceField, turbulence_field};
 pub use time::{ComponentComparison, Ensemble, compare};
 pub(crate) use time::{TimePlan, check_plan, time_ensemble};

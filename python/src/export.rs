@@ -136,10 +136,7 @@ pub fn export_fmu(
 
 /// The interval of the onset, which the archive carries where the data give one, and the verdict, which it states.
 fn bounds(trained: &TrainedModel, model: &Model) -> PyResult<(Option<OnsetBounds>, Verdict)> {
-    let search = OnsetSearch {
-        speed_max_m_s: trained.experiment.onset_search_limit_m_s,
-        ..OnsetSearch::default()
-    };
+    let search = OnsetSearch::up_to(trained.experiment.onset_search_limit_m_s);
     let found = of_model(&trained.section, model, &search, "eigenvalues")?;
     let onset = found.onset();
     let bounds = onset.and_then(|onset| OnsetBounds::from_interval(&onset.interval));

@@ -1,7 +1,7 @@
 //! Coherence along the span: exponential along a line, it is that of a Markov chain, so that products with `C` and samples of the
 //! turbulence cost one pass along the span instead of a factorisation.
 
-use super::spectrum::GustComponent;
+use crate::aerodynamics::GustComponent;
 use crate::bridge::Node;
 use crate::error::{Result, ensure};
 use nalgebra::Complex;

@@ -13,9 +13,9 @@
 
 use super::problem::BuffetingProblem;
 use super::response::{by_node, part};
-use super::spectrum::GustComponent;
 use super::synthesis::{TurbulenceField, parts_in_time};
 use super::time::{all_records, root_and_error};
+use crate::aerodynamics::GustComponent;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
 use crate::numbered::OnDone;

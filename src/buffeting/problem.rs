@@ -6,8 +6,9 @@
 
 use super::admittance::Admittance;
 use super::coherence::Coherence;
-use super::spectrum::{GustComponent, GustSpectrum};
+use super::spectrum::GustSpectrum;
 use super::stability::highest_natural_hz;
+use crate::aerodynamics::GustComponent;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;

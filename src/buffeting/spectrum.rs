@@ -1,25 +1,11 @@
 //! Spectra of the turbulence components, normalised to their variance.
 
+use crate::aerodynamics::GustComponent;
 use crate::error::{Error, Result, ensure, positive};
 use serde::{Deserialize, Serialize};
 
 /// Part by which the integral of a user's spectrum may differ from its variance.
 const NORMALISATION_TOLERANCE: f64 = 0.01;
-
-/// A component of the turbulence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GustComponent {
-    /// `u`, along the mean wind.
-    Along,
-    /// `w`, upwards.
-    Vertical,
-}
-
-impl GustComponent {
-    /// Both, in the order of the columns of a buffeting matrix.
-    pub(crate) const BOTH: [GustComponent; 2] = [GustComponent::Along, GustComponent::Vertical];
-}
 
 /// Shape of a spectrum over `x = fL/V`, all of the form `f S/σ² = a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -10,7 +10,7 @@
 //! pair of nodes then has exactly the coherence `exp(−C f |Δs|/V)`.
 
 use super::problem::{BuffetingProblem, Gust};
-use super::spectrum::GustComponent;
+use crate::aerodynamics::GustComponent;
 use crate::error::{Error, Result, ensure, positive};
 use crate::signal::{Fourier, random_stream};
 use nalgebra::{Complex, DMatrix};

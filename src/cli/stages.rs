@@ -321,10 +321,7 @@ pub(crate) fn onset_bounds(
 ) -> Result<Option<OnsetBounds>> {
     let structure = model.section.structure()?;
     let section = CoupledSection::with_model(&structure, &model.model)?;
-    let search = OnsetSearch {
-        speed_max_m_s: model.experiment.onset_search_limit_m_s,
-        ..OnsetSearch::default()
-    };
+    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
     let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
     Ok(found.onset().and_then(|onset| {
         OnsetBounds::from_interval(&interval_of(&structure, model, known, onset))

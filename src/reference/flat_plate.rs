@@ -205,10 +205,7 @@ pub(super) fn by_eigenvalues(
     speed_max_m_s: f64,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<Onset> {
-    let search = OnsetSearch {
-        speed_max_m_s,
-        ..OnsetSearch::default()
-    };
+    let search = OnsetSearch::up_to(speed_max_m_s);
     onset_of(&find_onset("", section, &search, tested)?, speed_max_m_s)
 }
 

@@ -17,7 +17,7 @@ mod spline;
 pub use flat_plate::FlatPlate;
 pub use gust::GustSeries;
 pub(crate) use gust_force::LAGS;
-pub use gust_force::{GustForce, RationalAdmittance};
+pub use gust_force::{GustComponent, GustForce, RationalAdmittance};
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::{Lags, MinimumStateModel, RationalModel};
 pub use realization::DiscreteRealization;

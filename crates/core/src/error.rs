@@ -205,12 +205,8 @@ pub fn ensure(
 /// Refuses a text with control characters: names end up in files, pages, descriptions of FMUs and on terminals.
 pub fn without_control_characters(place: impl Into<Place>, text: &str) -> Result<()> {
     let is_plain = !has_control_characters(text);
-    ensure(
-        is_plain,
-        place,
-        "a text without control characters",
-        "one with them",
-    )
+    let expected = "a text without control characters";
+    ensure(is_plain, place, expected, "one with them")
 }
 
 /// `value` if it is finite and positive.
@@ -238,21 +234,14 @@ pub fn of_schema(expected: u32, found: u32) -> Result<()> {
 /// Nothing if `values` are `count` finite numbers.
 pub fn finite_numbers(place: impl Into<Place>, values: &[f64], count: usize) -> Result<()> {
     let holds = values.len() == count && values.iter().all(|x| x.is_finite());
-    let (expected, found) = (
-        format_args!("{count} finite numbers"),
-        format_args!("{values:?}"),
-    );
-    ensure(holds, place, expected, found)
+    let expected = format_args!("{count} finite numbers");
+    ensure(holds, place, expected, format_args!("{values:?}"))
 }
 
 /// Nothing if `value` is at most `bound`: one that no real study reaches.
 pub fn at_most(place: impl Into<Place>, value: f64, bound: f64) -> Result<()> {
-    ensure(
-        value <= bound,
-        place,
-        format_args!("at most {bound}"),
-        value,
-    )
+    let expected = format_args!("at most {bound}");
+    ensure(value <= bound, place, expected, value)
 }
 
 /// `value` if it is finite and not negative.

@@ -191,11 +191,8 @@ pub struct SectionModel {
 impl SectionModel {
     /// The section of Table 4.1 of the thesis (B 0.5 m, m 15 kg/m, J 0.6 kg·m²/m, 2 Hz, 5 Hz, ζ 0.3 %, ρ 1.19 kg/m³).
     pub fn table_4_1() -> Self {
-        let (heave, twist) = (
-            Translation::new(15.0, 2.0, 0.003),
-            Rotation::new(0.6, 5.0, 0.003),
-        );
-        Self::two_dof(0.5, 1.19, heave, twist)
+        let heave = Translation::new(15.0, 2.0, 0.003);
+        Self::two_dof(0.5, 1.19, heave, Rotation::new(0.6, 5.0, 0.003))
     }
 
     /// The deck of IABSE Task Group 3.1, step 1.1a (B 31 m, m 22 740 kg/m, J 2.47e6 kg·m²/m, 0.100 and 0.278 Hz, ζ 0.3 %, ρ 1.22 kg/m³).

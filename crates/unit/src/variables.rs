@@ -30,8 +30,7 @@ pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use response::Response;
 pub use variable::{
-    Dependency, DependencyKind, ForceOutput, GustDirection, ModeOutput, Role, StartValue,
-    StripParameter, Variable,
+    Dependency, DependencyKind, ForceOutput, ModeOutput, Role, StartValue, StripParameter, Variable,
 };
 
 use super::bridge_options::BridgeOptions;

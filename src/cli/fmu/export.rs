@@ -216,10 +216,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let (default_name, evidence) = match args.kind {
         ExportKind::Section => {
-            let search = OnsetSearch {
-                speed_max_m_s: model.experiment.onset_search_limit_m_s,
-                ..OnsetSearch::default()
-            };
+            let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
             let evidence = saved_evidence(&args.model, &model, &model.section, &search)?;
             (stages::FMU_FILE, Some(evidence))
         }

@@ -203,10 +203,7 @@ fn still_air_hz(section: &SectionModel, dof: &Dof) -> f64 {
 /// Sentences on the section as exported: the verdict that goes with it, or what its own searches amount to.
 fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<String>> {
     let structure = model.section.structure()?;
-    let search = OnsetSearch {
-        speed_max_m_s: model.experiment.onset_search_limit_m_s,
-        ..OnsetSearch::default()
-    };
+    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
     let section = CoupledSection::with_model(&structure, &model.model)?;
     let found = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
         Ok(found) => found,

@@ -24,10 +24,7 @@ pub enum GrowthPolicy {
 /// Growth below the onset of the section of a model, by extrapolation alone; see `unwanted_growth`.
 pub(crate) fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
-    let search = OnsetSearch {
-        speed_max_m_s: model.experiment.onset_search_limit_m_s,
-        ..OnsetSearch::default()
-    };
+    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
     unwanted_growth(&section, &search, Some(model.tested_range))
 }
 

@@ -1,9 +1,10 @@
 //! `terminalsAndIcons.xml`: which variables belong to one connection. A degree of freedom is one, with
 //! its motion and the force on it, and so is the wind.
 
+use crate::aerodynamics::GustComponent;
 use crate::fmu::groups::array_of;
 use crate::fmu::standard::{Causality, FmiVersion};
-use crate::fmu::variables::{ForceOutput, GustDirection, Response, Role, VariableTable};
+use crate::fmu::variables::{ForceOutput, Response, Role, VariableTable};
 use crate::fmu::xml::Element;
 use crate::section::Dof;
 use std::collections::BTreeSet;
@@ -11,43 +12,22 @@ use std::collections::BTreeSet;
 /// The file in the archive.
 pub(super) const FILE: &str = "terminalsAndIcons/terminalsAndIcons.xml";
 
-/// The connections of a unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Terminal {
-    Wind,
-    Motion(Dof),
-}
-
-impl Terminal {
-    const ALL: [Self; 4] = [
-        Self::Wind,
-        Self::Motion(Dof::Vertical),
-        Self::Motion(Dof::Lateral),
-        Self::Motion(Dof::Torsion),
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Wind => "wind",
-            Self::Motion(dof) => dof.name(),
-        }
-    }
-
-    fn description(self) -> &'static str {
-        match self {
-            Self::Wind => "Mean wind and gusts",
-            Self::Motion(Dof::Vertical) => "Vertical motion and force, positive up",
-            Self::Motion(Dof::Lateral) => "Lateral motion and force, positive downwind",
-            Self::Motion(Dof::Torsion) => "Rotation and moment, positive nose-up",
-        }
-    }
+/// Name and description of a connection: that of a motion, or of the wind.
+fn words(of: Option<Dof>) -> (&'static str, &'static str) {
+    let description = match of {
+        None => "Mean wind and gusts",
+        Some(Dof::Vertical) => "Vertical motion and force, positive up",
+        Some(Dof::Lateral) => "Lateral motion and force, positive downwind",
+        Some(Dof::Torsion) => "Rotation and moment, positive nose-up",
+    };
+    (of.map_or("wind", Dof::name), description)
 }
 
 /// The file of the listed variables of a table. FMI 3.0 has one connection for all strips or nodes, whose members are arrays; 2.0, which
 /// may have the file since 2.0.4, one for each.
 pub(super) fn document(table: &VariableTable, version: FmiVersion) -> String {
     // in the order of the table
-    let mut terminals: Vec<(String, Terminal, Vec<Element>)> = Vec::new();
+    let mut terminals: Vec<(String, Option<Dof>, Vec<Element>)> = Vec::new();
     let mut arrays = BTreeSet::new();
     for variable in table.variables() {
         let connected = matches!(variable.causality, Causality::Input | Causality::Output);
@@ -69,18 +49,18 @@ pub(super) fn document(table: &VariableTable, version: FmiVersion) -> String {
             .with("variableName", name)
             .with("memberName", member)
             .with("variableKind", "signal");
-        let name = [of, terminal.name()].concat();
+        let name = [of, words(terminal).0].concat();
         match terminals.iter_mut().find(|(n, ..)| *n == name) {
             Some((.., members)) => members.push(element),
             None => terminals.push((name, terminal, vec![element])),
         }
     }
-    terminals.sort_by_key(|(_, terminal, _)| Terminal::ALL.iter().position(|t| t == terminal));
+    terminals.sort_by_key(|(_, terminal, _)| *terminal);
     let terminals = terminals.into_iter().map(|(name, terminal, members)| {
         Element::new("Terminal")
             .with("name", name)
             .with("matchingRule", "bus")
-            .with("description", terminal.description())
+            .with("description", words(terminal).1)
             .containing(members)
     });
     Element::new("fmiTerminalsAndIcons")
@@ -94,8 +74,8 @@ fn strip_of(name: &str) -> &str {
     name.find("].").map_or("", |end| &name[..end + 2])
 }
 
-/// The connection of a variable, and what it is there.
-fn member(role: Role) -> Option<(Terminal, &'static str)> {
+/// The connection of a variable, of a motion or of the wind, and what it is there.
+fn member(role: Role) -> Option<(Option<Dof>, &'static str)> {
     let motion = |of, dof| {
         let member = match of {
             Response::Displacement => "displacement",
@@ -103,22 +83,18 @@ fn member(role: Role) -> Option<(Terminal, &'static str)> {
             Response::Acceleration => "acceleration",
             Response::SelfExcitedForce => "self_excited_force",
         };
-        Some((Terminal::Motion(dof), member))
+        Some((Some(dof), member))
     };
     match role {
-        Role::WindSpeed => Some((Terminal::Wind, "speed")),
-        Role::Gust(_, GustDirection::Along) => Some((Terminal::Wind, "gust_along")),
-        Role::Gust(_, GustDirection::Vertical) => Some((Terminal::Wind, "gust_up")),
+        Role::WindSpeed => Some((None, "speed")),
+        Role::Gust(_, GustComponent::Along) => Some((None, "gust_along")),
+        Role::Gust(_, GustComponent::Vertical) => Some((None, "gust_up")),
         Role::Response(of, dof) | Role::Motion(_, of, dof) | Role::NodeMotion(_, of, dof) => {
             motion(of, dof)
         }
-        Role::ExternalForce(dof) | Role::NodeForce(_, dof) => {
-            Some((Terminal::Motion(dof), "external_force"))
-        }
-        Role::Force(_, ForceOutput::PerLength, dof) => {
-            Some((Terminal::Motion(dof), "force_per_length"))
-        }
-        Role::Force(_, ForceOutput::Total, dof) => Some((Terminal::Motion(dof), "force")),
+        Role::ExternalForce(dof) | Role::NodeForce(_, dof) => Some((Some(dof), "external_force")),
+        Role::Force(_, ForceOutput::PerLength, dof) => Some((Some(dof), "force_per_length")),
+        Role::Force(_, ForceOutput::Total, dof) => Some((Some(dof), "force")),
         _ => None,
     }
 }

@@ -19,6 +19,20 @@ pub enum RationalAdmittance {
     Liepmann,
 }
 
+/// A component of the turbulence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GustComponent {
+    /// `u`, along the mean wind.
+    Along,
+    /// `w`, upwards.
+    Vertical,
+}
+
+impl GustComponent {
+    /// Both, in the order of the columns of a buffeting matrix.
+    pub const BOTH: [Self; 2] = [Self::Along, Self::Vertical];
+}
+
 /// Pole `pⱼ` and weight `wⱼ` of one lag.
 pub(super) type Lag = [f64; 2];
 

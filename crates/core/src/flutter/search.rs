@@ -43,18 +43,22 @@ impl Default for OnsetSearch {
 }
 
 impl OnsetSearch {
+    /// Up to a wind speed, m/s, in the usual number of steps.
+    pub fn up_to(speed_max_m_s: f64) -> Self {
+        Self {
+            speed_max_m_s,
+            ..Self::default()
+        }
+    }
+
     /// The wind speeds that are looked at, m/s: equally spaced, still air left out.
     ///
     /// # Errors
     /// [`Error::Input`] for a highest speed that is not positive or fewer than two speeds.
     pub fn speeds_m_s(&self) -> Result<Vec<f64>> {
         let highest = positive("flutter.speed_max_m_s", self.speed_max_m_s)?;
-        ensure(
-            self.speeds >= 2,
-            "flutter.speeds",
-            "at least 2",
-            self.speeds,
-        )?;
+        let speeds = self.speeds;
+        ensure(speeds >= 2, "flutter.speeds", "at least 2", speeds)?;
         let speed = |i: usize| highest * i as f64 / self.speeds as f64;
         Ok((1..=self.speeds).map(speed).collect())
     }

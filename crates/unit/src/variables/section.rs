@@ -7,8 +7,8 @@ use super::real::{
     FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale, nominal,
     real,
 };
-use super::{ComputedNumber, GustDirection, Initial, Response, Role, Variable};
-use crate::aerodynamics::{GustForce, Realizable, Realization};
+use super::{ComputedNumber, Initial, Response, Role, Variable};
+use crate::aerodynamics::{GustComponent, GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::onset_bounds::OnsetBounds;
 use crate::section::{Dof, SectionModel};
@@ -90,10 +90,10 @@ pub(super) fn gust_inputs(strip: usize, name: impl Fn(&str) -> String) -> [Varia
     };
     [
         gust(
-            GustDirection::Along,
+            GustComponent::Along,
             ("gust_u", "Turbulence along the mean wind, on top of it"),
         ),
-        gust(GustDirection::Vertical, ("gust_w", "Turbulence upwards")),
+        gust(GustComponent::Vertical, ("gust_w", "Turbulence upwards")),
     ]
 }
 

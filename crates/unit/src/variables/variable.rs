@@ -3,6 +3,7 @@
 use super::computed::ComputedNumber;
 use super::parameters::{ModeParameter, SectionParameter};
 use super::response::Response;
+use crate::aerodynamics::GustComponent;
 use crate::section::Dof;
 use crate::si::SiUnit;
 use crate::standard::{Causality, FmiTerm, Initial, Variability};
@@ -40,7 +41,7 @@ pub enum Role {
     /// External force on a degree of freedom.
     ExternalForce(Dof),
     /// Gust at a strip, counted from zero.
-    Gust(usize, GustDirection),
+    Gust(usize, GustComponent),
     /// Motion or self-excited force of a degree of freedom.
     Response(Response, Dof),
     /// A property of the section.
@@ -120,15 +121,6 @@ pub enum ForceOutput {
     PerLength,
     /// On the whole strip.
     Total,
-}
-
-/// A component of the gusts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GustDirection {
-    /// Along the mean wind.
-    Along,
-    /// Upwards.
-    Vertical,
 }
 
 /// A property of a strip.

@@ -216,7 +216,7 @@ impl ReferenceUnit {
         instance.reset();
         let done = recorded_run(&mut instance, planned, &inputs, &recorded);
         instance.reset();
-        let Ok(RunTables { set, read }) = done else {
+        let Ok([set, read]) = done else {
             return Ok(None);
         };
         let named = |places: &mut dyn Iterator<Item = usize>| -> Vec<&str> {
@@ -310,20 +310,13 @@ impl ReferenceUnit {
     }
 }
 
-/// Time and values at every communication point.
-struct RunTables {
-    /// Of the inputs.
-    set: Vec<Vec<f64>>,
-    /// Of the outputs.
-    read: Vec<Vec<f64>>,
-}
-
+/// Time and values at every communication point, of the inputs and of the outputs.
 fn recorded_run(
     instance: &mut Instance,
     planned: &PlannedRun,
     inputs: &[Stimulus],
     recorded: &[usize],
-) -> std::result::Result<RunTables, Refusal> {
+) -> std::result::Result<[Vec<Vec<f64>>; 2], Refusal> {
     let references = |places: &mut dyn Iterator<Item = usize>| -> Vec<u32> {
         places
             .filter_map(|place| u32::try_from(place).ok())
@@ -357,7 +350,7 @@ fn recorded_run(
         now(instance, to)?;
     }
     set.push(with_time(planned.stop_s(), driven(planned.stop_s())));
-    Ok(RunTables { set, read })
+    Ok([set, read])
 }
 
 /// Comma, quoted names, shortest decimals that give the same numbers back.
