@@ -15,9 +15,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .into();
     std::fs::create_dir_all(&folder)?;
     let results = FirstOrderExample::default().run()?;
-    for shown in first_order_figures(&results)? {
-        let stem = format!("figure_{}", shown.number.replace('.', "_"));
-        let svg = shown.figure.write(&folder, &stem)?;
+    for (number, figure) in first_order_figures(&results)? {
+        let stem = format!("figure_{}", number.replace('.', "_"));
+        let svg = figure.write(&folder, &stem)?;
         println!("{}", svg.display());
     }
     let (lower, upper) = results.alpha_bounds;

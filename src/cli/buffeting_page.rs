@@ -76,7 +76,7 @@ pub(super) fn page(
     Ok(SectionsPage {
         title: name.to_owned(),
         subtitle: "Response of a section to turbulence".to_owned(),
-        verdict: verdict.map(Into::into).unwrap_or_default(),
+        verdict: verdict.cloned().unwrap_or_default(),
         answer: match results.left_out.len() {
             0 => format!("Response at {} wind speeds", results.responses.len()),
             none => format!(

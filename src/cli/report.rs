@@ -16,13 +16,12 @@ use super::model_figures::FIGURE;
 use super::output::{OutputDir, list};
 use super::result_files::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
-use super::summary::{FitSummary, Summary};
+use super::summary::Summary;
 use crate::error::{Error, Result};
 use crate::files::text::read_text;
 use crate::flutter::{Onset, OnsetMethod};
 use crate::fmu::package::with_report;
-use crate::identification::EntryReport;
-use crate::report::{PageFigure, PageFit, StudyPage, sections_of, study_page, summary_figure};
+use crate::report::{PageFigure, StudyPage, sections_of, study_page, summary_figure};
 use crate::study::Study;
 use curves::curves_of;
 use folder::{PagePlace, REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
@@ -182,14 +181,14 @@ fn computed_from(text: &str) -> Option<toml::Table> {
 }
 
 fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
-    let verdict = &summary.verdict;
+    let (verdict, found) = (&summary.verdict, &summary.results);
     let is_own =
         |o: &&Onset| o.at.model == summary.model && o.at.method == OnsetMethod::Eigenvalues;
-    let own = summary.onsets.iter().find(is_own);
-    let all = summary.onsets.iter().chain(&summary.undetermined);
-    let unstable = summary.unstable.iter();
+    let own = found.onsets.iter().find(is_own);
+    let all = found.onsets.iter().chain(&found.undetermined);
+    let unstable = found.unstable.iter();
     let unstable = unstable.map(|s| sentence_row(&s.at.model, s.at.method.name(), s.explain()));
-    let stable = summary.stable.iter();
+    let stable = found.stable.iter();
     let stable = stable.map(|s| sentence_row(&s.model, s.method.name(), s.explain()));
     StudyPage {
         title: summary.study.clone(),
@@ -198,7 +197,7 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         beyond: "Amplitudes beyond the tests, turbulence and the third dimension are not part of this analysis.",
         generator: summary.generator.clone(),
         of: study.report.dated(summary.date.as_deref()),
-        verdict: verdict.into(),
+        verdict: verdict.clone(),
         card: own.map_or(vec![], card),
         whose: format!(
             "The answer is that of the model “{}”{}; the other models and routes stand below for comparison.",
@@ -208,7 +207,9 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         asked: asked(summary, study),
         onsets: all.map(row).chain(unstable).chain(stable).collect(),
         comparisons: summary.comparisons.clone(),
-        fits: summary.fits.iter().map(fit).collect(),
+        fits: (summary.fits.iter())
+            .map(|f| (f.model.clone(), f.report.clone()))
+            .collect(),
         command: format!("aerodeck study {} --out results", summary.study_file),
         licence: summary.licence.lines().next().unwrap_or("").to_owned(),
         onset: own.map(|o| o.at.speed_m_s),
@@ -264,36 +265,6 @@ fn asked(summary: &Summary, study: &Study) -> Vec<(String, String)> {
     asked.push(("models", models.join(", ")));
     let owned = |(name, value): (&str, String)| (name.to_owned(), value);
     asked.into_iter().map(owned).collect()
-}
-
-fn fit(fit: &FitSummary) -> PageFit {
-    let report = &fit.report;
-    let k = |k: crate::units::ReducedFrequency| format!("{:.3}", k.full_width());
-    let entry = |e: &EntryReport| {
-        let residual = e
-            .relative_rms
-            .map_or("–".to_owned(), |r| format!("{:.1} %", 100.0 * r));
-        let poles: Vec<String> = e.poles.iter().map(|p| format!("{p:.3}")).collect();
-        (
-            format!("{} by {}", e.force.name(), e.motion.name()),
-            residual,
-            poles.join(", "),
-        )
-    };
-    let held = report.constraints.iter().flat_map(|c| &c.sentences);
-    let held = held.map(|s| format!("constraint: {s}"));
-    PageFit {
-        model: fit.model.clone(),
-        method: report.method.clone(),
-        tested: format!(
-            "{} to {}",
-            k(report.tested_range.min),
-            k(report.tested_range.max)
-        ),
-        condition: super::text::condition(report.condition),
-        entries: report.entries.iter().map(entry).collect(),
-        remarks: held.chain(report.notes.iter().cloned()).collect(),
-    }
 }
 
 fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {

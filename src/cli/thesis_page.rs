@@ -10,9 +10,7 @@ use super::select::parameter_maps;
 use crate::error::Result;
 use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{FirstOrderExample, LaguerreFunctions};
-use crate::report::{
-    PageSection, SectionsPage, ThesisFigure, first_order_figures, laguerre_figures,
-};
+use crate::report::{Figure, PageSection, SectionsPage, first_order_figures, laguerre_figures};
 use crate::section::Dof;
 use crate::selection::metric_grid;
 use crate::study::FlutterStudy;
@@ -87,14 +85,14 @@ const CAPTIONS: [(&str, &str); 12] = [
     ("3.10", "the filters of the bridge decks, L = 3, α = 0.6"),
 ];
 
-fn captioned(figures: Vec<ThesisFigure>) -> Vec<(String, String)> {
-    let caption = |number: &str| {
+fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, String)> {
+    let one = |(number, figure): (&str, Figure)| {
         let known = CAPTIONS.iter().find(|(n, _)| *n == number);
-        known.map_or("", |(_, text)| text)
-    };
-    let one = |f: ThesisFigure| {
-        let text = format!("Figure {}: {}", f.number, caption(f.number));
-        (text, f.figure.svg().to_owned())
+        let caption = known.map_or("", |(_, text)| text);
+        (
+            format!("Figure {number}: {caption}"),
+            figure.svg().to_owned(),
+        )
     };
     figures.into_iter().map(one).collect()
 }

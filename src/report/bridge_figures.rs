@@ -71,16 +71,8 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     .draw()
 }
 
-/// A mode as it is drawn.
-struct Drawn<'a> {
-    branch: &'a ModeBranch,
-    ink: Ink,
-}
-
-impl Drawn<'_> {
-    fn line(&self, place: impl Fn(&ModePoint) -> (f64, f64)) -> Vec<(f64, f64)> {
-        self.branch.points.iter().map(place).collect()
-    }
+fn line(branch: &ModeBranch, place: impl Fn(&ModePoint) -> (f64, f64)) -> Vec<(f64, f64)> {
+    branch.points.iter().map(place).collect()
 }
 
 /// The curves of a bridge and what is drawn of them.
@@ -96,7 +88,7 @@ pub(crate) struct BridgeCurves<'a> {
 
 impl BridgeCurves<'_> {
     /// The modes with their inks and what the legend says of them; the line of the mode that flutters is the widest.
-    fn drawn(&self) -> (Vec<Drawn<'_>>, Vec<Entry>) {
+    fn drawn(&self) -> (Vec<(&ModeBranch, Ink)>, Vec<Entry>) {
         let flutters = |name: &str| self.onset.is_some_and(|o| o.branch == name);
         let place = |name: &str| self.shown.iter().take(COLOURED).position(|s| s == name);
         let ink = |i: usize, name: &str| {
@@ -122,9 +114,9 @@ impl BridgeCurves<'_> {
             let others = Ink::stroke(PALE_GREY, None, 1.0);
             legend.push(Entry::new("other modes that take part", others));
         }
-        let all = all.into_iter().map(|(place, branch)| Drawn {
-            branch,
-            ink: place.map_or(Ink::stroke(PALE_GREY, None, 1.0), |i| ink(i, &branch.name)),
+        let all = all.into_iter().map(|(place, branch)| {
+            let pale = Ink::stroke(PALE_GREY, None, 1.0);
+            (branch, place.map_or(pale, |i| ink(i, &branch.name)))
         });
         (all.collect(), legend)
     }
@@ -153,12 +145,12 @@ pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result
         panel.y.range = Some(of_crossing(&modes, &onset.branch, window));
         close = Some(panel);
     }
-    for mode in modes {
-        let name = &mode.branch.name;
-        frequency.add(name, mode.line(|p| (p.speed_m_s, p.frequency_hz)), mode.ink);
+    for (mode, ink) in modes {
+        let name = &mode.name;
+        frequency.add(name, line(mode, |p| (p.speed_m_s, p.frequency_hz)), ink);
         for panel in std::iter::once(&mut damping).chain(&mut close) {
-            let percent = mode.line(|p| (p.speed_m_s, 100.0 * p.damping_ratio));
-            panel.add(name, percent, mode.ink);
+            let percent = line(mode, |p| (p.speed_m_s, 100.0 * p.damping_ratio));
+            panel.add(name, percent, ink);
         }
     }
     let mut stated = Vec::new();
@@ -205,9 +197,9 @@ pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result
 }
 
 /// Damping ratios, per cent, of the mode that flutters in a window of speeds, with the zero line.
-fn of_crossing(modes: &[Drawn<'_>], flutters: &str, window: [f64; 2]) -> (f64, f64) {
-    let own = modes.iter().filter(|m| m.branch.name == flutters);
-    let points = own.flat_map(|m| &m.branch.points);
+fn of_crossing(modes: &[(&ModeBranch, Ink)], flutters: &str, window: [f64; 2]) -> (f64, f64) {
+    let own = modes.iter().filter(|(branch, _)| branch.name == flutters);
+    let points = own.flat_map(|(branch, _)| &branch.points);
     let inside = points.filter(|p| (window[0]..=window[1]).contains(&p.speed_m_s));
     let (low, high) = inside
         .map(|p| 100.0 * p.damping_ratio)
@@ -222,7 +214,6 @@ fn of_crossing(modes: &[Drawn<'_>], flutters: &str, window: [f64; 2]) -> (f64, f
 /// [`crate::Error::Input`] for curves that cannot be drawn.
 pub(crate) fn bridge_roots_figure(of: &BridgeCurves<'_>, title: &str) -> Result<Figure> {
     let (modes, legend) = of.drawn();
-    let modes = modes.into_iter().map(|mode| (mode.branch, mode.ink));
     root_locus(modes, title, legend)
 }
 

@@ -7,18 +7,9 @@ use super::transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
 use crate::error::Result;
 use crate::reference::{FirstOrderResults, SampledTransfer};
 
-/// A figure of the thesis.
-#[derive(Debug, Clone)]
-pub struct ThesisFigure {
-    /// Its number there, `2.6`.
-    pub number: &'static str,
-    /// The figure.
-    pub figure: Figure,
-}
-
 /// The six figures with the number of each in the thesis: training input, predicted output, transfer function and impulse
 /// response of the model, transfer functions for several `α` and for several `L`.
-pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<ThesisFigure>> {
+pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static str, Figure)>> {
     let example = &results.example;
     let over_time = |(label, values): &(&str, &Vec<f64>)| {
         let points = values.iter().enumerate();
@@ -52,16 +43,14 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<ThesisFigu
     let alphas = transfer(results, &order, &results.by_alpha)?;
     let one_alpha = format!("α = {}", example.alpha_of_orders);
     let orders = transfer(results, &one_alpha, &results.by_order)?;
-    let numbered = [
+    Ok(vec![
         ("2.6", input),
         ("2.7", output),
         ("2.8", both),
         ("2.9", responses),
         ("2.10", alphas),
         ("2.11", orders),
-    ];
-    let named = numbered.map(|(number, figure)| ThesisFigure { number, figure });
-    Ok(named.into())
+    ])
 }
 
 fn transfer<'a>(
@@ -70,7 +59,7 @@ fn transfer<'a>(
     models: impl IntoIterator<Item = &'a SampledTransfer>,
 ) -> Result<Figure> {
     let curve = |t: &SampledTransfer| TransferCurve {
-        label: t.label.clone(),
+        model: t.label.clone(),
         points: results
             .frequencies_hz
             .iter()

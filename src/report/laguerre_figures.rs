@@ -1,14 +1,13 @@
 //! Figures 2.1 to 2.5 and 3.10 of the thesis: Laguerre functions and their gain.
 
 use super::figure::Figure;
-use super::first_order_figures::ThesisFigure;
 use super::response_figures::{TimePanel, time_history_figure};
 use super::series::PlottedSeries;
 use crate::error::Result;
 use crate::reference::{LaguerreFunctions, Lines};
 
 /// The six figures with the number of each in the thesis.
-pub fn laguerre_figures(functions: &LaguerreFunctions) -> Result<Vec<ThesisFigure>> {
+pub fn laguerre_figures(functions: &LaguerreFunctions) -> Result<Vec<(&'static str, Figure)>> {
     let (samples, time) = ("Sample k", "Dimensionless time τ");
     let all = [
         (
@@ -54,10 +53,7 @@ pub fn laguerre_figures(functions: &LaguerreFunctions) -> Result<Vec<ThesisFigur
             &functions.of_the_decks,
         ),
     ];
-    let one = |(number, title, y, x, lines)| -> Result<ThesisFigure> {
-        let figure = lines_figure(title, y, x, lines)?;
-        Ok(ThesisFigure { number, figure })
-    };
+    let one = |(number, title, y, x, lines)| Ok((number, lines_figure(title, y, x, lines)?));
     all.into_iter().map(one).collect()
 }
 

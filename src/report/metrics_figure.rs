@@ -5,28 +5,16 @@ use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::entries;
 use super::panel::Panel;
-use super::series::{PlottedSeries, labels_of};
+use super::response_figures::TimePanel;
+use super::series::labels_of;
 use super::style::{Ink, Shape, colour, dash};
 use crate::error::Result;
 
-/// One metric of one force.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct MetricPanel {
-    /// Name of metric and force.
-    pub title: String,
-    /// Frequency (Hz) and metric (0 to 1), one series per deck or model.
-    pub series: Vec<PlottedSeries>,
-}
-
-/// Panels row by row with the ordinate from 0 to 1 in common; series of one label share ink and legend entry.
+/// Panels row by row, each of one metric of one force over the frequency (Hz), with the ordinate from 0 to 1 in common; series of one label share ink and legend entry.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
-pub(crate) fn metrics_figure(
-    title: &str,
-    panels: &[MetricPanel],
-    columns: usize,
-) -> Result<Figure> {
+pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel], columns: usize) -> Result<Figure> {
     const PLACE: &str = "metrics";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     let line = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
@@ -36,7 +24,7 @@ pub(crate) fn metrics_figure(
         let mut y = Axis::new("");
         y.range = Some((0.0, 1.05));
         let mut drawing = Panel::new(Axis::new("Frequency (Hz)").zero_based(), y);
-        drawing.title = Some(panel.title.clone());
+        drawing.title = Some(panel.y_label.clone());
         drawing.add_labelled(&panel.series, &labels, line)?;
         drawing.add_labelled(&panel.series, &labels, dots)?;
         drawn.push(drawing);

@@ -3,7 +3,7 @@
 use super::style::outcome_colour;
 use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
-use crate::verdict::{Outcome, Severity, Verdict};
+use crate::verdict::{Doubt, Outcome, Severity, Verdict};
 use askama::Template;
 use std::fmt::Write as _;
 
@@ -11,52 +11,29 @@ use std::fmt::Write as _;
 const CONTENTS: &str = "<!-- contents -->";
 const HEADING: &str = "<h2>";
 
-/// A verdict on the page: its words, its sign and its colour follow the outcome.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct PageVerdict {
-    /// Class of the card: `met`, `not-met`, `open`, or nothing where nothing is required.
-    pub(crate) class: &'static str,
-    /// Of the line that marks the required speed.
-    pub(crate) colour: &'static str,
-    pub(crate) headline: String,
-    pub(crate) explanation: String,
-    /// With which nothing is met, and what would settle it.
-    pub(crate) severe: Vec<(String, Option<String>)>,
-    /// To be known.
-    pub(crate) minor: Vec<String>,
-    pub(crate) required_m_s: Option<f64>,
-}
-
-impl From<&Verdict> for PageVerdict {
-    fn from(verdict: &Verdict) -> Self {
-        let of = |severity| {
-            verdict
-                .doubts
-                .iter()
-                .filter(move |d| d.severity == severity)
-        };
-        let outcome = verdict.outcome.as_ref();
-        Self {
-            class: match outcome {
-                Some(Outcome::Met) => "met",
-                Some(Outcome::NotMet { .. }) => "not-met",
-                Some(Outcome::CannotBeJudged { .. }) => "open",
-                None => "",
-            },
-            colour: outcome.map_or("#000", outcome_colour),
-            headline: capital(&verdict.headline),
-            explanation: verdict.explanation.clone(),
-            severe: of(Severity::Severe)
-                .map(|d| (d.text.clone(), d.settled_by.clone()))
-                .collect(),
-            minor: of(Severity::Minor).map(|d| d.text.clone()).collect(),
-            required_m_s: verdict.against.map(|r| r.speed_m_s),
-        }
+/// Class of the card of a verdict; nothing where nothing is required.
+pub(super) fn class(of: &Verdict) -> &'static str {
+    match of.outcome {
+        Some(Outcome::Met) => "met",
+        Some(Outcome::NotMet { .. }) => "not-met",
+        Some(Outcome::CannotBeJudged { .. }) => "open",
+        None => "",
     }
 }
 
+/// Colour of the line that marks the required speed.
+pub(super) fn required_colour(of: &Verdict) -> &'static str {
+    of.outcome.as_ref().map_or("#000", outcome_colour)
+}
+
+/// The doubts with which nothing is met, or those that are to be known.
+pub(super) fn doubts(of: &Verdict, severity: Severity) -> Vec<&Doubt> {
+    let all = of.doubts.iter();
+    all.filter(|d| d.severity == severity).collect()
+}
+
 /// `text` with a capital first letter.
-fn capital(text: &str) -> String {
+pub(super) fn capital(text: &str) -> String {
     let mut characters = text.chars();
     let first = characters.next().map(|c| c.to_uppercase().to_string());
     first.unwrap_or_default() + characters.as_str()

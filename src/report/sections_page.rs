@@ -1,8 +1,9 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
-use super::page_head::{PageVerdict, at_edges, rendered, stated};
+use super::page_head::{at_edges, capital, class, doubts, rendered, stated};
 use crate::error::Result;
 use crate::files::report_block::ReportBlock;
+use crate::verdict::{Severity, Verdict};
 use askama::Template;
 
 /// The sections of a page of this `key`, as another page takes them up; `None` for other pages.
@@ -22,7 +23,7 @@ pub(crate) struct SectionsPage {
     pub(crate) title: String,
     pub(crate) subtitle: String,
     /// What is required and whether it is met; empty where nothing is judged.
-    pub(crate) verdict: PageVerdict,
+    pub(crate) verdict: Verdict,
     /// The answer, in one line.
     pub(crate) answer: String,
     pub(crate) of: ReportBlock,

@@ -1,11 +1,14 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
 use super::axes_sketch;
-use super::page_head::{PageVerdict, at_edges, rendered, stated};
+use super::page_head::{at_edges, capital, class, doubts, rendered, required_colour, stated};
 use super::sections_page::PageSection;
 use super::style::{COLOURS, branch_width, dash};
 use crate::error::Result;
 use crate::files::report_block::ReportBlock;
+use crate::identification::{EntryReport, FitReport};
+use crate::units::ReducedFrequency;
+use crate::verdict::{Severity, Verdict};
 use askama::Template;
 use serde_json::{Value, json};
 
@@ -20,19 +23,6 @@ pub(crate) struct PageFigure {
     pub(crate) title: String,
     pub(crate) caption: &'static str,
     pub(crate) svg: String,
-}
-
-/// A fit in short.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct PageFit {
-    pub(crate) model: String,
-    pub(crate) method: String,
-    pub(crate) tested: String,
-    pub(crate) condition: String,
-    /// Force by motion, residual, poles.
-    pub(crate) entries: Vec<(String, String, String)>,
-    /// Active constraints and notes.
-    pub(crate) remarks: Vec<String>,
 }
 
 /// A curve whose values are shown under the cursor; `None` where it is not known.
@@ -62,7 +52,7 @@ pub(crate) struct StudyPage {
     pub(crate) beyond: &'static str,
     pub(crate) generator: String,
     pub(crate) of: ReportBlock,
-    pub(crate) verdict: PageVerdict,
+    pub(crate) verdict: Verdict,
     pub(crate) card: Vec<(String, String)>,
     /// Which of the models the answer is of, and why.
     pub(crate) whose: String,
@@ -80,7 +70,8 @@ pub(crate) struct StudyPage {
     pub(crate) taken_up: String,
     /// Tables behind the evidence.
     pub(crate) appendix: Vec<PageSection>,
-    pub(crate) fits: Vec<PageFit>,
+    /// Names of the models and the accounts of their fits.
+    pub(crate) fits: Vec<(String, FitReport)>,
     pub(crate) fmu: String,
     /// Name, causality, unit, meaning.
     pub(crate) variables: Vec<[String; 4]>,
@@ -105,6 +96,27 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
     rendered(of)
 }
 
+/// Reduced frequencies of the tests behind a fit.
+fn tested(fit: &FitReport) -> String {
+    let k = |k: ReducedFrequency| format!("{:.3}", k.full_width());
+    format!("{} to {}", k(fit.tested_range.min), k(fit.tested_range.max))
+}
+
+/// Force by motion, residual and poles.
+fn entry(of: &EntryReport) -> [String; 3] {
+    let residual = of.relative_rms.map(|r| format!("{:.1} %", 100.0 * r));
+    let poles: Vec<String> = of.poles.iter().map(|p| format!("{p:.3}")).collect();
+    let name = format!("{} by {}", of.force.name(), of.motion.name());
+    [name, residual.unwrap_or("–".to_owned()), poles.join(", ")]
+}
+
+/// Active constraints and notes.
+fn remarks(fit: &FitReport) -> Vec<String> {
+    let held = fit.constraints.iter().flat_map(|c| &c.sentences);
+    let held = held.map(|s| format!("constraint: {s}"));
+    held.chain(fit.notes.iter().cloned()).collect()
+}
+
 /// JSON as it may stand in a script: `<` cannot end it.
 fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
@@ -117,8 +129,8 @@ impl StudyPage {
             "speeds": self.speeds,
             "onset": self.onset,
             "interval": self.interval,
-            "required": self.verdict.required_m_s,
-            "required_colour": self.verdict.colour,
+            "required": self.verdict.against.map(|r| r.speed_m_s),
+            "required_colour": required_colour(&self.verdict),
             "series": self.curves.iter().map(series).collect::<Vec<_>>(),
         });
         in_script(&charts.to_string())

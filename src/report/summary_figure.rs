@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
+use super::page_head::required_colour;
 use super::panel::Panel;
 use super::study_page::{PageCurve, StudyPage};
 use super::style::{BLACK, COLOURS, Ink, PALE_GREY, dash};
@@ -57,7 +58,7 @@ fn mode_of(curve: &PageCurve) -> String {
 /// Draws what stands at a speed into both panels.
 fn marks(of: &StudyPage, panels: [&mut Panel; 2]) -> Vec<Entry> {
     let mut marks = Vec::new();
-    let required = Ink::stroke(of.verdict.colour, None, 1.6);
+    let required = Ink::stroke(required_colour(&of.verdict), None, 1.6);
     for (i, panel) in panels.into_iter().enumerate() {
         let mut mark = |text: String, ink| {
             if i == 0 {
@@ -74,7 +75,7 @@ fn marks(of: &StudyPage, panels: [&mut Panel; 2]) -> Vec<Entry> {
             let ink = Ink::stroke(PALE_GREY, None, 6.0);
             mark("its 95 % interval".to_owned(), ink);
         }
-        if let Some(at) = of.verdict.required_m_s {
+        if let Some(at) = of.verdict.against.map(|r| r.speed_m_s) {
             let points = panel.series.iter().flat_map(|s| &s.points);
             let highest = points.map(|p| p.1).fold(0.0, f64::max);
             panel.add(

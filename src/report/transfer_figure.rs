@@ -7,16 +7,11 @@ use super::legend::{Entry, entries};
 use super::panel::Panel;
 use super::series::{distinct, index_of};
 use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
+use crate::comparison::forces::PerModel;
 use crate::error::Result;
 
-/// A transfer function at several frequencies.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct TransferCurve {
-    /// Name in the legend.
-    pub label: String,
-    /// Abscissa, magnitude, phase in degrees.
-    pub points: Vec<(f64, f64, f64)>,
-}
+/// A transfer function of one model, or of what was measured: abscissa, magnitude, phase in degrees.
+pub(crate) type TransferCurve = PerModel<(f64, f64, f64)>;
 
 /// One transfer function: two panels side by side.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +40,7 @@ pub(crate) fn transfer_figure(
     plots: &[TransferPlot],
 ) -> Result<Figure> {
     const PLACE: &str = "transfer functions";
-    let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.label));
+    let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.model));
     let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
     let mut panels = Vec::with_capacity(2 * plots.len());
     for plot in plots {
@@ -53,14 +48,14 @@ pub(crate) fn transfer_figure(
             let mut panel = reference_panel(plot, phase, x_label);
             for curve in &plot.models {
                 let points = points(curve, phase);
-                panel.add(&curve.label, points, ink(index_of(&labels, &curve.label))?);
+                panel.add(&curve.model, points, ink(index_of(&labels, &curve.model))?);
             }
             panels.push(panel);
         }
     }
     let mut legend = Vec::new();
     if let Some(plot) = plots.first() {
-        legend.push(Entry::new(&plot.reference.label, reference_ink(plot)));
+        legend.push(Entry::new(&plot.reference.model, reference_ink(plot)));
         if let Some((part, degrees)) = plot.tolerance {
             let band = format!("±{:.0} %, ±{degrees:.0}° of it", 100.0 * part);
             legend.push(Entry::new(band, BAND));
@@ -92,7 +87,7 @@ fn reference_panel(plot: &TransferPlot, phase: bool, x_label: &str) -> Panel {
         panel.add(band, points, BAND);
     }
     let reference = points(&plot.reference, phase);
-    panel.add(&plot.reference.label, reference, reference_ink(plot));
+    panel.add(&plot.reference.model, reference, reference_ink(plot));
     panel
 }
 

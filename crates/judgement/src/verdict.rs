@@ -47,7 +47,7 @@ use sentences::{explanation, headline};
 use serde::{Deserialize, Serialize};
 
 /// Safety of a structure in the wind, in one value: outcome, critical speed and every doubt.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
     /// The answer in one line; begins with the outcome where a speed is required.
     pub headline: String,

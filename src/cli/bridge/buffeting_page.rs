@@ -31,7 +31,7 @@ pub(super) fn page(
     Ok(SectionsPage {
         title: study.file.name.clone(),
         subtitle: "Response of the whole bridge to turbulence".to_owned(),
-        verdict: verdict.map(Into::into).unwrap_or_default(),
+        verdict: verdict.cloned().unwrap_or_default(),
         answer: std::iter::once(format!(
             "Response to turbulence at {} m/s",
             speeds.join(", ")

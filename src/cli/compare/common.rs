@@ -6,7 +6,7 @@ use crate::comparison::forces::{
 };
 use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::report::{Figure, MetricPanel, PageSection, PlottedSeries, metrics_figure};
+use crate::report::{Figure, PageSection, PlottedSeries, TimePanel, metrics_figure};
 use crate::section::Dof;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -87,8 +87,8 @@ pub(super) fn metrics_of(
                     None => series.push(PlottedSeries::new(label, vec![point])),
                 }
             }
-            panels.push(MetricPanel {
-                title: format!("{}: {name}", force.force_name()),
+            panels.push(TimePanel {
+                y_label: format!("{}: {name}", force.force_name()),
                 series,
             });
         }

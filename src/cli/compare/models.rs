@@ -63,7 +63,7 @@ fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
                 entry.motion.name()
             ),
             reference: TransferCurve {
-                label: "measured".into(),
+                model: "measured".into(),
                 points: entry
                     .points
                     .iter()
@@ -72,14 +72,7 @@ fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
             },
             reference_is_points: true,
             tolerance: Some((0.15, 5.0)),
-            models: entry
-                .curves
-                .iter()
-                .map(|c| TransferCurve {
-                    label: c.model.clone(),
-                    points: c.points.clone(),
-                })
-                .collect(),
+            models: entry.curves.clone(),
         })
         .collect();
     let title = format!(

@@ -46,7 +46,7 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
         beyond: "Amplitudes beyond the tests, turbulence, towers and cables in the wind are not part of this analysis.",
         generator: facts.generator.clone(),
         of: file.report.dated(facts.date.as_deref()),
-        verdict: (&facts.verdict).into(),
+        verdict: facts.verdict.clone(),
         card: own.map_or(vec![], card),
         whose: "The verdict is about tables read between their points, where there are some and they reach the onset; the numbers of the card \
                 are those of the models of the sections, by the eigenvalues of all modes in the wind. The motion is that of the node that turns most."

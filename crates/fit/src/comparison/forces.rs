@@ -13,7 +13,7 @@ mod score;
 mod statements;
 
 pub use decks::{DecksComparison, compare_decks};
-pub use entries::{in_magnitude_band, in_phase_band};
+pub use entries::{PerModel, in_magnitude_band, in_phase_band};
 pub use models::{History, ModelsComparison, compare_models};
 pub use options::{CompareOptions, Scoring, THESIS_DECKS};
 pub use score::{ForceMetrics, Score, ScoreSummary, score_table};

@@ -148,6 +148,14 @@ pub struct AlphaGuideline {
 }
 
 impl FitReport {
+    /// How well the data tell the coefficients apart, in words.
+    pub fn condition_in_words(&self) -> String {
+        format!(
+            "condition number {:.0}: errors of the data may grow so much in single coefficients, not in the forces",
+            self.condition
+        )
+    }
+
     /// The form that was asked for, with the number of filters that the fit has chosen where it was left open and no force has
     /// filters of its own.
     pub(crate) fn form_fitted(&self, asked: &Form, own: &[OwnFilters]) -> Form {

@@ -57,7 +57,7 @@ impl CriticalSpeed {
 }
 
 /// Everything critical that was found, and how far was looked.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Critical {
     /// What begins first by its lower end; `None` where nothing was found.
     pub governs: Option<CriticalSpeed>,
