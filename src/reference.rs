@@ -99,7 +99,12 @@ const COMPUTATIONS: [(&str, Compute); 36] = [
 
 /// Who says what a figure should be.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "kind", content = "citation", rename_all = "snake_case")]
+#[serde(
+    tag = "kind",
+    content = "citation",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
 pub enum Citation {
     /// Printed in this publication.
     Published(String),
@@ -120,23 +125,6 @@ impl Citation {
     }
 }
 
-/// The source of a figure in a file: `{ published = "…" }` or `{ computed = "…" }`.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "snake_case")]
-enum FigureSource {
-    Published(String),
-    Computed(String),
-}
-
-impl From<&FigureSource> for Citation {
-    fn from(source: &FigureSource) -> Self {
-        match source {
-            FigureSource::Published(text) => Self::Published(text.clone()),
-            FigureSource::Computed(text) => Self::Computed(text.clone()),
-        }
-    }
-}
-
 /// One reference figure of a case.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -152,7 +140,7 @@ struct ReferenceFigure {
     /// Why so far.
     reason: Option<String>,
     /// Left out, that of the case.
-    source: Option<FigureSource>,
+    source: Option<Citation>,
     /// Whether it stands in the short table of the README.
     #[serde(default)]
     headline: bool,
@@ -175,7 +163,7 @@ struct ReferenceCase {
     name: String,
     /// What is computed, in words.
     what: String,
-    source: FigureSource,
+    source: Citation,
     figures: Vec<ReferenceFigure>,
 }
 
@@ -302,7 +290,7 @@ impl ReferenceCase {
             tolerance: figure.allowed(),
             reason: figure.reason.clone().unwrap_or_else(usual),
             passed: deviation.is_some_and(|d| d.abs() <= figure.allowed()),
-            source: figure.source.as_ref().unwrap_or(&self.source).into(),
+            source: figure.source.as_ref().unwrap_or(&self.source).clone(),
             headline: figure.headline,
             problem,
         }
@@ -318,7 +306,7 @@ mod tests {
         let text = r#"
             name = "made up"
             what = ""
-            source = { computed = "by hand" }
+            source = { kind = "computed", citation = "by hand" }
             figures = [
                 { quantity = "a", expected = 1.0, decimals = 3, unit = "m/s" },
                 { quantity = "b", expected = 1.0, decimals = 3, unit = "m/s" },

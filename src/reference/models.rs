@@ -284,26 +284,20 @@ const TABLES: usize = 12;
 const POINTS: [usize; 3] = [5, 7, 10];
 const RATIOS: (f64, f64) = (1.1, 5.0);
 
-/// Random numbers that any language can repeat: the congruential generator of D. E. Knuth (MMIX), upper 53 bits.
-struct Congruential(u64);
-
-impl Congruential {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// Reduced velocities of every table: both ends and, between them, logarithmically uniform points that keep apart.
 fn reduced_velocities() -> Vec<Vec<f64>> {
-    let mut random = Congruential(1);
+    // the congruential generator of D. E. Knuth (MMIX), upper 53 bits, which any language can repeat
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
     let (low, high) = RANGE;
     let mut drawn = |count: usize| {
         loop {
-            let inner = (2..count).map(|_| low * (random.next() * (high / low).ln()).exp());
+            let inner = (2..count).map(|_| low * (random() * (high / low).ln()).exp());
             let mut all: Vec<f64> = inner.chain([low, high]).collect();
             all.sort_by(f64::total_cmp);
             let ratios = || all.windows(2).map(|w| w[1] / w[0]);

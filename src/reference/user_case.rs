@@ -2,6 +2,7 @@
 
 mod evaluate;
 
+use crate::aerodynamics::FlatPlate;
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::error::{Error, Result, ensure, finite, non_negative, of_schema, positive};
 use crate::files::toml_lines;
@@ -48,7 +49,7 @@ fn usual_speed_max() -> f64 {
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserAerodynamics {
     /// Theodorsen's flat plate; `rotary_inertia` keeps the apparent rotary inertia.
-    pub flat_plate: Option<UserFlatPlate>,
+    pub flat_plate: Option<FlatPlate>,
     /// Rational functions in Roger's form.
     pub rational: Option<UserRational>,
     /// A table of derivatives (`.csv`, `.xlsx`) or the name of an embedded deck.
@@ -57,14 +58,6 @@ pub(crate) struct UserAerodynamics {
     pub interpolation: Option<Interpolation>,
     /// A trained model (`.json`).
     pub model: Option<PathBuf>,
-}
-
-/// Options of the flat plate.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct UserFlatPlate {
-    /// Keep the apparent rotary inertia of the air (the `π/64` term of `A3*`).
-    pub rotary_inertia: bool,
 }
 
 /// `G = a₁ + a₂ p + a₃ p² + Σ a_{l+3} p/(p + d_l)`; rows of matrices are forces, in the order of the section.

@@ -3,7 +3,7 @@
 use super::super::flat_plate::WIDE;
 use super::{FigureQuantity, UserCase, UserFigure};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
-use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
+use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::named_table;
@@ -109,8 +109,7 @@ impl LoadedCase {
             model.validate()?;
             (Box::new(model), None)
         } else {
-            let rotary_inertia = a.flat_plate.is_none_or(|p| p.rotary_inertia);
-            (Box::new(FlatPlate { rotary_inertia }), None)
+            (Box::new(a.flat_plate.unwrap_or_default()), None)
         };
         let section = section.ok_or_else(|| Error::input("section", "a section", "none"))?;
         let structure = section.structure()?;
@@ -211,10 +210,7 @@ impl LoadedCase {
             OnsetMethod::Determinant
         });
         let (s, model) = (&self.structure, self.model.as_ref());
-        let search = OnsetSearch {
-            speed_max_m_s: self.speed_max,
-            ..OnsetSearch::default()
-        };
+        let search = OnsetSearch::up_to(self.speed_max);
         let found: FlutterSearch = match (route, realizable) {
             (OnsetMethod::Eigenvalues, Some(aero)) => {
                 let section = CoupledSection::with_model(s, aero)?;

@@ -7,6 +7,7 @@ use crate::error::{Result, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix};
+use serde::Deserialize;
 use std::f64::consts::PI;
 
 /// Self-excited forces on a thin plate in potential flow.
@@ -23,7 +24,8 @@ use std::f64::consts::PI;
 /// assert!((steady[(1, 1)].re - FRAC_PI_2).abs() < 1e-12);
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FlatPlate {
     /// Keep the apparent rotary inertia of the air (the `π/64` term of `A3*`). Participants of the IABSE
     /// benchmark leave it out.
