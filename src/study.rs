@@ -40,7 +40,7 @@ pub(crate) use reference_lines::derivative_lines;
 pub use routes::low_frequency_limit;
 pub(crate) use routes::{Route, RouteTable, route_table};
 pub use speeds::{FlutterBlock, SpeedRange};
-pub use stepped::{SteppedAnswer, SteppedOnset, stepped_onset};
+pub use stepped::{SteppedOnset, stepped_onset};
 pub(crate) use wind::{
     BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, buffeting_study,
     quasi_steady_study, simulated_motion,

@@ -59,10 +59,7 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let _ = writeln!(text, "{}", deck.description());
     text.push_str(&text::deck_warnings(&deck));
     text.push('\n');
-    text.push_str(&text::onsets_of(&results));
-    text.push_str(&text::growths(&results.growth));
-    text.push_str(&text::divergence(&results.divergence));
-    text.push_str(&text::deviations(&results.deviations));
+    text.push_str(&text::found(&results));
     text.push_str(&text::failures(&results.failed));
     let value = serde_json::json!({
         "verdict": verdict, "flutter": results, "warnings": deck.warnings()

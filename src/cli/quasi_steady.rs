@@ -17,7 +17,8 @@ use crate::report::{
     equilibrium_figure, time_history_figure, vf_vg_figure,
 };
 use crate::study::{
-    QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study, simulated_motion,
+    FlutterStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study,
+    simulated_motion,
 };
 use std::fmt::Write as _;
 
@@ -116,12 +117,10 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
-            text.push_str(&text::onsets(
-                std::slice::from_ref(onset.as_ref()),
-                &[],
-                &[],
-                &[],
-            ));
+            text.push_str(&text::onsets(&FlutterStudy {
+                onsets: vec![onset.as_ref().clone()],
+                ..FlutterStudy::default()
+            }));
             if let Some(mode) = &results.onset.mode {
                 let _ = writeln!(text, "kind: {}", mode.kind.name());
             }

@@ -185,10 +185,10 @@ impl StudyStages<'_> {
         let highest_m_s = self.study.speeds().searched_to_m_s;
         let stepped = || stepped_onset(model, &path, highest_m_s);
         let found = self.progress.during(STEPPING, stepped);
-        let Some(answer) = self.attempt(STEPPING, found)? else {
+        let Some((search, runs)) = self.attempt(STEPPING, found)? else {
             return Ok(None);
         };
-        let mut onset = match answer.search {
+        let mut onset = match search {
             FlutterSearch::Onset(onset) => *onset,
             none => {
                 results.take(none, &model.name, OnsetMethod::FmuStepping);
@@ -202,7 +202,6 @@ impl StudyStages<'_> {
             Err(_) => &mut results.undetermined,
         };
         to.push(onset.clone());
-        let runs = answer.runs;
         Ok(Some(SteppedOnset { onset, runs }))
     }
 
@@ -299,13 +298,11 @@ impl StudyStages<'_> {
             findings: [deck.findings(), &of_study[..]].concat(),
             licence: deck.licence(),
             speeds: study.speeds(),
-            onsets: results.onsets,
-            undetermined: results.undetermined,
-            unstable: results.unstable,
-            stable: results.stable,
-            growth: results.growth,
-            divergence: results.divergence,
-            deviations: results.deviations,
+            results: FlutterStudy {
+                curves: Vec::new(),
+                quasi_steady: None,
+                ..results
+            },
             fits: trained.into_iter().map(fit).collect(),
             stepped,
             buffeting: None,

@@ -1,13 +1,9 @@
 //! `summary.json` of a study.
 
 use super::stages::FMU_FILE;
-use crate::flutter::{Onset, UnstableStart};
 use crate::identification::FitReport;
 use crate::plausibility::Finding;
-use crate::study::{
-    Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, SpeedRange, StageFailure,
-    SteppedOnset,
-};
+use crate::study::{FlutterStudy, KnownUncertainty, SpeedRange, StageFailure, SteppedOnset};
 use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -45,20 +41,9 @@ pub(crate) struct Summary {
     pub findings: Vec<Finding>,
     /// Wind speeds of curves and searches.
     pub speeds: SpeedRange,
-    /// All onsets found, one entry per model and method.
-    pub onsets: Vec<Onset>,
-    /// Onsets that the data leave so far open that they are no results.
-    pub undetermined: Vec<Onset>,
-    /// Growth at the lowest speed that could be judged.
-    pub unstable: Vec<UnstableStart>,
-    /// Searches that found none.
-    pub stable: Vec<OnsetSummary>,
-    /// Growth of each model below its onset, where nothing was tested.
-    pub growth: Vec<ModelGrowth>,
-    /// Static divergence.
-    pub divergence: Vec<Divergence>,
-    /// Onsets against the deck's own.
-    pub deviations: Vec<Deviation>,
+    /// What was found, but for the curves, which are a file of their own.
+    #[serde(flatten)]
+    pub results: FlutterStudy,
     /// The fits in short.
     pub fits: Vec<FitSummary>,
     /// The FMU stepped through its C interface.

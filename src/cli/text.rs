@@ -6,11 +6,10 @@ use super::output::{Written, list};
 use super::summary::Summary;
 use super::text_table::TextTable;
 use crate::error::counted;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnstableStart, UnwantedGrowth};
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
 use crate::study::{
-    Deck, Deviation, Divergence, FlutterStudy, KnownUncertainty, ModelGrowth, OnsetSummary,
-    StageFailure, Study, TrainedWithReport,
+    Deck, Divergence, FlutterStudy, KnownUncertainty, StageFailure, Study, TrainedWithReport,
 };
 use std::fmt::Write as _;
 
@@ -43,14 +42,14 @@ pub(crate) fn chain(
             summary.model,
             summary.fmu().map_or("", |_| ", held by the FMU")
         );
-        let found = &summary.onsets;
-        text.push_str(&table(found, &[], &summary.unstable, &summary.stable));
-        for o in &summary.undetermined {
+        let found = &summary.results;
+        text.push_str(&table(found, &[]));
+        for o in &found.undetermined {
             let (model, method) = (&o.at.model, o.at.method.name());
             let _ = writeln!(text, "{model}, {method}: not determined by these data");
         }
         // of the answer itself; those of the others with all of it
-        let own = summary.onsets.iter().find(|o| o.at.model == summary.model);
+        let own = found.onsets.iter().find(|o| o.at.model == summary.model);
         for warning in own.map_or(&[][..], |o| &o.warnings) {
             let _ = writeln!(text, "warning: {}: {warning}", summary.model);
         }
@@ -100,11 +99,7 @@ fn details(study: &Study, summary: &Summary) -> String {
         text.push_str(&fit(&of.model, &of.report, &of.uncertainty));
     }
     text.push('\n');
-    let (found, open) = (&summary.onsets, &summary.undetermined);
-    text.push_str(&onsets(found, open, &summary.unstable, &summary.stable));
-    text.push_str(&growths(&summary.growth));
-    text.push_str(&divergence(&summary.divergence));
-    text.push_str(&deviations(&summary.deviations));
+    text.push_str(&found(&summary.results));
     if let Some(stepped) = &summary.stepped {
         let _ = writeln!(text, "{}", stepped.explain());
     }
@@ -137,7 +132,7 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         text,
         "          residual rms {}; {}{}",
         residuals.join(", "),
-        condition(report.condition),
+        report.condition_in_words(),
         if poles.is_empty() {
             String::new()
         } else {
@@ -169,13 +164,6 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         let _ = writeln!(text, "          note: {note}");
     }
     text
-}
-
-/// How well the data tell the coefficients apart, in words.
-pub(crate) fn condition(number: f64) -> String {
-    format!(
-        "condition number {number:.0}: errors of the data may grow so much in single coefficients, not in the forces"
-    )
 }
 
 /// What held the fit back, what that costs and what it does to the onset.
@@ -224,44 +212,36 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
     }
 }
 
-/// As [`onsets`], of all models of a study.
-pub(super) fn onsets_of(results: &FlutterStudy) -> String {
-    let (found, open) = (&results.onsets, &results.undetermined);
-    onsets(found, open, &results.unstable, &results.stable)
+/// Everything that was found on the models of a study.
+pub(super) fn found(results: &FlutterStudy) -> String {
+    let growths = results.growth.iter().map(|g| growth(&g.model, &g.growth));
+    let growths: String = growths.collect();
+    let (divergence, deviations) = (divergence(&results.divergence), deviations(results));
+    onsets(results) + &growths + &divergence + &deviations
 }
 
 /// The onsets side by side, with what is to be said of each.
-pub(crate) fn onsets(
-    onsets: &[Onset],
-    undetermined: &[Onset],
-    unstable: &[UnstableStart],
-    stable: &[OnsetSummary],
-) -> String {
-    let mut text = table(onsets, undetermined, unstable, stable);
+pub(crate) fn onsets(results: &FlutterStudy) -> String {
+    let mut text = table(results, &results.undetermined);
     let warnings = |model: &str, all: &[String]| -> String {
         let all = all.iter();
         all.map(|w| format!("warning: {model}: {w}\n")).collect()
     };
-    for o in onsets {
+    for o in &results.onsets {
         text.extend(without_interval(o));
         text.push_str(&warnings(&o.at.model, &o.warnings));
     }
-    for s in unstable {
+    for s in &results.unstable {
         text.push_str(&warnings(&s.at.model, &s.warnings));
     }
     text
 }
 
-/// A line per model and route.
-fn table(
-    onsets: &[Onset],
-    undetermined: &[Onset],
-    unstable: &[UnstableStart],
-    stable: &[OnsetSummary],
-) -> String {
+/// A line per model and route, with those of the onsets that are not determined.
+fn table(results: &FlutterStudy, undetermined: &[Onset]) -> String {
     let mut table = of_onsets(&["Flutter onset", "method"]);
     let name = |model: &str, method: OnsetMethod| [model.to_owned(), method.name().to_owned()];
-    for o in onsets {
+    for o in &results.onsets {
         let name = name(&o.at.model, o.at.method);
         table.row(name.into_iter().chain(figures(o)));
     }
@@ -272,10 +252,10 @@ fn table(
         let reason = o.headline_m_s().err().unwrap_or_default();
         without(&o.at.model, o.at.method, reason);
     }
-    for s in unstable {
+    for s in &results.unstable {
         without(&s.at.model, s.at.method, &s.explain());
     }
-    for s in stable {
+    for s in &results.stable {
         without(&s.model, s.method, &s.explain());
     }
     table.text()
@@ -341,18 +321,13 @@ pub(crate) fn growth(model: &str, growth: &UnwantedGrowth) -> String {
     format!("{mark}{model}: {}\n", growth.explain())
 }
 
-/// As [`growth`], for every model of a study.
-pub(crate) fn growths(all: &[ModelGrowth]) -> String {
-    all.iter().map(|g| growth(&g.model, &g.growth)).collect()
-}
-
 /// Stages that failed.
 pub(crate) fn failures(all: &[StageFailure]) -> String {
     all.iter().map(|f| f.explain() + "\n").collect()
 }
 
 /// Divergence of each model.
-pub(crate) fn divergence(all: &[Divergence]) -> String {
+fn divergence(all: &[Divergence]) -> String {
     let assumed: String = all
         .iter()
         .filter_map(|d| Some(format!("  {}: {}\n", d.model, d.assumed.as_ref()?)))
@@ -374,8 +349,9 @@ pub(crate) fn deck_warnings(deck: &Deck) -> String {
 }
 
 /// Deviations from the deck's own onset.
-pub(crate) fn deviations(all: &[Deviation]) -> String {
-    all.iter().map(|d| d.explain() + "\n").collect()
+pub(crate) fn deviations(results: &FlutterStudy) -> String {
+    let all = results.deviations.iter();
+    all.map(|d| d.explain() + "\n").collect()
 }
 
 /// A length without the digits that its computation left behind, m.

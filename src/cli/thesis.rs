@@ -38,8 +38,8 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
         text.push_str(&text::fit_of(result));
     }
     text.push('\n');
-    text.push_str(&text::onsets_of(&results));
-    text.push_str(&text::deviations(&results.deviations));
+    text.push_str(&text::onsets(&results));
+    text.push_str(&text::deviations(&results));
     text.push_str(&text::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
     if let Some(folder) = left_in {

@@ -102,7 +102,8 @@ impl BridgeStudy {
         let sections: Vec<SectionForceModels> =
             file.sections.iter().map(section).collect::<Result<_>>()?;
         notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));
-        let parts = groups(&file, &modes, &mut notes).map_err(|e| file.located(e))?;
+        let groups = groups(&file, &modes, &sections, &mut notes).map_err(|e| file.located(e))?;
+        let (section_of_group, groups): (Vec<usize>, Vec<StripGroup>) = groups.into_iter().unzip();
         let dampers = file.dampers(&modes).map_err(|e| file.located(e))?;
         if !dampers.is_empty() {
             notes.push(format!(
@@ -111,27 +112,9 @@ impl BridgeStudy {
                 counted(dampers.links.len(), "viscous link")
             ));
         }
-        let bridge = |table: bool| {
-            let group = |part: &SectionNodes| StripGroup {
-                name: file.sections[part.section].name.clone(),
-                width_m: file.sections[part.section].width_m,
-                wind_factor: part.factor,
-                nodes: part.nodes.clone(),
-                forces: sections[part.section].forces(table),
-            };
-            let (nodes, shapes) = (modes.nodes.clone(), modes.modes.clone());
-            let all = parts.iter().map(group).collect();
-            Bridge::new(
-                file.name.clone(),
-                file.air_density_kg_m3,
-                nodes,
-                shapes,
-                all,
-            )?
-            .with_dampers(dampers.clone())
-        };
-        let has_table = sections.iter().any(|s| s.table.is_some());
-        let by_model = bridge(false)?;
+        let (name, density) = (file.name.clone(), file.air_density_kg_m3);
+        let (nodes, shapes) = (modes.nodes.clone(), modes.modes.clone());
+        let by_model = Bridge::new(name, density, nodes, shapes, groups)?.with_dampers(dampers)?;
         findings.extend(of_bridge(&by_model));
         findings.extend(of_modes_left_out(&by_model, &modes.left_out));
         let required = file.flutter.required_speed_m_s;
@@ -144,16 +127,25 @@ impl BridgeStudy {
             findings
                 .extend(statics.flat_map(|s| of_coefficients(&place, &s.coefficients(), &s.arms)));
         }
-        Ok(Self {
+        let mut study = Self {
             by_model,
-            by_table: has_table.then(|| bridge(true)).transpose()?,
-            section_of_group: parts.iter().map(|p| p.section).collect(),
+            by_table: None,
+            section_of_group,
             left_out: modes.left_out,
             sections,
             notes,
             findings,
             file,
-        })
+        };
+        if study.sections.iter().any(|s| s.table.is_some()) {
+            let groups = study.by_model.groups.iter().zip(&study.section_of_group);
+            let by_table = groups.map(|(group, section)| StripGroup {
+                forces: study.sections[*section].forces(true),
+                ..group.clone()
+            });
+            study.by_table = Some(study.with_groups(by_table.collect())?);
+        }
+        Ok(study)
     }
 
     /// Notes and findings in words.
@@ -250,19 +242,14 @@ impl BridgeStudy {
     }
 }
 
-/// Nodes of one section in one wind.
-struct SectionNodes {
-    section: usize,
-    factor: f64,
-    nodes: Vec<usize>,
-}
-
+/// Strips of every section in the forces of its model, a group in each wind, with the place of the section.
 fn groups(
     file: &BridgeFile,
     modes: &BridgeModes,
+    forces: &[SectionForceModels],
     notes: &mut Vec<String>,
-) -> Result<Vec<SectionNodes>> {
-    let mut parts = Vec::new();
+) -> Result<Vec<(usize, StripGroup)>> {
+    let mut groups = Vec::new();
     for (section, block) in file.sections.iter().enumerate() {
         let (first, last) = ends(block, modes, section)?;
         let winds = modes.nodes[first..=last]
@@ -275,13 +262,16 @@ fn groups(
                 block.name
             ));
         }
-        parts.extend(by_wind.into_iter().map(|(factor, nodes)| SectionNodes {
-            section,
-            factor,
+        let group = |(wind_factor, nodes)| StripGroup {
+            name: block.name.clone(),
+            width_m: block.width_m,
+            wind_factor,
             nodes,
-        }));
+            forces: forces[section].forces(false),
+        };
+        groups.extend(by_wind.into_iter().map(|of| (section, group(of))));
     }
-    Ok(parts)
+    Ok(groups)
 }
 
 /// Nodes from `first` on by their wind, and the step in which many winds are taken. The wind of a step is that of its mean pressure;

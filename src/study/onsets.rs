@@ -15,29 +15,30 @@ use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
 
 /// Results of all models of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FlutterStudy {
     /// Modes over wind speed, one entry per trained model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curves: Vec<FlutterCurves>,
-    /// Onsets found.
+    /// Onsets found, one entry per model and method.
     pub onsets: Vec<Onset>,
+    /// Onsets that the data leave so far open that they are no results; see `Onset::headline_m_s`.
+    pub undetermined: Vec<Onset>,
     /// Searches that found growth at the lowest speed that could be judged.
     pub unstable: Vec<UnstableStart>,
     /// Searches that found none.
     pub stable: Vec<OnsetSummary>,
+    /// Growth of each trained model below its onset, by extrapolation alone.
+    pub growth: Vec<ModelGrowth>,
     /// Static divergence of each trained model and of the deck itself, m/s; `null` where there is none.
     pub divergence: Vec<Divergence>,
     /// Each model's onset against the deck's own (exact, or interpolated table).
     pub deviations: Vec<Deviation>,
-    /// Onsets that the data leave so far open that they are no results; see `Onset::headline_m_s`.
-    pub undetermined: Vec<Onset>,
-    /// Growth of each trained model below its onset, by extrapolation alone.
-    pub growth: Vec<ModelGrowth>,
     /// Quasi-steady theory, where static coefficients are given.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub(crate) quasi_steady: Option<QuasiSteadyOnset>,
     /// What could not be computed, and why.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failed: Vec<StageFailure>,
 }
 
@@ -100,18 +101,7 @@ pub struct Deviation {
 /// leaves the rest as it is.
 pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<FlutterStudy> {
     let structure = study.section.structure()?;
-    let mut results = FlutterStudy {
-        curves: Vec::new(),
-        onsets: Vec::new(),
-        unstable: Vec::new(),
-        stable: Vec::new(),
-        divergence: Vec::new(),
-        deviations: Vec::new(),
-        undetermined: Vec::new(),
-        growth: Vec::new(),
-        quasi_steady: None,
-        failed: Vec::new(),
-    };
+    let mut results = FlutterStudy::default();
     let name = deck.own_model_name();
     let own = deck.own_onset(&structure, study.speeds().searched_to_m_s);
     let own = attempt(&mut results.failed, format!("onset of the {name}"), own)?;

@@ -63,30 +63,15 @@ impl SteppedOnset {
     }
 }
 
-/// Answer of stepping an FMU.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SteppedAnswer {
-    /// What was found with the shorter communication step; growth counts at the lowest speed stepped, or where the motion
-    /// comes into the tested range.
-    pub search: FlutterSearch,
-    /// The search with each communication step; none where there is no onset.
-    pub runs: Vec<SteppedRun>,
-}
-
-impl From<FlutterSearch> for SteppedAnswer {
-    fn from(search: FlutterSearch) -> Self {
-        let runs = Vec::new();
-        Self { search, runs }
-    }
-}
-
 /// Onset of the FMU at `path`, packed from `model`, by the growth of its released section. The second communication step
-/// is tried only where the first finds an onset.
+/// is tried only where the first finds an onset. Growth counts at the lowest speed stepped, or where the motion comes into the tested
+/// range; the search with each communication step stands beside an onset alone.
 pub fn stepped_onset(
     model: &TrainedModel,
     path: &Path,
     speed_max_m_s: f64,
-) -> Result<SteppedAnswer> {
+) -> Result<(FlutterSearch, Vec<SteppedRun>)> {
+    let without_runs = |search| Ok((search, Vec::new()));
     let fmu = Fmu::open(path)?;
     let structure = model.section.structure()?;
     let fastest_hz = structure.still_air_rad_s().fold(0.0, f64::max) / TAU;
@@ -102,17 +87,14 @@ pub fn stepped_onset(
                     false => "the lowest speed stepped, where it diverges without oscillating",
                 };
                 let reason = reason.to_owned();
-                return Ok(unstable(model, at, reason).into());
+                return without_runs(unstable(model, at, reason));
             }
             SteppedSearch::StableUpTo(range) => {
                 // what is stepped knows nothing of tests; where its modes leave them is asked of the model
                 let section = CoupledSection::with_model(&structure, &model.model)?;
-                let search = OnsetSearch {
-                    speed_max_m_s,
-                    ..OnsetSearch::default()
-                };
+                let search = OnsetSearch::up_to(speed_max_m_s);
                 let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
-                return Ok(FlutterSearch::StableUpTo(range.and(judged.range)).into());
+                return without_runs(FlutterSearch::StableUpTo(range.and(judged.range)));
             }
         }
     }
@@ -128,19 +110,16 @@ pub fn stepped_onset(
         return Err(Error::Numerical("FMU stepped: no run".into()));
     };
     if first.frequency_hz <= 0.0 {
-        return Ok(diverges(first).into());
+        return without_runs(diverges(first));
     }
     let mut onset = as_onset(model, first);
-    match enters(&fmu, model, first)? {
-        MotionInRange::Growing(start) => return Ok((*start).into()),
-        MotionInRange::Diverging(speed_m_s) => onset.warnings.push(format!(
-            "at {speed_m_s:.3} m/s, where its motion would come into the tested range, the section diverges without \
-             oscillating"
-        )),
-        MotionInRange::Damped => {}
+    if let Some(at) = entering(&fmu, model, first)? {
+        if at.growth_rate_per_s > 0.0 && at.frequency_hz > 0.0 {
+            return without_runs(grows_inside(model, at, first));
+        }
+        onset.warnings.extend(diverges_inside(&at));
     }
-    let search = FlutterSearch::Onset(Box::new(onset));
-    Ok(SteppedAnswer { search, runs })
+    Ok((FlutterSearch::Onset(Box::new(onset)), runs))
 }
 
 /// A section that diverges before anything that oscillates grows.
@@ -156,61 +135,52 @@ fn diverges(found: &Found) -> FlutterSearch {
     })
 }
 
-/// What a motion that grows above the tested `K` does where it comes into the tested range.
-enum MotionInRange {
-    /// It grows there still: unstable at and below that speed.
-    Growing(Box<FlutterSearch>),
-    /// The section diverges at that speed, m/s, which hides the motion.
-    Diverging(f64),
-    /// It is damped, or was inside from the beginning.
-    Damped,
-}
-
-/// Steps an onset above the tested `K` where its motion comes into the tested range.
-fn enters(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<MotionInRange> {
+/// The growth of an onset above the tested `K` where its motion comes into the tested range; none of one that was inside from the
+/// beginning.
+fn entering(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<GrowthPoint>> {
     let limit = model.tested_range.max;
     let width = model.section.width_m;
     if ReducedFrequency::from_hertz(found.frequency_hz, width, found.speed_m_s) <= limit {
-        return Ok(MotionInRange::Damped);
+        return Ok(None);
     }
     let speed_of = |frequency_hz: f64| TAU * frequency_hz * width / limit.full_width();
     let mut speed = speed_of(found.frequency_hz);
     let mut at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
     for _ in 0..MAX_ROUNDS {
-        if at.frequency_hz <= 0.0 {
-            return Ok(MotionInRange::of_rest(&at));
-        }
         let next = speed_of(at.frequency_hz);
-        if (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
+        if at.frequency_hz <= 0.0 || (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
             break;
         }
         speed = next;
         at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
     }
+    Ok(Some(at))
+}
+
+/// A motion that grows where it comes into the tested range: unstable at and below that speed.
+fn grows_inside(model: &TrainedModel, at: GrowthPoint, found: &Found) -> FlutterSearch {
     let reason = format!(
         "there its motion enters the range that can be judged, which ends at K {:.4}; outside, the FMU grows from \
          {:.3} m/s on",
-        limit.full_width(),
+        model.tested_range.max.full_width(),
         found.speed_m_s
     );
-    if at.frequency_hz <= 0.0 || at.growth_rate_per_s <= 0.0 {
-        return Ok(MotionInRange::of_rest(&at));
-    }
     let mut answer = unstable(model, at, reason);
     if let FlutterSearch::UnstableAtOrBelow(start) = &mut answer {
         start.in_tested_range = Some(true);
     }
-    Ok(MotionInRange::Growing(Box::new(answer)))
+    answer
 }
 
-impl MotionInRange {
-    /// Of a motion that does not oscillate, or is damped.
-    fn of_rest(at: &GrowthPoint) -> Self {
-        match at.growth_rate_per_s > 0.0 {
-            true => Self::Diverging(at.speed_m_s),
-            false => Self::Damped,
-        }
-    }
+/// A motion that no longer oscillates where it would come into the tested range, which growth without oscillating hides.
+fn diverges_inside(at: &GrowthPoint) -> Option<String> {
+    (at.growth_rate_per_s > 0.0).then(|| {
+        format!(
+            "at {:.3} m/s, where its motion would come into the tested range, the section diverges without \
+             oscillating",
+            at.speed_m_s
+        )
+    })
 }
 
 fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> FlutterSearch {
@@ -289,13 +259,8 @@ mod tests {
             "no flutter up to 21.500 m/s, judged from 9.000 m/s (from 21.500 m/s on the section diverges, which hides any \
              oscillation)"
         );
-        assert!(matches!(
-            MotionInRange::of_rest(&point(30.0, 0.4, 0.0)),
-            MotionInRange::Diverging(30.0)
-        ));
-        assert!(matches!(
-            MotionInRange::of_rest(&point(30.0, -0.4, 0.0)),
-            MotionInRange::Damped
-        ));
+        let said = diverges_inside(&point(30.0, 0.4, 0.0)).unwrap();
+        assert!(said.starts_with("at 30.000 m/s, "), "{said}");
+        assert_eq!(diverges_inside(&point(30.0, -0.4, 0.0)), None);
     }
 }

@@ -47,8 +47,8 @@ fn answers(model: &TrainedModel, speed_max: f64) -> (FlutterSearch, FlutterSearc
         GrowthPolicy::Allow,
     )
     .unwrap();
-    let stepped = stepped_onset(model, &path, speed_max).unwrap();
-    (expected, stepped.search)
+    let (stepped, _) = stepped_onset(model, &path, speed_max).unwrap();
+    (expected, stepped)
 }
 
 #[track_caller]

@@ -137,30 +137,24 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         || study.by_table.as_ref().map(|b| by_table(b, &search)),
         || by_model(&study.by_model, &search, tested),
     );
-    match of_tables {
-        Some(Ok(answer)) => answers.push(answer),
-        Some(Err(e)) => failed.push(format!("p-k iteration of the tables: {e}")),
-        None => {}
+    let mut note = |what: &str, e: crate::Error| failed.push(format!("{what}: {e}"));
+    if let Some(found) = of_tables {
+        let found = found.map_err(|e| note("p-k iteration of the tables", e));
+        answers.extend(found);
     }
     let mut by_model = by_model?;
     if let FlutterSearch::Onset(onset) = &mut by_model.search {
         match study.onset_interval(onset) {
             Ok(interval) => onset.interval = interval,
-            Err(e) => failed.push(format!("interval of the onset: {e}")),
+            Err(e) => note("interval of the onset", e),
         }
     }
-    let constraints = study.moved_onset(&by_model.search).unwrap_or_else(|e| {
-        failed.push(format!("constraints: {e}"));
-        None
-    });
-    let untested = study.untested(&by_model.search).unwrap_or_else(|e| {
-        failed.push(format!("parts without a test: {e}"));
-        None
-    });
-    let modes_left_out = study.with_all_modes(&by_model.search).unwrap_or_else(|e| {
-        failed.push(format!("modes left out: {e}"));
-        None
-    });
+    let constraints = study.moved_onset(&by_model.search);
+    let constraints = constraints.map_err(|e| note("constraints", e));
+    let untested = study.untested(&by_model.search);
+    let untested = untested.map_err(|e| note("parts without a test", e));
+    let modes_left_out = study.with_all_modes(&by_model.search);
+    let modes_left_out = modes_left_out.map_err(|e| note("modes left out", e));
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
@@ -168,19 +162,15 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     // modal shapes of all modes at all speeds are megabytes that nobody reads
     let points = curves.branches.iter_mut().flat_map(|b| &mut b.points);
     points.for_each(|p| p.shape = Vec::new());
-    let left_out = fewer_modes(study, &by_model, &search).unwrap_or_else(|e| {
-        failed.push(format!("fewer modes: {e}"));
-        Vec::new()
-    });
+    let left_out = fewer_modes(study, &by_model, &search).map_err(|e| note("fewer modes", e));
     let forces = study.by_model.forces();
     let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
     let divergence_m_s = divergence_speed(&study.by_model.structure(), &at_rest)?;
-    let mut noted = |what: &str, e: crate::Error| failed.push(format!("{what}: {e}"));
-    let of_tables = table_divergence(study).map_err(|e| noted("divergence of the tables", e));
+    let of_tables = table_divergence(study).map_err(|e| note("divergence of the tables", e));
     let growth = unwanted_growth_below(Some(&by_model.search), &section, &search, tested);
-    let growth = growth.map_err(|e| noted("scan for growth", e)).ok();
+    let growth = growth.map_err(|e| note("scan for growth", e)).ok();
     let galloping =
-        galloping(study, &search).map_err(|e| noted("galloping by static coefficients", e));
+        galloping(study, &search).map_err(|e| note("galloping by static coefficients", e));
     // where the answer is: by the tables first, which are the headline
     let critical = answers.iter().chain([&by_model]);
     let critical = critical
@@ -195,15 +185,15 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     Ok(BridgeFlutter {
         answers,
         curves,
-        left_out,
+        left_out: left_out.unwrap_or_default(),
         divergence_m_s,
         table_divergence: of_tables.ok().flatten(),
         galloping_m_s: galloping.ok().flatten(),
         growth,
         mean_rotation,
-        constraints,
-        untested,
-        modes_left_out,
+        constraints: constraints.ok().flatten(),
+        untested: untested.ok().flatten(),
+        modes_left_out: modes_left_out.ok().flatten(),
         failed,
     })
 }
