@@ -13,7 +13,7 @@ mod table;
 mod user_case;
 
 pub use first_order::{FirstOrderExample, FirstOrderResults, SampledTransfer};
-pub use laguerre_functions::{LaguerreFunctions, Lines};
+pub use laguerre_functions::{Lines, OF_THE_DECKS, laguerre_functions};
 pub use table::validation_table;
 pub(crate) use user_case::UserCase;
 

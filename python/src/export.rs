@@ -104,7 +104,7 @@ pub fn export_fmu(
         Some(_) => (None, None),
     };
     let export = Export {
-        growing: growing(allow_unstable),
+        growing: GrowthPolicy::allowing(allow_unstable),
         force,
         bounds,
         gusts,
@@ -149,14 +149,6 @@ fn version(fmi: u32) -> PyResult<FmiVersion> {
         2 => Ok(FmiVersion::Two),
         3 => Ok(FmiVersion::Three),
         other => Err(wrong("fmi", "2 or 3", other.to_string())),
-    }
-}
-
-fn growing(allow_unstable: bool) -> GrowthPolicy {
-    if allow_unstable {
-        GrowthPolicy::Allow
-    } else {
-        GrowthPolicy::Refuse
     }
 }
 

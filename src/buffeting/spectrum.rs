@@ -134,11 +134,6 @@ impl GustSpectrum {
         self.shape.validate(&format!("{place}.shape"))
     }
 
-    /// Standard deviation at a mean wind speed, m/s.
-    pub(crate) fn sigma_m_s(&self, speed_m_s: f64) -> f64 {
-        self.intensity * speed_m_s
-    }
-
     /// `S(f)`, one-sided, m²/s² per Hz.
     pub(crate) fn density(
         &self,
@@ -147,7 +142,7 @@ impl GustSpectrum {
         speed_m_s: f64,
     ) -> f64 {
         let time = self.length_m / speed_m_s;
-        let sigma = self.sigma_m_s(speed_m_s);
+        let sigma = self.intensity * speed_m_s;
         sigma * sigma * time * self.shape.formula(component).density(frequency_hz * time)
     }
 }

@@ -39,6 +39,9 @@ pub(crate) struct Turning {
     pub resonances_hz: Vec<(f64, f64)>,
 }
 
+/// A frequency, Hz, and the determinant over its size there.
+type PhaseAt = (f64, Complex<f64>);
+
 /// The turning of the determinant at a wind speed.
 ///
 /// # Errors
@@ -50,26 +53,25 @@ pub(crate) fn turning(
     speed_m_s: f64,
 ) -> Result<Turning> {
     positive("wind speed", speed_m_s)?;
-    let at = |f: f64| -> Result<DeterminantPoint> {
-        let phase = phase(impedance(structure, model, speed_m_s, TAU * f)?);
-        Ok(DeterminantPoint { hertz: f, phase })
+    let at = |f: f64| -> Result<PhaseAt> {
+        Ok((f, phase(impedance(structure, model, speed_m_s, TAU * f)?)))
     };
     let mut passed = Vec::new();
-    let mut before: Option<DeterminantPoint> = None;
+    let mut before: Option<PhaseAt> = None;
     let grid = frequencies(structure);
-    let first_pass: Vec<DeterminantPoint> = match structure.dofs.len() > FEW {
+    let first_pass: Vec<PhaseAt> = match structure.dofs.len() > FEW {
         true => grid.into_par_iter().map(&at).collect::<Result<_>>()?,
         false => grid.into_iter().map(&at).collect::<Result<_>>()?,
     };
     for next in first_pass {
         match &before {
             // the ends lie off the real axis by as much as the damping does there
-            None => passed.push((next.hertz, off_axis(next.phase))),
+            None => passed.push((next.0, off_axis(next.1))),
             Some(before) => turn(&at, before, &next, 0, &mut passed)?,
         }
         before = Some(next);
     }
-    let turned = passed.last().map_or(0.0, |p| p.1) - before.map_or(0.0, |p| off_axis(p.phase));
+    let turned = passed.last().map_or(0.0, |p| p.1) - before.map_or(0.0, |p| off_axis(p.1));
     let count = structure.dofs.len() as f64 - turned / PI;
     if (count - count.round()).abs() > WHOLE || count < -WHOLE {
         return Err(Error::Numerical(format!(
@@ -80,12 +82,6 @@ pub(crate) fn turning(
         growing: count.round().max(0.0) as usize,
         resonances_hz: resonances(&passed),
     })
-}
-
-/// The determinant over its size at a frequency.
-struct DeterminantPoint {
-    hertz: f64,
-    phase: Complex<f64>,
 }
 
 /// Frequencies of the first pass, rising.
@@ -141,25 +137,25 @@ fn off_axis(z: Complex<f64>) -> f64 {
 
 /// Adds the turning between two frequencies to `passed`, by halves until it is small.
 fn turn(
-    at: &impl Fn(f64) -> Result<DeterminantPoint>,
-    a: &DeterminantPoint,
-    b: &DeterminantPoint,
+    at: &impl Fn(f64) -> Result<PhaseAt>,
+    a: &PhaseAt,
+    b: &PhaseAt,
     depth: usize,
     passed: &mut Vec<(f64, f64)>,
 ) -> Result<()> {
-    let angle = (b.phase / a.phase).arg();
+    let angle = (b.1 / a.1).arg();
     if angle.abs() <= LARGEST_TURN {
         let before = passed.last().map_or(0.0, |p| p.1);
-        passed.push((b.hertz, before + angle));
+        passed.push((b.0, before + angle));
         return Ok(());
     }
     if depth == MAX_HALVINGS || !angle.is_finite() {
         return Err(Error::Numerical(format!(
             "stability: the impedance is singular at {} Hz",
-            a.hertz
+            a.0
         )));
     }
-    let middle = at(0.5 * (a.hertz + b.hertz))?;
+    let middle = at(0.5 * (a.0 + b.0))?;
     turn(at, a, &middle, depth + 1, passed)?;
     turn(at, &middle, b, depth + 1, passed)
 }

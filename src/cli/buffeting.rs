@@ -7,7 +7,7 @@ use super::text_table::TextTable;
 use super::wind::WindArgs;
 use super::{buffeting_page, figures, headline};
 use crate::error::{Error, Result};
-use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_page};
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, rendered};
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
@@ -96,7 +96,7 @@ fn write(
         })?;
     }
     let page = buffeting_page::page(name, key, results, verdict)?;
-    out.write(PAGE, sections_page(&page)?)
+    out.write(PAGE, rendered(&page)?)
 }
 
 fn text(study: &WindStudy, results: &BuffetingStudy) -> String {

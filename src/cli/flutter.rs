@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, OwnModel, RouteTable, StageFailure, Study, attempt,
-    route_table, saved_moved_onset, section_evidence, state_route_intervals,
+    route_table, saved_moved_onset, saved_uncertainty, section_evidence, state_route_intervals,
 };
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -37,7 +37,8 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let directory = args.study.directory();
     let mut failed = Vec::new();
     let models = stages::read_models(&study, &deck, &directory, &mut failed)?;
-    let known = stages::read_uncertainties(&models, &directory)?;
+    let known = models.iter().map(|m| saved_uncertainty(m, &directory));
+    let known = known.collect::<Result<Vec<_>>>()?;
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
     let verdict = verdict(

@@ -22,8 +22,7 @@ use crate::identification::derivatives::{
 use crate::json;
 use crate::plausibility::{Finding, FindingKind, FindingSeverity, of_table, sentences};
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
-    sections_page,
+    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure, rendered,
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
@@ -136,7 +135,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
         &[&doubts[..], &notes].concat(),
         &out,
     );
-    out.write(PAGE, sections_page(&page)?)?;
+    out.write(PAGE, rendered(&page)?)?;
     let mut text = processing_text(&raw, &processed.report, found);
     for (what, texts) in [("doubt", &doubts), ("note", &notes)] {
         text.extend(texts.iter().map(|t| format!("  {what}: {t}\n")));

@@ -7,18 +7,14 @@ use std::time::Duration;
 /// Shows what is being done.
 pub(super) struct Progress {
     shown: bool,
-    verbose: bool,
+    /// Whether details were asked for.
+    pub(super) verbose: bool,
 }
 
 impl Progress {
     /// Progress that is shown or not (and never when standard error is not a terminal).
     pub(crate) fn new(shown: bool, verbose: bool) -> Self {
         Self { shown, verbose }
-    }
-
-    /// Whether details were asked for.
-    pub(crate) fn verbose(&self) -> bool {
-        self.verbose
     }
 
     /// A stage of unknown length; ends when the returned bar is dropped.

@@ -11,6 +11,7 @@ mod variables;
 use super::answer::Answer;
 use super::bridge::files::BRIDGE_FMU;
 use super::buffeting;
+use super::headline::own_onset;
 use super::measured_forces::FORCES;
 use super::model_figures::FIGURE;
 use super::output::{OutputDir, list};
@@ -19,12 +20,11 @@ use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
 use crate::error::{Error, Result};
 use crate::files::text::read_text;
-use crate::flutter::{Onset, OnsetMethod};
 use crate::fmu::package::with_report;
-use crate::report::{PageFigure, StudyPage, sections_of, study_page, summary_figure};
+use crate::report::{PageFigure, StudyPage, rendered, sections_of, summary_figure};
 use crate::study::Study;
 use curves::curves_of;
-use folder::{PagePlace, REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
+use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -67,12 +67,12 @@ pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
     for name in [FMU_FILE, BRIDGE_FMU] {
         let fmu = out.staging().join(name);
         if fmu.is_file() {
-            let page = page(out.staging(), PagePlace::Archive)?;
+            let page = page(out.staging(), true)?;
             let bytes = std::fs::read(&fmu).map_err(|e| Error::io(&fmu, e))?;
             out.write(name, with_report(&bytes, &page)?)?;
         }
     }
-    let page = page(out.staging(), PagePlace::Folder)?;
+    let page = page(out.staging(), false)?;
     out.write(REPORT, page)
 }
 
@@ -81,18 +81,18 @@ pub(super) fn leave(out: &mut OutputDir) -> Result<()> {
 /// # Errors
 /// Those of reading them.
 pub(super) fn page_of(folder: &Path) -> Result<String> {
-    page(folder, PagePlace::Folder)
+    page(folder, false)
 }
 
-/// The page of the results in `folder`.
+/// The page of the results in `folder`; one `in_the_archive` says nothing of the archive itself.
 ///
 /// # Errors
 /// [`Error::Io`] and [`Error::Input`] for a folder without results of `study`, and for a study or a model that was changed since.
-fn page(folder: &Path, place: PagePlace) -> Result<String> {
+fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     let path = folder.join(SUMMARY);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
     if is_of_a_bridge(&parsed(&path, &text)?) {
-        return bridge::page(folder, &text, place);
+        return bridge::page(folder, &text, in_the_archive);
     }
     let summary: Summary = parsed(&path, &text)?;
     let study_text = study_of(folder, &summary)?;
@@ -119,13 +119,13 @@ fn page(folder: &Path, place: PagePlace) -> Result<String> {
         .unwrap_or_default();
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
-    let said = |name: &&str| place == PagePlace::Folder || *name != FMU_FILE;
+    let said = |name: &&str| !in_the_archive || *name != FMU_FILE;
     for name in [MODEL_FILE, FMU_FILE, CURVES].into_iter().filter(said) {
         let hash = read(name).map(|bytes| (name.to_owned(), digest(&bytes)));
         page.hashes.extend(hash);
     }
     page.text = study_text;
-    study_page(&page)
+    rendered(&page)
 }
 
 /// SHA-1 of those files in a folder of results that its page takes up, by name. The FMU is none of them: it is closed with the page in it.
@@ -182,9 +182,7 @@ fn computed_from(text: &str) -> Option<toml::Table> {
 
 fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
     let (verdict, found) = (&summary.verdict, &summary.results);
-    let is_own =
-        |o: &&Onset| o.at.model == summary.model && o.at.method == OnsetMethod::Eigenvalues;
-    let own = found.onsets.iter().find(is_own);
+    let own = own_onset(found, &summary.model);
     let all = found.onsets.iter().chain(&found.undetermined);
     let unstable = found.unstable.iter();
     let unstable = unstable.map(|s| sentence_row(&s.at.model, s.at.method.name(), s.explain()));

@@ -16,8 +16,7 @@ use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
 use crate::identification;
 use crate::study::{
     Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, Study, TrainedWithReport,
-    UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty, state_intervals,
-    train_one,
+    UNCERTAINTY, flutter_study, interval_of, is_of_a_file, state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -248,16 +247,6 @@ pub(crate) fn read_model(path: &Path) -> Result<TrainedModel> {
     TrainedModel::read(path).map_err(|e| of_a_kind_of_ours(what, path).unwrap_or(e))
 }
 
-/// Reads the uncertainties that `train` wrote beside the models.
-pub(crate) fn read_uncertainties(
-    models: &[TrainedModel],
-    directory: &Path,
-) -> Result<Vec<KnownUncertainty>> {
-    let each = models.iter();
-    each.map(|model| saved_uncertainty(model, directory))
-        .collect()
-}
-
 /// Curves and onsets with their intervals.
 pub(crate) fn flutter(
     study: &Study,
@@ -326,15 +315,6 @@ pub(crate) fn onset_bounds(
     Ok(found.onset().and_then(|onset| {
         OnsetBounds::from_interval(&interval_of(&structure, model, known, onset))
     }))
-}
-
-/// What the flag `--allow-unstable` says.
-pub(crate) fn growing(allowed: bool) -> GrowthPolicy {
-    if allowed {
-        GrowthPolicy::Allow
-    } else {
-        GrowthPolicy::Refuse
-    }
 }
 
 /// A refused export with the flag that allows it.

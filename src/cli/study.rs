@@ -50,7 +50,10 @@ pub(crate) fn run(args: &RunStudyArgs, progress: &Progress) -> Result<Answer> {
     if args.force {
         out.replace(study_run::STUDY);
     }
-    let (file, growing) = (args.study.file(), stages::growing(args.allow_unstable));
+    let (file, growing) = (
+        args.study.file(),
+        GrowthPolicy::allowing(args.allow_unstable),
+    );
     run_chain(study, &text, file, out, growing, progress)
 }
 
@@ -295,7 +298,7 @@ impl StudyStages<'_> {
             study: study.name.clone(),
             deck: deck.description(),
             warnings: [deck.warnings(), sentences(&of_study)].concat(),
-            findings: [deck.findings(), &of_study[..]].concat(),
+            findings: [&deck.findings[..], &of_study[..]].concat(),
             licence: deck.licence(),
             speeds: study.speeds(),
             results: FlutterStudy {
@@ -339,7 +342,7 @@ impl StudyStages<'_> {
         self.out.write_json(SUMMARY, "summary", &summary)?;
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;
-        let verbose = self.progress.verbose();
+        let verbose = self.progress.verbose;
         let text = text::chain(&self.study, &self.deck, &summary, &written, verbose);
         Ok(Answer::new(text, &summary)?
             .passed_if(summary.failed.is_empty())

@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::thesis_page::thesis_page;
 use super::{headline, model_figures, result_files, stages, text};
 use crate::error::{Error, Result};
-use crate::report::sections_page;
+use crate::report::rendered;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
             progress,
         )?;
         let mut left = OutputDir::new(folder)?;
-        left.write("thesis.html", sections_page(&page)?)?;
+        left.write("thesis.html", rendered(&page)?)?;
         text.push_str(&list(&left.commit()?));
     }
     let answer = Answer::new(

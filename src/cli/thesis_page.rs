@@ -7,9 +7,10 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::result_files::{RESPONSE, ROOTS};
 use super::select::parameter_maps;
+use crate::aerodynamics::laguerre::discrete_memory;
 use crate::error::Result;
 use crate::identification::{Grid, GridAxis, TimeWeights};
-use crate::reference::{FirstOrderExample, LaguerreFunctions};
+use crate::reference::{FirstOrderExample, OF_THE_DECKS, laguerre_functions};
 use crate::report::{Figure, PageSection, SectionsPage, first_order_figures, laguerre_figures};
 use crate::section::Dof;
 use crate::selection::metric_grid;
@@ -98,14 +99,14 @@ fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, String)> {
 }
 
 fn functions() -> Result<PageSection> {
-    let functions = LaguerreFunctions::of_the_thesis()?;
+    let (alpha, filters) = OF_THE_DECKS;
     Ok(PageSection {
         title: "2.3 and 3.4 Laguerre functions".to_owned(),
         text: vec![format!(
             "The filters of the decks stay below 0.01 from sample {} on; the thesis reads about 40 from its Figure 3.10.",
-            functions.memory
+            discrete_memory(alpha, filters)
         )],
-        figures: captioned(laguerre_figures(&functions)?),
+        figures: captioned(laguerre_figures(&laguerre_functions()?)?),
         ..PageSection::default()
     })
 }

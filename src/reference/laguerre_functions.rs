@@ -1,75 +1,56 @@
 //! Figures 2.1 to 2.5 and 3.10 of the thesis: Laguerre functions over time, and how strongly their filters pass a frequency.
 
-use crate::aerodynamics::laguerre::{FilterBank, discrete_memory, impulse_response};
+use crate::aerodynamics::laguerre::{FilterBank, impulse_response};
 use crate::error::Result;
 use crate::state_space::c2d;
 use nalgebra::{Complex, DMatrix};
-use serde::Serialize;
 use std::f64::consts::PI;
 
 /// Lines with their labels.
 pub type Lines = Vec<(String, Vec<(f64, f64)>)>;
 
-/// The curves of each figure; the parameters are those that the thesis prints, or that its figures span.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LaguerreFunctions {
-    /// Figure 2.1: `l_n(τ)`, n = 0 to 4, p = 0.2.
-    pub by_order: Lines,
-    /// Figure 2.2: `l_2(τ)` for several decay rates p.
-    pub by_decay_rate: Lines,
-    /// Figure 2.3: `g_n[k]`, n = 0 to 4, α = 0.4.
-    pub discrete_by_order: Lines,
-    /// Figure 2.4: `g_2[k]` for several α.
-    pub discrete_by_alpha: Lines,
-    /// Figure 2.5: gain `|G_n|` over the frequency, as a part of half the sampling frequency, for several α.
-    pub gain: Lines,
-    /// Figure 3.10: the filters of the bridge decks, L = 3, α = 0.6.
-    pub of_the_decks: Lines,
-    /// Memory of these, samples, from which on none exceeds 0.01.
-    pub memory: usize,
+const ALPHAS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+const DECAY_RATES: [f64; 3] = [0.1, 0.2, 0.4];
+
+/// Decay factor and number of the filters of the bridge decks, in Figure 3.10.
+pub const OF_THE_DECKS: (f64, usize) = (0.6, 3);
+
+/// The curves of each figure; the parameters are those that the thesis prints, or that its figures span. `l_n(τ)`, n = 0 to 4, p = 0.2
+/// (2.1); `l_2(τ)` for several decay rates p (2.2); `g_n[k]`, n = 0 to 4, α = 0.4 (2.3); `g_2[k]` for several α (2.4); gain `|G_n|` over the
+/// frequency, as a part of half the sampling frequency, for several α (2.5); the filters of the bridge decks (3.10).
+///
+/// # Errors
+/// [`crate::Error::Numerical`] of an exponential, which these parameters do not cause.
+pub fn laguerre_functions() -> Result<[Lines; 6]> {
+    let discrete = |alpha, orders: std::ops::Range<usize>, samples| {
+        let g = impulse_response(alpha, 5, samples);
+        let numbered = |n| {
+            g.row(n)
+                .iter()
+                .enumerate()
+                .map(|(k, y)| (k as f64, *y))
+                .collect()
+        };
+        orders.map(numbered).collect::<Vec<_>>()
+    };
+    let by_order = |lines| labelled(lines, &|n| format!("n = {n}"));
+    let by_alpha = |lines| labelled(lines, &|i| format!("α = {}", ALPHAS[i]));
+    let second = DECAY_RATES.map(|p| Ok(continuous(p, 3)?.swap_remove(2)));
+    let second = second.into_iter().collect::<Result<Vec<_>>>()?;
+    let of_alphas = ALPHAS.iter().flat_map(|a| discrete(*a, 2..3, 60));
+    Ok([
+        by_order(continuous(0.2, 5)?),
+        labelled(second, &|i| format!("p = {}", DECAY_RATES[i])),
+        by_order(discrete(0.4, 0..5, 40)),
+        by_alpha(of_alphas.collect()),
+        by_alpha(ALPHAS.map(gain).into()),
+        by_order(discrete(OF_THE_DECKS.0, 0..3, 60)),
+    ])
 }
 
-const ALPHAS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
-
-impl LaguerreFunctions {
-    /// All of them.
-    ///
-    /// # Errors
-    /// [`crate::Error::Numerical`] of an exponential, which these parameters do not cause.
-    pub fn of_the_thesis() -> Result<Self> {
-        let (filters, alpha) = (3, 0.6);
-        let discrete = |alpha, orders: &[usize], samples| {
-            let g = impulse_response(alpha, 5, samples);
-            let line = |n: &usize| g.row(*n).iter().copied().enumerate().collect::<Vec<_>>();
-            orders.iter().map(line).collect::<Vec<_>>()
-        };
-        let numbered = |lines: Vec<Vec<(usize, f64)>>, label: &dyn Fn(usize) -> String| {
-            let over = |points: Vec<(usize, f64)>| {
-                points.into_iter().map(|(k, y)| (k as f64, y)).collect()
-            };
-            let lines = lines.into_iter().enumerate();
-            lines.map(|(i, points)| (label(i), over(points))).collect()
-        };
-        let by_alpha = ALPHAS.iter().flat_map(|a| discrete(*a, &[2], 60)).collect();
-        Ok(Self {
-            by_order: continuous(0.2, 5)?
-                .into_iter()
-                .enumerate()
-                .map(|(n, points)| (format!("n = {n}"), points))
-                .collect(),
-            by_decay_rate: [0.1, 0.2, 0.4]
-                .into_iter()
-                .map(|p| Ok((format!("p = {p}"), continuous(p, 3)?.swap_remove(2))))
-                .collect::<Result<_>>()?,
-            discrete_by_order: numbered(discrete(0.4, &[0, 1, 2, 3, 4], 40), &|n| {
-                format!("n = {n}")
-            }),
-            discrete_by_alpha: numbered(by_alpha, &|i| format!("α = {}", ALPHAS[i])),
-            gain: ALPHAS.map(|a| (format!("α = {a}"), gain(a))).into(),
-            of_the_decks: numbered(discrete(alpha, &[0, 1, 2], 60), &|n| format!("n = {n}")),
-            memory: discrete_memory(alpha, filters),
-        })
-    }
+fn labelled(lines: Vec<Vec<(f64, f64)>>, label: &dyn Fn(usize) -> String) -> Lines {
+    let lines = lines.into_iter().enumerate();
+    lines.map(|(i, points)| (label(i), points)).collect()
 }
 
 /// `l_0(τ) … ` (2.12), as impulse responses of the filter bank.
@@ -100,31 +81,33 @@ fn gain(alpha: f64) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{OF_THE_DECKS, laguerre_functions};
+    use crate::aerodynamics::laguerre::discrete_memory;
 
     /// (2.12) as it is printed for n = 0 and 1, and (2.16): the sum of squares of every function is one.
     #[test]
     fn functions_are_those_of_the_formulas() {
-        let all = LaguerreFunctions::of_the_thesis().unwrap();
+        let [by_order, _, discrete, _, gain, of_the_decks] = laguerre_functions().unwrap();
         let p: f64 = 0.2;
-        for (i, (tau, value)) in all.by_order[1].1.iter().enumerate() {
+        for (i, (tau, value)) in by_order[1].1.iter().enumerate() {
             let decay = (2.0 * p).sqrt() * (-p * tau).exp();
-            assert!((all.by_order[0].1[i].1 - decay).abs() < 1e-12);
+            assert!((by_order[0].1[i].1 - decay).abs() < 1e-12);
             assert!(
                 (value - (1.0 - 2.0 * p * tau) * decay).abs() < 1e-12,
                 "{tau}"
             );
         }
-        for (label, points) in all.discrete_by_order.iter().chain(&all.of_the_decks) {
+        for (label, points) in discrete.iter().chain(&of_the_decks) {
             let sum: f64 = points.iter().map(|(_, g)| g * g).sum();
             assert!((sum - 1.0).abs() < 1e-6, "{label}: {sum}");
         }
         // a sum over all frequencies of the square of the gain is one as well
-        for (label, points) in &all.gain {
+        for (label, points) in &gain {
             let mean = points.iter().skip(1).map(|(_, g)| g * g).sum::<f64>() / 200.0;
             assert!((mean - 1.0).abs() < 0.05, "{label}: {mean}");
         }
         // the thesis reads about 40 samples from its figure
-        assert!((20..=45).contains(&all.memory), "{}", all.memory);
+        let memory = discrete_memory(OF_THE_DECKS.0, OF_THE_DECKS.1);
+        assert!((20..=45).contains(&memory), "{memory}");
     }
 }

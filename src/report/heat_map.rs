@@ -3,7 +3,7 @@
 use super::figure::Figure;
 use super::geometry::{Area, Px};
 use super::legend::shortened;
-use super::scene::{Anchor, Scene};
+use super::scene::Scene;
 use super::style::{BLACK, GREY, Stroke};
 use crate::error::{Error, Result, ensure};
 
@@ -189,14 +189,14 @@ impl HeatMap {
         for (column, x) in self.x.iter().enumerate().step_by(every) {
             let middle = self.cell(corner, column, 0).middle().x;
             let at = Px::new(middle, corner.y + tall + 15.0);
-            scene.label(at, &format!("{x:.2}"), SMALL, Anchor::Middle);
+            scene.label(at, &format!("{x:.2}"), SMALL, "middle");
         }
         let below = corner + Px::new(0.5 * WIDTH, tall + 34.0);
-        scene.label(below, &self.x_label, LABEL, Anchor::Middle);
+        scene.label(below, &self.x_label, LABEL, "middle");
         for row in 0..self.rows {
             let middle = self.cell(corner, 0, row).middle().y;
             let at = Px::new(corner.x - 14.0, middle + 4.0);
-            scene.label(at, &(row + 1).to_string(), SMALL, Anchor::Middle);
+            scene.label(at, &(row + 1).to_string(), SMALL, "middle");
         }
         let beside = corner + Px::new(-36.0, 0.5 * tall);
         scene.upright_label(beside, &self.y_label, LABEL);

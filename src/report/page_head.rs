@@ -82,7 +82,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// A page as HTML text, with its list of contents; the same page always gives the same bytes.
-pub(super) fn rendered(page: &impl Template) -> Result<String> {
+pub(crate) fn rendered(page: &impl Template) -> Result<String> {
     let text = page.render();
     let text = text.map_err(|e| Error::Numerical(format!("report: {e}")))?;
     Ok(with_contents(&text))

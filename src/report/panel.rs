@@ -4,7 +4,7 @@ use super::axis::{Axis, Scale};
 use super::font::text_width;
 use super::geometry::{Area, Px};
 use super::labels::Labels;
-use super::scene::{Anchor, Scene};
+use super::scene::Scene;
 use super::series::{PlottedSeries, index_of};
 use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, Stroke};
 use crate::error::{Error, Result, ensure};
@@ -206,14 +206,14 @@ impl Panel {
         let middle = frame.axes.middle();
         if !self.x.label.is_empty() {
             let at = Px::new(middle.x, frame.height - 8.0);
-            scene.label(at, &self.x.label, LABEL_SIZE, Anchor::Middle);
+            scene.label(at, &self.x.label, LABEL_SIZE, "middle");
         }
         if !self.y.label.is_empty() {
             scene.upright_label(Px::new(20.0, middle.y), &self.y.label, LABEL_SIZE);
         }
         if let Some(title) = &self.title {
             let at = Px::new(middle.x, frame.axes.top - 8.0);
-            scene.label(at, title, LABEL_SIZE, Anchor::Middle);
+            scene.label(at, title, LABEL_SIZE, "middle");
         }
     }
 }
@@ -278,7 +278,7 @@ impl Map {
             let end = bottom + TICK_LENGTH;
             scene.polyline(&[Px::new(x, bottom), Px::new(x, end)], tick);
             let label = Px::new(x, end + 0.93 * size);
-            scene.label(label, &self.x.tick_label(value), TICK_SIZE, Anchor::Middle);
+            scene.label(label, &self.x.tick_label(value), TICK_SIZE, "middle");
         }
         for value in self.y.ticks() {
             let y = self.y_px_of_place(value);
@@ -286,7 +286,7 @@ impl Map {
             let end = left - TICK_LENGTH;
             scene.polyline(&[Px::new(end, y), Px::new(left, y)], tick);
             let label = Px::new(end - 3.0, y + 0.36 * size);
-            scene.label(label, &self.y.tick_label(value), TICK_SIZE, Anchor::End);
+            scene.label(label, &self.y.tick_label(value), TICK_SIZE, "end");
         }
         scene.outline(self.area, THIN);
     }

@@ -12,13 +12,6 @@ use uuid::Uuid;
 const CLIP: &str = "clip-of-the-figure-";
 const WHITE: &str = "#ffffff";
 
-/// Which part of a text stands at its point, where it is not the start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
-    Middle,
-    End,
-}
-
 /// Elements in the order in which they are drawn.
 #[derive(Debug)]
 pub(super) struct Scene {
@@ -85,13 +78,10 @@ impl Scene {
         self.write(at, content, size, &format!(" fill=\"{colour}\""));
     }
 
-    /// A black text on a point.
-    pub(super) fn label(&mut self, at: Px, content: &str, size: u32, anchor: Anchor) {
-        let anchor = match anchor {
-            Anchor::Middle => " text-anchor=\"middle\"",
-            Anchor::End => " text-anchor=\"end\"",
-        };
-        self.write(at, content, size, anchor);
+    /// A black text of which the `middle` or the `end` stands on a point.
+    pub(super) fn label(&mut self, at: Px, content: &str, size: u32, anchor: &str) {
+        let anchor = format!(" text-anchor=\"{anchor}\"");
+        self.write(at, content, size, &anchor);
     }
 
     /// A black text around a point, read from below upwards.

@@ -1,7 +1,6 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
-use super::page_head::{at_edges, capital, class, doubts, rendered, stated};
-use crate::error::Result;
+use super::page_head::{at_edges, capital, class, doubts, stated};
 use crate::files::report_block::ReportBlock;
 use crate::verdict::{Severity, Verdict};
 use askama::Template;
@@ -44,8 +43,3 @@ pub(crate) struct PageSection {
 }
 
 const GENERATOR: &str = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));
-
-/// The page as HTML text; the same content always gives the same bytes.
-pub(crate) fn sections_page(page: &SectionsPage) -> Result<String> {
-    rendered(page)
-}

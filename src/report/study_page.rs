@@ -1,10 +1,9 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
 use super::axes_sketch;
-use super::page_head::{at_edges, capital, class, doubts, rendered, required_colour, stated};
+use super::page_head::{at_edges, capital, class, doubts, required_colour, stated};
 use super::sections_page::PageSection;
 use super::style::{COLOURS, branch_width, dash};
-use crate::error::Result;
 use crate::files::report_block::ReportBlock;
 use crate::identification::{EntryReport, FitReport};
 use crate::units::ReducedFrequency;
@@ -89,11 +88,6 @@ pub(crate) struct StudyPage {
     pub(crate) interval: Option<(f64, f64)>,
     /// What the sliders start from and the module they ask, as JSON; they need the curves.
     pub(crate) live: Option<String>,
-}
-
-/// The page as HTML text; the same content always gives the same bytes.
-pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
-    rendered(of)
 }
 
 /// Reduced frequencies of the tests behind a fit.

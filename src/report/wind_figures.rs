@@ -71,7 +71,11 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
     ];
     let stepped = Ink::dots(BLACK, Shape::Diamond);
     let bar = Ink::stroke(BLACK, None, 1.2);
-    let both = (0..2).all(|j| has_gust(study, j));
+    let blows = |j: usize| {
+        let mut responses = study.responses.iter();
+        responses.any(|r| r.rms_by_gust[j].iter().any(|x| *x > 0.0))
+    };
+    let both = blows(0) && blows(1);
     let mut panels = Vec::with_capacity(study.dofs.len());
     for (i, dof) in study.dofs.iter().enumerate() {
         let (label, factor) = ordinate(*dof, "RMS ");
@@ -106,13 +110,6 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
         legend.push(Entry::new("time domain, ±2 standard errors", stepped));
     }
     Drawing::stacked(PLACE, title, panels, 170.0, vec![legend])
-}
-
-fn has_gust(study: &BuffetingStudy, j: usize) -> bool {
-    study
-        .responses
-        .iter()
-        .any(|r| r.rms_by_gust[j].iter().any(|x| *x > 0.0))
 }
 
 /// Spectra at one wind speed, logarithmic, `f S`: of the turbulence of a section above, of each displacement below, of each of the

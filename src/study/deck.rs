@@ -35,9 +35,9 @@ pub struct Deck {
     chosen: Option<DerivativeTable>,
     interpolation: Interpolation,
     /// What was assumed in reading the table.
-    notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// What is odd about it.
-    findings: Vec<Finding>,
+    pub(crate) findings: Vec<Finding>,
     /// Whether the table is part of this program.
     built_in: bool,
     dofs: Vec<Dof>,
@@ -230,16 +230,6 @@ impl Deck {
     pub(crate) fn warnings(&self) -> Vec<String> {
         let found = self.findings.iter().map(ToString::to_string);
         self.notes.iter().cloned().chain(found).collect()
-    }
-
-    /// What was assumed in reading the table.
-    pub(crate) fn notes(&self) -> Vec<String> {
-        self.notes.clone()
-    }
-
-    /// What looks wrong in the table.
-    pub(crate) fn findings(&self) -> &[Finding] {
-        &self.findings
     }
 
     /// The deck as a force model that answers at every reduced frequency, and where it was tested (everywhere when

@@ -42,10 +42,10 @@ pub(crate) fn section_evidence(
     failed: &[StageFailure],
 ) -> Evidence {
     let name = own.model.map(|m| m.name.as_str());
-    let mut implausible = [deck.findings(), &study_findings(study)[..]].concat();
+    let mut implausible = [&deck.findings[..], &study_findings(study)[..]].concat();
     let odd = own
         .model
-        .map(|m| plausibility::of_model(&m.name, &m.model, m.tested_range, deck.findings()));
+        .map(|m| plausibility::of_model(&m.name, &m.model, m.tested_range, &deck.findings));
     implausible.extend(odd.into_iter().flatten());
     let mut evidence = Evidence {
         required: study.flutter.required(),
@@ -65,7 +65,7 @@ pub(crate) fn section_evidence(
         test_speeds: own.uncertainty.and_then(one_test_speed),
         implausible,
         tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
-        remarks: deck.notes(),
+        remarks: deck.notes.clone(),
         ..Evidence::default()
     };
     let table = deck.own_model_name();

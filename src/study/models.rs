@@ -39,9 +39,9 @@ pub fn train_one(
     if block.table.is_none() {
         report.notes.extend(records.note.clone());
     }
-    let onset = |model: &Model, tested| onset_of(study, &block.name, model, tested);
     // a search that fails takes no trained model with it
-    let search = onset(&model, report.tested_range).unwrap_or_else(|e| {
+    let search = onset_of(study, &block.name, &model, report.tested_range);
+    let search = search.unwrap_or_else(|e| {
         report.notes.push(format!("onset: {e}"));
         FlutterSearch::StableUpTo(StableRange {
             from_m_s: 0.0,

@@ -16,8 +16,8 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
-    determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset, pk_curves,
-    pk_onset, sanity_lines, trace_modes,
+    determinant_onset, divergence_by_eigenvalues, divergence_speed, divergence_with_forces,
+    find_onset, pk_curves, pk_onset, sanity_lines, trace_modes,
 };
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
@@ -200,9 +200,6 @@ impl RouteTable {
     ) -> Result<()> {
         let section = CoupledSection::with_model(structure, &model.model)?;
         let search = study.speeds().search();
-        let steady = model
-            .model
-            .transfer(ReducedFrequency::from_full_width(0.0))?;
         let limit = low_frequency_limit(
             &model.model,
             ReducedFrequency::from_full_width(NEARLY_STEADY),
@@ -212,7 +209,7 @@ impl RouteTable {
             model: &model.model,
             structure,
             tested: Some(model.tested_range),
-            divergence_m_s: divergence_speed(structure, &steady)?,
+            divergence_m_s: divergence_with_forces(structure, &model.model)?,
             quasi_steady_m_s: limit_onset(study, structure, &limit)?,
         };
         let found = find_onset(&model.name, &section, &search, forces.tested);
@@ -298,13 +295,12 @@ impl RouteTable {
     fn add_flat_plate(&mut self, study: &Study, structure: &Structure) -> Result<()> {
         let two = structure.only(&Dof::TWO);
         let plate = FlatPlate::default();
-        let steady = plate.transfer(ReducedFrequency::from_full_width(0.0))?;
         let forces = Forces {
             name: FLAT_PLATE.into(),
             model: &plate,
             structure: &two,
             tested: None,
-            divergence_m_s: divergence_speed(&two, &steady)?,
+            divergence_m_s: divergence_with_forces(&two, &plate)?,
             quasi_steady_m_s: limit_onset(study, &two, &steady_flat_plate())?,
         };
         let from = self.routes.len();

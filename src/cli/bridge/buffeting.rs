@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;
 use crate::plausibility::{Finding, sentences};
-use crate::report::sections_page;
+use crate::report::rendered;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
 use crate::verdict::Verdict;
 use serde::Serialize;
@@ -85,21 +85,14 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     let file = args.bridge.text()?;
     let verdict = verdict(&study)?;
     let page = buffeting_page::page(&study, &file, &all, &unstable, verdict.as_ref())?;
-    out.write(BUFFETING_PAGE, sections_page(&page)?)?;
+    out.write(BUFFETING_PAGE, rendered(&page)?)?;
     let folder = out.target("");
-    let answer = judged(
-        &study,
-        &study.findings,
-        verdict.as_ref(),
-        &text,
-        &results,
-        |text, mut json| {
-            if !unstable.is_empty() {
-                json["unstable"] = serde_json::json!(unstable);
-            }
-            out.answer(text, json)
-        },
-    )?;
+    let mut json = value(&study, &study.findings, verdict.as_ref(), &results);
+    if !unstable.is_empty() {
+        json["unstable"] = serde_json::json!(unstable);
+    }
+    let text = headline::stated(&study.file.name, verdict.as_ref()) + &text;
+    let answer = out.answer(text, json)?.with_outcome_of(verdict.as_ref());
     page::renew(&folder, &file)?;
     Ok(answer.passed_if(unstable.is_empty()))
 }
@@ -158,20 +151,16 @@ fn verdict(study: &BridgeStudy) -> Result<Option<Verdict>> {
     required.map(|_| study.verdict()).transpose()
 }
 
-/// The answer with the verdict.
-fn judged(
+/// What the answer holds.
+fn value(
     study: &BridgeStudy,
     findings: &[Finding],
     verdict: Option<&Verdict>,
-    text: &str,
     results: &impl Serialize,
-    answer: impl FnOnce(String, serde_json::Value) -> Result<Answer>,
-) -> Result<Answer> {
-    let json = serde_json::json!({
+) -> serde_json::Value {
+    serde_json::json!({
         "verdict": verdict, "buffeting": results, "notes": study.warnings(), "findings": findings
-    });
-    let text = headline::stated(&study.file.name, verdict) + text;
-    Ok(answer(text, json)?.with_outcome_of(verdict))
+    })
 }
 
 /// The response to the turbulence of a file.
@@ -204,14 +193,9 @@ fn by_file(
     );
     let verdict = verdict(study)?;
     let findings = [&study.findings[..], &of_field].concat();
-    judged(
-        study,
-        &findings,
-        verdict.as_ref(),
-        &text,
-        &found,
-        |text, json| Answer::new(text, &json),
-    )
+    let json = value(study, &findings, verdict.as_ref(), &found);
+    let text = headline::stated(&study.file.name, verdict.as_ref()) + &text;
+    Ok(Answer::new(text, &json)?.with_outcome_of(verdict.as_ref()))
 }
 
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];

@@ -41,7 +41,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
         failed.push(format!("FMU: {e}"));
     }
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    let mut text = text(&study, &results, &verdict, progress.verbose());
+    let mut text = text(&study, &results, &verdict, progress.verbose);
     let mut summary = BridgeSummary {
         bridge_file: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),
@@ -50,7 +50,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     };
     page::leave(&mut summary, &mut out)?;
     let written = out.commit()?;
-    text.push_str(&ending(&written, MORE, progress.verbose()));
+    text.push_str(&ending(&written, MORE, progress.verbose));
     Ok(Answer::new(text, &summary)?
         .passed_if(summary.failed.is_empty())
         .with_outcome_of(&verdict))

@@ -71,7 +71,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
         None
     });
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    let mut text = text::text(&study, &results, &verdict, progress.verbose());
+    let mut text = text::text(&study, &results, &verdict, progress.verbose);
     let scatter = scattered.as_ref().map(scatter_line);
     if let Some(line) = &scatter {
         let _ = writeln!(text, "{line}");
@@ -97,7 +97,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
         "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
     });
     let written = out.commit()?;
-    text.push_str(&ending(&written, text::MORE, progress.verbose()));
+    text.push_str(&ending(&written, text::MORE, progress.verbose));
     json["files"] = serde_json::json!(written);
     Ok(Answer::new(text, &json)?
         .passed_if(failed.is_empty())

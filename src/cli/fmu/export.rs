@@ -14,7 +14,7 @@ use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{
-    Export, FmiVersion, Label, Overwrite, Runtime, growth_of, package, write_archive,
+    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, growth_of, package, write_archive,
 };
 use crate::fmu::variables::Listing;
 use crate::plausibility::{of_model, sentences};
@@ -232,7 +232,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
-        growing: stages::growing(args.allow_unstable),
+        growing: GrowthPolicy::allowing(args.allow_unstable),
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
         bounds: evidence.as_ref().and_then(|e| {

@@ -1,7 +1,7 @@
 //! The page of a whole bridge, from the folder that `bridge flutter` or `demo --bridge` left.
 
 use super::curves::curves_of;
-use super::folder::{PagePlace, SUMMARY, digest, parsed};
+use super::folder::{SUMMARY, digest, parsed};
 use super::parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
 use super::variables::variables_of;
 use crate::cli::bridge::files::{
@@ -13,13 +13,13 @@ use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
 use crate::flutter::ModeShare;
 use crate::report::{
-    PageCurve, PageFigure, PageSection, StudyPage, sections_of, study_page, summary_figure,
+    PageCurve, PageFigure, PageSection, StudyPage, rendered, sections_of, summary_figure,
 };
 use crate::study::bridge::LeftOut;
 use std::path::Path;
 
 /// The page of the results in `folder`, whose summary is `text`.
-pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String> {
+pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<String> {
     let facts: BridgeSummary = parsed(&folder.join(SUMMARY), text)?;
     let file = BridgeFile::from_toml(&facts.bridge_file, folder.to_path_buf())?;
     // what stands there from other runs is not of these results
@@ -94,12 +94,12 @@ pub(super) fn page(folder: &Path, text: &str, place: PagePlace) -> Result<String
             .iter()
             .map(|i| (i.name.clone(), i.sha1.clone())),
     );
-    let fmu = (place == PagePlace::Folder).then_some(BRIDGE_FMU);
+    let fmu = (!in_the_archive).then_some(BRIDGE_FMU);
     for name in fmu.into_iter().chain([CURVES]) {
         page.hashes
             .extend(read(name).map(|bytes| (name.to_owned(), digest(&bytes))));
     }
-    study_page(&page)
+    rendered(&page)
 }
 
 /// The curves of the modes that are drawn in colour, in the same colours.

@@ -12,13 +12,6 @@ pub(in crate::cli) const REPORT: &str = "report.html";
 /// What the page is made from.
 pub(in crate::cli) const SUMMARY: &str = "summary.json";
 
-/// Where a page will stand: what it says of the archive itself stands only beside it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PagePlace {
-    Folder,
-    Archive,
-}
-
 /// Whether a study, and no bridge, has left its summary at `path`.
 pub(in crate::cli) fn is_of_a_study(path: &Path) -> bool {
     let text = std::fs::read_to_string(path).ok();

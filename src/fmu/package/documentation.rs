@@ -51,7 +51,7 @@ pub(super) fn documentation(
         lateral: resources.models().any(|m| m.section.lateral.is_some()),
         platforms: runtimes
             .iter()
-            .map(|r| (r.path_in_archive(version), r.platform_words()))
+            .map(|r| (r.path_in_archive(version), r.words))
             .collect(),
         groups: groups(&shown(resources, description), version),
         models: resources.models().collect(),

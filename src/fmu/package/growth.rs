@@ -21,6 +21,16 @@ pub enum GrowthPolicy {
     Allow,
 }
 
+impl GrowthPolicy {
+    /// Packs it where that is wanted.
+    pub fn allowing(wanted: bool) -> Self {
+        match wanted {
+            true => Self::Allow,
+            false => Self::Refuse,
+        }
+    }
+}
+
 /// Growth below the onset of the section of a model, by extrapolation alone; see `unwanted_growth`.
 pub(crate) fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;

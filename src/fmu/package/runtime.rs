@@ -82,7 +82,7 @@ pub struct Runtime {
     /// Ending of the library's name.
     extension: &'static str,
     /// The platform in words.
-    words: &'static str,
+    pub(crate) words: &'static str,
 }
 
 impl Runtime {
@@ -206,11 +206,6 @@ impl Runtime {
         self.platform == COMPONENT
     }
 
-    /// The platform in words.
-    pub(crate) fn platform_words(&self) -> &'static str {
-        self.words
-    }
-
     /// Path of the library in the archive.
     pub(crate) fn path_in_archive(&self, version: FmiVersion) -> String {
         let platform = match (version, self.platform) {
@@ -320,7 +315,7 @@ mod tests {
         arm[18] = 183;
         let words = |platform, bytes: &[u8]| {
             let runtime = Runtime::new(platform, Cow::Owned(bytes.to_vec())).unwrap();
-            runtime.platform_words()
+            runtime.words
         };
         assert_eq!(words("linux64", &arm), "Linux, 64-bit ARM");
         assert!(words("darwin64", UNIVERSAL).contains("Apple silicon"));

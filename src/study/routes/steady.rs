@@ -4,12 +4,13 @@
 use super::super::Study;
 use super::limit::limit_onset;
 use super::{Forces, RouteTable, THEORY};
+use crate::aerodynamics::RationalModel;
 use crate::aerodynamics::quasi_steady::QuasiSteady;
-use crate::aerodynamics::{RationalModel, Transfer};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::Result;
 use crate::flutter::{
-    OnsetMethod, divergence_speed, find_onset, quasi_steady_modes, quasi_steady_onset, trace_modes,
+    OnsetMethod, divergence_with_forces, find_onset, quasi_steady_modes, quasi_steady_onset,
+    trace_modes,
 };
 use crate::section::Structure;
 use crate::units::ReducedFrequency;
@@ -57,13 +58,12 @@ impl RouteTable {
         limit: &RationalModel,
         from: Option<ReducedFrequency>,
     ) -> Result<()> {
-        let steady = limit.transfer(ReducedFrequency::from_full_width(0.0))?;
         let forces = Forces {
             name: "quasi-steady limit".into(),
             model: limit,
             structure,
             tested: None,
-            divergence_m_s: divergence_speed(structure, &steady)?,
+            divergence_m_s: divergence_with_forces(structure, limit)?,
             quasi_steady_m_s: limit_onset(study, structure, limit)?,
         };
         let section = CoupledSection::with_model(structure, limit)?;
