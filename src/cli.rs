@@ -20,7 +20,6 @@ mod interrupt;
 mod laboratory;
 mod lock;
 mod measured_forces;
-mod model_figures;
 mod monte_carlo;
 mod new;
 mod output;

@@ -4,7 +4,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::{headline, model_figures, result_files, routes, select, stages, text};
+use super::{headline, result_files, routes, select, stages, text};
 use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
         drop(stage);
         return all_routes(&study, &deck, table, &verdict, out, &failed);
     }
-    let figure = model_figures::flutter_figure(&study, &results, Some(&verdict), &mut out);
+    let figure = result_files::flutter_figure(&study, &results, Some(&verdict), &mut out);
     attempt(&mut failed, "figure", figure)?;
     let curves = result_files::write_curves(&study, &results.curves, &mut out);
     attempt(&mut failed, "curves", curves)?;
@@ -111,7 +111,7 @@ fn all_routes(
 ) -> Result<Answer> {
     // a figure that cannot be drawn does not take the table with it
     if let Err(e) =
-        model_figures::routes_figure(study, &table.curves, &routes::marked(&table), &mut out)
+        result_files::routes_figure(study, &table.curves, &routes::marked(&table), &mut out)
     {
         table.left_out.push(format!("figure of all routes: {e}"));
     }

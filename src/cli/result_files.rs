@@ -2,26 +2,30 @@
 //! and above the onset.
 
 use super::figures;
-use super::model_figures::{MAX_CURVES, title_of_first};
 use super::output::OutputDir;
 use super::simulate::{motion_panels, simulated};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::files::text::csv_cell;
-use crate::flutter::{CriticalPoint, FlutterCurves};
+use crate::flutter::{CriticalPoint, FlutterCurves, Onset};
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, root_locus_figure,
-    scaled_history_figure,
+    DerivativePlot, DerivativesPlot, Figure, PlottedSeries, derivatives_figure, root_locus_figure,
+    scaled_history_figure, vf_vg_figure,
 };
 use crate::section::Dof;
-use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};
+use crate::study::{Deck, FlutterStudy, Study, TrainedWithReport, derivative_lines};
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};
+use crate::verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+/// Force models that can be told apart in one figure.
+const MAX_CURVES: usize = 7;
+/// Stem of the figure of frequencies and damping ratios.
+pub(super) const FIGURE: &str = "flutter";
 /// Stem of the figure of derivatives.
 pub(super) const DERIVATIVES: &str = "derivatives";
 /// Stem of the figure of the motion around the onset.
@@ -34,6 +38,57 @@ pub(super) const CURVES: &str = "curves.csv";
 const AROUND_ONSET: [f64; 3] = [0.95, 1.0, 1.05];
 /// Periods and samples of a period that are shown.
 const PERIODS: (f64, f64) = (30.0, 24.0);
+
+/// The title of a figure of models, which says how many of them are drawn where these are not all.
+fn title_of_first(title: &str, models: usize) -> String {
+    match models > MAX_CURVES {
+        true => format!("{title} (the first {MAX_CURVES} of {models} models)"),
+        false => title.to_owned(),
+    }
+}
+
+/// The V-f and V-g figure as SVG and PNG.
+pub(crate) fn flutter_figure(
+    study: &Study,
+    results: &FlutterStudy,
+    verdict: Option<&Verdict>,
+    out: &mut OutputDir,
+) -> Result<()> {
+    let (curves, onsets) = (&results.curves, &results.onsets);
+    if curves.is_empty() {
+        return Err(Error::Numerical("no modes to draw".into()));
+    }
+    figures::write(FIGURE, out, || {
+        of_first_models(curves, onsets, &study.name, verdict)
+    })
+}
+
+/// The same figure for all routes.
+pub(crate) fn routes_figure(
+    study: &Study,
+    curves: &[FlutterCurves],
+    onsets: &[Onset],
+    out: &mut OutputDir,
+) -> Result<()> {
+    let title = format!("{}: all routes", study.name);
+    figures::write("routes", out, || {
+        of_first_models(curves, onsets, &title, None)
+    })
+}
+
+/// The figure of the models that can be told apart in it.
+fn of_first_models(
+    curves: &[FlutterCurves],
+    onsets: &[Onset],
+    title: &str,
+    verdict: Option<&Verdict>,
+) -> Result<Figure> {
+    let title = title_of_first(title, curves.len());
+    let (curves, others) = curves.split_at(curves.len().min(MAX_CURVES));
+    let drawn = |o: &&Onset| others.iter().all(|c| c.model != o.at.model);
+    let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
+    vf_vg_figure(curves, &onsets, &title, verdict)
+}
 
 /// Frequencies and damping ratios over wind speed, one row per point, as CSV.
 pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
@@ -85,37 +140,24 @@ pub(super) fn write_curves(
 /// Lines of all derivatives by their names: `V̂` and value.
 pub(super) type NamedLines = Vec<(String, BTreeMap<Derivative, Vec<(f64, f64)>>)>;
 
-/// Measured derivatives and the models that were fitted to them.
-pub(super) struct DerivativesShown<'a> {
-    pub(super) title: String,
-    pub(super) table: Option<&'a DerivativeTable>,
-    pub(super) dofs: &'a [Dof],
-    /// Models with their names.
-    pub(super) fitted: NamedLines,
-    /// Those that the deck has by theory.
-    pub(super) exact: NamedLines,
-    /// The model that the intervals are of, and they.
-    pub(super) intervals: (&'a str, &'a [DerivativeInterval]),
-}
-
-impl DerivativesShown<'_> {
-    /// What is drawn.
-    pub(super) fn plot(&self) -> DerivativesPlot {
-        let bars = format!("95 % interval of {}", self.intervals.0);
-        over_v_hat(self.title.clone(), bars, |d| self.one(d))
-    }
-
-    fn one(&self, d: Derivative) -> DerivativePlot {
-        let own = self.intervals.1.iter().filter(|i| i.derivative == d);
-        let inside = self.dofs.contains(&d.force()) && self.dofs.contains(&d.motion());
-        let table = self.table.filter(|_| inside);
-        DerivativePlot {
-            name: d.name().to_owned(),
-            measured: table.map_or(vec![], |table| measured(table, d)),
-            bars: own.map(|i| (1.0 / i.k, i.low, i.high)).collect(),
-            fitted: lines_of(&self.fitted, d),
-            reference: lines_of(&self.exact, d),
-        }
+/// A derivative as it was measured, in the models that were fitted to it, and by the theory of the deck, with the intervals of one model.
+pub(super) fn beside_models(
+    d: Derivative,
+    table: Option<&DerivativeTable>,
+    dofs: &[Dof],
+    fitted: &NamedLines,
+    exact: &NamedLines,
+    intervals: &[DerivativeInterval],
+) -> DerivativePlot {
+    let own = intervals.iter().filter(|i| i.derivative == d);
+    let inside = dofs.contains(&d.force()) && dofs.contains(&d.motion());
+    let table = table.filter(|_| inside);
+    DerivativePlot {
+        name: d.name().to_owned(),
+        measured: table.map_or(vec![], |table| measured(table, d)),
+        bars: own.map(|i| (1.0 / i.k, i.low, i.high)).collect(),
+        fitted: lines_of(fitted, d),
+        reference: lines_of(exact, d),
     }
 }
 
@@ -172,15 +214,14 @@ pub(super) fn write_derivatives(
     let known = trained.iter().find(|t| t.model.name == *exported);
     let known = known.and_then(|t| t.uncertainty.as_ref().ok());
     let title = format!("{}: measured derivatives and models", study.name);
-    let shown = DerivativesShown {
-        title: title_of_first(&title, trained.len()),
-        table: deck.table(),
-        dofs: &study.section.dofs(),
-        fitted,
-        exact,
-        intervals: (exported, known.map_or(&[], |known| &known.derivatives)),
-    };
-    figures::write(DERIVATIVES, out, || derivatives_figure(&shown.plot()))
+    let title = title_of_first(&title, trained.len());
+    let intervals = known.map_or(&[][..], |known| &known.derivatives);
+    let (table, dofs) = (deck.table(), study.section.dofs());
+    let one = |d| beside_models(d, table, &dofs, &fitted, &exact, intervals);
+    let bars = format!("95 % interval of {exported}");
+    figures::write(DERIVATIVES, out, || {
+        derivatives_figure(&over_v_hat(title, bars, one))
+    })
 }
 
 /// The test points of a derivative, one series per mean speed.

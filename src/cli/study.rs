@@ -8,8 +8,7 @@ use super::report;
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::summary::{FitSummary, Summary};
 use super::{
-    buffeting, figures, headline, measured_forces, model_figures, result_files, select, stages,
-    study_run, text,
+    buffeting, figures, headline, measured_forces, result_files, select, stages, study_run, text,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
@@ -227,7 +226,7 @@ impl StudyStages<'_> {
         verdict: &Verdict,
     ) -> Result<()> {
         let (study, out) = (&self.study, &mut self.out);
-        let figure = model_figures::flutter_figure(study, results, Some(verdict), out);
+        let figure = result_files::flutter_figure(study, results, Some(verdict), out);
         let derivatives = result_files::write_derivatives(study, &self.deck, trained, out);
         let curves = result_files::write_curves(study, &results.curves, out);
         self.attempt("figure", figure)?;

@@ -5,7 +5,7 @@ use super::interrupt::Temporary;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::thesis_page::thesis_page;
-use super::{headline, model_figures, result_files, stages, text};
+use super::{headline, result_files, stages, text};
 use crate::error::{Error, Result};
 use crate::report::rendered;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
@@ -43,7 +43,7 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
     text.push_str(&text::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
     if let Some(folder) = left_in {
-        model_figures::flutter_figure(&study, &results, None, &mut out)?;
+        result_files::flutter_figure(&study, &results, None, &mut out)?;
         result_files::write_curves(&study, &results.curves, &mut out)?;
         if let Some(own) = trained.first()
             && let Some(onset) = headline::own_onset(&results, &own.model.name)

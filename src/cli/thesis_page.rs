@@ -2,10 +2,9 @@
 
 use super::compare::thesis_comparisons;
 use super::laboratory::svg;
-use super::model_figures::FIGURE;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::result_files::{RESPONSE, ROOTS};
+use super::result_files::{FIGURE, RESPONSE, ROOTS};
 use super::select::parameter_maps;
 use crate::aerodynamics::laguerre::discrete_memory;
 use crate::error::Result;

@@ -5,7 +5,7 @@ use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
 use super::super::report::folder::{SUMMARY, is_of_a_study};
-use super::super::result_files::{DerivativesShown, curves_csv};
+use super::super::result_files::{beside_models, curves_csv, over_v_hat};
 use super::super::text::ending;
 use super::args::BridgeArgs;
 use super::files::{
@@ -254,19 +254,17 @@ fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) ->
     let table = table.map(|name| block_table(block, name, &study.file.directory));
     let table = table.transpose()?;
     let model = forces.model.as_ref();
-    let shown = DerivativesShown {
-        title: format!("{}: measured derivatives and the model", block.name),
-        table: table.as_ref(),
-        dofs: model.dofs(),
-        fitted: vec![(
-            "model".to_owned(),
-            derivative_lines(model, tested.min.v_hat())?,
-        )],
-        exact: Vec::new(),
-        intervals: ("the model", &forces.derivative_intervals()?),
-    };
+    let lines = derivative_lines(model, tested.min.v_hat())?;
+    let fitted = vec![("model".to_owned(), lines)];
+    let intervals = forces.derivative_intervals()?;
+    let (table, dofs) = (table.as_ref(), model.dofs());
+    let one = |d| beside_models(d, table, dofs, &fitted, &Vec::new(), &intervals);
+    let title = format!("{}: measured derivatives and the model", block.name);
+    let bars = "95 % interval of the model".to_owned();
     let stem = format!("{DERIVATIVES_FIGURE}{}", number + 1);
-    figures::write(&stem, out, || derivatives_figure(&shown.plot()))
+    figures::write(&stem, out, || {
+        derivatives_figure(&over_v_hat(title, bars, one))
+    })
 }
 
 fn motion_csv(motion: &BridgeMotion) -> String {
