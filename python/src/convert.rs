@@ -8,11 +8,15 @@ use pyo3::types::{PyBool, PyBytes, PyComplex, PyDict, PyList, PyString, PyTuple}
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+/// Anything the library can write as JSON.
+pub fn json_text(value: &impl Serialize) -> PyResult<String> {
+    serde_json::to_string(value).map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))
+}
+
 /// Anything the library can write as JSON, as dicts, lists and numbers.
 pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(value)
-        .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
-    py.import("json")?.call_method1("loads", (text,))
+    py.import("json")?
+        .call_method1("loads", (json_text(value)?,))
 }
 
 /// What `pickle` and `copy` make an object from again: `_from_state` of its class and its state as JSON.
@@ -23,10 +27,8 @@ pub fn reduced<'py, T: pyo3::PyClass>(
     slf: &Bound<'py, T>,
     state: &impl Serialize,
 ) -> PyResult<Reduced<'py>> {
-    let text = serde_json::to_string(state)
-        .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
-    let slf = slf.as_any();
-    Ok((slf.get_type().getattr("_from_state")?, (text,)))
+    let from_state = slf.as_any().get_type().getattr("_from_state")?;
+    Ok((from_state, (json_text(state)?,)))
 }
 
 /// The state that [`reduced`] wrote.

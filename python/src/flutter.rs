@@ -14,7 +14,7 @@ use aerodeck::flutter::{
     find_onset, pk_onset,
 };
 use aerodeck::plausibility::{Finding, of_section};
-use aerodeck::section::{Dof, SectionModel};
+use aerodeck::section::{Dof, SectionModel, Structure};
 use aerodeck::study::FlutterBlock;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use aerodeck::verdict::{Evidence, RequiredSpeed, Verdict};
@@ -74,7 +74,6 @@ pub fn flutter(
         let expected = "heave and rotation: the flat plate has no forces of sway";
         return Err(wrong("section", expected, "three motions".to_owned()));
     }
-    let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
     let found = if let Ok(table) = model.cast::<Derivatives>() {
         let table = &table.get().0;
@@ -83,7 +82,7 @@ pub fn flutter(
             let forces =
                 InterpolatedTable::new(table, &dofs, Extrapolation::Refuse).map_err(raised)?;
             let range = forces.tested_range();
-            let found = exact(range).find(&table.name, section, &forces, method)?;
+            let found = of_fixed(&table.name, &structure, &forces, range, &search, method)?;
             let evidence =
                 Evidence::of_table("the table", &structure, &forces, range, found.clone());
             PyResult::Ok((found, evidence))
@@ -93,7 +92,7 @@ pub fn flutter(
         let range = ReducedFrequencyRange::between(k(PLATE_K.0), k(PLATE_K.1));
         let forces = FlatPlate::default();
         let found = detached(py, || {
-            exact(range).find("flat plate", section, &forces, method)
+            of_fixed("flat plate", &structure, &forces, range, &search, method)
         });
         found.map(FlutterSearch::of_exact_forces).map(|found| {
             let evidence = Evidence::of_exact("the flat plate", &structure, &forces, found.clone());
@@ -180,34 +179,21 @@ fn model_evidence(
     Ok(evidence)
 }
 
-/// Forces without a realisation.
-struct FixedForces {
+/// The onset of forces without a realisation, which are known in this range.
+fn of_fixed(
+    name: &str,
+    structure: &Structure,
+    forces: &dyn Transfer,
     range: ReducedFrequencyRange,
-    search: OnsetSearch,
-}
-
-impl FixedForces {
-    fn find(
-        &self,
-        name: &str,
-        section: &SectionModel,
-        forces: &dyn Transfer,
-        method: &str,
-    ) -> PyResult<FlutterSearch> {
-        let structure = section.structure().map_err(raised)?;
-        match method {
-            "determinant" => determinant_onset(
-                name,
-                &structure,
-                forces,
-                self.range,
-                self.search.speed_max_m_s,
-            ),
-            "pk" => pk_onset(name, &structure, forces, &self.search, None),
-            other => return Err(wrong("method", "determinant or pk", format!("`{other}`"))),
-        }
-        .map_err(raised)
+    search: &OnsetSearch,
+    method: &str,
+) -> PyResult<FlutterSearch> {
+    match method {
+        "determinant" => determinant_onset(name, structure, forces, range, search.speed_max_m_s),
+        "pk" => pk_onset(name, structure, forces, search, None),
+        other => return Err(wrong("method", "determinant or pk", format!("`{other}`"))),
     }
+    .map_err(raised)
 }
 
 /// The onset of a trained model with its interval.

@@ -1,7 +1,8 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
 use crate::convert::{
-    Reduced, from_python, reduced, refuse_not_finite, restored, set_default, shown, to_python,
+    Reduced, from_python, json_text, reduced, refuse_not_finite, restored, set_default, shown,
+    to_python,
 };
 use crate::error::{raised, warn, warned, wrong};
 use crate::flutter::verdict_at;
@@ -276,8 +277,7 @@ pub fn _monte_carlo_part(
     let plan = plan_of(parameters, keywords)?;
     let samples = || analysis::tally(&plan, &trained, first..last, &|_, _| {});
     let part = py.detach(|| on_threads(Some(1), samples).and_then(|part| part));
-    serde_json::to_string(&part.map_err(raised)?)
-        .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))
+    json_text(&part.map_err(raised)?)
 }
 
 /// The distribution of which these are all parts, in their order.

@@ -1,7 +1,6 @@
 //! `Onset`: at which wind speed a motion grows.
 
-use crate::convert::{Reduced, reduced, restored, shown};
-use crate::error::raised;
+use crate::convert::{Reduced, json_text, reduced, restored, shown};
 use aerodeck::flutter::{FlutterSearch, OnsetInterval};
 use aerodeck::verdict::{Outcome, Verdict};
 use pyo3::prelude::*;
@@ -89,8 +88,7 @@ impl Onset {
         verdict: &Verdict,
         card: &impl Serialize,
     ) -> PyResult<Self> {
-        let failed = |e: serde_json::Error| raised(aerodeck::Error::Numerical(e.to_string()));
-        let json = serde_json::to_string(card).map_err(failed)?;
+        let json = json_text(card)?;
         let mut answer = Self {
             state: "stable".into(),
             speed_m_s: None,
@@ -109,7 +107,7 @@ impl Onset {
             warnings: verdict.warnings().map(str::to_owned).collect(),
             method: method.to_owned(),
             json,
-            verdict_json: serde_json::to_string(verdict).map_err(failed)?,
+            verdict_json: json_text(verdict)?,
         };
         let at = match search {
             FlutterSearch::Onset(onset) => {
