@@ -14,7 +14,7 @@
 use super::problem::BuffetingProblem;
 use super::response::{by_node, part};
 use super::synthesis::{TurbulenceField, parts_in_time};
-use super::time::{all_records, root_and_error};
+use super::time::{all_records, at_least, root_and_error};
 use crate::aerodynamics::GustComponent;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
@@ -26,6 +26,14 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// Length of a record in decay times of the least damped mode: what its lines leave out of a variance, or add to it, is at most
+/// 2 e^(−5), 1.4 % of it.
+const DECAY_TIMES: f64 = 5.0;
+/// Samples of a record whose length is not stated, at most: time and memory grow with it.
+const SAMPLES_BY_DEFAULT: usize = 1 << 18;
+/// Time in which peaks are expected when none is stated, s.
+const PEAK_S: f64 = 600.0;
+
 /// How many records, how long, how fine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -34,8 +42,9 @@ pub struct SpanPlan {
     pub records: usize,
     /// Seed of the first record; the others follow.
     pub seed: u64,
-    /// Length of each record, s.
-    pub duration_s: f64,
+    /// Length of each record, s; left out, as many times 600 s as make five decay times of the least damped mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
     /// Time step, s.
     pub step_s: f64,
 }
@@ -45,10 +54,56 @@ impl Default for SpanPlan {
         Self {
             records: 8,
             seed: 1,
-            duration_s: 600.0,
+            duration_s: None,
             step_s: 0.05,
         }
     }
+}
+
+impl SpanPlan {
+    /// Time in which peaks are expected, s: the stated length of a record, or else 600 s.
+    pub(crate) fn peak_s(&self) -> f64 {
+        self.duration_s.unwrap_or(PEAK_S)
+    }
+
+    /// Samples in that time.
+    fn peak_samples(&self) -> usize {
+        2 * (0.5 * self.peak_s() / self.step_s).round() as usize
+    }
+
+    /// Samples of a record at a wind speed, m/s.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] when the length is not stated and the bridge is unstable at this speed.
+    pub(crate) fn record_samples(
+        &self,
+        problem: &BuffetingProblem<'_>,
+        speed_m_s: f64,
+    ) -> Result<usize> {
+        let slowest = match self.duration_s {
+            Some(_) => f64::INFINITY,
+            None => problem.coupled(speed_m_s)?.1,
+        };
+        Ok(self.samples(slowest))
+    }
+
+    /// Samples of a record, for the decay rate of the slowest motion, 1/s.
+    fn samples(&self, slowest: f64) -> usize {
+        let samples = self.peak_samples().max(1);
+        let times = match self.duration_s {
+            Some(_) => 1,
+            None => (DECAY_TIMES / slowest / PEAK_S).ceil() as usize,
+        };
+        samples * times.clamp(1, (SAMPLES_BY_DEFAULT / samples).max(1))
+    }
+}
+
+/// What is wrong with records of that length, s, for a decay rate of the slowest motion, 1/s.
+fn too_short(record_s: f64, slowest: f64, speed_m_s: f64) -> Option<String> {
+    (record_s * slowest < DECAY_TIMES).then(|| {
+        let expected = at_least(DECAY_TIMES, slowest, speed_m_s);
+        format!("RMS in time may be far off, whatever its standard error: a record expected {expected}, found {record_s:.0} s")
+    })
 }
 
 /// Root mean squares and peaks over many records at named nodes: vertical, lateral (m), rotation (rad).
@@ -58,13 +113,17 @@ pub struct SpanEnsemble {
     pub speed_m_s: f64,
     /// What was asked for.
     pub plan: SpanPlan,
+    /// Length of each record, s.
+    pub record_s: f64,
+    /// Why the records are too short for their root mean squares, where they are.
+    pub too_short: Option<String>,
     /// Places of the nodes in the bridge.
     pub nodes: Vec<usize>,
     /// Root of the mean of the variances about the mean.
     pub rms: Vec<[f64; 3]>,
     /// Standard error of `rms` from the scatter of the records.
     pub standard_error: Vec<[f64; 3]>,
-    /// Mean over the records of the greatest departure from the mean, over `rms`.
+    /// Mean of the greatest departure from the mean in the time of the peaks, over `rms`.
     pub peak_factor: Vec<[f64; 3]>,
 }
 
@@ -75,6 +134,8 @@ pub struct SpanRecord {
     pub nodes: Vec<String>,
     /// Mean wind speed, m/s.
     pub speed_m_s: f64,
+    /// Why the record is too short for its root mean squares, where it is.
+    pub too_short: Option<String>,
     /// Root mean square about the mean over the record.
     pub rms: Vec<[f64; 3]>,
     /// Greatest departure from the mean over `rms`.
@@ -106,14 +167,16 @@ pub fn span_record(
             counted(field.gusts[0].len(), "node"),
         ));
     }
-    let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, field.step_s, samples)?;
-    let found = bridge.run(|component| {
+    let (coupled, slowest) = problem.coupled(speed_m_s)?;
+    let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, field.step_s, samples)?;
+    let found = bridge.run(samples, |component| {
         let rows = field.gusts[component as usize].par_iter();
         rows.map(|row| bridge.amplitudes(row)).collect()
     });
     Ok(SpanRecord {
         nodes: problem.names_of(nodes),
         speed_m_s,
+        too_short: too_short(samples as f64 * field.step_s, slowest, speed_m_s),
         rms: by_node(nodes.len(), |row| found[row].0.sqrt()),
         peak_factor: by_node(nodes.len(), |row| {
             part(found[row].1, found[row].0.sqrt(), 0.0)
@@ -133,19 +196,25 @@ pub(crate) fn span_ensemble(
     plan: &SpanPlan,
     progress: OnDone<'_>,
 ) -> Result<SpanEnsemble> {
-    let (duration, step) = (plan.duration_s, plan.step_s);
-    let samples = 2 * (0.5 * duration / step).round() as usize;
+    let (coupled, slowest) = problem.coupled(speed_m_s)?;
+    let (step, samples) = (plan.step_s, plan.samples(slowest));
     problem.check_record(speed_m_s, step, samples)?;
-    let bridge = PeriodicBridge::new(problem, nodes, speed_m_s, step, samples)?;
+    let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, step, samples)?;
     let record = |seed: u64| {
         let gusts = |component| problem.coefficients(component, speed_m_s, step, samples, seed);
-        Ok(bridge.run(gusts))
+        Ok(bridge.run(plan.peak_samples(), gusts))
     };
     let runs = all_records(plan.records, plan.seed, progress, record)?;
-    Ok(gathered(speed_m_s, plan, nodes, &runs))
+    let found = gathered(speed_m_s, plan, nodes, &runs);
+    let record_s = samples as f64 * step;
+    Ok(SpanEnsemble {
+        record_s,
+        too_short: too_short(record_s, slowest, speed_m_s),
+        ..found
+    })
 }
 
-/// Variance and greatest departure of each row over one record.
+/// Variance of each row over one record, and its mean greatest departure.
 type Run = Vec<(f64, f64)>;
 
 /// A stable bridge that is driven by gusts of one period.
@@ -163,12 +232,12 @@ struct PeriodicBridge<'a> {
 impl<'a> PeriodicBridge<'a> {
     fn new(
         problem: &'a BuffetingProblem<'a>,
+        coupled: &CoupledSection,
         nodes: &[usize],
         speed_m_s: f64,
         step_s: f64,
         samples: usize,
     ) -> Result<Self> {
-        let (coupled, _) = problem.coupled(speed_m_s)?;
         let shapes = problem.shapes_at(nodes);
         let fourier = Fourier::new(samples);
         let (rows, modes) = shapes.shape();
@@ -176,7 +245,7 @@ impl<'a> PeriodicBridge<'a> {
             true => (DMatrix::identity(modes, modes), shapes.transpose()),
             false => (shapes, DMatrix::identity(rows, rows)),
         };
-        let transfer = transfer(&coupled, &motions, speed_m_s, step_s, &fourier)?;
+        let transfer = transfer(coupled, &motions, speed_m_s, step_s, &fourier)?;
         Ok(Self {
             problem,
             speed_m_s,
@@ -200,8 +269,12 @@ impl<'a> PeriodicBridge<'a> {
         spectrum
     }
 
-    /// What the rows do in gusts, of which a row per node is made for each component.
-    fn run(&self, gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>) -> Run {
+    /// What the rows do in gusts, of which a row per node is made for each component; a peak is that of `peak_samples`.
+    fn run(
+        &self,
+        peak_samples: usize,
+        gusts: impl Fn(GustComponent) -> Vec<Vec<Complex<f64>>>,
+    ) -> Run {
         let samples = self.fourier.length();
         let forces = (self.problem).forces(self.speed_m_s, self.step_s, samples, gusts);
         let (motions, rows) = self.of_motions.shape();
@@ -222,8 +295,10 @@ impl<'a> PeriodicBridge<'a> {
             let values = parts_in_time(&self.fourier, column.as_slice());
             let mean = values.iter().sum::<f64>() / samples as f64;
             let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples as f64;
-            let peak = values.iter().map(|x| (x - mean).abs()).fold(0.0, f64::max);
-            (square, peak)
+            let parts = values.chunks(peak_samples);
+            let peak = |part: &[f64]| part.iter().map(|x| (x - mean).abs()).fold(0.0, f64::max);
+            let peaks = parts.len() as f64;
+            (square, parts.map(peak).sum::<f64>() / peaks)
         };
         (0..rows).map(row).collect()
     }
@@ -311,6 +386,8 @@ fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> S
     SpanEnsemble {
         speed_m_s,
         plan: *plan,
+        record_s: plan.peak_s(),
+        too_short: None,
         nodes: nodes.to_vec(),
         rms: list(0),
         standard_error: list(1),

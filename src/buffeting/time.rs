@@ -170,6 +170,14 @@ pub(super) fn root_and_error(squares: &[f64]) -> (f64, f64) {
     (mean.sqrt(), error)
 }
 
+/// The least length of a record, in words, for the decay rate of the slowest motion, 1/s.
+pub(super) fn at_least(decay_times: f64, slowest: f64, speed_m_s: f64) -> String {
+    let least_s = decay_times / slowest;
+    format!(
+        "at least {least_s:.1} s, {decay_times} decay times of the least damped mode at {speed_m_s} m/s"
+    )
+}
+
 fn grid(
     problem: &BuffetingProblem<'_>,
     slowest: f64,
@@ -185,9 +193,7 @@ fn grid(
         None => DECAY_TIMES_BY_DEFAULT / slowest,
     };
     let warm_up_s = DECAY_TIMES / slowest;
-    let expected = format!(
-        "at least {warm_up_s:.1} s, {DECAY_TIMES} decay times of the least damped mode at {speed_m_s} m/s"
-    );
+    let expected = at_least(DECAY_TIMES, slowest, speed_m_s);
     ensure(warm_up_s <= duration, "duration_s", expected, duration)?;
     // an even number of samples
     let samples = 2 * (0.5 * duration / step_s).round() as usize;

@@ -186,10 +186,12 @@ fn by_file(
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
         vec![format!("{rms:.5e}"), of_motion(rms, format!("{peak:.3}"))]
     });
+    let short = found.too_short.as_ref();
     let text = format!(
-        "{} at {speed} m/s in the turbulence of {}\n{of_nodes}",
+        "{} at {speed} m/s in the turbulence of {}\n{}{of_nodes}",
         study.file.name,
-        path.display()
+        path.display(),
+        short.map(|why| format!("{why}\n")).unwrap_or_default()
     );
     let verdict = verdict(study)?;
     let findings = [&study.findings[..], &of_field].concat();

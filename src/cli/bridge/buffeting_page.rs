@@ -73,12 +73,16 @@ pub(super) fn forces(results: &BridgeBuffeting) -> String {
         let plan = &time.plan;
         let _ = writeln!(
             text,
-            "time domain: {} of {} s, every {} s, seed {}",
+            "time domain: {} of {} s, every {} s, seed {}; peaks in {} s",
             counted(plan.records, "record"),
-            plan.duration_s,
+            time.record_s,
             plan.step_s,
-            plan.seed
+            plan.seed,
+            plan.peak_s()
         );
+        if let Some(why) = &time.too_short {
+            let _ = writeln!(text, "  {why}");
+        }
     }
     if let Some(why) = &results.no_time {
         let _ = writeln!(text, "no time domain: {why}");

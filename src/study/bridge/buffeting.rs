@@ -108,7 +108,7 @@ impl BridgeStudy {
             )
         })?;
         block.coherence.validate("buffeting.coherence")?;
-        let (duration_s, step_s) = (Some(block.time.duration_s), Some(block.time.step_s));
+        let (duration_s, step_s) = (block.time.duration_s, Some(block.time.step_s));
         check_plan("buffeting.time", block.time.records, duration_s, step_s)?;
         Ok(block)
     }
@@ -181,7 +181,7 @@ impl BridgeStudy {
                 self,
                 &domain,
                 speed_m_s,
-                block.time.duration_s,
+                block.time.peak_s(),
                 block.section_forces.as_deref(),
             )?;
             Ok((frequency, beside.transpose()?, spectra, envelope))
@@ -200,7 +200,7 @@ impl BridgeStudy {
         };
         Ok(BridgeBuffeting {
             nodes: problem.names_of(&nodes),
-            expected_peak_factor: frequency.peak_factors(block.time.duration_s),
+            expected_peak_factor: frequency.peak_factors(block.time.peak_s()),
             envelope,
             spectra,
             models: beside,
@@ -272,13 +272,8 @@ impl BridgeStudy {
     /// [`Error::Input`] with the key of the block that cannot be.
     pub fn first_field(&self, block: &BuffetingBlock, speed_m_s: f64) -> Result<TurbulenceField> {
         let plan = &block.time;
-        let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
-        turbulence_field(
-            &self.problem(&self.by_model, block)?,
-            speed_m_s,
-            plan.step_s,
-            samples,
-            plan.seed,
-        )
+        let problem = self.problem(&self.by_model, block)?;
+        let samples = plan.record_samples(&problem, speed_m_s)?;
+        turbulence_field(&problem, speed_m_s, plan.step_s, samples, plan.seed)
     }
 }
