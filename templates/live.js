@@ -43,12 +43,13 @@
   const words = (answer, own) => {
     if (answer.error) return answer.error;
     const onset = answer.search.onset;
-    if (!onset) return answer.words;
+    const first = answer.first ? `${answer.first[0].toUpperCase()}${answer.first.slice(1)}; then: ` : "";
+    if (!onset) return first + answer.words;
     const before = own.search?.onset?.speed_m_s;
     const percent = before ? 100 * (onset.speed_m_s / before - 1) : 0;
     const against = before ? ` (${percent < 0 ? "−" : "+"}${Math.abs(percent).toFixed(1)} % against this report)` : "";
     const tested = onset.in_tested_range == null ? "" : onset.in_tested_range ? ", inside the tested range" : ", OUTSIDE the tested range";
-    return `Flutter onset ${onset.speed_m_s.toFixed(2)} m/s${against}, ${onset.frequency_hz.toFixed(3)} Hz, ` +
+    return `${first}Flutter onset ${onset.speed_m_s.toFixed(2)} m/s${against}, ${onset.frequency_hz.toFixed(3)} Hz, ` +
       `V/(fB) ${onset.reduced_velocity.toFixed(2)}, ${onset.branch} mode${tested}`;
   };
   let own, answer, range, waiting;

@@ -10,7 +10,8 @@ mod interface;
 use aerodeck_core::aeroelastic::CoupledSection;
 use aerodeck_core::error::{Error, Result};
 use aerodeck_core::flutter::{
-    FlutterCurves, FlutterSearch, ModePoint, OnsetSearch, curve_speeds_m_s, find_onset, trace_modes,
+    FlutterCurves, FlutterSearch, ModePoint, OnsetSearch, curve_speeds_m_s, divergence_with_forces,
+    find_onset, shown_m_s, trace_modes, unwanted_growth_below,
 };
 use aerodeck_core::section::SectionModel;
 use aerodeck_core::trained_model::TrainedModel;
@@ -39,6 +40,10 @@ struct FlutterAnswer {
     search: FlutterSearch,
     /// The same in words.
     words: String,
+    /// Growth outside the tests or static divergence, whichever comes first and before flutter, in words.
+    first: Option<String>,
+    /// Static divergence of the model, m/s.
+    divergence_m_s: Option<f64>,
     /// Frequency and damping over wind speed.
     modes: Vec<ModeCurve>,
     /// Why the curves end before the highest speed, where they do.
@@ -59,7 +64,7 @@ struct ModeCurve {
 }
 
 /// Answers a request in JSON, with the numbers that `aerodeck flutter` has for a study of this section: an object with
-/// `search`, `words`, `modes` and `ended`, or one with `error` alone.
+/// `search`, `words`, `first`, `divergence_m_s`, `modes` and `ended`, or one with `error` alone.
 ///
 /// ```
 /// let answer = aerodeck_live::answer("{}");
@@ -80,13 +85,26 @@ fn answer_of(request: &str) -> Result<FlutterAnswer> {
         speeds: request.speeds,
     };
     let tested = Some(trained.tested_range);
-    let search = find_onset(&trained.name, &section, &search, tested)?;
+    let found = find_onset(&trained.name, &section, &search, tested)?;
     let (low, high) = (request.speed_min_m_s, request.speed_max_m_s);
+    // a model without forces at rest has no divergence
+    let divergence_m_s = divergence_with_forces(&structure, &trained.model)
+        .ok()
+        .flatten();
+    let growth = unwanted_growth_below(Some(&found), &section, &search, tested)?;
+    let limit = (found.critical()).map_or(search.speed_max_m_s, |at| at.speed_m_s);
+    let bands = growth.bands.iter().map(|band| band.from_m_s);
+    let grows = bands.map(|speed| ("growth outside the tests", speed));
+    let diverges = divergence_m_s.map(|speed| ("static divergence", speed));
+    let before = grows.chain(diverges.filter(|(_, speed)| *speed < limit));
+    let first = before.min_by(|a, b| a.1.total_cmp(&b.1));
     let speeds = curve_speeds_m_s(low, high, request.speeds);
     let curves = trace_modes(&trained.name, &section, &speeds)?;
     Ok(FlutterAnswer {
-        words: search.explain(),
-        search,
+        words: found.explain(),
+        first: first.map(|(what, speed)| format!("{what} at {} m/s", shown_m_s(speed))),
+        divergence_m_s,
+        search: found,
         modes: modes(&curves),
         ended: curves.ended,
     })

@@ -1,7 +1,7 @@
 //! The answers are those of the library, bit for bit.
 
 use super::*;
-use aerodeck_core::aerodynamics::{RationalModel, Transfer};
+use aerodeck_core::aerodynamics::{Lags, RationalModel, Transfer};
 use aerodeck_core::trained_model::{Experiment, Model, Provenance, SCHEMA_VERSION};
 use aerodeck_core::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde_json::{Value, json};
@@ -36,8 +36,12 @@ fn plate() -> TrainedModel {
 }
 
 fn asked(section: &SectionModel, highest: f64) -> Value {
+    asked_of(&plate(), section, highest)
+}
+
+fn asked_of(model: &TrainedModel, section: &SectionModel, highest: f64) -> Value {
     let request = json!({
-        "model": serde_json::to_string(&plate()).unwrap(), "section": section,
+        "model": serde_json::to_string(model).unwrap(), "section": section,
         "speed_min_m_s": 5.0, "speed_max_m_s": highest, "speeds": 40,
     });
     serde_json::from_str(&answer(&request.to_string())).unwrap()
@@ -92,6 +96,39 @@ fn without_an_onset_it_says_up_to_where_none_is() {
     let said = asked(&plate().section, 20.0);
     assert_eq!(said["search"]["stable_up_to"]["to_m_s"], 20.0, "{said}");
     assert!(said["words"].as_str().unwrap().contains("20"), "{said}");
+}
+
+/// A page whose headline named divergence or growth outside the tests had sliders that knew of flutter alone.
+#[test]
+fn what_comes_before_flutter_is_said() {
+    let plain = asked(&plate().section, 60.0);
+    assert!(plain["first"].is_null(), "{plain}");
+    // softer in torsion than in heave it does not flutter but diverges, unseen where the search ends below
+    let mut soft = plate().section;
+    soft.torsion.frequency_hz = Some(1.0);
+    let said = asked(&soft, 60.0);
+    let structure = soft.structure().unwrap();
+    let speed = divergence_with_forces(&structure, &plate().model).unwrap();
+    assert_eq!(said["divergence_m_s"].as_f64(), speed);
+    let text = format!("static divergence at {} m/s", shown_m_s(speed.unwrap()));
+    assert_eq!(said["first"], text, "{said}");
+    assert!(asked(&soft, 0.9 * speed.unwrap())["first"].is_null());
+    // fed with energy in fast heave, above K 2.6, where nothing was tested
+    let mut model = RationalModel::jones_flat_plate();
+    model.a2[(0, 0)] += 20.0;
+    let mut lag = model.a2.clone() * 0.0;
+    lag[(0, 0)] = -120.0;
+    model.lag_terms.push(lag);
+    model.lags = Lags::Shared(vec![0.091, 0.6, 6.0]);
+    let mut fed = plate();
+    fed.model = Model::Rational(model);
+    fed.tested_range = ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.1),
+        ReducedFrequency::from_full_width(1.5),
+    );
+    let said = asked_of(&fed, &fed.section, 80.0);
+    let first = said["first"].as_str().unwrap();
+    assert!(first.starts_with("growth outside the tests at "), "{said}");
 }
 
 #[test]
