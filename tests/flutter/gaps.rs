@@ -5,7 +5,7 @@ use aerodeck::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterSearch, LinearForces, Onset, OnsetSearch, OnsetSweep, SweepOutcome, determinant_onset,
-    find_onset, pk_onset,
+    find_onset, judged_speeds, pk_onset,
 };
 use aerodeck::identification::{Fitted, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel, Structure};
@@ -223,5 +223,32 @@ fn what_was_not_tested_is_not_called_stable() {
     assert!(
         (judged_to_m_s / limit - 1.0).abs() < 0.01,
         "{judged_to_m_s}"
+    );
+}
+
+/// Near divergence, where a motion slows down, the limit moved by 0.2 m/s with the highest speed of the search.
+#[test]
+fn where_a_mode_leaves_the_tests_does_not_depend_on_the_search() {
+    let mut section = SectionModel::table_4_1();
+    section.torsion.frequency_hz = Some(1.0);
+    let structure = section.structure().unwrap();
+    let model = RationalModel::jones_flat_plate();
+    let coupled = CoupledSection::with_model(&structure, &model).unwrap();
+    let range = ReducedFrequencyRange::between(k(0.05), k(3.0));
+    let limits = [15.0, 24.0, 80.0, 120.0].map(|speed_max_m_s| {
+        let search = OnsetSearch {
+            speed_max_m_s,
+            speeds: 200,
+        };
+        judged_speeds(&coupled, &search, Some(range))
+            .unwrap()
+            .range
+            .to_m_s
+    });
+    println!("{limits:?}");
+    assert!(limits[0] < 15.0);
+    assert!(
+        limits.iter().all(|v| (v / limits[0] - 1.0).abs() < 1e-9),
+        "{limits:?}"
     );
 }

@@ -244,8 +244,15 @@ impl<F: Follower> OnsetWatch<'_, F> {
             let branch = self.follower.name(before.branch);
             match high.mode(before.branch) {
                 Some(after) => {
-                    let reach = &mut found.reach;
-                    reach.look(range, &branch, k(low, before), k(high, after));
+                    let slowness =
+                        |v: f64, mode: &Mode| 1.0 / self.follower.k(v, mode).full_width();
+                    let refined = |limit: f64| {
+                        let beyond = |v: f64, mode: &Mode| slowness(v, mode) - limit;
+                        let passage = self.zero(low, before, high, after, beyond);
+                        passage.ok().map(|(speed, _)| speed)
+                    };
+                    let (before, after) = (k(low, before), k(high, after));
+                    found.reach.look(range, &branch, before, after, refined);
                 }
                 None => found.reach.exits.push((low.speed, branch, Exit::Lost)),
             }

@@ -203,21 +203,25 @@ pub(super) struct RangePassages {
 
 impl RangePassages {
     /// Adds the lower ends of `range` that the `K` of a branch passes between two speeds, and the upper end, if modes are
-    /// judged from there. In between `1/K` is all but linear in the speed.
+    /// judged from there. In fast motion `1/K` is all but linear in between; near divergence it is not, so that the first of the
+    /// exits, which ends what is judged, is `refined` to the speed at which `1/K` is that of the end.
     pub(super) fn look(
         &mut self,
         range: ReducedFrequencyRange,
         branch: &str,
         before: ValueAt<ReducedFrequency>,
         after: ValueAt<ReducedFrequency>,
+        refined: impl Fn(f64) -> Option<f64>,
     ) {
         let slowness = |k: ReducedFrequency| 1.0 / k.full_width();
         let passes = |k: ReducedFrequency| {
             let (a, b, c) = (slowness(before.value), slowness(after.value), slowness(k));
             (a <= c && c < b).then(|| before.at + (after.at - before.at) * (c - a) / (b - a))
         };
-        for (k, gap) in range.lower_ends() {
-            let exit = passes(k).map(|speed| (speed, branch.to_owned(), Exit::at(k, gap)));
+        let ended = self.exits.iter().any(|exit| exit.0 <= before.at);
+        for (k, gap) in range.lower_ends().filter(|_| !ended) {
+            let exact = |speed| refined(slowness(k)).unwrap_or(speed);
+            let exit = passes(k).map(|speed| (exact(speed), branch.to_owned(), Exit::at(k, gap)));
             self.exits.extend(exit);
         }
         let entry = passes(range.max).map(|speed| (speed, branch.to_owned()));
