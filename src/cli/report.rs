@@ -191,7 +191,7 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         title: summary.study.clone(),
         subtitle: "Flutter of a bridge deck section",
         kind: "study",
-        beyond: "Amplitudes beyond the tests, turbulence and the third dimension are not part of this analysis.",
+        beyond: "The verdict leaves out amplitudes beyond the tests, turbulence and the third dimension.",
         generator: summary.generator.clone(),
         of: study.report.dated(summary.date.as_deref()),
         verdict: verdict.clone(),

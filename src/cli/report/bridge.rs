@@ -43,7 +43,7 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
         title: facts.bridge.clone(),
         subtitle: "Flutter of a whole bridge",
         kind: "bridge file",
-        beyond: "Amplitudes beyond the tests, turbulence, towers and cables in the wind are not part of this analysis.",
+        beyond: "The verdict leaves out amplitudes beyond the tests, turbulence, towers and cables in the wind.",
         generator: facts.generator.clone(),
         of: file.report.dated(facts.date.as_deref()),
         verdict: facts.verdict.clone(),

@@ -100,7 +100,7 @@ pub(super) fn files(
             &format!("../../resources/{BOUNDS_FILE}"),
             "meta-data",
             "application/json",
-            "95 % interval of the onset by the scatter of the data",
+            "95 % interval of the onset by the scatter of the data and the form of the model",
         ]));
     }
     files.insert(LS_REF_MANIFEST.to_owned(), manifest(entries).into_bytes());

@@ -315,7 +315,7 @@ impl Onset {
             gap: None,
             spurious_speeds_m_s: Vec::new(),
             warnings: Vec::new(),
-            interval: OnsetInterval::none("the data behind the model are not known here"),
+            interval: OnsetInterval::none("none was computed by this route"),
         }
     }
 }

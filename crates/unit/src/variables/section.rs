@@ -64,7 +64,7 @@ pub(super) fn variables(
 pub(super) fn onset_bounds(bounds: &OnsetBounds, of: &str) -> [Variable; 2] {
     let end = |name, end, value| {
         let text = format!(
-            "{end} end of the 95 % interval of the flutter onset by the scatter of the data, for the {of} as exported"
+            "{end} end of the 95 % interval of the flutter onset by the scatter of the data and the form of the model, for the {of} as exported"
         );
         Variable {
             initial: Some(Initial::Exact),
