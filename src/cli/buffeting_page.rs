@@ -57,6 +57,7 @@ pub(super) fn page(
              stated. g: expected peak factor in {DURATION_S} s. The last column is the RMS of the acceleration, per s².",
             results.aerodynamics
         ))
+        .chain(results.shortened())
         .chain(results.without_response().into_iter().map(|line| format!("No response {line}.")))
         .chain([tested(results), time_domain(results)].concat().lines().map(str::to_owned))
         .filter(|line| !line.is_empty())

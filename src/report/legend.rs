@@ -22,7 +22,10 @@ pub(super) fn shortened(text: &str) -> String {
     }
     let first: String = text.chars().take(LONGEST / 2).collect();
     let last: String = text.chars().skip(count - LONGEST / 2).collect();
-    format!("{} … {}", first.trim_end(), last.trim_start())
+    // whole words, where there are some
+    let first = first.rsplit_once(' ').map_or(&*first, |(words, _)| words);
+    let last = last.split_once(' ').map_or(&*last, |(_, words)| words);
+    format!("{first} … {last}")
 }
 
 /// A sample of ink and what it stands for.
@@ -126,6 +129,18 @@ mod tests {
         assert!(
             title.chars().count() <= LONGEST + 3 && title.contains(" … "),
             "{title}"
+        );
+        let onset = format!(
+            "Onset V = 59.00 m/s, {}quasi-steady, synthetic box girder",
+            "V/(fB) = 8.083: ".repeat(6)
+        );
+        let words: Vec<&str> = onset.split(' ').collect();
+        let short = shortened(&onset);
+        assert!(
+            short
+                .split(' ')
+                .all(|word| word == "…" || words.contains(&word)),
+            "{short}"
         );
         assert_eq!(shortened("short"), "short");
     }

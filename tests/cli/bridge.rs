@@ -361,6 +361,19 @@ fn a_bridge_is_exported_in_parts() {
         &["ssp", "export", "bridge.toml"],
         &["expected no file there yet"],
     );
+    for (out, found) in [
+        (".", "expected a file, or none yet, found a folder"),
+        (
+            "nofolder/x/b.ssp",
+            "nofolder/x: archive: expected a folder to write into, found none",
+        ),
+    ] {
+        refused(
+            at,
+            &["ssp", "export", "bridge.toml", "--out", out],
+            &[found],
+        );
+    }
     for (more, message) in [
         (
             &["--kind", "force", "--strips", "3"][..],

@@ -39,6 +39,13 @@ pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<
         _ => Path::new("."),
     };
     let failed = |e| Error::io(path, e);
+    let refused = |expected, place| Err(Error::input("archive", expected, place));
+    if path.is_dir() {
+        return refused("a file, or none yet", "a folder").map_err(|e| e.in_file(path));
+    }
+    if !folder.is_dir() {
+        return refused("a folder to write into", "none").map_err(|e| e.in_file(folder));
+    }
     if overwrite == Overwrite::Replace && is_of_another_kind(path) {
         let (expected, found) = (
             "no file there yet, or an archive",

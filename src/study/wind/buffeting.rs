@@ -69,6 +69,13 @@ impl BuffetingStudy {
         let every = self.responses.len().div_ceil(TABLE_LINES).max(1);
         self.responses.iter().step_by(every)
     }
+
+    /// That not all responses are shown, where that is so.
+    pub(crate) fn shortened(&self) -> Option<String> {
+        let (shown, all) = (self.shown().count(), self.responses.len());
+        (shown < all)
+            .then(|| format!("The table has {shown} of {all} wind speeds, buffeting.json all."))
+    }
 }
 
 /// A wind speed without a stationary response.
