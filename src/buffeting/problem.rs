@@ -140,6 +140,14 @@ impl<'a> BuffetingProblem<'a> {
             |t| (t.dofs(), t.buffeting().clone()),
         );
         let dofs = structure.dofs.as_slice();
+        let has_lateral = dofs.contains(&Dof::Lateral);
+        let expected = "`[coefficients]` with drag: gust forces of the thin plate, taken without, have no lateral part";
+        ensure(
+            theory.is_some() || !has_lateral,
+            "coefficients",
+            expected,
+            "none",
+        )?;
         for (place, found) in [
             ("buffeting: model", model.dofs()),
             ("buffeting: gust forces", of_gusts),

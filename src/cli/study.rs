@@ -87,12 +87,13 @@ pub(crate) fn run_chain(
     let verdict = chain.verdict(own, &results);
     chain.draw(&trained, &results, &verdict)?;
     chain.draw_exported(own, &results, records.as_ref())?;
-    let mut summary = Summary {
+    let buffeting = chain.buffeting(own, &verdict)?;
+    let summary = Summary {
         study_file,
         study_text,
+        buffeting,
         ..chain.summary(trained, results, stepped)?
     };
-    chain.buffeting(&mut summary)?;
     chain.finish(summary)
 }
 
@@ -313,22 +314,21 @@ impl StudyStages<'_> {
         })
     }
 
-    /// The response to turbulence, where the study states some. The flutter results are complete by now, and stay what they are.
-    fn buffeting(&mut self, summary: &mut Summary) -> Result<()> {
-        let Some(block) = &self.study.buffeting else {
-            return Ok(());
+    /// The response to turbulence in a line, where the study states some. The flutter results are complete by now, and stay what they are.
+    fn buffeting(
+        &mut self,
+        own: Option<&TrainedWithReport>,
+        verdict: &Verdict,
+    ) -> Result<Option<String>> {
+        let Some(block) = self.study.buffeting.as_ref().filter(|_| own.is_some()) else {
+            return Ok(None);
         };
-        if summary.fits.iter().all(|f| f.model != summary.model) {
-            return Ok(());
-        }
         let model = self.out.stage(stages::MODEL_FILE)?;
         let (study, out) = (&self.study, &mut self.out);
-        let verdict = &summary.verdict;
-        match buffeting::of_study(study, block, &model, verdict, out, self.progress) {
-            Ok(line) => summary.buffeting = Some(line),
-            Err(e) => summary.failed.push(StageFailure::new("buffeting", e)),
-        }
-        Ok(())
+        let line = buffeting::of_study(study, block, &model, verdict, out, self.progress);
+        // also a file that it cannot read takes nothing with it
+        let noted = |e| self.failed.push(StageFailure::new("buffeting", e));
+        Ok(line.map_err(noted).ok())
     }
 
     /// Summary and report, then all files in their places.

@@ -20,8 +20,8 @@ use crate::verdict::{
 };
 use std::path::Path;
 
-/// Stages that draw and write, without which the answer is the same.
-const DRAWING: [&str; 2] = ["figure", "curves"];
+/// Stages that draw and write, and the response to turbulence, without which the answer is the same.
+const DRAWING: [&str; 3] = ["figure", "curves", "buffeting"];
 
 /// The model of a study whose onset is the answer, with what is known of its fit.
 pub(crate) struct OwnModel<'a> {

@@ -17,7 +17,9 @@ fn a_study_states_its_turbulence() {
     let study = fs::read_to_string(at.join("study.toml")).unwrap();
     let turbulence = "turbulence.vertical]\nspectrum = { shape = { kind = \"von_karman\" }, length_m = 20.0, intensity = 0.05 }\n\
                       admittance = { kind = \"sears\" }\n";
-    let gusts = format!("{study}[buffeting]\nspeeds_m_s = [10.0, 14.0]\n[buffeting.{turbulence}");
+    let speeds: Vec<f64> = (0..17).map(|i| 10.0 + 0.25 * f64::from(i)).collect();
+    let speeds = format!("{speeds:?}");
+    let gusts = format!("{study}[buffeting]\nspeeds_m_s = {speeds}\n[buffeting.{turbulence}");
     fs::write(at.join("gusts.toml"), &gusts).unwrap();
     let text = succeeds(at, &["study", "gusts.toml", "--out", "r"]);
     assert!(text.contains("\nGusts     RMS at 14 m/s: y "), "{text}");
@@ -26,24 +28,42 @@ fn a_study_states_its_turbulence() {
     let page = fs::read_to_string(at.join("r/report.html")).unwrap();
     assert!(page.contains("Response to turbulence") && page.contains("expected peak"));
     assert!(page.contains(extrapolated));
+    assert!(page.contains("The table has 9 of 17 wind speeds, buffeting.json all."));
     let of_study: Value =
         serde_json::from_str(&fs::read_to_string(at.join("r/buffeting.json")).unwrap()).unwrap();
     let wind = format!(
-        "schema = 1\nname = \"w\"\naerodynamics = \"r/model.json\"\n[speeds]\nspeed_min_m_s = 10\nspeed_max_m_s = 14\nspeeds = 2\n[{turbulence}"
+        "schema = 1\nname = \"w\"\naerodynamics = \"r/model.json\"\n[speeds]\nspeed_min_m_s = 10\nspeed_max_m_s = 14\nspeeds = 17\n[{turbulence}"
     );
     fs::write(at.join("wind.toml"), wind).unwrap();
     let told = succeeds(at, &["buffeting", "wind.toml", "--json"]);
     let told: Value = serde_json::from_str(&told).unwrap();
     assert_eq!(of_study["responses"], told["buffeting"]["responses"]);
 
-    let fast = gusts.replace("[10.0, 14.0]", "[500.0]");
+    let fast = gusts.replace(&speeds, "[500.0]");
     fs::write(at.join("gusts.toml"), fast).unwrap();
     let (code, said, _) = aerodeck(at, &["study", "gusts.toml", "--out", "fast", "--json"]);
     assert_eq!(code, 1, "{said}");
-    let [plain, fast]: [Value; 2] = [&plain, &said].map(|t| serde_json::from_str(t).unwrap());
+    let [plain, mut fast]: [Value; 2] = [&plain, &said].map(|t| serde_json::from_str(t).unwrap());
     assert_eq!(plain["onsets"], fast["onsets"]);
+    // the failure is a note of the verdict, which else stays as it is
+    let doubts = fast["verdict"]["doubts"].as_array_mut().unwrap();
+    let note = doubts.iter().position(|d| d["kind"] == "stage_failed");
+    assert_eq!(doubts.remove(note.unwrap())["severity"], "minor");
     assert_eq!(plain["verdict"], fast["verdict"]);
     assert_eq!(fast["failed"][0]["stage"], "buffeting");
+    let page = fs::read_to_string(at.join("fast/report.html")).unwrap();
+    assert!(page.contains("FAILED buffeting: "));
+    succeeds(at, &["new", "--deck", "LN21-5800", "--out", "sway.toml"]);
+    let sway = fs::read_to_string(at.join("sway.toml")).unwrap();
+    let sway = sway.replace("# lateral =", "lateral =");
+    fs::write(
+        at.join("sway.toml"),
+        format!("{sway}[buffeting.{turbulence}"),
+    )
+    .unwrap();
+    let (_, said, _) = aerodeck(at, &["study", "sway.toml", "--out", "sway", "--no-figures"]);
+    let why = "coefficients: expected `[coefficients]` with drag";
+    assert!(flowing(&said).contains(why), "{said}");
 }
 
 /// A response to turbulence, made or of a file, begins with the verdict that the flutter of the bridge has.
