@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Its usual name.
 pub(super) const STUDY: &str = "study.toml";
 /// Its name where another study stands.
-const BESIDE: &str = "study_as_run.toml";
+pub(super) const BESIDE: &str = "study_as_run.toml";
 /// Folder of the files that it reads.
 const INPUTS: &str = "inputs";
 
@@ -29,6 +29,7 @@ pub(crate) fn leave(
     {
         return Ok((name.to_string_lossy().into_owned(), text.to_owned()));
     }
+    out.outdated(BESIDE);
     let text = self_contained(study, text, file, out)?;
     out.write(STUDY, &text)?;
     if out.keep_edited(STUDY, false)? {

@@ -3,6 +3,7 @@
 use super::common::speed_or;
 use super::headline;
 use super::output::{Written, list};
+use super::study_run::BESIDE;
 use super::summary::Summary;
 use super::text_table::TextTable;
 use crate::error::counted;
@@ -64,6 +65,12 @@ pub(crate) fn chain(
         0 => "fits, intervals, divergence".to_owned(),
         some => format!("{}, fits, intervals, divergence", counted(some, "warning")),
     };
+    if summary.study_file == BESIDE {
+        let _ = writeln!(
+            text,
+            "Study     {BESIDE} beside the page is the one that ran, study.toml is another"
+        );
+    }
     text + "\n" + &ending(written, &more, verbose)
 }
 

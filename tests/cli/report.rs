@@ -283,7 +283,9 @@ fn a_new_study_runs_and_edited_ones_are_kept() {
     // a study that stands in the folder is left alone
     fs::create_dir(at.join("busy")).unwrap();
     fs::write(at.join("busy/study.toml"), "# mine\n").unwrap();
-    succeeds(at, &["study", "mine.toml", "--out", "busy", "--no-figures"]);
+    let said = succeeds(at, &["study", "mine.toml", "--out", "busy", "--no-figures"]);
+    let named = "study_as_run.toml beside the page is the one that ran";
+    assert!(flowing(&said).contains(named), "{said}");
     assert_eq!(
         fs::read_to_string(at.join("busy/study.toml")).unwrap(),
         "# mine\n"
