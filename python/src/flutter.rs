@@ -208,6 +208,7 @@ pub fn of_model(
     if let FlutterSearch::Onset(onset) = &mut found {
         onset.interval = match &model.uncertainty {
             Ok(known) => {
+                onset.warnings.extend(known.warning_of(&structure, onset));
                 // the same motion by every method
                 let mut by_modes = onset.clone();
                 by_modes.at.method = OnsetMethod::Eigenvalues;

@@ -119,8 +119,9 @@ pub(crate) fn saved_evidence(
     let mut found = find_onset(&model.name, &coupled, search, Some(tested))?;
     if let FlutterSearch::Onset(onset) = &mut found {
         onset.interval = interval_of(&structure, model, &known, onset);
-        let warnings = known.iter().filter_map(|k| k.warning());
-        onset.warnings.extend(warnings);
+        let known = known.as_ref().ok();
+        let warning = known.and_then(|k| k.warning_of(&structure, onset));
+        onset.warnings.extend(warning);
     }
     let constraints = saved_moved_onset(model, &folders, section, search, &found)?;
     let at_rest = model

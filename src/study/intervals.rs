@@ -118,9 +118,9 @@ fn state_each<'a>(
             .find(|(m, _)| m.name == onset.at.model);
         if let Some((model, known)) = own {
             onset.interval = interval_of(&structure, model, known, onset);
-            onset
-                .warnings
-                .extend(known.iter().filter_map(|k| k.warning()));
+            let warning = known.as_ref().ok();
+            let warning = warning.and_then(|k| k.warning_of(&structure, onset));
+            onset.warnings.extend(warning);
         }
     }
     Ok(())

@@ -13,6 +13,7 @@ use aerodeck::flutter::{
 use aerodeck::section::Dof;
 use aerodeck::section::SectionModel;
 use aerodeck::study::bridge::BridgeStudy;
+use aerodeck::uncertainty::FormOnset;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -289,32 +290,34 @@ fn the_interval_is_that_of_the_section() {
     let section = CoupledSection::new(structure.clone(), model).unwrap();
     let of_section = onset(find_onset("section", &section, &SEARCH, None).unwrap());
     near(found.at.speed_m_s / of_section.at.speed_m_s, 1.0, 1e-8);
-    let estimate = study.sections[0]
+    let known = study.sections[0]
         .uncertainty
         .as_ref()
         .unwrap()
         .as_ref()
         .unwrap();
-    let expected = estimate.onset_interval(&structure, &of_section).unwrap();
+    let saved = study.sections[0].saved.as_ref().unwrap();
+    let expected = known.interval(saved, &structure, &of_section).unwrap();
     let (
         OnsetInterval::Known {
-            standard_error_m_s: a,
-            degrees_of_freedom: p,
-            low_m_s,
-            ..
+            low_m_s, parts: a, ..
         },
-        OnsetInterval::Known {
-            standard_error_m_s: b,
-            degrees_of_freedom: q,
-            ..
-        },
+        OnsetInterval::Known { parts: b, .. },
     ) = (study.onset_interval(&found).unwrap(), expected)
     else {
         panic!("no interval");
     };
-    println!("{a} {b} {p} {q}");
-    near(a / b, 1.0, 1e-4);
-    near(p / q, 1.0, 1e-4);
+    println!("{a:?} {b:?}");
+    near(a.scatter_m_s / b.scatter_m_s, 1.0, 1e-4);
+    let forms = known.forms.as_ref().unwrap();
+    let by_forms = forms.spread_of_fits(|f| {
+        let section = CoupledSection::with_model(&structure, &f.model)?;
+        let search = OnsetSearch::up_to(2.0 * of_section.at.speed_m_s);
+        let found = find_onset(&f.form, &section, &search, study.tested_range())?;
+        Ok(FormOnset::new(&f.form, None, &found))
+    });
+    let form_m_s = by_forms.unwrap().deviation_from_m_s(found.at.speed_m_s);
+    near(a.form_m_s.unwrap() / form_m_s.unwrap(), 1.0, 1e-4);
     assert!(low_m_s < found.at.speed_m_s);
 }
 

@@ -44,12 +44,12 @@ pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, covera
 pub use draws::ModelDraws;
 pub use family::{DeckOutcome, FamilyPlan, FamilyRange, FamilyReport, RangeCount, family_coverage};
 pub use forms::{AdmissibleForm, FormEnsemble, FormOnset, FormSpread};
-pub use model::{DerivativeInterval, ModelUncertainty};
+pub use model::{DerivativeInterval, ModelUncertainty, interval_with_forms};
 pub use of_data::ModelOfData;
 pub use onset::{OnsetError, ResampledOnset, Resampling};
 pub use parameters::{Coordinates, Parameter, SearchedPole};
 pub use record_covariance::{discrete_uncertainty, record_uncertainty};
-pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
+pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets, speed_onsets_by};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
 pub use statistics::{SampledOnsets, StudentScale, sample_quantile};
 pub use table_covariance::table_uncertainty;

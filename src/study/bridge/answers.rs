@@ -148,6 +148,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
             Ok(interval) => onset.interval = interval,
             Err(e) => note("interval of the onset", e),
         }
+        match study.contradictions(onset) {
+            Ok(found) => onset.warnings.extend(found),
+            Err(e) => note("onsets of single mean speeds", e),
+        }
     }
     let constraints = study.moved_onset(&by_model.search);
     let constraints = constraints.map_err(|e| note("constraints", e));

@@ -7,11 +7,11 @@ use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
 use crate::files::derivatives::named_table_in;
-use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
+use crate::identification::{FeedThrough, Form, FrequencyFit};
 use crate::plausibility::{Finding, of_model, of_table};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
-use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
+use crate::uncertainty::{DerivativeInterval, FormEnsemble, ModelOfData, ModelUncertainty};
 use crate::units::ReducedFrequencyRange;
 use std::path::Path;
 use std::sync::Arc;
@@ -44,11 +44,8 @@ pub struct SectionForceModels {
     pub notes: Vec<String>,
     /// What the data alone would give where constraints hold the fit; `None` where none do, or a model was read from a file.
     pub unconstrained: Option<Arc<dyn Transfer>>,
-    /// How far the data leave the coefficients of the model open, or why that is not known; `None` for stated coefficients.
-    pub uncertainty: std::result::Result<Option<CoefficientUncertainty>, String>,
-    /// Degrees of freedom of the onset of the section that a model was trained for: they stand for those of the bridge's where
-    /// a covariance on file no longer knows its data.
-    pub degrees_of_freedom: Option<f64>,
+    /// How far the data leave the model open, or why that is not known; `None` for stated coefficients.
+    pub uncertainty: std::result::Result<Option<Box<ModelUncertainty>>, String>,
 }
 
 impl std::fmt::Debug for SectionForceModels {
@@ -113,14 +110,12 @@ impl SectionForceModels {
 
     /// A model as it was saved, with what is known of its scatter.
     fn trained(trained: TrainedModel, known: KnownUncertainty) -> Self {
-        let onset = known.as_ref().ok().and_then(|known| known.onset.as_ref());
         Self {
             method: trained.provenance.method,
             source: trained.provenance.source,
             licence: trained.provenance.licence,
             tested: Some(trained.tested_range),
-            degrees_of_freedom: onset.map(|onset| onset.degrees_of_freedom),
-            uncertainty: known.map(|known| Some(known.coefficients)),
+            uncertainty: known.map(Some),
             ..Self::of(Arc::new(trained.model.clone()), trained.model)
         }
     }
@@ -146,8 +141,12 @@ impl SectionForceModels {
             },
         };
         let samples = table.samples(&block.motions);
-        let Fitted { model, report } = fit_table(&samples, &block.motions, &options)?;
-        let uncertainty = table_uncertainty(&samples, &block.motions, &options, &report);
+        let deck = block.derivatives.as_deref();
+        let found = ModelOfData::of_table(&samples, &block.motions, &options, deck)?;
+        let (model, mut report) = (found.fitted.model, found.fitted.report);
+        let forms = FormEnsemble::or_noted(found.forms, &mut report)?;
+        let known = found.estimate;
+        let known = known.and_then(|known| ModelUncertainty::of_data(known, forms, tested));
         let notes = report.notes.iter();
         let alone = report.constraints.and_then(|held| held.unconstrained);
         Ok(Self {
@@ -159,7 +158,7 @@ impl SectionForceModels {
                 .map(|n| format!("section {}: {n}", block.name))
                 .collect(),
             unconstrained: alone.map(|model| Arc::from(model as Box<dyn Transfer>)),
-            uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
+            uncertainty: known.map(|k| Some(Box::new(k))).map_err(|e| e.to_string()),
             ..Self::of(Arc::new(model.clone()), model)
         })
     }
@@ -206,7 +205,6 @@ impl SectionForceModels {
             notes: Vec::new(),
             unconstrained: None,
             uncertainty: Ok(None),
-            degrees_of_freedom: None,
         }
     }
 
@@ -231,7 +229,7 @@ impl SectionForceModels {
     /// [`Error::Numerical`] when the covariance cannot be carried to them.
     pub(crate) fn derivative_intervals(&self) -> Result<Vec<DerivativeInterval>> {
         match (&self.uncertainty, self.tested) {
-            (Ok(Some(known)), Some(tested)) => known.derivatives(tested),
+            (Ok(Some(known)), Some(tested)) => known.coefficients.derivatives(tested),
             _ => Ok(Vec::new()),
         }
     }

@@ -182,7 +182,7 @@ impl<'a> ForceDraws<'a> {
             return match &forces.uncertainty {
                 // static coefficients are stated without errors
                 Ok(None) => Ok(Self::Scaled(0.0)),
-                Ok(Some(estimate)) => ModelDraws::new(estimate).map(Self::Models),
+                Ok(Some(known)) => ModelDraws::new(&known.coefficients).map(Self::Models),
                 Err(why) => Err(Error::input(
                     format!("section {}: scatter of the derivatives", block.name),
                     "a model whose fit left a covariance, or a standard deviation over the mean",

@@ -147,7 +147,7 @@ impl DeckOutcome {
                 let estimate = table_uncertainty(samples, dofs, &fit, &report)?;
                 let error = onset_error(&estimate, &deck.structure, &onset, None)?;
                 self.onset_m_s = Some(onset.at.speed_m_s);
-                let interval = interval_with_forms(&error, Some(&spread));
+                let interval = interval_with_forms(&error, &[spread]);
                 self.parts_m_s = interval
                     .parts()
                     .map(|p| (p.scatter_m_s, p.form_m_s.unwrap_or(0.0)));

@@ -174,26 +174,38 @@ impl FormEnsemble {
     /// # Errors
     /// [`Error::Input`] for a search range that is none and other motions; [`Error::Numerical`] without eigenvalues.
     pub fn spread(&self, structure: &Structure, search: &OnsetSearch) -> Result<FormSpread> {
-        let of_fit = |f: &AdmissibleForm| -> Result<FormOnset> {
+        let mut forms = self.of_fits(|f| {
             let section = CoupledSection::with_model(structure, &f.model)?;
             let found = find_onset(&f.form, &section, search, Some(self.tested))?;
             Ok(FormOnset::new(&f.form, Some(f.residual_ratio), &found))
-        };
-        let fits = self.fits.par_iter().map(of_fit);
-        let mut forms: Vec<FormOnset> = fits.collect::<Result<_>>()?;
-        let by_table = |(by, table): (&Interpolation, &InterpolatedTable)| -> Result<FormOnset> {
-            let (range, highest) = (table.tested_range(), search.speed_max_m_s);
-            let found = determinant_onset(by.title(), structure, table, range, highest)?;
-            Ok(FormOnset::new(by.title(), None, &found))
-        };
+        })?;
         let read: Vec<_> = INTERPOLATIONS.iter().zip(&self.read).collect();
         // a table whose roots cannot be told apart says nothing
-        let read = read
-            .into_par_iter()
-            .filter_map(|r| by_table(r).ok())
-            .collect();
-        forms.extend(told(read, &forms));
+        let read = read.into_par_iter().filter_map(|(by, table)| {
+            let (range, highest) = (table.tested_range(), search.speed_max_m_s);
+            let found = determinant_onset(by.title(), structure, table, range, highest).ok()?;
+            Some(FormOnset::new(by.title(), None, &found))
+        });
+        forms.extend(told(read.collect(), &forms));
         Ok(FormSpread::new(forms))
+    }
+
+    /// Onsets of whatever these forces are part of, by every fit. The table as it is read is left to routes of its own.
+    ///
+    /// # Errors
+    /// Those of the search.
+    pub fn spread_of_fits(
+        &self,
+        onset: impl Fn(&AdmissibleForm) -> Result<FormOnset> + Sync + Send,
+    ) -> Result<FormSpread> {
+        Ok(FormSpread::new(self.of_fits(onset)?))
+    }
+
+    fn of_fits(
+        &self,
+        onset: impl Fn(&AdmissibleForm) -> Result<FormOnset> + Sync + Send,
+    ) -> Result<Vec<FormOnset>> {
+        self.fits.par_iter().map(onset).collect()
     }
 }
 
@@ -317,7 +329,8 @@ fn variances(fit: &FrequencyFit, report: &FitReport, numbers: f64) -> Option<Vec
 }
 
 impl FormOnset {
-    fn new(form: &str, residual_ratio: Option<f64>, found: &FlutterSearch) -> Self {
+    /// What a search found with one form.
+    pub fn new(form: &str, residual_ratio: Option<f64>, found: &FlutterSearch) -> Self {
         Self {
             form: form.to_owned(),
             residual_ratio,

@@ -137,8 +137,7 @@ impl ModelUncertainty {
     /// What the choice of the form leaves open of an onset, with any section: the spread that was computed in training where its onset is
     /// asked, a new one otherwise.
     fn spread_of(&self, structure: &Structure, onset: &Onset) -> Result<Option<FormSpread>> {
-        let same = |own: &OnsetError| (own.speed_m_s / onset.at.speed_m_s - 1.0).abs() < SAME_ONSET;
-        if self.onset.as_ref().is_some_and(same) {
+        if self.is_own(onset) {
             return Ok(self.form_spread.clone());
         }
         let search = OnsetSearch {
@@ -185,7 +184,7 @@ impl ModelUncertainty {
         }
         let error = onset_error(&self.coefficients, structure, onset, known)?;
         let spread = self.spread_of(structure, onset)?;
-        Ok(interval_with_forms(&error, spread.as_ref()))
+        Ok(interval_with_forms(&error, spread.as_slice()))
     }
 
     /// Reads what was saved.
@@ -211,10 +210,32 @@ impl ModelUncertainty {
             .map(Contradiction::explain)
     }
 
+    /// The same of an onset with any section; where the tests are not known any more, of that of the training.
+    pub fn warning_of(&self, structure: &Structure, onset: &Onset) -> Option<String> {
+        if self.is_own(onset) {
+            return self.warning();
+        }
+        let (search, tested) = (Self::search_of(onset), self.coefficients.tested_range()?);
+        let found = speed_onsets(&self.coefficients, structure, onset, &search, tested).ok();
+        let found = found.filter(|f| !f.each.is_empty());
+        found.map_or_else(|| self.warning(), |f| f.contradiction.map(|c| c.explain()))
+    }
+
+    /// Whether an onset is that of the section of the training.
+    fn is_own(&self, onset: &Onset) -> bool {
+        let same = |own: &OnsetError| (own.speed_m_s / onset.at.speed_m_s - 1.0).abs() < SAME_ONSET;
+        self.onset.as_ref().is_some_and(same)
+    }
+
+    /// A search as far beyond an onset as its other forms are looked for.
+    fn search_of(onset: &Onset) -> OnsetSearch {
+        OnsetSearch::up_to(REACH * onset.at.speed_m_s)
+    }
+
     /// The onset's interval with its two checks, in words.
     pub fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
-        let stated = interval_with_forms(onset, self.form_spread.as_ref());
+        let stated = interval_with_forms(onset, self.form_spread.as_slice());
         let OnsetInterval::Known {
             low_m_s,
             high_m_s,
@@ -307,25 +328,28 @@ pub(crate) fn derivative_intervals(
     Ok(intervals)
 }
 
-/// The interval of an onset with what the choice of its form leaves open: variances add, and degrees of freedom as Satterthwaite adds
-/// them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
-pub(crate) fn interval_with_forms(
-    error: &OnsetError,
-    spread: Option<&FormSpread>,
-) -> OnsetInterval {
-    let Some(spread) = spread else {
+/// The interval of an onset with what the choice of its form leaves open, of one section or of several: variances add, and degrees
+/// of freedom as Satterthwaite adds them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
+pub fn interval_with_forms(error: &OnsetError, spreads: &[FormSpread]) -> OnsetInterval {
+    if spreads.is_empty() {
         return error.interval();
-    };
-    let form_m_s = spread.deviation_from_m_s(error.speed_m_s);
+    }
+    let (mut form, mut of_forms) = (None, 0.0);
+    for spread in spreads {
+        let Some(part) = spread.deviation_from_m_s(error.speed_m_s) else {
+            continue;
+        };
+        let square = part.powi(2);
+        form = Some(form.unwrap_or(0.0) + square);
+        of_forms += square.powi(2) / (spread.forms.len().max(2) as f64 - 1.0);
+    }
     let parts = ErrorParts {
         scatter_m_s: error.standard_error_m_s,
-        form_m_s,
+        form_m_s: form.map(f64::sqrt),
         between_speeds: error.between_speeds,
     };
-    let form = form_m_s.unwrap_or(0.0).powi(2);
     let (scatter, total) = (error.standard_error_m_s.powi(2), parts.standard_error_m_s());
-    let others = spread.forms.len().max(2) as f64 - 1.0;
-    let squares = scatter.powi(2) / error.degrees_of_freedom + form.powi(2) / others;
+    let squares = scatter.powi(2) / error.degrees_of_freedom + of_forms;
     let freedom = if squares > 0.0 {
         total.powi(4) / squares
     } else {
@@ -333,7 +357,7 @@ pub(crate) fn interval_with_forms(
     };
     let half = two_sided_quantile(CONFIDENCE, freedom) * total;
     let interval = OnsetInterval::about(error.speed_m_s, half, freedom, parts);
-    match spread.missing() {
+    match spreads.iter().find_map(FormSpread::missing) {
         Some(why) => interval.undetermined(why),
         None => interval,
     }

@@ -69,11 +69,28 @@ pub(crate) fn speed_onsets(
     search: &OnsetSearch,
     tested: ReducedFrequencyRange,
 ) -> Result<SpeedOnsets> {
+    let own = |own: &CoefficientUncertainty| own_onset(own, structure, onset, search, tested);
+    let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+    let slopes = || onset_gradient(estimate, structure, speed_m_s, omega);
+    speed_onsets_by(estimate, tested, own, slopes)
+}
+
+/// The same of whatever the forces are part of: its onset `by` the estimate of one speed, and the `slopes` of its onset by all tests over
+/// their coefficients.
+///
+/// # Errors
+/// Those of the slopes, and [`Error::Numerical`] where a transfer function cannot be computed.
+pub fn speed_onsets_by(
+    estimate: &CoefficientUncertainty,
+    tested: ReducedFrequencyRange,
+    by: impl Fn(&CoefficientUncertainty) -> Result<OnsetError>,
+    slopes: impl Fn() -> Result<Vec<f64>>,
+) -> Result<SpeedOnsets> {
     let mut found = SpeedOnsets::default();
     let mut alone = Vec::new();
     for (mean_speed_m_s, own) in estimate.at_each_speed() {
         let judged = own.and_then(|own| {
-            let error = own_onset(&own, structure, onset, search, tested)?;
+            let error = by(&own)?;
             Ok((own, error))
         });
         let (error, reason) = match judged {
@@ -98,8 +115,7 @@ pub(crate) fn speed_onsets(
         .filter(|((z, limit), _, _)| z.abs() > *limit)
         .max_by(|x, y| x.0.0.abs().total_cmp(&y.0.0.abs()));
     if let Some(((z, _), (v1, first, one), (v2, second, other))) = worst {
-        let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-        let gradient = onset_gradient(estimate, structure, speed_m_s, omega)?;
+        let gradient = slopes()?;
         let (force, motion) = greatest_part(estimate, &gradient, first, second);
         let (k_low, k_high) = band(force, motion, tested, [first, second])?;
         found.contradiction = Some(Contradiction {
@@ -232,7 +248,7 @@ impl SpeedOnsets {
 
 impl Contradiction {
     /// In words, with what to do.
-    pub(crate) fn explain(&self) -> String {
+    pub fn explain(&self) -> String {
         let ([v1, v2], [u1, u2]) = (self.mean_speeds_m_s, self.onsets_m_s);
         format!(
             "the mean speeds contradict each other: onset {u1:.3} m/s by the tests at {v1:.2} m/s, {u2:.3} m/s by those at \
