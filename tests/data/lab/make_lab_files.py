@@ -51,6 +51,10 @@ def write_matlab():
     }
     scipy.io.savemat(HERE / "v5_compressed.mat", variables, do_compression=True)
     scipy.io.savemat(HERE / "v5_plain.mat", variables)
+    runs = np.array([(channel(0), 1.0), (2.0, channel(1))], dtype=[("p", "O"), ("q", "O")])
+    variables = {"info": {"rig": {"y": channel(0)}}, "runs": runs}
+    scipy.io.savemat(HERE / "v5_short_compressed.mat", variables, do_compression=True)
+    scipy.io.savemat(HERE / "v5_short_plain.mat", variables)
     with h5py.File(HERE / "v73.mat", "w", userblock_size=512, libver="earliest") as f:
         def put(where, name, values, kind="double"):
             d = where.create_dataset(name, data=values)

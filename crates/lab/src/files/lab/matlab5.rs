@@ -7,42 +7,47 @@ use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_gr
 use super::columns::push_array;
 use super::guarded::guarded;
 use crate::error::{Error, Result, ensure};
-use matrw::{MatFile, MatVariable, MatlabType};
+use matrw::{MatVariable, MatlabType};
 use std::io::Read;
+use std::ops::Range;
 
 /// What `matrw` looks for.
 const HEADER: &[u8] = b"MATLAB 5.0 MAT-file, ";
 /// Type of a compressed element.
 const COMPRESSED: u32 = 15;
+/// Type of a variable, and two of its classes.
+const MATRIX: u32 = 14;
+const CELL: u32 = 1;
+const STRUCT: u32 = 2;
+/// Structs within structs within structs.
+const DEPTH_AT_MOST: usize = 32;
 /// Length of the header; version and byte order are its last four bytes.
 const HEADER_BYTES: usize = 128;
+/// The name of a variable stands within this many bytes of it.
+const NAME_WITHIN: u64 = 4096;
 
 /// Reads the bytes of a file.
 ///
 /// # Errors
 /// [`Error::Input`] for a file that is no MATLAB file, truncated or corrupt, or lacks the struct `group`.
-pub(super) fn parse(mut bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSet> {
-    check_elements(&bytes)?;
-    bytes[..HEADER.len()].copy_from_slice(HEADER);
-    let corrupt = |found: String| {
-        let expected =
-            "a MATLAB file of version 5 to 7 (saving it with `-v7.3`, or as CSV, may help)";
-        Error::input("", expected, found)
-    };
-    let file = guarded(|| matrw::load_matfile_from_u8(&bytes))
-        .ok_or_else(|| corrupt("a part that cannot be read".to_owned()))?
-        .map_err(|e| corrupt(e.to_string()))?;
-    guarded(|| channels(&file, group))
-        .ok_or_else(|| corrupt("a part that cannot be read".to_owned()))?
+pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSet> {
+    let expected = "a MATLAB file of version 5 to 7 (saving it with `-v7.3`, or as CSV, may help)";
+    let corrupt = || Error::input("", expected, "a part that cannot be read");
+    let file = variables(bytes)?;
+    ensure(
+        file.is_empty() || file.iter().any(|v| v.value.is_some()),
+        "",
+        expected,
+        "no variable that can be read",
+    )?;
+    guarded(|| channels(&file, group)).ok_or_else(corrupt)?
 }
 
 /// Size and numbers (first index fastest) of one real array in the bytes of a file.
 ///
 /// # Errors
 /// [`Error::Input`] for a file that is no MATLAB file, truncated or corrupt, or lacks the array.
-pub(crate) fn matlab_array(mut bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
-    check_elements(&bytes)?;
-    bytes[..HEADER.len()].copy_from_slice(HEADER);
+pub(crate) fn matlab_array(bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
     let missing = || {
         Error::input(
             name,
@@ -50,13 +55,10 @@ pub(crate) fn matlab_array(mut bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>
             "none",
         )
     };
-    let file = guarded(|| matrw::load_matfile_from_u8(&bytes)).and_then(std::result::Result::ok);
-    let file = file.ok_or_else(missing)?;
-    let variable = file
-        .iter()
-        .find(|(n, _)| *n == name)
-        .map(|(_, v)| uncompressed(v));
-    let Some(MatVariable::NumericArray(array)) = variable else {
+    let file = variables(bytes)?;
+    let variable = file.iter().find(|v| v.name == name);
+    let value = variable.and_then(|v| v.value.as_ref()).map(uncompressed);
+    let Some(MatVariable::NumericArray(array)) = value else {
         return Err(missing());
     };
     check_count(name, count(&MatVariable::NumericArray(array.clone())))?;
@@ -64,6 +66,50 @@ pub(crate) fn matlab_array(mut bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>
         Ok(values) if !array.is_complex() => Ok((array.dim.clone(), values)),
         _ => Err(missing()),
     }
+}
+
+/// A variable of the file.
+struct MatlabVariable {
+    name: String,
+    /// None where `matrw` cannot read it.
+    value: Option<MatVariable>,
+}
+
+/// Reads each variable by itself, so that one that cannot be read costs only itself.
+fn variables(mut bytes: Vec<u8>) -> Result<Vec<MatlabVariable>> {
+    let elements = check_elements(&bytes)?;
+    bytes[..HEADER.len()].copy_from_slice(HEADER);
+    let header = bytes[..HEADER_BYTES].to_vec();
+    let little = header[126] == b'I';
+    let mut read = Vec::with_capacity(elements.len());
+    for Range { start, end } in elements {
+        let element = MatlabElement {
+            bytes: &bytes[start..end],
+            little,
+        };
+        let head = element.inflated(NAME_WITHIN);
+        let name = MatlabElement {
+            bytes: &head,
+            little,
+        }
+        .name();
+        let name = name.and_then(|at| String::from_utf8(head[at].to_vec()).ok());
+        let name = name.unwrap_or_else(|| format!("byte {start}"));
+        // the header takes the place of what has been read: nothing is copied
+        bytes[start - HEADER_BYTES..start].copy_from_slice(&header);
+        let alone = |bytes: &[u8]| {
+            let file = guarded(|| matrw::load_matfile_from_u8(bytes))?.ok()?;
+            file.into_iter().next().map(|(_, value)| value)
+        };
+        let value = alone(&bytes[start - HEADER_BYTES..end]).or_else(|| {
+            let bytes = &bytes[start..end];
+            let bytes = &MatlabElement { bytes, little }.inflated(u64::MAX);
+            let named = MatlabElement { bytes, little }.with_long_names(DEPTH_AT_MOST)?;
+            alone(&[&header[..], &named].concat())
+        });
+        read.push(MatlabVariable { name, value });
+    }
+    Ok(read)
 }
 
 /// Refuses compressed elements that become more than a recording can be, without keeping what they become.
@@ -81,8 +127,8 @@ fn check_inflated(place: &str, packed: &[u8], before: u64) -> Result<u64> {
     Ok(before + inflated)
 }
 
-/// Checks that all elements lie in the file, so that a truncated one is named as such, and what compressed ones become.
-fn check_elements(bytes: &[u8]) -> Result<()> {
+/// Where the elements lie, checked so that a truncated one is named as such, and what compressed ones become.
+fn check_elements(bytes: &[u8]) -> Result<Vec<Range<usize>>> {
     let version = bytes.get(124..HEADER_BYTES);
     let little = match version {
         Some([0, 1, b'I', b'M']) => true,
@@ -97,14 +143,8 @@ fn check_elements(bytes: &[u8]) -> Result<()> {
             return Err(Error::input("header", expected, found));
         }
     };
-    let word = |at: usize| -> Option<u32> {
-        let four: [u8; 4] = bytes.get(at..at + 4)?.try_into().ok()?;
-        Some(if little {
-            u32::from_le_bytes(four)
-        } else {
-            u32::from_be_bytes(four)
-        })
-    };
+    let word = |at: usize| MatlabElement { bytes, little }.word(at);
+    let mut elements = Vec::new();
     let (mut at, mut inflated) = (HEADER_BYTES, 0);
     while at < bytes.len() {
         let size = word(at + 4).map(|size| size as usize);
@@ -114,6 +154,7 @@ fn check_elements(bytes: &[u8]) -> Result<()> {
                     let packed = &bytes[at + 8..at + 8 + size];
                     inflated = check_inflated(&format!("byte {at}"), packed, inflated)?;
                 }
+                elements.push(at..at + 8 + size);
                 at += 8 + size;
             }
             _ => {
@@ -129,26 +170,115 @@ fn check_elements(bytes: &[u8]) -> Result<()> {
             }
         }
     }
-    Ok(())
+    Ok(elements)
 }
 
-fn channels(file: &MatFile, group: Option<&str>) -> Result<ChannelSet> {
+/// An element: a tag of eight bytes, then what it tags.
+struct MatlabElement<'a> {
+    bytes: &'a [u8],
+    little: bool,
+}
+
+impl MatlabElement<'_> {
+    fn word(&self, at: usize) -> Option<u32> {
+        let four: [u8; 4] = self.bytes.get(at..at + 4)?.try_into().ok()?;
+        Some(if self.little {
+            u32::from_le_bytes(four)
+        } else {
+            u32::from_be_bytes(four)
+        })
+    }
+
+    /// Where the part with its tag at `at` has its data; those of up to four bytes may stand in the tag.
+    fn data(&self, at: usize) -> Option<Range<usize>> {
+        let data = match self.word(at)? >> 16 {
+            0 => at + 8..at + 8 + self.word(at + 4)? as usize,
+            short => at + 4..at + 4 + short as usize,
+        };
+        (data.end <= self.bytes.len()).then_some(data)
+    }
+
+    /// The first bytes of what is in it, without compression.
+    fn inflated(&self, at_most: u64) -> Vec<u8> {
+        let mut inner = Vec::new();
+        if self.word(0) == Some(COMPRESSED) {
+            // behind what is corrupt there is nothing to find
+            let _ = flate2::read::ZlibDecoder::new(&self.bytes[8..])
+                .take(at_most)
+                .read_to_end(&mut inner);
+        } else {
+            inner.extend(self.bytes.iter().take(at_most as usize));
+        }
+        inner
+    }
+
+    /// The name of the variable, behind its flags and its size.
+    fn name(&self) -> Option<Range<usize>> {
+        let size = self.data(self.data(8)?.end.next_multiple_of(8))?;
+        self.data(size.end.next_multiple_of(8))
+    }
+
+    /// The element with the names of all fields behind their tag: SciPy puts those of up to four bytes into it, where `matrw`
+    /// does not find them.
+    fn with_long_names(&self, depth: usize) -> Option<Vec<u8>> {
+        let class = self.data(8).and_then(|flags| self.word(flags.start));
+        let is_struct = class? & 0xff == STRUCT;
+        if self.word(0) != Some(MATRIX) || !(is_struct || class? & 0xff == CELL) {
+            return Some(self.bytes.to_vec());
+        }
+        let word = |x: usize| {
+            let x = x as u32;
+            if self.little {
+                x.to_le_bytes()
+            } else {
+                x.to_be_bytes()
+            }
+        };
+        let mut at = self.name()?.end.next_multiple_of(8);
+        let mut out = self.bytes.get(..at)?.to_vec();
+        if is_struct {
+            let names = self.data(at + 8)?;
+            out.extend(self.bytes.get(at..at + 8)?);
+            out.extend([word(1), word(names.len())].concat());
+            out.extend(&self.bytes[names.clone()]);
+            out.resize(out.len().next_multiple_of(8), 0);
+            at = names.end.next_multiple_of(8);
+        }
+        while at < self.bytes.len() {
+            let bytes = &self.bytes[at..self.data(at)?.end];
+            let little = self.little;
+            out.extend(MatlabElement { bytes, little }.with_long_names(depth.checked_sub(1)?)?);
+            at += bytes.len();
+        }
+        let size = word(out.len() - 8);
+        out[4..8].copy_from_slice(&size);
+        Some(out)
+    }
+}
+
+fn channels(file: &[MatlabVariable], group: Option<&str>) -> Result<ChannelSet> {
     let mut set = ChannelSet::default();
-    let numbers = file.iter().map(|(_, v)| count(v)).sum();
-    check_count("", numbers)?;
+    let mut readable = Vec::new();
+    for variable in file {
+        match &variable.value {
+            Some(value) => readable.push((&variable.name, value)),
+            None => set.leave_out(&variable.name, "corrupt, or of a kind that is not known"),
+        }
+    }
+    check_count("", readable.iter().map(|(_, v)| count(v)).sum())?;
     let Some(group) = group else {
-        for (name, variable) in file.iter() {
+        for (name, variable) in readable {
             push(&mut set, name, variable);
         }
         return Ok(set);
     };
-    let found = file.iter().find(|(name, _)| *name == group);
-    let Some((_, MatVariable::Structure(inner))) = found.map(|(n, v)| (n, uncompressed(v))) else {
+    let found = readable.iter().find(|(name, _)| *name == group);
+    let Some(MatVariable::Structure(inner)) = found.map(|(_, v)| uncompressed(v)) else {
         let is_struct = |v: &MatVariable| matches!(uncompressed(v), MatVariable::Structure(_));
-        let structs: Vec<String> = file
+        let structs: Vec<String> = readable
             .iter()
             .filter(|(_, v)| is_struct(v))
-            .map(|(name, _)| name.clone())
+            .map(|(name, _)| (*name).clone())
             .collect();
         return Err(no_group(group, &structs));
     };

@@ -143,6 +143,23 @@ fn matlab_of_all_versions() {
     );
 }
 
+/// Nested structs whose names of fields have up to four bytes, and a variable that cannot be read beside others.
+#[test]
+fn matlab_structs_with_short_names_and_a_variable_that_is_none() {
+    for name in ["v5_short_plain.mat", "v5_short_compressed.mat"] {
+        let set = read(name, None);
+        check(&set, "info.rig.y", 0, 1.0, 5e-14);
+        check(&set, "runs[2].q", 1, 1.0, 5e-14);
+        assert!(set.left_out.is_empty(), "{}", set.listing());
+    }
+    let mut bytes = std::fs::read(file("v5_plain.mat")).unwrap();
+    bytes[128 + 16] = 99; // the class of `motion`
+    let set = ChannelSet::parse(bytes, "mat", None).unwrap();
+    check(&set, "run.force", 4, 1.0, 5e-14);
+    let left_out = "not read: motion (corrupt, or of a kind that is not known)";
+    assert!(set.listing().contains(left_out), "{}", set.listing());
+}
+
 #[test]
 fn hdf5_in_groups() {
     let set = read("ntnu.h5", Some("in_wind"));
