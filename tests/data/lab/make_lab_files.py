@@ -89,6 +89,20 @@ def write_hdf5():
             g.create_dataset("forces_global_coord", data=forces, compression="gzip", shuffle=True)
 
 
+def write_links():
+    """A soft link, a dataset whose data lie in another one, and one of a layout that is newer than the reader."""
+    with h5py.File(HERE / "links.h5", "w", libver="earliest") as f:
+        f["run/y"] = channel(0)
+        f["y"] = h5py.SoftLink("/run/y")
+        f["z"] = channel(1)
+    with h5py.File(HERE / "virtual.h5", "w", libver="latest") as f:
+        f["y"] = channel(0)
+        layout = h5py.VirtualLayout(shape=(N,), dtype="f8")
+        layout[:] = h5py.VirtualSource("virtual.h5", "y", shape=(N,))
+        f.create_virtual_dataset("v", layout)
+        f.create_dataset("packed", data=channel(1), compression="gzip")
+
+
 def write_tdms():
     root = RootObject({"operator": "nobody"})
     group = GroupObject("Forces", {"cell": 1})
@@ -107,4 +121,5 @@ def write_tdms():
 write_csv()
 write_matlab()
 write_hdf5()
+write_links()
 write_tdms()

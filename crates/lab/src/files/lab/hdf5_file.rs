@@ -4,7 +4,7 @@ use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::columns::push_array;
 use super::guarded::guarded;
 use crate::error::{Error, Result};
-use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
+use hdf5_pure::{AttrValue, DType, Dataset, File, FormatError, Group};
 use std::collections::HashMap;
 
 /// First bytes; a user block of 512 bytes or a multiple by a power of two may stand before them.
@@ -13,6 +13,8 @@ const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 const PACKED_AT_MOST: u64 = 1032;
 /// Groups within groups within groups.
 const DEPTH_AT_MOST: usize = 8;
+/// Bytes of an entry of a symbol table: name, address, kind, and 20 that do not matter here.
+const ENTRY: usize = 40;
 /// Where MATLAB keeps what its cells point to.
 const REFERENCES: &str = "#refs#";
 
@@ -36,12 +38,59 @@ pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>, separator: &str) -> Res
 fn corrupt(place: &str, found: impl std::fmt::Display) -> Error {
     Error::input(
         place,
-        "an HDF5 file that is neither truncated nor corrupt",
+        "an HDF5 file that is neither truncated nor corrupt, nor newer than this reader (`libver=\"v110\"` may help)",
         format!("one that cannot be read ({found})"),
     )
 }
 
-fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Result<ChannelSet> {
+/// Whether the object is intact, but of a kind that `hdf5-pure` does not know.
+fn is_unknown(error: &hdf5_pure::Error) -> bool {
+    use FormatError as F;
+    let hdf5_pure::Error::Format(error) = error else {
+        return false;
+    };
+    matches!(
+        error,
+        F::UnsupportedVirtualLayout
+            | F::UnsupportedExternalStorage
+            | F::UnsupportedFilter(_)
+            | F::UnsupportedZfp(_)
+            | F::InvalidLayoutVersion(5..=8)
+    )
+}
+
+/// Takes the soft links, which have no address, out of symbol tables, where `hdf5-pure` takes them for objects; their number.
+fn drop_soft_links(bytes: &mut [u8]) -> usize {
+    let mut dropped = 0;
+    for at in (0..bytes.len().saturating_sub(8)).step_by(8) {
+        if !bytes[at..].starts_with(b"SNOD\x01") {
+            continue;
+        }
+        let count = u16::from_le_bytes([bytes[at + 6], bytes[at + 7]]);
+        let Some(table) = bytes.get_mut(at + 8..at + 8 + ENTRY * usize::from(count)) else {
+            continue;
+        };
+        let mut kept = 0;
+        for entry in 0..count {
+            let from = ENTRY * usize::from(entry);
+            if table[from + 8..from + 16] != [0xff; 8] || table[from + 16] != 2 {
+                table.copy_within(from..from + ENTRY, ENTRY * usize::from(kept));
+                kept += 1;
+            }
+        }
+        bytes[at + 6..at + 8].copy_from_slice(&u16::to_le_bytes(kept));
+        dropped += usize::from(count - kept);
+    }
+    dropped
+}
+
+fn read(
+    mut bytes: Vec<u8>,
+    length: u64,
+    group: Option<&str>,
+    separator: &str,
+) -> Result<ChannelSet> {
+    let links = drop_soft_links(&mut bytes);
     let file = File::from_bytes(bytes).map_err(|e| corrupt("", e))?;
     let root = file.root();
     let mut reader = Hdf5Reader {
@@ -50,6 +99,10 @@ fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Re
         bytes_at_most: length.saturating_mul(PACKED_AT_MOST),
         separator: separator.to_owned(),
     };
+    if links > 0 {
+        let name = crate::error::counted(links, "soft link");
+        reader.set.leave_out(name, "take what they point to");
+    }
     let Some(wanted) = group else {
         reader.take_group(&root, "", 0)?;
         return Ok(reader.set);
@@ -106,6 +159,11 @@ impl Hdf5Reader {
     }
 
     fn take_dataset(&mut self, dataset: &Dataset, path: &str) -> Result<()> {
+        if let Some(e) = dataset.chunk_shape().err().filter(is_unknown) {
+            self.set
+                .leave_out(path, format!("of a kind that is not known: {e}"));
+            return Ok(());
+        }
         let shape = dataset.shape().map_err(|e| corrupt(path, e))?;
         self.check_size(dataset, &shape, path)?;
         let kind = dataset.dtype().map_err(|e| corrupt(path, e))?;
@@ -116,7 +174,14 @@ impl Hdf5Reader {
             }
             return Ok(());
         }
-        let values = dataset.read_f64().map_err(|e| corrupt(path, e))?;
+        let values = match dataset.read_f64() {
+            Err(e) if is_unknown(&e) => {
+                self.set
+                    .leave_out(path, format!("of a kind that is not known: {e}"));
+                return Ok(());
+            }
+            read => read.map_err(|e| corrupt(path, e))?,
+        };
         let shape: Vec<usize> = shape.iter().map(|n| *n as usize).collect();
         let count: usize = shape.iter().product();
         if values.len() != count {

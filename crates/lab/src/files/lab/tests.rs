@@ -190,6 +190,20 @@ fn hdf5_in_groups() {
     );
 }
 
+/// What the reader does not know is left out and named; it is not called corrupt.
+#[test]
+fn hdf5_with_links_and_virtual_and_new_datasets() {
+    let set = read("links.h5", None);
+    check(&set, "run/y", 0, 1.0, 5e-14);
+    check(&set, "z", 1, 1.0, 5e-14);
+    let links = "not read: 1 soft link (take what they point to)";
+    assert!(set.listing().ends_with(links), "{}", set.listing());
+    let set = read("virtual.h5", None);
+    check(&set, "y", 0, 1.0, 5e-14);
+    let names: Vec<&str> = set.left_out.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["v", "packed"], "{}", set.listing());
+}
+
 #[test]
 fn tdms_in_several_segments() {
     let set = read("forces.tdms", Some("Forces"));
