@@ -153,6 +153,11 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         &arguments("forecast"),
         &["the channels measured, predicted, other"],
     );
+    let text = std::fs::read_to_string(folder.path().join("f.csv")).unwrap();
+    let twice = text.replacen("other", "predicted", 1);
+    std::fs::write(folder.path().join("f.csv"), twice).unwrap();
+    let said = &["expected one channel `predicted`, found 2 of that name"];
+    refused(folder.path(), &arguments("predicted"), said);
     // the time column says the rate, and contradicts another
     let rows: String = (0..100)
         .map(|k| format!("{},{},{}\n", 0.01 * f64::from(k), k % 7, k % 5))
@@ -172,6 +177,10 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         &arguments("predicted"),
         &["`time_s`, sample 50"],
     );
+    let falling = timed.replace("\n0,", "\n9,").replace("\n0.", "\n-0.");
+    std::fs::write(&path, falling).unwrap();
+    let said = &["`time_s`: expected a time that rises, found from 9 to -0.99"];
+    refused(folder.path(), &arguments("predicted"), said);
     // a step of 1 without a unit is one of seconds or of milliseconds, unless the rate is stated
     let counted: String = (0..100)
         .map(|k| format!("{k},{},{}\n", k % 7, k % 5))

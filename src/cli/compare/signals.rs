@@ -100,10 +100,8 @@ pub(crate) fn run(args: &CompareSignalsArgs, progress: &Progress) -> Result<Answ
     args.check()?;
     let set = ChannelSet::read(&args.file, args.group.as_deref())?;
     let channel = |name: &str| {
-        let found = set.channel(name);
-        found.ok_or_else(|| {
-            Error::input("channel", set.listing(), format!("`{name}`")).in_file(&args.file)
-        })
+        let found = set.only_channel("channel", name);
+        found.map_err(|e| e.in_file(&args.file))
     };
     let (reference, compared) = (channel(&args.reference)?, channel(&args.compared)?);
     if let (Some(one), Some(other)) = (&reference.unit, &compared.unit) {

@@ -82,6 +82,21 @@ impl ChannelSet {
         self.channels.iter().find(|c| c.name == name)
     }
 
+    /// The only channel of this name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] at `place` listing what the file holds when there is no such channel, and for several of the name.
+    pub fn only_channel(&self, place: &str, name: &str) -> Result<&Channel> {
+        let mut found = self.channels.iter().filter(|c| c.name == name);
+        let first = found
+            .next()
+            .ok_or_else(|| Error::input(place, format!("a channel `{name}`"), self.listing()))?;
+        let more = found.count();
+        let expected = format_args!("one channel `{name}`");
+        let named = format_args!("{} of that name", more + 1);
+        ensure(more == 0, place, expected, named).map(|()| first)
+    }
+
     /// The attribute of this name as a number.
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
         match self.attributes.get(name) {

@@ -72,16 +72,7 @@ impl ChannelRef {
         quantity: Quantity,
         set: &ChannelSet,
     ) -> Result<Vec<f64>> {
-        let channel = set
-            .channel(&self.name)
-            .ok_or_else(|| self.missing(place, set))?;
-        let of_the_name = set.channels.iter().filter(|c| c.name == self.name).count();
-        ensure(
-            of_the_name <= 1,
-            place,
-            format_args!("one channel `{}`", self.name),
-            format_args!("{of_the_name} of that name"),
-        )?;
+        let channel = set.only_channel(place, &self.name)?;
         let factor = self.factor(place, quantity, channel.unit.as_deref())?;
         Ok(channel.samples.iter().map(|x| factor * x).collect())
     }
@@ -93,10 +84,6 @@ impl ChannelRef {
             None => mean(&self.samples(place, quantity, set)?),
         };
         finite(format_args!("{place}, `{}`", self.name), value)
-    }
-
-    fn missing(&self, place: &str, set: &ChannelSet) -> Error {
-        Error::input(place, format!("a channel `{}`", self.name), set.listing())
     }
 
     /// Factor from the samples to SI units.
