@@ -31,13 +31,13 @@ pub(crate) fn is_blank(line: &str) -> bool {
         .is_empty()
 }
 
-/// Refuses a text in UTF-16 by the mark before it, as Windows calls "Unicode".
+/// Refuses a text in UTF-16 by the mark before it, as Windows calls "Unicode", or by the empty byte of its first letter.
 pub(crate) fn refuse_utf16(bytes: &[u8]) -> Result<()> {
-    let marked = [[0xff, 0xfe], [0xfe, 0xff]]
-        .iter()
-        .any(|m| bytes.starts_with(m));
     ensure(
-        !marked,
+        !matches!(
+            bytes,
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, ..] | [_, 0, ..]
+        ),
         "",
         "text in UTF-8",
         "text in UTF-16 (\"Unicode\" of Windows)",

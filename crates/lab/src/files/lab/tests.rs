@@ -377,12 +377,14 @@ fn truncated_and_corrupt_files_are_refused() {
 
 #[test]
 fn utf_16_is_named() {
-    let text: Vec<u8> = "\u{feff}a,b\n1,2\n"
-        .encode_utf16()
-        .flat_map(u16::to_le_bytes)
-        .collect();
-    let said = csv_file::parse(&text, None).unwrap_err().to_string();
-    assert!(said.contains("found text in UTF-16"), "{said}");
+    let text = "\u{feff}a,b\n1,2\n".encode_utf16();
+    let little: Vec<u8> = text.clone().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = text.flat_map(u16::to_be_bytes).collect();
+    // with the mark and without
+    for bytes in [&little[..], &little[2..], &big[..], &big[2..]] {
+        let said = csv_file::parse(bytes, None).unwrap_err().to_string();
+        assert!(said.contains("found text in UTF-16"), "{said}");
+    }
 }
 
 /// A degree sign in Latin-1, which is no UTF-8.

@@ -185,13 +185,17 @@ pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
     let n = time_s.len();
     ensure(n >= 2, place, "at least two samples", n)?;
     let step = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
+    if step <= 0.0 {
+        let found = format!("from {} to {}", time_s[0], time_s[n - 1]);
+        return Err(Error::input(place, "a time that rises", found));
+    }
     // stamps are often rounded: a sample may stand off its place by a quarter of a step
     let uneven = (1..n).find(|i| {
         let off = (time_s[*i] - time_s[i - 1]) / step - 1.0;
         off.is_nan() || off.abs() > 0.25
     });
     match uneven {
-        None if step > 0.0 && step.is_finite() => Ok(1.0 / step),
+        None if step.is_finite() => Ok(1.0 / step),
         uneven => {
             let i = uneven.unwrap_or(1);
             Err(Error::input(
