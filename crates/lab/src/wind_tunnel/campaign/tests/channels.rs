@@ -171,18 +171,19 @@ fn an_unmapped_time_column_is_compared_with_the_stated_rate() {
         }
         all
     };
-    for (name, step) in [
-        ("time [ms]", 5.0),
-        ("Time", 5.0),
-        ("t [s]", 0.005),
-        ("t", 0.005),
+    for (name, step, found) in [
+        ("time [ms]", 5.0, "200.0000 Hz"),
+        // neither in seconds nor in milliseconds
+        ("Time", 5.0, "0.2000 Hz"),
+        ("t [s]", 0.005, "200.0000 Hz"),
+        ("t", 0.005, "200.0000 Hz"),
     ] {
         let said = complaint(&small(), &timed(&a, name, step), &timed(&b, name, step));
         assert!(
-            said.contains(
-                "expected the sampling frequency 100 Hz of the campaign file, found 200.0000 Hz by a time column that \
+            said.contains(&format!(
+                "expected the sampling frequency 100 Hz of the campaign file, found {found} by a time column that \
                  `channels.time` does not name"
-            ),
+            )),
             "{name}: {said}"
         );
     }
