@@ -326,6 +326,8 @@ fn truncated_and_corrupt_files_are_refused() {
     let names = [
         "v5_plain.mat",
         "v5_compressed.mat",
+        "v5_short_plain.mat",
+        "v5_short_compressed.mat",
         "v73.mat",
         "ntnu.h5",
         "forces.tdms",
