@@ -1,6 +1,7 @@
 //! Whole bridges against the section, against sums written out, and against the whole matrix.
 
 use crate::bridges::{SEARCH, THREE, TWO, coupled, langenuen, langenuen_text, near, onset};
+use aerodeck::aerodynamics::derivatives::InterpolatedTable;
 use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, similarities, tributary_lengths};
@@ -13,7 +14,7 @@ use aerodeck::flutter::{
 use aerodeck::section::Dof;
 use aerodeck::section::SectionModel;
 use aerodeck::study::bridge::BridgeStudy;
-use aerodeck::uncertainty::FormOnset;
+use aerodeck::uncertainty::{AdmissibleForm, FormOnset};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -309,15 +310,21 @@ fn the_interval_is_that_of_the_section() {
     };
     println!("{a:?} {b:?}");
     near(a.scatter_m_s / b.scatter_m_s, 1.0, 1e-4);
+    // by the same forms
     let forms = known.forms.as_ref().unwrap();
-    let by_forms = forms.spread_of_fits(|f| {
+    let search = OnsetSearch::up_to(2.0 * of_section.at.speed_m_s);
+    let by_fit = |f: &AdmissibleForm| {
         let section = CoupledSection::with_model(&structure, &f.model)?;
-        let search = OnsetSearch::up_to(2.0 * of_section.at.speed_m_s);
         let found = find_onset(&f.form, &section, &search, study.tested_range())?;
         Ok(FormOnset::new(&f.form, None, &found))
-    });
-    let form_m_s = by_forms.unwrap().deviation_from_m_s(found.at.speed_m_s);
-    near(a.form_m_s.unwrap() / form_m_s.unwrap(), 1.0, 1e-4);
+    };
+    let by_table = |by: &str, table: &InterpolatedTable| {
+        let found = pk_onset(by, &structure, table, &search, study.tested_range())?;
+        Ok(FormOnset::new(by, None, &found))
+    };
+    let spread = forms.spread_by(by_fit, by_table).unwrap();
+    let form_m_s = spread.deviation_from_m_s(found.at.speed_m_s).unwrap();
+    near(a.form_m_s.unwrap() / form_m_s, 1.0, 1e-4);
     assert!(low_m_s < found.at.speed_m_s);
 }
 

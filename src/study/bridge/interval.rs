@@ -7,12 +7,12 @@ use crate::bridge::Bridge;
 use crate::error::{Error, Result};
 use crate::flutter::{
     BetweenSpeeds, FlutterSearch, MovedOnset, NearbyOnset, Onset, OnsetInterval, OnsetSearch,
-    find_onset,
+    find_onset, pk_onset,
 };
 use crate::trained_model::Model;
 use crate::uncertainty::{
-    CoefficientUncertainty, FormEnsemble, FormOnset, FormSpread, OnsetError, interval_with_forms,
-    speed_onsets_by,
+    AdmissibleForm, CoefficientUncertainty, FormEnsemble, FormOnset, FormSpread, OnsetError,
+    interval_with_forms, speed_onsets_by,
 };
 use std::sync::Arc;
 
@@ -120,10 +120,15 @@ impl BridgeStudy {
     ) -> Result<FormSpread> {
         let search = OnsetSearch::up_to(REACH * onset.at.speed_m_s);
         let tested = self.tested_range();
-        forms.spread_of_fits(|f| {
+        let of_fit = |f: &AdmissibleForm| {
             let bridge = self.with_forces(section, Arc::new(f.model.clone()));
             let found = find_onset(&f.form, &coupled(&bridge)?, &search, tested)?;
             Ok(FormOnset::new(&f.form, Some(f.residual_ratio), &found))
+        };
+        forms.spread_by(of_fit, |by, table| {
+            let bridge = self.with_forces(section, Arc::new(table.clone()));
+            let found = pk_onset(by, &bridge.structure(), &bridge.forces(), &search, tested)?;
+            Ok(FormOnset::new(by, None, &found))
         })
     }
 

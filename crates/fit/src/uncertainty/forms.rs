@@ -174,38 +174,35 @@ impl FormEnsemble {
     /// # Errors
     /// [`Error::Input`] for a search range that is none and other motions; [`Error::Numerical`] without eigenvalues.
     pub fn spread(&self, structure: &Structure, search: &OnsetSearch) -> Result<FormSpread> {
-        let mut forms = self.of_fits(|f| {
+        let of_fit = |f: &AdmissibleForm| {
             let section = CoupledSection::with_model(structure, &f.model)?;
             let found = find_onset(&f.form, &section, search, Some(self.tested))?;
             Ok(FormOnset::new(&f.form, Some(f.residual_ratio), &found))
-        })?;
-        let read: Vec<_> = INTERPOLATIONS.iter().zip(&self.read).collect();
-        // a table whose roots cannot be told apart says nothing
-        let read = read.into_par_iter().filter_map(|(by, table)| {
+        };
+        self.spread_by(of_fit, |by, table| {
             let (range, highest) = (table.tested_range(), search.speed_max_m_s);
-            let found = determinant_onset(by.title(), structure, table, range, highest).ok()?;
-            Some(FormOnset::new(by.title(), None, &found))
-        });
-        forms.extend(told(read.collect(), &forms));
-        Ok(FormSpread::new(forms))
+            let found = determinant_onset(by, structure, table, range, highest)?;
+            Ok(FormOnset::new(by, None, &found))
+        })
     }
 
-    /// Onsets of whatever these forces are part of, by every fit. The table as it is read is left to routes of its own.
+    /// Onsets of whatever these forces are part of, by every fit and by the table as it is read.
     ///
     /// # Errors
-    /// Those of the search.
-    pub fn spread_of_fits(
+    /// Those of the search by a fit.
+    pub fn spread_by(
         &self,
-        onset: impl Fn(&AdmissibleForm) -> Result<FormOnset> + Sync + Send,
+        of_fit: impl Fn(&AdmissibleForm) -> Result<FormOnset> + Sync + Send,
+        of_table: impl Fn(&str, &InterpolatedTable) -> Result<FormOnset> + Sync,
     ) -> Result<FormSpread> {
-        Ok(FormSpread::new(self.of_fits(onset)?))
-    }
-
-    fn of_fits(
-        &self,
-        onset: impl Fn(&AdmissibleForm) -> Result<FormOnset> + Sync + Send,
-    ) -> Result<Vec<FormOnset>> {
-        self.fits.par_iter().map(onset).collect()
+        let mut forms: Vec<FormOnset> = self.fits.par_iter().map(of_fit).collect::<Result<_>>()?;
+        let read: Vec<_> = INTERPOLATIONS.iter().zip(&self.read).collect();
+        // a table whose roots cannot be told apart says nothing
+        let read = read
+            .into_par_iter()
+            .filter_map(|(by, table)| of_table(by.title(), table).ok());
+        forms.extend(told(read.collect(), &forms));
+        Ok(FormSpread::new(forms))
     }
 }
 
