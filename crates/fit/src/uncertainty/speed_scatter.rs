@@ -9,7 +9,7 @@
 //! With two speeds each difference has one degree of freedom, with one speed there is none. The variance of a force is
 //! therefore pooled over its motions, in absolute size: on measured decks lift due to heave and lift due to rotation, whose
 //! transfer functions differ fivefold, scatter by the same amount per unit of dimensionless motion, and so do the moments, at a
-//! tenth of it. And its ratio to the variance that independent blocks would give is drawn towards what measured decks
+//! tenth of it, but those far below the force's largest in proportion to themselves. And its ratio to the variance that independent blocks would give is drawn towards what measured decks
 //! show ([`super::speed_prior`]); with tests at one speed it is theirs, and no force is taken to scatter less than theirs do.
 //!
 //! What each speed says alone is [`CoefficientUncertainty::at_each_speed`].
@@ -28,6 +28,9 @@ use serde::{Deserialize, Serialize};
 pub(super) const POINTS: usize = 16;
 /// Transfer functions smaller than this part of their root mean square are taken as that.
 const SMALL: f64 = 1e-3;
+/// Transfer functions below this part of the largest of their force scatter in proportion to themselves, all others by the same absolute
+/// amount. None of the embedded decks is smaller (moment due to sway, 0.02 to 0.05 of that due to rotation).
+const SMALLEST: f64 = 0.015;
 /// Singular values below this part of the largest are left out where a turned transfer function is sought.
 const SINGULAR: f64 = 1e-8;
 
@@ -271,6 +274,8 @@ impl Judge<'_> {
     fn effect(&self, i: usize, turned: bool) -> Option<UnitEffect> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let (mut of_speeds, mut of_blocks, mut weight) = (0.0, 0.0, 0.0);
+        let sizes = (0..self.n).map(|j| self.mean_square(i, j));
+        let smallest = SMALLEST.powi(2) * sizes.fold(0.0, f64::max);
         for j in 0..self.n {
             let size = self.mean_square(i, j);
             let own = &self.own[i * self.n + j];
@@ -290,10 +295,11 @@ impl Judge<'_> {
                 .iter()
                 .map(|gram| &self.design.inverse * (gram * &scattered))
                 .collect();
-            weight += square(&DMatrix::from_columns(&of_each));
+            let scattering = size.max(smallest);
+            weight += size / scattering * square(&DMatrix::from_columns(&of_each));
             of_speeds += size * self.of_speeds.as_ref().map_or(0.0, square);
             of_blocks += size * square(&self.of_blocks);
-            columns.extend(of_each.into_iter().map(|c| c / size.sqrt()));
+            columns.extend(of_each.into_iter().map(|c| c / scattering.sqrt()));
         }
         (weight > 0.0 && of_blocks > 0.0).then(|| UnitEffect {
             columns: DMatrix::from_columns(&columns),
