@@ -175,7 +175,7 @@ pub(crate) struct ResamplingPlan {
 
 /// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
 /// along its slope (see [`super::LinearModel`]). The answer does not depend on the number of
-/// threads. `None` for blocks of an estimate that no longer knows its data.
+/// threads. `None` for blocks of an estimate that no longer knows its data, and where no draw has an onset.
 pub(crate) fn resample_onset(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
@@ -197,7 +197,9 @@ pub(crate) fn resample_onset(
     };
     let found = numbered(plan.replicates, &|_, _| (), onset_of)?;
     let found: Option<Vec<Option<f64>>> = found.into_iter().collect();
-    Ok(found.map(SampledOnsets::from).map(|onsets| ResampledOnset {
+    let onsets = found.map(SampledOnsets::from);
+    let onsets = onsets.filter(|o| !o.speeds_m_s.is_empty());
+    Ok(onsets.map(|onsets| ResampledOnset {
         resampling: plan.resampling,
         replicates: plan.replicates,
         without_onset: onsets.without_onset,

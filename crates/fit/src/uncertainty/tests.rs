@@ -192,6 +192,18 @@ fn three_routes_give_one_standard_error() {
         );
         once.standard_deviation_m_s / error.standard_error_m_s
     };
+    // of no onset at all there are no numbers
+    let none = ResamplingPlan {
+        resampling: Resampling::Normal,
+        replicates: 0,
+        seed: 1,
+        search: OnsetSearch::default(),
+        tested: None,
+    };
+    assert_eq!(
+        resample_onset(&estimate, &structure(), &at, &none).unwrap(),
+        None
+    );
     // 600 draws tell a standard deviation to 3 %
     let drawn = resampled(Resampling::Normal);
     assert!((drawn - 1.0).abs() < 0.12, "{drawn}");
