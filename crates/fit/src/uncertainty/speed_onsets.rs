@@ -17,6 +17,9 @@ const POINTS: usize = 16;
 /// A band ends where the difference is below this part of its largest value.
 const HALF: f64 = 0.5;
 
+/// Onsets that are nearer to each other than this part of one do not contradict each other, however little their blocks scatter.
+const SAME_ONSET: f64 = 1e-4;
+
 /// Onset by the tests at one mean speed, with the poles of the fit to all of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -106,11 +109,14 @@ pub fn speed_onsets_by(
             reason,
         });
     }
+    let apart =
+        |a: &OnsetError, b: &OnsetError| (a.speed_m_s / b.speed_m_s - 1.0).abs() > SAME_ONSET;
     let pairs = alone
         .iter()
         .enumerate()
         .flat_map(|(i, a)| alone[i + 1..].iter().map(move |b| (a, b)));
     let worst = pairs
+        .filter(|(a, b)| apart(&a.2, &b.2))
         .map(|(a, b)| (z_of(&a.2, &b.2), a, b))
         .filter(|((z, limit), _, _)| z.abs() > *limit)
         .max_by(|x, y| x.0.0.abs().total_cmp(&y.0.0.abs()));

@@ -164,5 +164,7 @@ fn rows_of(
         }
     }
     let sum: f64 = residuals.iter().map(|r| r.powi(2)).sum();
-    Ok((residuals, if sum > 0.0 { sum } else { 1.0 }))
+    // an entry that is zero throughout tells nothing of the errors of the others
+    let exact = if total > 0.0 { 1.0 } else { 0.0 };
+    Ok((residuals, if sum > 0.0 { sum } else { exact }))
 }

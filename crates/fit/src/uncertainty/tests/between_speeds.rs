@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::flutter::BetweenSpeeds;
+use crate::identification::{TimeFit, TimeWeights, fit_records};
+use crate::section::Translation;
 use crate::uncertainty::speed_onsets::speed_onsets;
 
 /// The same tables whose transfer functions differ between the two speeds, as those of measured decks: both motions of a force
@@ -187,4 +189,79 @@ fn speeds_that_contradict_each_other_are_named() {
         }
     }
     assert!(contradictions > 0);
+}
+
+/// Couplings with sway that are nothing to the onset are nothing to its interval, however small they are: they scatter in proportion to
+/// themselves, not by the absolute amount of their force, which would move the poles of all.
+#[test]
+fn small_couplings_do_not_widen_intervals() {
+    let table = embedded::deck("LN21-5200").unwrap();
+    let (dofs, sway) = (&Dof::THREE, Dof::Lateral);
+    let half = |part: f64| {
+        let mut samples = table.samples(dofs);
+        let couplings = samples.iter_mut();
+        let couplings = couplings.filter(|s| (s.force == sway) != (s.motion == sway));
+        couplings.for_each(|s| s.value *= part);
+        let fit = FrequencyFit {
+            form: Form::default().with_filters(3).unwrap(),
+            constraints: Constraints::Dissipative,
+            ..FrequencyFit::default()
+        };
+        let Fitted { model, report } = fit_table(&samples, dofs, &fit).unwrap();
+        let estimate = table_uncertainty(&samples, dofs, &fit, &report).unwrap();
+        let section = SectionModel {
+            lateral: Some(Translation::new(15.0, 1.5, 0.003)),
+            ..SectionModel::table_4_1()
+        };
+        let structure = section.structure().unwrap();
+        let section = CoupledSection::with_model(&structure, &model).unwrap();
+        let search = OnsetSearch::default();
+        let found = find_onset("", &section, &search, estimate.tested_range()).unwrap();
+        let error = onset_error(&estimate, &structure, found.onset().unwrap(), None).unwrap();
+        error.half_width_m_s()
+    };
+    let halves = [1.0, 1e-2, 1e-4].map(half);
+    // 0.40, 0.46 and 0.46 m/s; 35 m/s in the last place if they scattered as the force does
+    assert!(
+        halves.iter().all(|h| (0.35..0.55).contains(h)),
+        "{halves:?}"
+    );
+}
+
+/// Forces that are zero throughout take nothing from the scatter of the others.
+#[test]
+fn forces_of_zero_leave_the_scatter_of_the_others() {
+    let plan = TunnelPlan {
+        segment_s: 8.0,
+        sampling_hz: 50.0,
+        ..TunnelPlan::default()
+    };
+    let table = embedded::deck("LN21-5200").unwrap();
+    let mut records = plan.records_from_table(&table, &Dof::THREE).unwrap();
+    for record in &mut records {
+        let sways = |dof: &Dof| *dof == Dof::Lateral;
+        let moves = |x: &Vec<f64>| x.iter().any(|v| *v != 0.0);
+        let swaying = record.motion.iter().position(moves);
+        let swaying = swaying.is_some_and(|j| sways(&record.header.dofs[j]));
+        for (dof, force) in record.header.dofs.iter().zip(&mut record.force) {
+            if sways(dof) != swaying {
+                force.fill(0.0);
+            }
+        }
+    }
+    let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+    let fit = TimeFit {
+        weights: TimeWeights::PerSegment,
+        ..TimeFit::default()
+    };
+    let report = fit_records(&sources, &fit, &|_| ()).unwrap().report;
+    let estimate = record_uncertainty(&sources, &fit, &report, &|_| ()).unwrap();
+    for (speed, alone) in estimate.at_each_speed() {
+        let first = &alone.unwrap().parameters[0];
+        assert_eq!(first.force, Some(Dof::Vertical));
+        assert!(
+            first.standard_error > 1e-6 * first.value.abs(),
+            "{speed}: {first:?}"
+        );
+    }
 }
