@@ -5,13 +5,15 @@ use super::common::folder_of;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::{figures, stages};
-use crate::error::{Result, counted};
+use crate::error::{Result, counted, ensure};
 use crate::files::text::read_text;
 use crate::plausibility::Finding;
 use crate::report::onset_distribution_figure;
 use crate::study::{FlutterBlock, saved_evidence};
 use crate::trained_model::TrainedModel;
-use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, Quantile, monte_carlo};
+use crate::uncertainty::monte_carlo::{
+    MAX_SAMPLES, MonteCarloPlan, MonteCarloResult, Quantile, monte_carlo,
+};
 use crate::verdict::{RequiredSpeed, Verdict};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +38,15 @@ pub(crate) struct MonteCarloArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> {
+    if let Some(samples) = args.samples {
+        let expected = format_args!("a number from 1 to {MAX_SAMPLES:e}");
+        ensure(
+            (1..=MAX_SAMPLES).contains(&samples),
+            "--samples",
+            expected,
+            samples,
+        )?;
+    }
     let plan_text = read_text(&args.plan)?;
     let folder = args.plan.parent().unwrap_or(Path::new(""));
     let mut plan = MonteCarloPlan::from_toml(&plan_text, folder.to_path_buf())

@@ -9,6 +9,7 @@ use super::progress::Progress;
 use crate::error::{Error, Result, ensure};
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
 use crate::selection::{Selection, metric_grid, select};
+use crate::signal::extremes;
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
 use std::fmt::Write as _;
@@ -18,6 +19,8 @@ use text::{figures, text};
 
 /// More values of a pole than any figure shows.
 const MOST_VALUES: usize = 2000;
+/// Frequency at which forces are compared, Hz.
+const FREQUENCY_HZ: f64 = 1.1;
 /// Name of the recommended model in a study.
 pub(crate) const SELECTED: &str = "selected";
 
@@ -31,9 +34,9 @@ pub(crate) struct SelectArgs {
     study: StudyArgs,
     #[command(flatten)]
     choice: Choice,
-    /// Frequency of motion at which forces are compared, Hz.
-    #[arg(long, default_value_t = 1.1)]
-    frequency: f64,
+    /// Frequency of motion near which forces are compared, Hz; by default 1.1.
+    #[arg(long)]
+    frequency: Option<f64>,
     /// Write a study with the recommended model in front of the others under this name, beside the study.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "selected.toml")]
     write: Option<PathBuf>,
@@ -95,9 +98,10 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         note = measured.note.as_ref().map(|n| format!("note: {n}\n"));
         measured.select(study.deck.speed_groups.as_deref())?
     };
+    let frequency_hz = compared_frequency_hz(args.frequency, &records)?;
     let (grid, selection) = judge(&args.choice, &study, &records, progress)?;
     let metrics = progress.during("comparing forces", || {
-        metric_grid(&grid, &records, args.frequency)
+        metric_grid(&grid, &records, frequency_hz)
     })?;
     let mut out = OutputDir::new(&args.study.directory())?;
     for (stem, figure) in figures(&study, &selection, &metrics)? {
@@ -120,6 +124,20 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         text,
         &serde_json::json!({ "selection": selection, "metrics": metrics, "files": written }),
     )
+}
+
+/// The frequency that was asked for, which is among those that were tested.
+fn compared_frequency_hz(asked: Option<f64>, records: &[&dyn RecordSource]) -> Result<f64> {
+    let Some(asked) = asked else {
+        return Ok(FREQUENCY_HZ);
+    };
+    let tested = records.iter().flat_map(|r| &r.header().segments);
+    let (low, high) = extremes(tested.map(|s| s.frequency_hz));
+    // records without segments have no forces to compare, which is said of them
+    let within = low > high || (0.99 * low..=1.01 * high).contains(&asked);
+    let expected = format_args!("a frequency of the tests, {low:.2} to {high:.2} Hz");
+    ensure(within, "--frequency", expected, asked)?;
+    Ok(asked)
 }
 
 /// All cells of the grid, judged.
@@ -267,6 +285,14 @@ fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result
     let last = choice.values as f64 - 1.0;
     if choice.kind == ModelKind::Discrete {
         let (low, high) = (choice.min.unwrap_or(0.2), choice.max.unwrap_or(0.98));
+        let ordered = 0.0 < low && low < high && high < 1.0;
+        let expected = "two decay factors between 0 and 1, the lower one first";
+        ensure(
+            ordered,
+            "--min, --max",
+            expected,
+            format_args!("{low} and {high}"),
+        )?;
         let given = study.models.iter().find_map(|m| m.discrete.as_ref());
         let weights = given.map_or(TimeWeights::None, |d| d.weights);
         let values = (0..choice.values).map(|i| low + (high - low) * i as f64 / last);

@@ -192,4 +192,23 @@ fn a_wrong_value_that_was_set_is_named() {
     let set = ["study", "study.toml", "--set", "section.width_m=-1"];
     let said = "study.toml --set section.width_m=-1: section.width_m: expected a positive number";
     command::refused(folder.path(), &set, &[said]);
+    let discrete = "--kind discrete --max 1.5";
+    for (wrong, said) in [
+        (
+            "monte-carlo scatter.toml --samples 0",
+            "--samples: expected a number from 1 to 1e8, found 0",
+        ),
+        (
+            &format!("select study.toml {discrete}"),
+            "--min, --max: expected two decay factors between 0 and 1",
+        ),
+        (
+            "select study.toml --frequency nan",
+            "--frequency: expected a frequency of the tests, 0.25 to 2.51 Hz",
+        ),
+        ("select study.toml --frequency 100", "found 100"),
+    ] {
+        let words: Vec<&str> = wrong.split(' ').collect();
+        command::refused(folder.path(), &words, &[said]);
+    }
 }

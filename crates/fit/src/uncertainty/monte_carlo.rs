@@ -16,7 +16,9 @@ mod scatter;
 
 pub use distribution::Distribution;
 pub use force_draws::DrawnForces;
-pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter, SectionProperty};
+pub use plan::{
+    AerodynamicScatter, Correlation, MAX_SAMPLES, MonteCarloPlan, RandomParameter, SectionProperty,
+};
 pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile, Tally};
 pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo, summarise, tally};
 

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 /// Version of the file.
 pub(crate) const PLAN_SCHEMA: u32 = 1;
-/// More samples than this do not fit into memory.
-const MAX_SAMPLES: usize = 100_000_000;
+/// Most samples of one run: more do not fit into memory.
+pub const MAX_SAMPLES: usize = 100_000_000;
 
 /// What is random, and what is asked.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
