@@ -24,7 +24,7 @@ pub struct Buffeting {
     model_change: Option<Py<PyArray2<f64>>>,
     /// Mean frequency of upward crossings of the mean, Hz; shape (n, 3).
     crossing_frequency_hz: Py<PyArray2<f64>>,
-    /// Expected greatest departure over the root mean square in the length of a record, by spectra; shape (n, 3).
+    /// Expected greatest departure over the root mean square in 600 s, or in `duration_s` where that is stated, by spectra; shape (n, 3).
     expected_peak_factor: Py<PyArray2<f64>>,
     /// The same by records; shape (n, 3).
     peak_factor: Option<Py<PyArray2<f64>>>,

@@ -31,6 +31,8 @@ use std::f64::consts::TAU;
 const DECAY_TIMES: f64 = 5.0;
 /// Samples of a record whose length is not stated, at most: time and memory grow with it.
 const SAMPLES_BY_DEFAULT: usize = 1 << 18;
+/// The same times nodes: a quarter of a gigabyte for each component of the gusts.
+const NUMBERS_BY_DEFAULT: usize = 1 << 25;
 /// Time in which peaks are expected when none is stated, s.
 const PEAK_S: f64 = 600.0;
 
@@ -74,7 +76,7 @@ impl SpanPlan {
     /// Samples of a record at a wind speed, m/s.
     ///
     /// # Errors
-    /// [`Error::Unstable`] when the length is not stated and the bridge is unstable at this speed.
+    /// [`Error::Numerical`] when the eigenvalues of the bridge cannot be computed.
     pub(crate) fn record_samples(
         &self,
         problem: &BuffetingProblem<'_>,
@@ -82,19 +84,25 @@ impl SpanPlan {
     ) -> Result<usize> {
         let slowest = match self.duration_s {
             Some(_) => f64::INFINITY,
-            None => problem.coupled(speed_m_s)?.1,
+            None => match problem.coupled(speed_m_s) {
+                Ok((_, slowest)) => slowest,
+                // no record of a growing motion is long enough
+                Err(Error::Unstable(_)) => f64::INFINITY,
+                Err(error) => return Err(error),
+            },
         };
-        Ok(self.samples(slowest))
+        Ok(self.samples(slowest, problem.nodes.len()))
     }
 
-    /// Samples of a record, for the decay rate of the slowest motion, 1/s.
-    fn samples(&self, slowest: f64) -> usize {
+    /// Samples of a record of so many nodes, for the decay rate of the slowest motion, 1/s.
+    fn samples(&self, slowest: f64, nodes: usize) -> usize {
         let samples = self.peak_samples().max(1);
+        let most = SAMPLES_BY_DEFAULT.min(NUMBERS_BY_DEFAULT / nodes.max(1));
         let times = match self.duration_s {
             Some(_) => 1,
             None => (DECAY_TIMES / slowest / PEAK_S).ceil() as usize,
         };
-        samples * times.clamp(1, (SAMPLES_BY_DEFAULT / samples).max(1))
+        samples * times.clamp(1, (most / samples).max(1))
     }
 }
 
@@ -197,7 +205,7 @@ pub(crate) fn span_ensemble(
     progress: OnDone<'_>,
 ) -> Result<SpanEnsemble> {
     let (coupled, slowest) = problem.coupled(speed_m_s)?;
-    let (step, samples) = (plan.step_s, plan.samples(slowest));
+    let (step, samples) = (plan.step_s, plan.samples(slowest, problem.nodes.len()));
     problem.check_record(speed_m_s, step, samples)?;
     let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, step, samples)?;
     let record = |seed: u64| {

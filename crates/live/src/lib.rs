@@ -91,9 +91,11 @@ fn answer_of(request: &str) -> Result<FlutterAnswer> {
     let divergence_m_s = divergence_with_forces(&structure, &trained.model)
         .ok()
         .flatten();
-    let growth = unwanted_growth_below(Some(&found), &section, &search, tested)?;
+    // as on the page, a scan that fails takes no answer with it
+    let growth = unwanted_growth_below(Some(&found), &section, &search, tested).ok();
     let limit = (found.critical()).map_or(search.speed_max_m_s, |at| at.speed_m_s);
-    let bands = growth.bands.iter().map(|band| band.from_m_s);
+    let bands = growth.iter().flat_map(|growth| &growth.bands);
+    let bands = bands.map(|band| band.from_m_s);
     let grows = bands.map(|speed| ("growth outside the tests", speed));
     let diverges = divergence_m_s.map(|speed| ("static divergence", speed));
     let before = grows.chain(diverges.filter(|(_, speed)| *speed < limit));

@@ -141,12 +141,13 @@ impl SectionForceModels {
             },
         };
         let samples = table.samples(&block.motions);
-        let deck = block.derivatives.as_deref();
+        let deck = Some(table.name.as_str());
         let found = ModelOfData::of_table(&samples, &block.motions, &options, deck)?;
         let (model, mut report) = (found.fitted.model, found.fitted.report);
-        let forms = FormEnsemble::or_noted(found.forms, &mut report)?;
-        let known = found.estimate;
-        let known = known.and_then(|known| ModelUncertainty::of_data(known, forms, tested));
+        let known = found.estimate.and_then(|known| {
+            let forms = FormEnsemble::or_noted(found.forms, &mut report)?;
+            ModelUncertainty::of_data(known, forms, tested)
+        });
         let notes = report.notes.iter();
         let alone = report.constraints.and_then(|held| held.unconstrained);
         Ok(Self {

@@ -215,7 +215,10 @@ impl ModelUncertainty {
         if self.is_own(onset) {
             return self.warning();
         }
-        let (search, tested) = (Self::search_of(onset), self.coefficients.tested_range()?);
+        let Some(tested) = self.coefficients.tested_range() else {
+            return self.warning();
+        };
+        let search = Self::search_of(onset);
         let found = speed_onsets(&self.coefficients, structure, onset, &search, tested).ok();
         let found = found.filter(|f| !f.each.is_empty());
         found.map_or_else(|| self.warning(), |f| f.contradiction.map(|c| c.explain()))

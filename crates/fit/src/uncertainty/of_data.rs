@@ -101,8 +101,11 @@ impl ModelOfData {
 mod tests {
     use super::*;
     use crate::aerodynamics::Transfer;
+    use crate::aeroelastic::CoupledSection;
     use crate::files::derivatives::embedded;
-    use crate::uncertainty::AdmissibleForm;
+    use crate::flutter::{OnsetSearch, find_onset};
+    use crate::section::SectionModel;
+    use crate::uncertainty::{AdmissibleForm, ModelUncertainty};
     use crate::wind_tunnel::TunnelPlan;
 
     /// Channels in another order are the same data: the forms that explain them are the same.
@@ -132,5 +135,27 @@ mod tests {
             }
         }
         assert_eq!(forms[0], forms[1]);
+    }
+
+    /// That mean speeds contradict each other is said of another onset too, also by a file, which no longer knows its tests.
+    #[test]
+    fn contradictions_outlive_their_file() {
+        let table = embedded::deck("LN21-6100").unwrap();
+        let (samples, fit) = (table.samples(&Dof::TWO), FrequencyFit::default());
+        let of = ModelOfData::of_table(&samples, &Dof::TWO, &fit, None).unwrap();
+        let structure = SectionModel::table_4_1().structure().unwrap();
+        let section = CoupledSection::with_model(&structure, &of.fitted.model).unwrap();
+        let (search, tested) = (OnsetSearch::up_to(60.0), of.fitted.report.tested_range);
+        let found = find_onset("6100", &section, &search, Some(tested)).unwrap();
+        let onset = found.onset().unwrap();
+        let estimate = of.estimate.unwrap();
+        let known = ModelUncertainty::new(estimate, &structure, Some(onset), search, tested);
+        let known = known.unwrap();
+        let said = known.warning().unwrap();
+        let mut other = onset.clone();
+        other.at.speed_m_s *= 1.01;
+        assert!(known.warning_of(&structure, &other).is_some());
+        let read = ModelUncertainty::from_json(&known.to_json().unwrap()).unwrap();
+        assert_eq!(read.warning_of(&structure, &other), Some(said));
     }
 }

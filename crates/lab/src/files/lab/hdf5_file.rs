@@ -62,7 +62,7 @@ fn is_unknown(error: &hdf5_pure::Error) -> bool {
 /// Takes the soft links, which have no address, out of symbol tables, where `hdf5-pure` takes them for objects; their number.
 fn drop_soft_links(bytes: &mut [u8]) -> usize {
     let mut dropped = 0;
-    for at in (0..bytes.len().saturating_sub(8)).step_by(8) {
+    for at in 0..bytes.len().saturating_sub(8) {
         if !bytes[at..].starts_with(b"SNOD\x01") {
             continue;
         }

@@ -9,7 +9,7 @@
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::tdms_bytes::{Bytes, STRING, TIME_STAMP, property, sample, size_of};
 use crate::error::{Error, Result, ensure};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
 const LEAD_IN_BYTES: usize = 28;
 const HAS_METADATA: u32 = 1 << 1;
@@ -270,14 +270,14 @@ impl TdmsFile {
             }
         }
         // scales stand on a channel, its group or the file
-        let scaled_later: BTreeSet<Vec<String>> = objects
+        let scaled_later: BTreeMap<Vec<String>, bool> = objects
             .iter()
-            .filter(|(_, object)| object.is_still_to_be_scaled())
-            .map(|(parts, _)| parts.clone())
+            .filter_map(|(parts, object)| Some((parts.clone(), object.is_still_to_be_scaled()?)))
             .collect();
         let mut rates = Vec::new();
         for (parts, object) in objects {
-            let is_raw = (0..=parts.len()).any(|n| scaled_later.contains(&parts[..n]));
+            let mut nearest = (0..=parts.len()).rev();
+            let is_raw = nearest.find_map(|n| scaled_later.get(&parts[..n])) == Some(&true);
             let inside = match (group, parts.first()) {
                 (Some(wanted), Some(own)) if own != wanted => continue,
                 (Some(_), Some(_)) => parts[1..].join("/"),
@@ -316,12 +316,14 @@ impl Object {
         }
     }
 
-    /// Whether it states scales that its samples have not been through: where nothing is said of that, they have not.
-    fn is_still_to_be_scaled(&self) -> bool {
-        self.number("NI_Number_Of_Scales").is_some_and(|n| n > 0.0)
-            && self
-                .text("NI_Scaling_Status")
-                .is_none_or(|s| s == "unscaled")
+    /// Whether samples have still to go through scales, by what it states of them; none where it states nothing. Without a status they
+    /// have.
+    fn is_still_to_be_scaled(&self) -> Option<bool> {
+        let status = self.text("NI_Scaling_Status").map(|s| s == "unscaled");
+        match self.number("NI_Number_Of_Scales") {
+            Some(scales) => Some(scales > 0.0 && status.unwrap_or(true)),
+            None => status.filter(|unscaled| !unscaled),
+        }
     }
 }
 
