@@ -4,7 +4,7 @@
 //! only place that says what it amounts to; every page, line and colour follows it.
 //!
 //! ```
-//! # extern crate aerodeck_core as aerodeck;
+//! # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_judgement::*; }
 //! use aerodeck::verdict::{DivergenceReading, Evidence, RequiredSpeed, Verdict};
 //!
 //! let mut evidence = Evidence::default();

@@ -42,7 +42,7 @@ const FASTEST_FOOTBRIDGE_M_S: f64 = 350.0;
 /// What is odd about a section. One cause is said once: ratios are judged only where width and density are usual.
 ///
 /// ```
-/// # extern crate aerodeck_core as aerodeck;
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_judgement::*; }
 /// use aerodeck::plausibility::of_section;
 /// use aerodeck::section::SectionModel;
 ///

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The wind speed below which nothing critical may begin: the criterion of a code.
 ///
 /// ```
-/// # extern crate aerodeck_core as aerodeck;
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_judgement::*; }
 /// use aerodeck::verdict::{Evidence, RequiredSpeed, Verdict};
 ///
 /// // nothing was looked at
