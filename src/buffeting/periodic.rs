@@ -8,13 +8,12 @@
 //! (ζI − Φ)⁻¹ = Σ_n ζ^{−n−1} Φⁿ (I − Φᴺ)⁻¹
 //! ```
 //!
-//! the transform of the `N` matrices `C Φⁿ (I − Φᴺ)⁻¹ (B₀ + Φ B₁)`, which are products of a few `C Φⁱ` with a few `Φ^{sj} …`: no record
-//! is stepped.
+//! the transform of the `N` matrices `C Φⁿ (I − Φᴺ)⁻¹ (B₀ + Φ B₁)`, products of a few `C Φⁱ` with a few `Φ^{sj} …`: nothing is stepped.
 
 use super::problem::BuffetingProblem;
 use super::response::{by_node, part};
 use super::synthesis::{TurbulenceField, parts_in_time};
-use super::time::{all_records, at_least, root_and_error};
+use super::time::{all_records, root_and_error, too_short};
 use crate::aerodynamics::GustComponent;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
@@ -106,14 +105,6 @@ impl SpanPlan {
     }
 }
 
-/// What is wrong with records of that length, s, for a decay rate of the slowest motion, 1/s.
-fn too_short(record_s: f64, slowest: f64, speed_m_s: f64) -> Option<String> {
-    (record_s * slowest < DECAY_TIMES).then(|| {
-        let expected = at_least(DECAY_TIMES, slowest, speed_m_s);
-        format!("RMS in time may be far off, whatever its standard error: a record expected {expected}, found {record_s:.0} s")
-    })
-}
-
 /// Root mean squares and peaks over many records at named nodes: vertical, lateral (m), rotation (rad).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpanEnsemble {
@@ -184,7 +175,12 @@ pub fn span_record(
     Ok(SpanRecord {
         nodes: problem.names_of(nodes),
         speed_m_s,
-        too_short: too_short(samples as f64 * field.step_s, slowest, speed_m_s),
+        too_short: too_short(
+            samples as f64 * field.step_s,
+            DECAY_TIMES,
+            slowest,
+            speed_m_s,
+        ),
         rms: by_node(nodes.len(), |row| found[row].0.sqrt()),
         peak_factor: by_node(nodes.len(), |row| {
             part(found[row].1, found[row].0.sqrt(), 0.0)
@@ -217,7 +213,7 @@ pub(crate) fn span_ensemble(
     let record_s = samples as f64 * step;
     Ok(SpanEnsemble {
         record_s,
-        too_short: too_short(record_s, slowest, speed_m_s),
+        too_short: too_short(record_s, DECAY_TIMES, slowest, speed_m_s),
         ..found
     })
 }

@@ -171,11 +171,24 @@ pub(super) fn root_and_error(squares: &[f64]) -> (f64, f64) {
 }
 
 /// The least length of a record, in words, for the decay rate of the slowest motion, 1/s.
-pub(super) fn at_least(decay_times: f64, slowest: f64, speed_m_s: f64) -> String {
+fn at_least(decay_times: f64, slowest: f64, speed_m_s: f64) -> String {
     let least_s = decay_times / slowest;
     format!(
         "at least {least_s:.1} s, {decay_times} decay times of the least damped mode at {speed_m_s} m/s"
     )
+}
+
+/// What is wrong with records of that length, s, where it is: too few decay times of the slowest motion.
+pub(super) fn too_short(
+    record_s: f64,
+    decay_times: f64,
+    slowest: f64,
+    speed_m_s: f64,
+) -> Option<String> {
+    (record_s * slowest < decay_times).then(|| {
+        let expected = at_least(decay_times, slowest, speed_m_s);
+        format!("RMS in time may be far off, whatever its standard error: a record expected {expected}, found {record_s:.0} s")
+    })
 }
 
 fn grid(

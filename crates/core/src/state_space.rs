@@ -14,6 +14,9 @@ pub use roots::{ValueAt, boundary, root, secant};
 
 use nalgebra::{Complex, ComplexField, DMatrix};
 
+/// A complex number.
+pub(crate) type Complex64 = Complex<f64>;
+
 /// `ẋ = A x + B u`.
 #[derive(Debug, Clone)]
 pub struct StateEquation {

@@ -4,10 +4,11 @@
 //! written so that still air is no special case. The filter matrices of this crate are lower triangular, so one
 //! evaluation is a forward substitution: much cheaper than the eigenvalues of the whole state matrix.
 
-use super::dynamic_stiffness::{Complex64, Determinant, Small, ZERO, newton, oscillator};
+use super::dynamic_stiffness::{Determinant, Small, ZERO, newton, oscillator};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::section::Suspension;
+use crate::state_space::Complex64;
 use nalgebra::DVector;
 
 /// Degrees of freedom at most.

@@ -1,15 +1,16 @@
 //! Modes that share a frequency, or nearly: their shapes are those of any mixture, and turn at once with the first breath of
 //! wind. What goes on smoothly is the space that they span, so they are corrected and recognised together.
 
+use super::columns::Shape;
 use super::following::{MIN_ASSURANCE, Mode, assurance};
 use super::modal_characteristic::AtSpeed;
+use crate::state_space::Complex64;
 use crate::threads;
+use nalgebra::DMatrix;
 use nalgebra::linalg::Schur;
-use nalgebra::{Complex, DMatrix, DVector};
 
-type Complex64 = Complex<f64>;
-type Shape = DVector<Complex64>;
-type Root = (Complex64, Shape);
+/// An eigenvalue and its shape.
+pub(super) type Root = (Complex64, Shape);
 
 /// Modal assurance above which a mode is the one before, whatever lies near.
 const SAME_SHAPE: f64 = 0.99;

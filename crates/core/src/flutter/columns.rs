@@ -2,9 +2,11 @@
 //! whole eights, so that every step works on full vectors; the order of the sums, and so the bits, are the same on every processor.
 //! Loops count, where iterators would read better: those stay functions of their own, compiled for the plainest of processors.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use crate::state_space::Complex64;
+use nalgebra::{DMatrix, DVector};
 
-type Complex64 = Complex<f64>;
+/// What moves in a mode, in its coordinates.
+pub(super) type Shape = DVector<Complex64>;
 
 /// Rows that lie together.
 pub(super) const WIDTH: usize = 8;

@@ -2,9 +2,9 @@
 //! its structural part and its determinant, each with derivatives. Whoever brings `G` subtracts it.
 
 use crate::section::Suspension;
-use nalgebra::{Complex, DVector};
+use crate::state_space::Complex64;
+use nalgebra::DVector;
 
-pub(super) type Complex64 = Complex<f64>;
 /// The leading n×n block counts.
 pub(super) type Small<const M: usize> = [[Complex64; M]; M];
 

@@ -2,10 +2,9 @@
 //! at every wind speed.
 
 use super::columns::{ComplexColumns, EntryBlock, WIDTH, dot, entry};
-use nalgebra::{Complex, DMatrix};
+use crate::state_space::Complex64;
+use nalgebra::DMatrix;
 use std::ops::Range;
-
-type Complex64 = Complex<f64>;
 
 impl ComplexColumns {
     /// Lower and upper triangle; `None` where the matrix is singular or not finite.

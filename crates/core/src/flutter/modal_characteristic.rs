@@ -11,15 +11,13 @@
 
 mod chains;
 
-use super::columns::{ComplexColumns, RealColumns, Term};
+use super::columns::{ComplexColumns, RealColumns, Shape, Term};
 use super::elimination::{Factors, solve_complex};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
+use crate::state_space::Complex64;
 use chains::{Chain, chains};
-use nalgebra::{Complex, DMatrix, DVector};
-
-type Complex64 = Complex<f64>;
-type Shape = DVector<Complex64>;
+use nalgebra::DMatrix;
 
 /// Rounds before a start is given up as too far away.
 const MAX_ROUNDS: usize = 12;

@@ -20,12 +20,10 @@ pub use samples::stands_at_samples;
 
 use crate::error::{Result, ensure, positive};
 use crate::section::{Dof, SectionModel, Structure};
+use crate::state_space::Complex64;
 use crossing::{Crossing, refine};
-use nalgebra::Complex;
 use pencil::{Pencil, Supports};
 use setup::{K_MAX, grid, supports};
-
-type Complex64 = Complex<f64>;
 
 /// Growth up to this part of the frequency is rounding.
 const ROUNDING: f64 = 1e-9;

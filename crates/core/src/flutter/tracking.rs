@@ -4,7 +4,7 @@
 //! else the nearest eigenvalue of the whole state matrix.
 
 use super::characteristic::Characteristic;
-use super::clusters::by_shapes;
+use super::clusters::{Root, by_shapes};
 use super::critical_point::OnsetMethod;
 use super::following::{
     Continued, EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance,
@@ -214,9 +214,6 @@ fn drop_overdamped(modes: &mut Vec<Mode>) -> bool {
     }
     modes.len() < before
 }
-
-/// An eigenvalue and its shape, of unit norm in `(y/B, x/B, θ)`.
-type Root = (Complex<f64>, DVector<Complex<f64>>);
 
 /// The corrected modes; `None` when a correction failed, turned real, or two meet.
 fn distinct(

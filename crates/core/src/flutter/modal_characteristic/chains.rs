@@ -1,11 +1,9 @@
 //! The filters of a bridge, which come in chains that are alike for every mode.
 
 use crate::aerodynamics::ContinuousRealization;
-use crate::flutter::columns::RealColumns;
-use nalgebra::{Complex, DMatrix, DVector};
-
-type Complex64 = Complex<f64>;
-type Shape = DVector<Complex64>;
+use crate::flutter::columns::{RealColumns, Shape};
+use crate::state_space::Complex64;
+use nalgebra::{DMatrix, DVector};
 
 /// Filters that are driven by one coordinate each, alike for all coordinates of the chain.
 #[derive(Debug, Clone)]

@@ -2,10 +2,9 @@
 
 use crate::aerodynamics::{DiscreteLaguerre, LaguerreModel, RationalModel};
 use crate::section::Dof;
+use crate::state_space::Complex64;
 use crate::units::ReducedFrequencyRange;
-use nalgebra::{Complex, DMatrix};
-
-type Complex64 = Complex<f64>;
+use nalgebra::DMatrix;
 
 /// One function of `p`.
 #[derive(Debug, Clone, PartialEq)]

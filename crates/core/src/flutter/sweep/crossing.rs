@@ -2,7 +2,8 @@
 
 use super::basis::LinearForces;
 use super::pencil::Supports;
-use crate::flutter::dynamic_stiffness::{Complex64, Determinant, ZERO, oscillator};
+use crate::flutter::dynamic_stiffness::{Determinant, ZERO, oscillator};
+use crate::state_space::Complex64;
 
 /// Relative size of the last Newton step.
 const TOLERANCE: f64 = 1e-13;

@@ -6,9 +6,7 @@
 
 use crate::flutter::dynamic_stiffness::newton;
 use crate::section::Suspension;
-use nalgebra::Complex;
-
-type Complex64 = Complex<f64>;
+use crate::state_space::Complex64;
 
 /// Newton steps to a root at most, and the relative size of the last.
 const STEPS: usize = 8;
