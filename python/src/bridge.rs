@@ -313,12 +313,15 @@ impl Bridge {
             generated: None,
         };
         let written = Work::new(None).run(py, || {
+            let results = bridge_flutter(&self.0)?;
             let mut export = self.0.export(&BridgeExportOptions {
                 nodes: nodes.unwrap_or_default(),
                 allow_unstable,
+                onset_interval: results.interval(),
                 ..BridgeExportOptions::default()
             })?;
-            export.verdict = Some(self.0.verdict()?);
+            let evidence = self.0.evidence(&results, &results.failed);
+            export.verdict = Some(Verdict::judge(&evidence));
             let (runtimes, label) = (Runtime::available()?, label.dated()?);
             let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;
             write_archive(&path, &bytes, Overwrite::replacing(overwrite))

@@ -13,7 +13,7 @@ use super::text::{MORE, text};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy, demo_bridge_text};
+use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, BridgeStudy, demo_bridge_text};
 use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -36,7 +36,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    let fmu = || packed(&study, &verdict, &mut out);
+    let fmu = || packed(&study, &results, &verdict, &mut out);
     if let Err(e) = progress.during("packing the FMU", fmu) {
         failed.push(format!("FMU: {e}"));
     }
@@ -57,8 +57,16 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
 }
 
 /// The FMU of the bridge.
-fn packed(study: &BridgeStudy, verdict: &Verdict, out: &mut OutputDir) -> Result<()> {
-    let mut export = study.export(&BridgeExportOptions::default())?;
+fn packed(
+    study: &BridgeStudy,
+    results: &BridgeFlutter,
+    verdict: &Verdict,
+    out: &mut OutputDir,
+) -> Result<()> {
+    let mut export = study.export(&BridgeExportOptions {
+        onset_interval: results.interval(),
+        ..BridgeExportOptions::default()
+    })?;
     export.verdict = Some(verdict.clone());
     let label = Label::default().dated()?;
     let bytes = package_bridge(&export, &Runtime::available()?, &label, FmiVersion::Two)?;

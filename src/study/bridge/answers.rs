@@ -6,9 +6,10 @@ use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, MovedOnset, Onset, OnsetSearch,
-    UnwantedGrowth, divergence_speed, divergence_with_forces, find_onset, find_onset_of_modes,
-    motion_at_onset, pk_onset, static_deflection, static_part, trace_modes, unwanted_growth_below,
+    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, MovedOnset, Onset, OnsetInterval,
+    OnsetSearch, UnwantedGrowth, divergence_speed, divergence_with_forces, find_onset,
+    find_onset_of_modes, motion_at_onset, pk_onset, static_deflection, static_part, trace_modes,
+    unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{ModesLeftOut, UntestedParts};
@@ -86,6 +87,12 @@ pub struct BridgeFlutter {
 }
 
 impl BridgeFlutter {
+    /// The interval of the onset by the models, as an FMU states it.
+    pub fn interval(&self) -> Option<OnsetInterval> {
+        let by_model = self.answers.last()?;
+        Some(by_model.search.onset()?.interval.clone())
+    }
+
     /// All onsets found, one a route at most.
     pub fn onsets(&self) -> impl Iterator<Item = &Onset> {
         self.answers.iter().filter_map(|a| a.search.onset())

@@ -8,7 +8,8 @@ use crate::buffeting::Admittance;
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::FieldTable;
 use crate::flutter::{
-    BridgeMotion, FlutterSearch, OnsetSearch, divergence_with_forces, unwanted_growth_below,
+    BridgeMotion, FlutterSearch, OnsetInterval, OnsetSearch, divergence_with_forces,
+    unwanted_growth_below,
 };
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
@@ -40,6 +41,8 @@ pub struct BridgeExportOptions {
     pub admittance: RationalAdmittance,
     /// Turbulence that goes with it.
     pub turbulence: Option<FieldTable>,
+    /// The interval of the onset by the models where a search has found it; it is found again without.
+    pub onset_interval: Option<OnsetInterval>,
 }
 
 /// Refuses a bridge that grows below its onset, tested there or not, or only where nothing was tested.
@@ -88,6 +91,7 @@ impl BridgeStudy {
                 onset: found
                     .onset()
                     .and_then(|o| OnsetStart::from_onset(o, &section)),
+                onset_interval: self.bounds(wanted, &found),
                 ..self.options(&found, named, gusts)?
             },
             turbulence: wanted
@@ -99,6 +103,15 @@ impl BridgeStudy {
             listing: Listing::All,
             reference_runs: true,
         })
+    }
+
+    /// The interval of an onset as a unit has it; one without is better than none.
+    fn bounds(&self, wanted: &BridgeExportOptions, found: &FlutterSearch) -> Option<OnsetBounds> {
+        let onset = found.onset()?;
+        match &wanted.onset_interval {
+            Some(known) => OnsetBounds::from_interval(known),
+            None => OnsetBounds::from_interval(&self.onset_interval(onset).ok()?),
+        }
     }
 
     /// The model of the first section, under the name of the bridge.
@@ -169,11 +182,7 @@ impl BridgeStudy {
             section_ranges: self.section_ranges().collect(),
             initial: self.release(motion.transpose()?.as_ref()),
             gusts,
-            onset_interval: found.onset().and_then(|onset| {
-                // a unit without an interval is better than none
-                let interval = self.onset_interval(onset).ok()?;
-                OnsetBounds::from_interval(&interval)
-            }),
+            onset_interval: None,
             onset: None,
         })
     }

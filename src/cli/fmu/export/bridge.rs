@@ -10,7 +10,7 @@ use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::fmu::package::{BridgeExport, package, package_bridge};
 use crate::plausibility::sentences;
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart};
+use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart, bridge_flutter};
 use crate::verdict::Verdict;
 use std::path::PathBuf;
 
@@ -77,19 +77,22 @@ impl FmuExportArgs {
         self.check_bridge()?;
         let study = bridge::read(&self.model, progress)?;
         let stage = progress.stage("packing the FMU");
-        let wanted = BridgeExportOptions {
+        let mut wanted = BridgeExportOptions {
             nodes: self.nodes.clone(),
             allow_unstable: self.allow_unstable,
             gust_strips: self.gust_strips,
             admittance: self.admittance.unwrap_or_default(),
             turbulence: self.turbulence.as_deref().map(read_field).transpose()?,
+            onset_interval: None,
         };
         let field = wanted.turbulence.as_ref();
         let of_field = field.map(|field| study.findings_of(field, field.mean_speed_m_s));
         let mut odd = sentences(&of_field.unwrap_or_default());
         odd.extend(study.other_admittance(&wanted));
         warn(&self.model, &odd);
-        let verdict = study.verdict()?;
+        let results = bridge_flutter(&study)?;
+        wanted.onset_interval = results.interval();
+        let verdict = Verdict::judge(&study.evidence(&results, &results.failed));
         let answer = match self.kind {
             ExportKind::Section => {
                 let export = study.export(&wanted).map_err(stages::or_allow_unstable)?;
