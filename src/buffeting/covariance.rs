@@ -3,8 +3,8 @@
 
 use super::frequency::FrequencyDomain;
 use crate::error::Result;
+use aerodeck_core::threads;
 use nalgebra::{Complex, DMatrix};
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Half the distance of Gauss's two points, over half the interval.
@@ -31,9 +31,10 @@ impl ModalCovariance {
             || -> [DMatrix<f64>; 3] { std::array::from_fn(|_| DMatrix::zeros(count, count)) };
         let frequencies = domain.resolved_hz();
         let intervals: Vec<&[f64]> = frequencies.windows(2).collect();
-        let sums = intervals.par_chunks(TOGETHER).map(|some| {
+        let chunks: Vec<_> = intervals.chunks(TOGETHER).collect();
+        let sums = threads::each(&chunks, true, |some| {
             let mut sums = zero();
-            for ends in some {
+            for ends in *some {
                 let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
                 for f in [middle - GAUSS * half, middle + GAUSS * half] {
                     let spectrum = spectrum(domain, f, &unit)?;
@@ -47,8 +48,8 @@ impl ModalCovariance {
         });
         let mut orders = zero();
         // in the order of the frequencies, whatever the number of threads
-        for sums in sums.collect::<Result<Vec<_>>>()? {
-            for (total, sum) in orders.iter_mut().zip(sums) {
+        for sums in sums {
+            for (total, sum) in orders.iter_mut().zip(sums?) {
                 *total += sum;
             }
         }

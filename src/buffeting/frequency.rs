@@ -9,8 +9,8 @@ use crate::aerodynamics::GustComponent;
 use crate::error::{Error, Result};
 use crate::flutter::{impedance, solve_complex};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use aerodeck_core::threads;
 use nalgebra::{Complex, DMatrix};
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Relative error of the variances of a bridge, and of those of accelerations, which end at the highest frequency below.
@@ -81,9 +81,10 @@ impl BuffetingProblem<'_> {
         nodes: &[usize],
     ) -> Result<SpectrumCurve> {
         let shapes = self.shapes_at(nodes);
-        let rows = frequency_hz.par_iter();
-        let rows = rows.map(|f| self.spectra(*f, speed_m_s, &shapes));
-        let rows = rows.collect::<Result<Vec<_>>>()?;
+        let rows = threads::each(&frequency_hz, true, |f| {
+            self.spectra(*f, speed_m_s, &shapes)
+        });
+        let rows = rows.into_iter().collect::<Result<Vec<_>>>()?;
         let column = |i: usize| rows.iter().map(|row| row[i]).collect();
         let gust = GustComponent::BOTH.map(|c| {
             let gust = self.turbulence.component(c);
@@ -297,9 +298,10 @@ impl<'a> FrequencyDomain<'a> {
         breaks: &[f64],
         tolerance: f64,
     ) -> Result<Vec<f64>> {
-        let at_all = |all: &[f64]| match self.problem.structure.dofs.len() > FEW {
-            true => all.par_iter().map(|f| densities(*f)).collect(),
-            false => all.iter().map(|f| densities(*f)).collect(),
+        let many = self.problem.structure.dofs.len() > FEW;
+        let at_all = |all: &[f64]| {
+            let values = threads::each(all, many, |f| densities(*f));
+            values.into_iter().collect()
         };
         integrate(at_all, breaks, tolerance).map(|(value, _)| value)
     }

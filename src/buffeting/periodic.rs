@@ -20,8 +20,8 @@ use crate::error::{Error, Result, counted};
 use crate::numbered::OnDone;
 use crate::signal::Fourier;
 use crate::state_space::{StateEquation, c2d};
+use aerodeck_core::threads;
 use nalgebra::{Complex, DMatrix};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -169,8 +169,8 @@ pub fn span_record(
     let (coupled, slowest) = problem.coupled(speed_m_s)?;
     let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, field.step_s, samples)?;
     let found = bridge.run(samples, |component| {
-        let rows = field.gusts[component as usize].par_iter();
-        rows.map(|row| bridge.amplitudes(row)).collect()
+        let rows = &field.gusts[component as usize];
+        threads::each(rows, true, |row| bridge.amplitudes(row))
     });
     Ok(SpanRecord {
         nodes: problem.names_of(nodes),
@@ -358,7 +358,7 @@ fn transfer(
         }
         all
     };
-    Ok((0..modes).into_par_iter().map(of_mode).collect())
+    Ok(threads::numbered(modes, true, of_mode))
 }
 
 /// A power of a square matrix by repeated squaring.

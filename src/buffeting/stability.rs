@@ -10,8 +10,8 @@ use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
 use crate::flutter::{impedance, pivots};
 use crate::section::Structure;
+use aerodeck_core::threads;
 use nalgebra::Complex;
-use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Frequencies of the first pass.
@@ -59,11 +59,9 @@ pub(crate) fn turning(
     let mut passed = Vec::new();
     let mut before: Option<PhaseAt> = None;
     let grid = frequencies(structure);
-    let first_pass: Vec<PhaseAt> = match structure.dofs.len() > FEW {
-        true => grid.into_par_iter().map(&at).collect::<Result<_>>()?,
-        false => grid.into_iter().map(&at).collect::<Result<_>>()?,
-    };
-    for next in first_pass {
+    let many = structure.dofs.len() > FEW;
+    for next in threads::each(&grid, many, |f| at(*f)) {
+        let next = next?;
         match &before {
             // the ends lie off the real axis by as much as the damping does there
             None => passed.push((next.0, off_axis(next.1))),

@@ -13,10 +13,10 @@ use super::problem::{BuffetingProblem, Gust};
 use crate::aerodynamics::GustComponent;
 use crate::error::{Error, Result, ensure, positive};
 use crate::signal::{Fourier, random_stream};
+use aerodeck_core::threads;
 use nalgebra::{Complex, DMatrix};
 use rand::Rng;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
 
 /// Samples of one record.
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=1 << 24;
@@ -57,8 +57,7 @@ pub fn turbulence_field(
     let fourier = Fourier::new(samples);
     let gusts = GustComponent::BOTH.map(|component| {
         let rows = problem.coefficients(component, speed_m_s, step_s, samples, seed);
-        let in_time = rows.into_par_iter().map(|row| in_time(&fourier, row));
-        in_time.collect()
+        threads::each(&rows, true, |row| in_time(&fourier, row.iter().copied()))
     });
     Ok(TurbulenceField {
         step_s,
@@ -68,7 +67,9 @@ pub fn turbulence_field(
 }
 
 /// The real signal of which the numbers of the positive frequencies are twice the Fourier coefficients.
-fn in_time(fourier: &Fourier, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
+fn in_time(fourier: &Fourier, positive: impl Iterator<Item = Complex<f64>>) -> Vec<f64> {
+    let mut spectrum = Vec::with_capacity(fourier.length());
+    spectrum.extend(positive);
     spectrum.resize(fourier.length(), Complex::default());
     fourier.sums(spectrum)
 }
@@ -76,7 +77,7 @@ fn in_time(fourier: &Fourier, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
 /// The same of real and imaginary parts one after the other.
 pub(super) fn parts_in_time(fourier: &Fourier, parts: &[f64]) -> Vec<f64> {
     let pairs = parts.chunks_exact(2);
-    in_time(fourier, pairs.map(|z| Complex::new(z[0], z[1])).collect())
+    in_time(fourier, pairs.map(|z| Complex::new(z[0], z[1])))
 }
 
 impl BuffetingProblem<'_> {

@@ -7,7 +7,7 @@ use super::wrapping::COLUMNS;
 use crate::error::{Error, Result};
 use crate::json;
 use crate::wind_tunnel::{Record, write_record};
-use rayon::prelude::*;
+use aerodeck_core::threads;
 use std::fs;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -133,7 +133,7 @@ impl OutputDir {
             let file = fs::File::create(path).map_err(|e| Error::io(path, e))?;
             write_record(*record, &mut BufWriter::new(file)).map_err(|e| e.in_file(path))
         };
-        staged.par_iter().try_for_each(write)
+        threads::each(&staged, true, write).into_iter().collect()
     }
 
     /// The folder in which the files stand until they are put in place.

@@ -2,6 +2,7 @@
 
 #[cfg(not(target_family = "wasm"))]
 use rayon::prelude::*;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static ALONE: AtomicBool = AtomicBool::new(false);
@@ -13,19 +14,53 @@ pub fn stay_on_the_callers() {
 }
 
 /// What `find` makes of each item, in their order; on all threads where that is `worth` it.
-pub(crate) fn each<T: Sync, U: Send>(
-    of: &[T],
-    worth: bool,
-    find: impl Fn(&T) -> U + Send + Sync,
-) -> Vec<U> {
-    let share = worth && !ALONE.load(Ordering::Relaxed);
-    #[cfg(not(target_family = "wasm"))]
-    if share {
-        return of.par_iter().map(find).collect();
+pub fn each<T: Sync, U: Send>(of: &[T], worth: bool, find: impl Fn(&T) -> U + Sync) -> Vec<U> {
+    numbered(of.len(), worth, |number| find(&of[number]))
+}
+
+/// What `find` makes of the numbers below `count`, in their order; on all threads where that is `worth` it.
+pub fn numbered<U: Send>(count: usize, worth: bool, find: impl Fn(usize) -> U + Sync) -> Vec<U> {
+    if !worth || ALONE.load(Ordering::Relaxed) {
+        return (0..count).map(find).collect();
     }
-    // where there is one thread, there is nothing to share
-    let _ = share;
-    of.iter().map(find).collect()
+    let found: Vec<Mutex<Option<U>>> = (0..count).map(|_| Mutex::new(None)).collect();
+    share(count, &|number| {
+        let value = find(number);
+        // nobody else asks for this place
+        if let Ok(mut place) = found[number].lock() {
+            *place = Some(value);
+        }
+    });
+    let found = found
+        .into_iter()
+        .filter_map(|place| place.into_inner().ok());
+    found.flatten().collect()
+}
+
+/// What `find` makes of each `part` of the places, with the number of the part, in their order; on all threads.
+pub fn in_parts<V: Send, U: Send>(
+    places: &mut [V],
+    part: usize,
+    find: impl Fn(usize, &mut [V]) -> U + Sync,
+) -> Vec<U> {
+    let parts: Vec<_> = places.chunks_mut(part).map(Mutex::new).collect();
+    let found = numbered(parts.len(), true, |number| {
+        let mut places = parts[number].lock().ok()?;
+        Some(find(number, &mut places))
+    });
+    found.into_iter().flatten().collect()
+}
+
+/// Compiled once, whatever is worked on.
+#[cfg(not(target_family = "wasm"))]
+fn share(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
+}
+
+/// Where there is one thread, there is nothing to share.
+#[cfg(target_family = "wasm")]
+fn share(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).for_each(work);
 }
 
 /// Functions of which the widest version that the processor has runs: what they call is to be `#[inline(always)]`. The order of

@@ -3,7 +3,7 @@
 //! matters.
 
 use crate::error::Result;
-use rayon::prelude::*;
+use aerodeck_core::threads;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Called with how many are done and how many there are, from any thread, before and after each part; it may unwind to end the work.
@@ -34,23 +34,20 @@ pub(crate) fn numbered_in_parts<V: Send, T: Send>(
 ) -> Result<Vec<T>> {
     let total = places.len();
     let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));
-    let parts = places.par_chunks_mut(part).enumerate();
-    let found: Vec<Option<Result<T>>> = parts
-        .map(|(number, places)| {
-            if number > failed.load(Ordering::Relaxed) {
-                return None;
-            }
-            // who wants no more need not wait for what has not begun
-            progress(done.load(Ordering::Relaxed), total);
-            let count = places.len();
-            let found = fill(number * part, places);
-            if found.is_err() {
-                failed.fetch_min(number, Ordering::Relaxed);
-            }
-            progress(count + done.fetch_add(count, Ordering::Relaxed), total);
-            Some(found)
-        })
-        .collect();
+    let found = threads::in_parts(places, part, |number, places| {
+        if number > failed.load(Ordering::Relaxed) {
+            return None;
+        }
+        // who wants no more need not wait for what has not begun
+        progress(done.load(Ordering::Relaxed), total);
+        let count = places.len();
+        let found = fill(number * part, places);
+        if found.is_err() {
+            failed.fetch_min(number, Ordering::Relaxed);
+        }
+        progress(count + done.fetch_add(count, Ordering::Relaxed), total);
+        Some(found)
+    });
     // parts are left out only behind one that failed
     found.into_iter().flatten().collect()
 }

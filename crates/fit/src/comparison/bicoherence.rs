@@ -5,9 +5,9 @@ use super::morlet::{Morlet, RowBuffer, WaveletParameters};
 use super::{Metric, SignalPair};
 use crate::error::{Result, ensure, non_negative, positive};
 use crate::signal::{Complex64, mean_and_deviation, random_stream};
+use aerodeck_core::threads;
 use nalgebra::DMatrix;
 use rand::Rng;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -203,10 +203,9 @@ impl Plane {
             self.rows(&self.single, signal),
             self.rows(&self.sums, signal),
         );
-        let first = (0..single.len()).into_par_iter();
-        let values: Vec<Vec<[f64; 2]>> = first
-            .map(|i| self.bispectra(i, &single[i..], &sums[2 * i..], parameters))
-            .collect();
+        let values = threads::numbered(single.len(), true, |i| {
+            self.bispectra(i, &single[i..], &sums[2 * i..], parameters)
+        });
         let values = values.concat();
         let threshold = values.iter().fold(0.0_f64, |m, v| m.max(v[1]));
         let kept = values

@@ -2,8 +2,8 @@
 
 use crate::error::{Result, ensure, positive};
 use crate::signal::{Complex64, Fourier};
+use aerodeck_core::threads;
 use aerodeck_core::vectorised;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use std::ops::Range;
@@ -172,8 +172,7 @@ impl Morlet {
     /// `work` on groups of levels, in parallel; results in the order of the levels, so that sums over them do
     /// not depend on the number of threads.
     pub(super) fn by_groups<T: Send>(&self, work: impl Fn(LevelGroup<'_>) -> T + Sync) -> Vec<T> {
-        let groups = (0..self.fourier.len()).into_par_iter();
-        groups.map(|g| work(self.group(g))).collect()
+        threads::numbered(self.fourier.len(), true, |g| work(self.group(g)))
     }
 }
 

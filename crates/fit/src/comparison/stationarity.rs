@@ -7,7 +7,7 @@ use super::surrogates::{Gamma, phase_randomised};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, ensure, non_negative};
 use crate::signal::{Complex64, mean_and_deviation};
-use rayon::prelude::*;
+use aerodeck_core::threads;
 use serde::Serialize;
 
 /// Parameters of [`stationarity`].
@@ -148,10 +148,11 @@ impl<'a> Surrogates<'a> {
         let mut others: Vec<Scalogram> = drawn.into_iter().map(Scalogram::new).collect();
         let mut thresholds = Vec::with_capacity(plan.level_count());
         for group in plan.groups() {
-            let levels = group.levels.clone().into_par_iter();
-            let kernels: Vec<Vec<f64>> = levels.map(|level| group.kernel(level)).collect();
+            let kernels = threads::numbered(group.levels.len(), true, |level| {
+                group.kernel(group.levels.start + level)
+            });
             own.advance(&group, &kernels, &mut RowBuffer::default(), |_, _| ());
-            let chunks = others.par_chunks_mut(CHUNK).map(|chunk| {
+            let chunks = threads::in_parts(&mut others, CHUNK, |_, chunk| {
                 let mut moments = vec![Moments::new(signal.len()); kernels.len()];
                 let mut buffer = RowBuffer::default();
                 for other in chunk {
@@ -160,7 +161,7 @@ impl<'a> Surrogates<'a> {
                 }
                 moments
             });
-            let mut chunks = chunks.collect::<Vec<_>>().into_iter();
+            let mut chunks = chunks.into_iter();
             let mut moments = chunks.next().unwrap_or_default();
             for chunk in chunks {
                 let each = moments.iter_mut().zip(&chunk);

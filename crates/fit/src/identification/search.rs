@@ -13,9 +13,9 @@ use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::state_space::golden_section;
 use crate::units::ReducedFrequencyRange;
+use aerodeck_core::threads;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
-use rayon::prelude::*;
 
 /// Widest bracket left by golden sections, in `ln p`: the root of the rounding error of the objective.
 const GOLDEN_TOLERANCE: f64 = 1e-8;
@@ -244,7 +244,8 @@ fn levenberg_marquardt(
         let finite = found.iter().all(|x| x.is_finite());
         finite.then(|| bounds.poles(found.as_slice()))
     };
-    let ends: Vec<Vec<f64>> = starts.par_iter().filter_map(end).collect();
+    let ends = threads::each(&starts, true, end).into_iter();
+    let ends = ends.flatten().collect();
     evaluate(ends, residuals, points)
 }
 
@@ -296,7 +297,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Descent<'_> {
             let (ahead, behind) = rayon::join(|| moved_to(ahead), || moved_to(behind));
             Some((ahead? - behind?) / (2.0 * DIFFERENCE_STEP))
         };
-        let columns: Option<Vec<_>> = (0..at.len()).into_par_iter().map(column).collect();
+        let columns: Option<Vec<_>> = threads::numbered(at.len(), true, column)
+            .into_iter()
+            .collect();
         Some(DMatrix::from_columns(&columns?))
     }
 }

@@ -24,7 +24,7 @@ use crate::signal::mean_and_deviation;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
-use rayon::prelude::*;
+use aerodeck_core::threads;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -124,19 +124,17 @@ impl FormEnsemble {
             .map(|by| InterpolatedTable::by(*by, &table, dofs, Extrapolation::Refuse));
         let read = read.collect::<Result<_>>()?;
         let numbers = samples.len() as f64;
-        let fitted: Vec<_> = fitted_forms(tested)
-            .into_par_iter()
-            .filter_map(|(form, fit)| {
-                let fitted = known(&fit).or_else(|| fit_table(samples, dofs, &fit).ok())?;
-                let variances = variances(&fit, &fitted.report, numbers)?;
-                let fitted = AdmissibleForm {
-                    form,
-                    residual_ratio: 1.0,
-                    model: fitted.model,
-                };
-                Some((fitted, variances))
-            })
-            .collect();
+        let fitted = threads::each(&fitted_forms(tested), true, |(form, fit)| {
+            let fitted = known(fit).or_else(|| fit_table(samples, dofs, fit).ok())?;
+            let variances = variances(fit, &fitted.report, numbers)?;
+            let fitted = AdmissibleForm {
+                form: form.clone(),
+                residual_ratio: 1.0,
+                model: fitted.model,
+            };
+            Some((fitted, variances))
+        });
+        let fitted: Vec<_> = fitted.into_iter().flatten().collect();
         Ok(Self {
             fits: admissible(fitted)?,
             tested,
@@ -195,13 +193,12 @@ impl FormEnsemble {
         of_fit: impl Fn(&AdmissibleForm) -> Result<FormOnset> + Sync + Send,
         of_table: impl Fn(&str, &InterpolatedTable) -> Result<FormOnset> + Sync,
     ) -> Result<FormSpread> {
-        let mut forms: Vec<FormOnset> = self.fits.par_iter().map(of_fit).collect::<Result<_>>()?;
+        let forms = threads::each(&self.fits, true, of_fit).into_iter();
+        let mut forms = forms.collect::<Result<Vec<_>>>()?;
         let read: Vec<_> = INTERPOLATIONS.iter().zip(&self.read).collect();
+        let read = threads::each(&read, true, |(by, table)| of_table(by.title(), table));
         // a table whose roots cannot be told apart says nothing
-        let read = read
-            .into_par_iter()
-            .filter_map(|(by, table)| of_table(by.title(), table).ok());
-        forms.extend(told(read.collect(), &forms));
+        forms.extend(told(read.into_iter().flatten().collect(), &forms));
         Ok(FormSpread::new(forms))
     }
 }

@@ -12,7 +12,7 @@ use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::signal::mean;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
-use rayon::prelude::*;
+use aerodeck_core::threads;
 use serde::Serialize;
 
 /// A campaign with all its recordings, and what is odd about them.
@@ -65,7 +65,7 @@ impl Campaign {
             let path = self.directory.join(run.in_wind.file());
             self.load_run(&rig, &map, run).map_err(|e| e.in_file(path))
         };
-        let read = all_or_errors(self.runs.par_iter().map(load).collect())?;
+        let read = all_or_errors(threads::each(&self.runs, true, load))?;
         let mut reading = CampaignReading {
             raw: RawCampaign {
                 section: self.section.name.clone(),
