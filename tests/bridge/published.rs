@@ -346,9 +346,9 @@ fn scatter_follows_the_onset() {
     let other = coupled(&other);
     let searched = onset(find_onset("model", &other, &SEARCH, None).unwrap());
     let nearby = NearbyOnset::new(&study.by_model, &found.at).unwrap();
-    let found = nearby.find(&other).unwrap();
+    let found = nearby.follow(&other).unwrap();
     near(found.speed_m_s / searched.at.speed_m_s, 1.0, 1e-7);
-    near(found.frequency_hz / searched.at.frequency_hz, 1.0, 1e-6);
+    near(found.frequency_hz() / searched.at.frequency_hz, 1.0, 1e-6);
 }
 
 /// Drawn from the covariance of the fit, the onset scatters as its interval says, which takes slopes instead of samples.

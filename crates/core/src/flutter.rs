@@ -38,8 +38,7 @@ mod unwanted;
 
 pub use answer::{FlutterSearch, UnstableStart};
 pub use bridge_motion::{
-    BridgeMotion, FoundOnset, ModeShare, NearbyOnset, NodeMotion, motion_at_onset,
-    static_deflection,
+    BridgeMotion, ModeShare, NearbyOnset, NodeMotion, motion_at_onset, static_deflection,
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes, trace_modes_watched};

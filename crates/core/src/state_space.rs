@@ -7,8 +7,8 @@ mod roots;
 pub mod rows;
 
 pub use discretize::{StepMatrices, c2d, step_matrix};
-pub use poles::{RepeatedEigenvalues, eigenvector};
 pub use poles::{balance, eigenvalues};
+pub use poles::{eigenvector, write_eigenvalues};
 pub use roots::golden_section;
 pub use roots::{ValueAt, boundary, root, secant};
 

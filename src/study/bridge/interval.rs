@@ -89,7 +89,7 @@ impl BridgeStudy {
         let onset = with.onset();
         // most constraints move the onset by little: then its mode can be followed without another search
         let nearby = onset.and_then(|o| NearbyOnset::new(&self.by_model, &o.at).ok());
-        let without_m_s = match nearby.and_then(|nearby| nearby.find(&section)) {
+        let without_m_s = match nearby.and_then(|nearby| nearby.follow(&section)) {
             Some(at) => Some(at.speed_m_s),
             None => find_onset("data alone", &section, &self.search(), self.tested_range())?
                 .onset()
@@ -166,7 +166,7 @@ impl BridgeStudy {
     /// The onset of the same mode with another model of one section, m/s.
     fn nearby_onset(&self, nearby: &NearbyOnset, section: usize, model: Model) -> Result<f64> {
         let bridge = self.with_forces(section, Arc::new(model));
-        let found = nearby.find(&coupled(&bridge)?);
+        let found = nearby.follow(&coupled(&bridge)?);
         found.map(|found| found.speed_m_s).ok_or_else(|| {
             Error::Numerical("interval: the mode that flutters cannot be followed".into())
         })

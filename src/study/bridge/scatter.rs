@@ -251,7 +251,7 @@ impl OnsetSampler<'_> {
                 None => return Ok(None),
             }
         }
-        Ok(Some(at.found().speed_m_s))
+        Ok(Some(at.speed_m_s))
     }
 
     /// A sample, or the bridge that is `part` of the way from the mean to it.

@@ -44,14 +44,6 @@ pub struct RelativeWind {
     pub rotation_m_s: f64,
 }
 
-/// Static coefficients in the order of the degrees of freedom, n each.
-pub struct StaticForces {
-    /// Drag, lift and moment coefficient.
-    pub values: Vec<f64>,
-    /// Per rad.
-    pub slopes: Vec<f64>,
-}
-
 impl QuasiSteady {
     /// The theory for a deck of these degrees of freedom.
     ///
@@ -100,11 +92,11 @@ impl QuasiSteady {
         Ok(forces)
     }
 
-    /// Static coefficients of the force components at a rotation in smooth wind (1.9).
-    pub fn static_forces(&self, rotation_rad: f64) -> Result<StaticForces> {
+    /// Static coefficients of the force components at a rotation in smooth wind (1.9), and their slopes per rad, in the order of
+    /// the degrees of freedom.
+    pub fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
         let c = self.coefficients.at(rotation_rad)?;
-        let (values, slopes) = self.dofs.iter().map(|dof| c.coefficient(*dof)).unzip();
-        Ok(StaticForces { values, slopes })
+        Ok(self.dofs.iter().map(|dof| c.coefficient(*dof)).unzip())
     }
 
     /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).

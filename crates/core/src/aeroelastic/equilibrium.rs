@@ -175,14 +175,14 @@ impl<'a> Branch<'a> {
 
     /// Compliance and stiffness left at a pressure and rotation.
     fn place(&self, pressure: f64, rotation: f64) -> Result<BranchPoint> {
-        let forces = self.theory.static_forces(rotation)?;
+        let (values, slopes) = self.theory.static_forces(rotation)?;
         let row = self.flexibility.row(self.torsion);
         let by = |v: &[f64]| row.iter().zip(v).map(|(f, c)| f * c).sum::<f64>();
         Ok(BranchPoint {
             pressure,
             rotation,
-            left: 1.0 - pressure * by(&forces.slopes),
-            compliance: by(&forces.values),
+            left: 1.0 - pressure * by(&slopes),
+            compliance: by(&values),
         })
     }
 
@@ -237,8 +237,8 @@ impl<'a> Branch<'a> {
     }
 
     fn point(&self, at: BranchPoint, speed_m_s: f64) -> Result<StaticEquilibrium> {
-        let forces = self.theory.static_forces(at.rotation)?;
-        let displacement = &self.flexibility * DVector::from_vec(forces.values) * at.pressure;
+        let (values, _) = self.theory.static_forces(at.rotation)?;
+        let displacement = &self.flexibility * DVector::from_vec(values) * at.pressure;
         Ok(StaticEquilibrium {
             speed_m_s,
             displacement: displacement.as_slice().to_vec(),

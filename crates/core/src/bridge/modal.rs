@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 pub struct ModalForces {
     width_m: f64,
     dofs: Vec<Dof>,
-    groups: Vec<(StripGroup, GroupSums)>,
+    groups: Vec<GroupSums>,
 }
 
 impl Bridge {
@@ -50,9 +50,7 @@ impl Bridge {
         ModalForces {
             width_m: self.width_m(),
             dofs: vec![Dof::Torsion; self.coordinates()],
-            groups: blown
-                .map(|g| (g.clone(), GroupSums::new(self, g)))
-                .collect(),
+            groups: blown.map(|g| GroupSums::new(self, g)).collect(),
         }
     }
 }
@@ -74,7 +72,7 @@ impl ModalForces {
         &self,
         of: impl Fn(&StripGroup) -> Option<ReducedFrequencyRange>,
     ) -> Option<ReducedFrequencyRange> {
-        let ranges = self.groups.iter().filter_map(|(group, _)| {
+        let ranges = self.groups.iter().filter_map(|GroupSums { group, .. }| {
             let to_bridge = self.frequency_ratio(group).recip();
             of(group).map(|range| range.scaled(to_bridge))
         });
@@ -84,14 +82,14 @@ impl ModalForces {
     /// Part of each group in what the wind does to all modes, 0 to 1: in the sum over them of the work of unit forces `G = I`, with
     /// the pressure and the width of the group.
     pub fn shares(&self) -> Vec<(&StripGroup, f64)> {
-        let work = |(group, sums): &(StripGroup, GroupSums)| {
-            let n = group.forces.dofs().len();
+        let work = |sums: &GroupSums| {
+            let n = sums.group.forces.dofs().len();
             let unit = DMatrix::<f64>::identity(n, n);
-            sums.modal(group.width_m, &unit).trace() * self.pressure_ratio(group)
+            sums.modal(&unit).trace() * self.pressure_ratio(&sums.group)
         };
         let each: Vec<f64> = self.groups.iter().map(work).collect();
         let all: f64 = each.iter().sum();
-        let groups = self.groups.iter().map(|(group, _)| group);
+        let groups = self.groups.iter().map(|sums| &sums.group);
         groups.zip(each.into_iter().map(|w| w / all)).collect()
     }
 
@@ -110,7 +108,8 @@ impl ModalForces {
             e2: DMatrix::zeros(n, n),
         };
         let mut banks: Vec<ModalBank> = Vec::new();
-        for (group, sums) in &self.groups {
+        for sums in &self.groups {
+            let group = &sums.group;
             let Some(Realization::Continuous(aero)) =
                 group.forces.realizable().map(|r| r.realize())
             else {
@@ -121,9 +120,9 @@ impl ModalForces {
                 ));
             };
             let (pressure, k) = (self.pressure_ratio(group), self.frequency_ratio(group));
-            total.e0 += sums.modal(group.width_m, &aero.e0) * pressure;
-            total.e1 += sums.modal(group.width_m, &aero.e1) * (pressure * k);
-            total.e2 += sums.modal(group.width_m, &aero.e2) * (pressure * k * k);
+            total.e0 += sums.modal(&aero.e0) * pressure;
+            total.e1 += sums.modal(&aero.e1) * (pressure * k);
+            total.e2 += sums.modal(&aero.e2) * (pressure * k * k);
             for chain in section_chains(&aero) {
                 // filters run with the wind of their own group
                 let rate = 1.0 / k;
@@ -141,8 +140,10 @@ impl ModalForces {
                     banks.len() - 1
                 });
                 for (l, output) in banks[at].outputs.iter_mut().enumerate() {
-                    let c: Vec<f64> = chain.c.column(l).iter().copied().collect();
-                    *output += sums.modal_column(group.width_m, &c, chain.input) * pressure;
+                    // Σ_i s_ij c_i I^ij of the motion j that drives the filter
+                    let mut only = DMatrix::zeros(aero.e0.nrows(), aero.e0.ncols());
+                    only.set_column(chain.input, &chain.c.column(l));
+                    *output += sums.modal(&only) * pressure;
                 }
             }
         }
@@ -224,13 +225,14 @@ impl Transfer for ModalForces {
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let n = self.dofs.len();
         let (mut real, mut imaginary) = (vec![0.0; n * n], vec![0.0; n * n]);
-        for (group, sums) in &self.groups {
+        for sums in &self.groups {
+            let group = &sums.group;
             let of_group = k.full_width() * self.frequency_ratio(group);
             let g = group
                 .forces
                 .transfer(ReducedFrequency::from_full_width(of_group))?;
             let pressure = self.pressure_ratio(group);
-            sums.add_modal(group.width_m, &g, pressure, &mut real, &mut imaginary);
+            sums.add_modal(&g, pressure, &mut real, &mut imaginary);
         }
         let parts = real.into_iter().zip(imaginary);
         Ok(TransferMatrix::from_iterator(

@@ -5,18 +5,18 @@ use crate::aerodynamics::TransferMatrix;
 use crate::section::Dof;
 use nalgebra::DMatrix;
 
-/// The sums of one group in mass-normalised modes, one matrix for each force and motion.
+/// A group and its sums in mass-normalised modes, one matrix for each force and motion.
 #[derive(Debug, Clone)]
 pub(super) struct GroupSums {
-    dofs: Vec<Dof>,
-    /// Row by row in the order of `dofs`, each modes×modes.
+    pub(super) group: StripGroup,
+    /// Row by row in the order of its degrees of freedom, each modes×modes.
     sums: Vec<DMatrix<f64>>,
 }
 
 impl GroupSums {
     /// Of the group's nodes, with each shape divided by the root of its generalised mass; dampers move no node.
     pub(super) fn new(bridge: &Bridge, group: &StripGroup) -> Self {
-        let dofs = group.forces.dofs().to_vec();
+        let dofs = group.forces.dofs();
         let weighted = |dof: &Dof, power: f64| {
             DMatrix::from_fn(group.nodes.len(), bridge.coordinates(), |n, m| {
                 let (node, mode) = (group.nodes[n], bridge.modes.get(m));
@@ -33,23 +33,23 @@ impl GroupSums {
             .flat_map(|f| motions.iter().map(move |m| f * m));
         Self {
             sums: pairs.collect(),
-            dofs,
+            group: group.clone(),
         }
     }
 
     /// `Σ_ij s_ij g_ij I^ij` with the physical scale `s_ij = diag(B, B, B²)_i diag(1/B, 1/B, 1)_j`, modes×modes.
-    pub(super) fn modal<T>(&self, width_m: f64, g: &DMatrix<T>) -> DMatrix<T>
+    pub(super) fn modal<T>(&self, g: &DMatrix<T>) -> DMatrix<T>
     where
         T: nalgebra::ComplexField<RealField = f64>,
     {
-        let n = self.dofs.len();
+        let (dofs, width_m) = (self.group.forces.dofs(), self.group.width_m);
         let modes = self.sums[0].nrows();
         let mut total = DMatrix::<T>::zeros(modes, modes);
-        for (i, force) in self.dofs.iter().enumerate() {
-            for (j, motion) in self.dofs.iter().enumerate() {
+        for (i, force) in dofs.iter().enumerate() {
+            for (j, motion) in dofs.iter().enumerate() {
                 let scale = force.force_scale(width_m) * motion.motion_scale(width_m);
                 let factor = g[(i, j)].clone().scale(scale);
-                for (t, s) in total.iter_mut().zip(&self.sums[i * n + j]) {
+                for (t, s) in total.iter_mut().zip(&self.sums[i * dofs.len() + j]) {
                     *t += factor.clone().scale(*s);
                 }
             }
@@ -61,18 +61,17 @@ impl GroupSums {
     /// step of a p-k iteration, which are asked for very often.
     pub(super) fn add_modal(
         &self,
-        width_m: f64,
         g: &TransferMatrix,
         factor: f64,
         real: &mut [f64],
         imaginary: &mut [f64],
     ) {
-        let n = self.dofs.len();
-        for (i, force) in self.dofs.iter().enumerate() {
-            for (j, motion) in self.dofs.iter().enumerate() {
+        let (dofs, width_m) = (self.group.forces.dofs(), self.group.width_m);
+        for (i, force) in dofs.iter().enumerate() {
+            for (j, motion) in dofs.iter().enumerate() {
                 let scale = factor * force.force_scale(width_m) * motion.motion_scale(width_m);
                 let value = g[(i, j)] * scale;
-                let sums = self.sums[i * n + j].as_slice();
+                let sums = self.sums[i * dofs.len() + j].as_slice();
                 for (sum, s) in real.iter_mut().zip(sums) {
                     *sum += value.re * s;
                 }
@@ -81,12 +80,5 @@ impl GroupSums {
                 }
             }
         }
-    }
-
-    /// The same as `modal` for one motion only: `Σ_i s_ij c_i I^ij`.
-    pub(super) fn modal_column(&self, width_m: f64, c: &[f64], motion: usize) -> DMatrix<f64> {
-        let n = self.dofs.len();
-        let only = DMatrix::from_fn(n, n, |i, j| if j == motion { c[i] } else { 0.0 });
-        self.modal(width_m, &only)
     }
 }

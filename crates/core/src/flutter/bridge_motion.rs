@@ -98,19 +98,11 @@ fn modal_shape(
     null_vector(&structure, &resistance, omega)
 }
 
-/// Where a mode loses its damping.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FoundOnset {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Frequency, Hz.
-    pub frequency_hz: f64,
-}
-
 /// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.
 #[derive(Debug, Clone)]
 pub struct NearbyOnset {
-    speed_m_s: f64,
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
     lambda: Complex<f64>,
     shape: DVector<Complex<f64>>,
 }
@@ -141,17 +133,9 @@ impl NearbyOnset {
         }
     }
 
-    /// Where the same mode of another bridge loses its damping; `None` where the mode cannot be followed that far.
-    pub fn find(&self, other: &CoupledSection) -> Option<FoundOnset> {
-        self.follow(other).map(|found| found.found())
-    }
-
-    /// The onset itself.
-    pub fn found(&self) -> FoundOnset {
-        FoundOnset {
-            speed_m_s: self.speed_m_s,
-            frequency_hz: self.lambda.im / TAU,
-        }
+    /// Its frequency, Hz.
+    pub fn frequency_hz(&self) -> f64 {
+        self.lambda.im / TAU
     }
 
     /// Whether this is the motion of `other`, hardly changed.
@@ -159,7 +143,8 @@ impl NearbyOnset {
         assurance(&self.shape, &other.shape) >= MIN_ASSURANCE
     }
 
-    /// The onset of the same mode of another bridge, by the secant, from which it goes on.
+    /// The onset of the same mode of another bridge, by the secant, from which it goes on; `None` where the mode cannot be followed
+    /// that far.
     pub fn follow(&self, other: &CoupledSection) -> Option<Self> {
         let problem = ModalCharacteristic::new(other)?;
         let mut known = (self.lambda, self.shape.clone());

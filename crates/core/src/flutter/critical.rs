@@ -63,7 +63,7 @@ pub(super) fn critical_speeds(section: &CoupledSection) -> Option<Vec<f64>> {
 
 /// Whether [`critical_speeds`] finds them all.
 pub(super) fn all_speeds_are_known(section: &CoupledSection) -> bool {
-    small(section).is_some_and(|(system, _)| AntisymmetricLyapunov::new(&system.a).is_some())
+    small(section).is_some_and(|(system, _)| antisymmetric_lyapunov(&system.a).is_some())
 }
 
 /// The system, if its problem is not too large, and the size of that.
@@ -88,13 +88,6 @@ struct Dimensionless {
     c: DMatrix<f64>,
     a: DMatrix<f64>,
     b: DMatrix<f64>,
-}
-
-/// The part of the state matrix that is looked at: `E`, `D`, and whether what does not depend on `u` is counted.
-struct MatrixPart<'a> {
-    e: Option<&'a DMatrix<f64>>,
-    d: Option<&'a DMatrix<f64>>,
-    constant: bool,
 }
 
 impl Dimensionless {
@@ -138,30 +131,12 @@ impl Dimensionless {
 
     /// The matrices of 1, `u` and `u²`, rows scaled to unit size.
     fn pencil(&self, size: usize) -> Option<[DMatrix<f64>; 3]> {
-        let filters = AntisymmetricLyapunov::new(&self.a)?;
-        let parts = [
-            MatrixPart {
-                e: Some(&self.e0),
-                d: Some(&self.d0),
-                constant: true,
-            },
-            MatrixPart {
-                e: None,
-                d: Some(&self.d1),
-                constant: false,
-            },
-            MatrixPart {
-                e: Some(&self.e2),
-                d: None,
-                constant: false,
-            },
-        ];
+        let filters = antisymmetric_lyapunov(&self.a)?;
         let mut pencil = [0; 3].map(|_| DMatrix::zeros(size, size));
         for j in 0..size {
             let unknowns = Unknowns::unit(j, self, &filters)?;
-            for (matrix, part) in pencil.iter_mut().zip(&parts) {
-                let column = self.equations(&unknowns, part, size);
-                matrix.set_column(j, &column);
+            for (power, matrix) in pencil.iter_mut().enumerate() {
+                matrix.set_column(j, &self.equations(&unknowns, power, size));
             }
         }
         for i in 0..size {
@@ -175,22 +150,22 @@ impl Dimensionless {
         Some(pencil)
     }
 
-    /// The rows of `v` of `A X + X Aᵀ`.
-    fn equations(&self, x: &Unknowns, part: &MatrixPart<'_>, size: usize) -> DVector<f64> {
+    /// What `u` to this power multiplies in the rows of `v` of `A X + X Aᵀ`.
+    fn equations(&self, x: &Unknowns, power: usize, size: usize) -> DVector<f64> {
         let (n, filters) = self.c.shape();
         let (mut vq, mut vx) = (DMatrix::zeros(n, n), DMatrix::zeros(n, filters));
         let mut vv = DMatrix::zeros(n, n);
-        if let Some(e) = part.e {
+        if let Some(e) = [Some(&self.e0), None, Some(&self.e2)][power] {
             vq += e * &x.q;
             vx += e * &x.w;
             vv -= e * &x.s;
         }
-        if let Some(d) = part.d {
+        if let Some(d) = [Some(&self.d0), Some(&self.d1), None][power] {
             vq += d * &x.s;
             vx += d * &x.y;
             vv += d * &x.t;
         }
-        if part.constant {
+        if power == 0 {
             vq += &x.t - &self.c * x.w.transpose();
             vx += &self.c * &x.z + &x.s * self.b.transpose() + &x.y * self.a.transpose();
             vv -= &self.c * x.y.transpose();
@@ -218,7 +193,7 @@ struct Unknowns {
 
 impl Unknowns {
     /// The one of which only the free number `j` is 1: those of `q`, `t`, `s`, `w` in turn.
-    fn unit(j: usize, of: &Dimensionless, filters: &AntisymmetricLyapunov) -> Option<Self> {
+    fn unit(j: usize, of: &Dimensionless, filters: &Factors) -> Option<Self> {
         let (n, f) = of.c.shape();
         let zeros = || DMatrix::zeros(n, n);
         let (mut q, mut s, mut t, mut w) = (zeros(), zeros(), zeros(), DMatrix::zeros(n, f));
@@ -243,55 +218,32 @@ impl Unknowns {
         }
         let y = -(&q * of.b.transpose() + &w * of.a.transpose());
         let product = &of.b * &w;
-        let z = filters.solve(&(product.transpose() - product))?;
+        let right = product.transpose() - product;
+        let below = pairs(f).map(|place| right[place]);
+        let solved = filters.solve(&DVector::from_iterator(f * f.saturating_sub(1) / 2, below))?;
+        let mut z = DMatrix::zeros(f, f);
+        for ((i, j), value) in pairs(f).zip(solved.iter()) {
+            z[(i, j)] = *value;
+            z[(j, i)] = -value;
+        }
         Some(Self { q, s, t, w, y, z })
     }
 }
 
-/// `A Z + Z Aᵀ = R` for antisymmetric `R` and `Z`.
-struct AntisymmetricLyapunov {
-    order: usize,
-    factors: Option<nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>>,
-}
+type Factors = nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>;
 
-impl AntisymmetricLyapunov {
-    /// `None` when two eigenvalues of `A` have the sum zero.
-    fn new(a: &DMatrix<f64>) -> Option<Self> {
-        let order = a.nrows();
-        let places: Vec<_> = pairs(order).collect();
-        if places.is_empty() {
-            return Some(Self {
-                order,
-                factors: None,
-            });
-        }
-        // (A Z + Z Aᵀ)_ij = Σ a_ik z_kj + a_jk z_ik
-        let operator = DMatrix::from_fn(places.len(), places.len(), |row, column| {
-            let ((i, j), (p, q)) = (places[row], places[column]);
-            let left = |from: usize, to: usize| if j == to { a[(i, from)] } else { 0.0 };
-            let right = |from: usize, to: usize| if i == from { a[(j, to)] } else { 0.0 };
-            // z_pq = 1, z_qp = −1
-            left(p, q) - left(q, p) + right(p, q) - right(q, p)
-        });
-        let factors = operator.lu();
-        factors.is_invertible().then_some(Self {
-            order,
-            factors: Some(factors),
-        })
-    }
-
-    fn solve(&self, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let mut z = DMatrix::zeros(self.order, self.order);
-        let Some(factors) = &self.factors else {
-            return Some(z);
-        };
-        let count = self.order * (self.order - 1) / 2;
-        let below = pairs(self.order).map(|place| right[place]);
-        let solved = factors.solve(&DVector::from_iterator(count, below))?;
-        for ((i, j), value) in pairs(self.order).zip(solved.iter()) {
-            z[(i, j)] = *value;
-            z[(j, i)] = -value;
-        }
-        Some(z)
-    }
+/// The factors of `A Z + Z Aᵀ = R` for antisymmetric `R` and `Z`, of which the numbers below the diagonal stand in the order of
+/// [`pairs`]; `None` when two eigenvalues of `A` have the sum zero.
+fn antisymmetric_lyapunov(a: &DMatrix<f64>) -> Option<Factors> {
+    let places: Vec<_> = pairs(a.nrows()).collect();
+    // (A Z + Z Aᵀ)_ij = Σ a_ik z_kj + a_jk z_ik
+    let operator = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+        let ((i, j), (p, q)) = (places[row], places[column]);
+        let left = |from: usize, to: usize| if j == to { a[(i, from)] } else { 0.0 };
+        let right = |from: usize, to: usize| if i == from { a[(j, to)] } else { 0.0 };
+        // z_pq = 1, z_qp = −1
+        left(p, q) - left(q, p) + right(p, q) - right(q, p)
+    });
+    let factors = operator.lu();
+    factors.is_invertible().then_some(factors)
 }

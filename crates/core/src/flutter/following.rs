@@ -46,6 +46,19 @@ pub(super) struct Mode {
     pub(super) course: EigenvalueTrend,
 }
 
+impl Mode {
+    /// The mode of a branch that nothing is known to have come from.
+    pub(super) fn new(branch: usize, lambda: Complex<f64>, shape: DVector<Complex<f64>>) -> Self {
+        let course = EigenvalueTrend::default();
+        Self {
+            branch,
+            lambda,
+            shape,
+            course,
+        }
+    }
+}
+
 /// How an eigenvalue went over the last wind speeds: the divided differences of Newton's interpolation.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct EigenvalueTrend {

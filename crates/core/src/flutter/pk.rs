@@ -152,12 +152,12 @@ pub fn pk_onset(
     // a mode that is known only beyond the search answers nothing that was asked
     let searched = entries
         .iter()
-        .filter(|e| e.speed <= search.speed_max_m_s && growing(&e.mode.lambda));
-    for entry in searched {
+        .filter(|(speed, mode)| *speed <= search.speed_max_m_s && growing(&mode.lambda));
+    for (speed, mode) in searched {
         let reason = known.map_or("the lowest speed looked at".to_owned(), |range| {
             entry_reason(range.max)
         });
-        let mut start = watch.start(entry.speed, &entry.mode, reason);
+        let mut start = watch.start(*speed, mode, reason);
         if known.is_some() {
             start.in_tested_range = tested.map(|_| true);
         }

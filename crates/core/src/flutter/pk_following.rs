@@ -3,8 +3,7 @@
 use super::critical_point::OnsetMethod;
 use super::determinant::{StructureInWind, damping_slope};
 use super::following::{
-    Continued, EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance,
-    dimensionless,
+    Continued, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
 use super::judged::{Exit, RangePassages};
 use super::onset::Onset;
@@ -29,13 +28,6 @@ const NEARLY_STILL: f64 = 0.01;
 /// Steps in which the air comes to its density where a table begins.
 const AIR_STEPS: usize = 40;
 
-/// A mode at the lowest speed at which it is known.
-#[derive(Debug, Clone)]
-pub(super) struct StartingMode {
-    pub(super) speed: f64,
-    pub(super) mode: Mode,
-}
-
 /// Called with the modes at two neighbouring speeds.
 pub(super) type OnStep<'a> = &'a mut dyn FnMut(&Modes, &Modes) -> Result<()>;
 
@@ -45,14 +37,14 @@ fn same_root(a: &Mode, b: &Mode) -> bool {
 
 impl StructureInWind<'_> {
     /// Follows every mode from where it is first known over the rising `speeds`, and further to where it leaves the range
-    /// of the model. `on_step` sees both ends of every step, also those where a mode enters or leaves.
+    /// of the model; back come the modes at the lowest speeds (m/s) at which they are known. `on_step` sees both ends of every step, also those where a mode enters or leaves.
     pub(super) fn march(
         &self,
         speeds: &[f64],
         on_step: OnStep<'_>,
-    ) -> Result<(Vec<StartingMode>, RangePassages)> {
+    ) -> Result<(Vec<(f64, Mode)>, RangePassages)> {
         let entries = self.entries(speeds)?;
-        let named = |e: &StartingMode| (e.speed, self.name(e.mode.branch));
+        let named = |(speed, mode): &(f64, Mode)| (*speed, self.name(mode.branch));
         let mut reach = RangePassages::default();
         if self.model.known_range().is_some() {
             reach.entries = entries.iter().map(named).collect();
@@ -61,8 +53,8 @@ impl StructureInWind<'_> {
         let mut at = Modes::default();
         for &speed in speeds {
             loop {
-                let entry = waiting.peek().filter(|e| e.speed <= speed);
-                let target = entry.map_or(speed, |e| e.speed);
+                let entry = waiting.peek().filter(|e| e.0 <= speed);
+                let target = entry.map_or(speed, |e| e.0);
                 if at.all.is_empty() {
                     at.speed = target;
                 }
@@ -75,8 +67,8 @@ impl StructureInWind<'_> {
                 if at.speed < target {
                     continue;
                 }
-                match waiting.next_if(|e| e.speed <= speed) {
-                    Some(e) => at.all.push(e.mode.clone()),
+                match waiting.next_if(|e| e.0 <= speed) {
+                    Some((_, mode)) => at.all.push(mode.clone()),
                     None => break,
                 }
             }
@@ -127,7 +119,7 @@ impl StructureInWind<'_> {
     }
 
     /// Every mode where it is known first, by rising speed: in nearly still air, or at the highest `K` of a table.
-    fn entries(&self, speeds: &[f64]) -> Result<Vec<StartingMode>> {
+    fn entries(&self, speeds: &[f64]) -> Result<Vec<(f64, Mode)>> {
         let still = self.still_air();
         let mut entries = match self.model.known_range() {
             Some(range) => self.entries_into(range.not_empty()?, &still)?,
@@ -137,11 +129,10 @@ impl StructureInWind<'_> {
                 let speed = NEARLY_STILL * slowest * self.structure.width_m;
                 let speed = speed.min(0.5 * speeds.first().copied().unwrap_or(f64::INFINITY));
                 let modes = self.advance(&still, speed)?.all;
-                let entry = |mode| StartingMode { speed, mode };
-                modes.into_iter().map(entry).collect()
+                modes.into_iter().map(|mode| (speed, mode)).collect()
             }
         };
-        entries.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        entries.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(entries)
     }
 
@@ -151,7 +142,7 @@ impl StructureInWind<'_> {
         &self,
         range: ReducedFrequencyRange,
         still: &Modes,
-    ) -> Result<Vec<StartingMode>> {
+    ) -> Result<Vec<(f64, Mode)>> {
         let mut thin = self.structure.clone();
         let mut at: Vec<(f64, Mode)> = still.all.iter().map(|m| (0.0, m.clone())).collect();
         for i in 1..=AIR_STEPS {
@@ -169,8 +160,7 @@ impl StructureInWind<'_> {
                 }
             }
         }
-        let entry = |(speed, mode)| StartingMode { speed, mode };
-        Ok(at.into_iter().map(entry).collect())
+        Ok(at)
     }
 
     /// Where a mode that came on the root of another can start anew: the first breath of wind mixes the shapes of modes of like
@@ -339,10 +329,6 @@ impl Follower for StructureInWind<'_> {
 
 /// A mode in still air; an undamped one counts as damped, so that it can lose its damping.
 fn still_mode(branch: usize, lambda: Complex<f64>, shape: DVector<Complex<f64>>) -> Mode {
-    Mode {
-        branch,
-        lambda: Complex::new(lambda.re.min(-f64::MIN_POSITIVE), lambda.im),
-        shape,
-        course: EigenvalueTrend::default(),
-    }
+    let lambda = Complex::new(lambda.re.min(-f64::MIN_POSITIVE), lambda.im);
+    Mode::new(branch, lambda, shape)
 }

@@ -17,7 +17,7 @@ use super::modal_characteristic::ModalCharacteristic;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::state_space::{RepeatedEigenvalues, damping_ratio};
+use crate::state_space::{damping_ratio, write_eigenvalues};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -55,8 +55,6 @@ pub enum LeastDamping {
     Solved(Box<Solved>),
     /// Of many, by the modes.
     Followed(PresentModes),
-    /// Of sampled models.
-    Unprepared,
 }
 
 /// A state matrix at the winds to come, and room for it.
@@ -64,25 +62,23 @@ pub enum LeastDamping {
 pub struct Solved {
     by_wind: [DMatrix<f64>; 3],
     matrix: DMatrix<f64>,
-    eigenvalues: RepeatedEigenvalues,
+    eigenvalues: Vec<Complex<f64>>,
 }
 
 impl LeastDamping {
-    /// That of `section`.
-    pub fn new(section: &CoupledSection) -> Self {
+    /// That of `section`; `None` for sampled models.
+    pub fn new(section: &CoupledSection) -> Option<Self> {
         let states = section.states();
         let followed = (states > MOST_STATES_SOLVED).then(|| PresentModes::new(section));
         if let Some(modes) = followed.flatten() {
-            return Self::Followed(modes);
+            return Some(Self::Followed(modes));
         }
-        let by_wind = section.state_matrix_by_wind();
-        by_wind.map_or(Self::Unprepared, |by_wind| {
-            Self::Solved(Box::new(Solved {
-                matrix: by_wind[0].clone(),
-                by_wind,
-                eigenvalues: RepeatedEigenvalues::new(states),
-            }))
-        })
+        let by_wind = section.state_matrix_by_wind()?;
+        Some(Self::Solved(Box::new(Solved {
+            matrix: by_wind[0].clone(),
+            by_wind,
+            eigenvalues: Vec::with_capacity(states),
+        })))
     }
 
     /// At `wind`, m/s, of the same section; one where nothing oscillates.
@@ -93,13 +89,10 @@ impl LeastDamping {
         let prepared = match self {
             Self::Solved(solved) => solved.at(wind),
             Self::Followed(modes) => modes.smallest_damping(section, wind),
-            Self::Unprepared => None,
         };
         prepared.map_or_else(|| smallest_damping(section, wind), Ok)
     }
-}
 
-impl LeastDamping {
     /// The mode of least damping at the last wind, from which its onset can be followed; `None` where modes are not followed.
     pub fn least(&self) -> Option<NearbyOnset> {
         let Self::Followed(modes) = self else {
@@ -122,11 +115,8 @@ impl Solved {
         for (to, ((a0, a1), a2)) in self.matrix.iter_mut().zip(a0.iter().zip(a1).zip(a2)) {
             *to = a0 + wind * (a1 + wind * a2);
         }
-        let all = self
-            .eigenvalues
-            .eigenvalues(&mut self.matrix)
-            .filter(|_| wind >= 0.0);
-        all.map(least)
+        write_eigenvalues(&mut self.matrix, &mut self.eigenvalues)?;
+        (wind >= 0.0).then(|| least(&self.eigenvalues))
     }
 }
 

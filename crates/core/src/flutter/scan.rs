@@ -353,7 +353,7 @@ impl<'a> Scan<'a> {
         let found = boundary(yes, no, EDGE_TOLERANCE, |v| {
             Ok::<_, Error>(test(&self.at(v)?))
         })?;
-        Ok(found.holds)
+        Ok(found[0])
     }
 
     /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree

@@ -1,6 +1,6 @@
 //! Modes of a structure in still air, where following them over wind speed begins.
 
-use super::following::{EigenvalueTrend, Mode, dimensionless, oscillates};
+use super::following::{Mode, dimensionless, oscillates};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
@@ -46,12 +46,8 @@ pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
         if !oscillates(&lambda) {
             return None;
         }
-        modes.push(Mode {
-            branch: 0,
-            lambda,
-            shape: shape.normalize().map(Complex::from),
-            course: EigenvalueTrend::default(),
-        });
+        let shape = shape.normalize().map(Complex::from);
+        modes.push(Mode::new(0, lambda, shape));
     }
     order_by_dof(section, &mut modes);
     Some(modes)
@@ -88,12 +84,7 @@ pub(super) fn coupled_modes(s: &Structure, inverse_mass: &DMatrix<f64>) -> Resul
             let v_t = resistance.svd(false, true).v_t.unwrap_or_default();
             v_t.row(n - 1 - taken).adjoint()
         };
-        modes.push(Mode {
-            branch: 0,
-            lambda: *lambda,
-            shape: shape.normalize(),
-            course: EigenvalueTrend::default(),
-        });
+        modes.push(Mode::new(0, *lambda, shape.normalize()));
     }
     let mut free: Vec<usize> = (0..n).collect();
     let mut named = Vec::with_capacity(modes.len());
@@ -122,12 +113,7 @@ pub(super) fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
         let vector = eigenvector(&a, lambda)?;
         let shape = vector.rows(0, n).into_owned();
         let size = dimensionless(section.structure(), &shape).norm();
-        modes.push(Mode {
-            branch: 0,
-            lambda,
-            shape: shape.unscale(size),
-            course: EigenvalueTrend::default(),
-        });
+        modes.push(Mode::new(0, lambda, shape.unscale(size)));
     }
     if modes.len() != n {
         return Err(Error::Numerical(

@@ -62,42 +62,27 @@ fn balance_in_place(m: &mut DMatrix<f64>) {
 /// # Errors
 /// [`Error::Numerical`] when an entry is not finite or the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
-    let mut found = RepeatedEigenvalues::new(a.nrows());
-    let found = found.eigenvalues(&mut a.clone()).map(<[_]>::to_vec);
-    found.ok_or_else(|| {
-        let why = match a.iter().all(|x| x.is_finite()) {
-            true => "the QR iteration did not converge",
-            false => "a matrix entry is not finite",
-        };
-        Error::Numerical(format!("eigenvalues: {why}"))
-    })
+    let mut found = Vec::with_capacity(a.nrows());
+    if write_eigenvalues(&mut a.clone(), &mut found).is_some() {
+        return Ok(found);
+    }
+    let why = match a.iter().all(|x| x.is_finite()) {
+        true => "the QR iteration did not converge",
+        false => "a matrix entry is not finite",
+    };
+    Err(Error::Numerical(format!("eigenvalues: {why}")))
 }
 
-/// Memory for the eigenvalues of matrices of one size, again and again: only the first time takes any from the system.
-#[derive(Debug, Clone)]
-pub struct RepeatedEigenvalues {
-    found: Vec<Complex<f64>>,
-}
-
-impl RepeatedEigenvalues {
-    /// For matrices of so many rows.
-    pub fn new(rows: usize) -> Self {
-        Self {
-            found: Vec::with_capacity(rows),
-        }
+/// All eigenvalues of `a`, which is spoilt, instead of what stands in `found`; `None` when an entry is not finite or the iteration
+/// does not converge. A list with room for them takes no memory from the system.
+pub fn write_eigenvalues(a: &mut DMatrix<f64>, found: &mut Vec<Complex<f64>>) -> Option<()> {
+    found.clear();
+    if !a.iter().all(|x| x.is_finite()) {
+        return None;
     }
-
-    /// All eigenvalues of `a`, which is spoilt; `None` when an entry is not finite or the iteration does not converge.
-    pub fn eigenvalues(&mut self, a: &mut DMatrix<f64>) -> Option<&[Complex<f64>]> {
-        self.found.clear();
-        if !a.iter().all(|x| x.is_finite()) {
-            return None;
-        }
-        balance_in_place(a);
-        reduce(a);
-        append_eigenvalues(a, &mut self.found)?;
-        Some(&self.found)
-    }
+    balance_in_place(a);
+    reduce(a);
+    append_eigenvalues(a, found)
 }
 
 /// Eigenvector of `a` for the known eigenvalue `lambda`, by inverse iteration, scaled to unit norm.

@@ -89,30 +89,14 @@ pub fn secant<E>(
     Ok(None)
 }
 
-/// The last two numbers at which a test was made, on either side of where its answer changes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Boundary {
-    /// Where it held.
-    pub holds: f64,
-    /// Where it failed.
-    pub fails: f64,
-}
-
-impl Boundary {
-    /// Half way between both.
-    pub fn middle(self) -> f64 {
-        0.5 * (self.holds + self.fails)
-    }
-}
-
 /// Where a test that holds at one number and fails at another changes, by bisection, no more than `tolerance` of the number
-/// wide; for zero between neighbours.
+/// wide; for zero between neighbours. Back come the last two numbers at which it was made: where it held, and where it failed.
 pub fn boundary<E>(
     mut holds: f64,
     mut fails: f64,
     tolerance: f64,
     mut test: impl FnMut(f64) -> std::result::Result<bool, E>,
-) -> std::result::Result<Boundary, E> {
+) -> std::result::Result<[f64; 2], E> {
     while (holds - fails).abs() > tolerance * holds.abs() {
         let middle = 0.5 * (holds + fails);
         if middle == holds || middle == fails {
@@ -124,7 +108,7 @@ pub fn boundary<E>(
             fails = middle;
         }
     }
-    Ok(Boundary { holds, fails })
+    Ok([holds, fails])
 }
 
 /// Interval about the maximum of a function with one maximum, by the golden section, with the two values inside.

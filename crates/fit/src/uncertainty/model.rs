@@ -157,10 +157,10 @@ impl ModelUncertainty {
         let known = self.derivatives.iter().filter(|d| d.standard_error > 0.0);
         let widest = known.map(|d| 0.5 * (d.high - d.low) / d.standard_error);
         let widest = widest.filter(|w| w.is_finite()).reduce(f64::max)?;
-        let Ok(found) = boundary(0.5, MANY, 0.0, |nu| {
+        let Ok([holds, fails]) = boundary(0.5, MANY, 0.0, |nu| {
             Ok::<_, Infallible>(two_sided_quantile(CONFIDENCE, nu) > widest)
         });
-        Some(found.middle())
+        Some(0.5 * (holds + fails))
     }
 
     /// Interval of an onset of `model`, on any structure.

@@ -21,10 +21,10 @@ pub(super) fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f6
     while inside(high) < confidence && high < 1e12 {
         high *= 2.0;
     }
-    let Ok(found) = boundary(low, high, 0.0, |t| {
+    let Ok([holds, fails]) = boundary(low, high, 0.0, |t| {
         Ok::<_, Infallible>(inside(t) < confidence)
     });
-    found.middle()
+    0.5 * (holds + fails)
 }
 
 /// Regularised incomplete beta function `I_x(a, b)`; no number where it has none.
@@ -62,8 +62,8 @@ pub(super) fn clopper_pearson(count: u64, samples: u64, confidence: f64) -> (f64
 /// `x` with `I_x(a, b) = probability`, by bisection.
 fn beta_quantile(probability: f64, a: f64, b: f64) -> f64 {
     let below = |x| Ok::<_, Infallible>(incomplete_beta(x, a, b) < probability);
-    let Ok(found) = boundary(0.0, 1.0, 0.0, below);
-    found.middle()
+    let Ok([holds, fails]) = boundary(0.0, 1.0, 0.0, below);
+    0.5 * (holds + fails)
 }
 
 /// Quantile of `count` values of which the lowest are `sorted`: linear between the order statistics, `(n − 1)p` from the first

@@ -8,7 +8,7 @@ use super::bridge_built::BuiltBridge;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
-use crate::flutter::{CriticalPoint, FoundOnset, NearbyOnset, Onset, OnsetMethod};
+use crate::flutter::{CriticalPoint, NearbyOnset, Onset, OnsetMethod};
 use crate::onset_start::{COMPARED_AT, OnsetStart};
 use crate::units::ReducedFrequency;
 
@@ -58,7 +58,7 @@ impl SearchedOnset {
     }
 
     /// The onset of a bridge up to `limit`, m/s; `None` where it has to be searched for.
-    pub(super) fn followed(&self, built: &mut BuiltBridge, limit: f64) -> Option<FoundOnset> {
+    pub(super) fn followed(&self, built: &mut BuiltBridge, limit: f64) -> Option<NearbyOnset> {
         let now = parameters(&mut built.own.bridge);
         let near = |(now, then): (&f64, &f64)| (now - then).abs() <= NEAR * then.abs();
         if now.len() != self.parameters.len() || !now.iter().zip(&self.parameters).all(near) {
@@ -71,12 +71,12 @@ impl SearchedOnset {
         }
         // another motion may have become critical before it, and a third before that
         for _ in 0..=OTHERS {
-            let found = next.found();
-            if !(found.speed_m_s > 0.0 && found.speed_m_s <= limit) {
+            let speed = next.speed_m_s;
+            if !(speed > 0.0 && speed <= limit) {
                 return None;
             }
-            if !grows_below(built, found.speed_m_s)? {
-                return self.is_damped(built, found.speed_m_s).then_some(found);
+            if !grows_below(built, speed)? {
+                return self.is_damped(built, speed).then_some(next);
             }
             next = built.least_damped()?.follow(built.stepper.section())?;
         }

@@ -5,7 +5,7 @@ use super::bridge_followed::SearchedOnset;
 use super::section::OnsetCard;
 use crate::bridge::Bridge;
 use crate::flutter::{
-    FastMotion, FlutterSearch, FoundOnset, OnsetSearch, bridge_damps_fast_motion,
+    FastMotion, FlutterSearch, NearbyOnset, OnsetSearch, bridge_damps_fast_motion,
 };
 use crate::onset_start::simulated_onset;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
@@ -39,9 +39,9 @@ impl OnsetCard {
         tested: Option<ReducedFrequencyRange>,
         slow_wind: Option<&str>,
         limit: f64,
-        onset: &FoundOnset,
+        onset: &NearbyOnset,
     ) -> Option<Self> {
-        let (speed, hertz) = (onset.speed_m_s, onset.frequency_hz);
+        let (speed, hertz) = (onset.speed_m_s, onset.frequency_hz());
         let k = ReducedFrequency::from_hertz(hertz, built.own.bridge.width_m(), speed);
         if tested.is_some_and(|range| !range.contains(k)) {
             return None;

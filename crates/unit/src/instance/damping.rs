@@ -1,18 +1,18 @@
 //! The smallest damping ratio at the present wind, which importers may read at every step.
 
 use super::trust::shown;
-use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::flutter::{LeastDamping, NearbyOnset, aliased_below, smallest_damping};
 use crate::response::{Inputs, Stepper};
-use crate::state_space::{RepeatedEigenvalues, damping_ratio};
+use crate::state_space::{damping_ratio, write_eigenvalues};
 use nalgebra::{Complex, DMatrix};
 
 /// Damping of the present modes with room for its computation; made anew, as [`Default`] is, where the system is.
 #[derive(Debug, Default)]
 pub(super) struct PresentDamping {
     way: Option<Way>,
-    last: Option<KnownDamping>,
+    /// A wind speed, m/s, and the smallest damping ratio there.
+    last: Option<[f64; 2]>,
 }
 
 /// How it is found again and again.
@@ -29,14 +29,7 @@ struct Sampled {
     lowest_m_s: f64,
     steady: Inputs,
     matrix: DMatrix<f64>,
-    eigenvalues: RepeatedEigenvalues,
-}
-
-/// A wind speed, m/s, and the smallest damping ratio there.
-#[derive(Debug, Clone, Copy)]
-struct KnownDamping {
-    wind_m_s: f64,
-    ratio: f64,
+    eigenvalues: Vec<Complex<f64>>,
 }
 
 impl PresentDamping {
@@ -45,8 +38,8 @@ impl PresentDamping {
     /// # Errors
     /// Where the eigenvalues are not found.
     pub(super) fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<f64> {
-        if let Some(known) = self.last.filter(|known| known.wind_m_s == wind_m_s) {
-            return Ok(known.ratio);
+        if let Some([_, ratio]) = self.last.filter(|[at, _]| *at == wind_m_s) {
+            return Ok(ratio);
         }
         let way = self.way.get_or_insert_with(|| Way::new(stepper));
         let ratio = match way {
@@ -56,12 +49,10 @@ impl PresentDamping {
                 None => smallest_damping(stepper.section(), wind_m_s)?,
             },
         };
-        self.last = Some(KnownDamping { wind_m_s, ratio });
+        self.last = Some([wind_m_s, ratio]);
         Ok(ratio)
     }
-}
 
-impl PresentDamping {
     /// The mode that had it last, see [`LeastDamping::least`].
     pub(super) fn least(&self) -> Option<NearbyOnset> {
         match &self.way {
@@ -74,17 +65,17 @@ impl PresentDamping {
 impl Way {
     fn new(stepper: &Stepper) -> Self {
         let section = stepper.section();
-        let states = section.states();
-        match section.aerodynamics() {
-            Realization::Continuous(_) => Self::Continuous(LeastDamping::new(section)),
-            Realization::Discrete(_) => Self::Sampled(Sampled {
-                // a motion without a spring has no period in still air, and damping is told by what is there
-                lowest_m_s: aliased_below(section).unwrap_or(0.0),
-                steady: Inputs::steady(0.0, section.structure().dofs.len()),
-                matrix: DMatrix::zeros(states, states),
-                eigenvalues: RepeatedEigenvalues::new(states),
-            }),
+        if let Some(least) = LeastDamping::new(section) {
+            return Self::Continuous(least);
         }
+        let states = section.states();
+        Self::Sampled(Sampled {
+            // a motion without a spring has no period in still air, and damping is told by what is there
+            lowest_m_s: aliased_below(section).unwrap_or(0.0),
+            steady: Inputs::steady(0.0, section.structure().dofs.len()),
+            matrix: DMatrix::zeros(states, states),
+            eigenvalues: Vec::with_capacity(states),
+        })
     }
 }
 
@@ -104,10 +95,13 @@ impl Sampled {
         }
         self.steady.wind_speed_m_s = wind_m_s;
         let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;
-        let found = self.eigenvalues.eigenvalues(&mut self.matrix);
-        Ok(step.zip(found).map(|(step, all)| {
+        let found = write_eigenvalues(&mut self.matrix, &mut self.eigenvalues);
+        Ok(step.zip(found).map(|(step, ())| {
             let diverges = |z: &Complex<f64>| z.im == 0.0 && z.norm() > 1.0;
-            let alive = all.iter().filter(|z| z.im > 0.0 || diverges(z));
+            let alive = self
+                .eigenvalues
+                .iter()
+                .filter(|z| z.im > 0.0 || diverges(z));
             let ratios = alive.map(|z| damping_ratio(z.ln() / step));
             ratios.reduce(f64::min).unwrap_or(1.0)
         }))

@@ -15,17 +15,12 @@ enum Function {
     Lag(f64),
     /// Takenaka–Malmquist filter with the poles up to its own.
     Filter(Vec<f64>),
-    /// Discrete Laguerre filter whose output is held from sample to sample.
-    Sampled(SampledFilter),
-}
-
-/// A filter of the discrete Laguerre model and the hold behind it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct SampledFilter {
-    alpha: f64,
-    order: i32,
-    /// Step in dimensionless time.
-    delta_s: f64,
+    /// Discrete Laguerre filter `(α, l)` whose output is held from sample to sample, a step `Δs` of dimensionless time.
+    Sampled {
+        alpha: f64,
+        order: i32,
+        delta_s: f64,
+    },
 }
 
 /// What a coefficient is called, in the letters of its model; in words where somebody reads it.
@@ -112,11 +107,11 @@ impl LinearForces {
                     continue;
                 }
                 for (order, column) in term.coefficients.column_iter().enumerate() {
-                    let function = Function::Sampled(SampledFilter {
+                    let function = Function::Sampled {
                         alpha: term.alpha,
                         order: order as i32,
                         delta_s: model.delta_s,
-                    });
+                    };
                     let term = CoefficientName::OfChain {
                         chain: t,
                         filter: order,
@@ -267,30 +262,32 @@ impl Function {
                 }
                 (value, value * logarithmic)
             }
-            Self::Sampled(filter) => filter.at(p),
+            Self::Sampled {
+                alpha,
+                order,
+                delta_s,
+            } => sampled(*alpha, *order, *delta_s, p),
         }
     }
 }
 
-impl SampledFilter {
-    /// `√(1−α)/D (N/D)^l (1 − b)/(pΔs)` with `b = e^{−pΔs}`, `D = 1 − √α b`, `N = √α − b`, and its derivative.
-    #[inline(always)]
-    fn at(&self, p: Complex64) -> (Complex64, Complex64) {
-        let (root, step) = (self.alpha.sqrt(), self.delta_s);
-        let back = (-p * step).exp();
-        let one = Complex64::new(1.0, 0.0);
-        let (below, above) = (one - back * root, back * -1.0 + root);
-        let hold = (one - back) / (p * step);
-        let filter = below.inv() * (1.0 - self.alpha).sqrt() * (above / below).powi(self.order);
-        let (order, slope) = (f64::from(self.order), back * step);
-        // zero of the filter itself: the derivative below does not need its logarithm
-        let of_filter = filter * (slope * (-root * (order + 1.0)) / below)
-            + below.inv()
-                * (1.0 - self.alpha).sqrt()
-                * (above / below).powi((self.order - 1).max(0))
-                * (slope / below)
-                * order;
-        let of_hold = slope / (p * step) - hold / p;
-        (filter * hold, of_filter * hold + filter * of_hold)
-    }
+/// `√(1−α)/D (N/D)^l (1 − b)/(pΔs)` with `b = e^{−pΔs}`, `D = 1 − √α b`, `N = √α − b`, and its derivative.
+#[inline(always)]
+fn sampled(alpha: f64, order: i32, step: f64, p: Complex64) -> (Complex64, Complex64) {
+    let root = alpha.sqrt();
+    let back = (-p * step).exp();
+    let one = Complex64::new(1.0, 0.0);
+    let (below, above) = (one - back * root, back * -1.0 + root);
+    let hold = (one - back) / (p * step);
+    let filter = below.inv() * (1.0 - alpha).sqrt() * (above / below).powi(order);
+    let (count, slope) = (f64::from(order), back * step);
+    // zero of the filter itself: the derivative below does not need its logarithm
+    let of_filter = filter * (slope * (-root * (count + 1.0)) / below)
+        + below.inv()
+            * (1.0 - alpha).sqrt()
+            * (above / below).powi((order - 1).max(0))
+            * (slope / below)
+            * count;
+    let of_hold = slope / (p * step) - hold / p;
+    (filter * hold, of_filter * hold + filter * of_hold)
 }

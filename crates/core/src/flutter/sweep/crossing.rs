@@ -30,22 +30,20 @@ pub(super) fn refine<const N: usize>(
     mut omega: f64,
 ) -> Option<Crossing> {
     for _ in 0..STEPS {
-        let at = singularity(forces, coefficients, supports, speed, omega);
+        let [value, by_lambda, by_speed] =
+            singularity(forces, coefficients, supports, speed, omega);
         // i d_λ is the derivative along ω
-        let (by_omega, by_speed) = (
-            Complex64::new(-at.by_lambda.im, at.by_lambda.re),
-            at.by_speed,
-        );
+        let by_omega = Complex64::new(-by_lambda.im, by_lambda.re);
         let jacobian = by_omega.re * by_speed.im - by_omega.im * by_speed.re;
-        let omega_step = (at.value.re * by_speed.im - at.value.im * by_speed.re) / jacobian;
-        let speed_step = (by_omega.re * at.value.im - by_omega.im * at.value.re) / jacobian;
+        let omega_step = (value.re * by_speed.im - value.im * by_speed.re) / jacobian;
+        let speed_step = (by_omega.re * value.im - by_omega.im * value.re) / jacobian;
         if !(omega_step.is_finite() && speed_step.is_finite()) {
             return None;
         }
         omega -= omega_step;
         speed -= speed_step;
         if speed_step.abs() <= TOLERANCE * speed && omega_step.abs() <= TOLERANCE * omega {
-            let rate = -at.by_speed / at.by_lambda;
+            let rate = -by_speed / by_lambda;
             return (speed > 0.0 && omega > 0.0).then_some(Crossing {
                 speed,
                 omega,
@@ -56,20 +54,15 @@ pub(super) fn refine<const N: usize>(
     None
 }
 
-/// `D(λ, V)` of [`dynamic_stiffness`](crate::flutter::dynamic_stiffness) at `λ = iω`, its determinant with derivatives.
-struct Singularity {
-    value: Complex64,
-    by_lambda: Complex64,
-    by_speed: Complex64,
-}
-
+/// The determinant of `D(λ, V)` of [`dynamic_stiffness`](crate::flutter::dynamic_stiffness) at `λ = iω`, and its derivatives by
+/// `λ` and by `V`.
 fn singularity<const N: usize>(
     forces: &LinearForces,
     coefficients: &[f64],
     s: &Supports<N>,
     speed: f64,
     omega: f64,
-) -> Singularity {
+) -> [Complex64; 3] {
     let width = s.width;
     let p = Complex64::new(0.0, omega * width / speed);
     let (g, slope) = forces.transfer::<N>(p, coefficients);
@@ -87,9 +80,6 @@ fn singularity<const N: usize>(
         }
     }
     let determinant = Determinant::new(&d, N);
-    Singularity {
-        value: determinant.value,
-        by_lambda: determinant.along(&by_lambda),
-        by_speed: determinant.along(&by_speed),
-    }
+    let [by_lambda, by_speed] = [by_lambda, by_speed].map(|d| determinant.along(&d));
+    [determinant.value, by_lambda, by_speed]
 }

@@ -44,7 +44,7 @@ fn what_is_followed_is_what_a_search_finds() {
         let numbers = card.numbers;
         for (found, expected) in [
             (found.speed_m_s, numbers.speed_m_s.value),
-            (found.frequency_hz, numbers.frequency_hz.value),
+            (found.frequency_hz(), numbers.frequency_hz.value),
         ] {
             assert!(
                 (found / expected - 1.0).abs() < 1e-8,
