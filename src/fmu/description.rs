@@ -10,8 +10,7 @@ use super::resources::Resources;
 use super::si::SiUnit;
 use super::standard::FmiTerm;
 use super::variables::{
-    Causality, Dependency, DependencyKind, ListedVariables, Listing, StartValue, Variable,
-    VariableTable,
+    Causality, Dependency, DependencyKind, Listing, StartValue, Variable, VariableTable,
 };
 use super::xml::Element;
 use crate::error::{Error, Result};
@@ -28,7 +27,7 @@ const TOLERANCE: f64 = 1e-6;
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
 pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
     let table = resources.described_table()?;
-    let ListedVariables { table, references } = &table.listed(listing);
+    let (table, references) = &table.listed(listing);
     let variables = references.iter().zip(table.variables());
     let variables = variables
         .map(|(reference, v)| scalar(*reference, v))
@@ -48,7 +47,7 @@ pub fn model_description(resources: &Resources, listing: Listing, label: &Label)
 pub(super) fn log_categories() -> Element {
     let categories = LOG_CATEGORIES.iter().map(|(name, description)| {
         Element::new("Category")
-            .with("name", name)
+            .with("name", name.to_string_lossy())
             .with("description", description)
     });
     Element::new("LogCategories").containing(categories)

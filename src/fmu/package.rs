@@ -238,7 +238,7 @@ fn assembled(
         FmiVersion::Three => "terminalsAndIcons/icon.png",
     };
     files.insert(icon.into(), ICON.to_vec());
-    let listed = resources.table.listed(listing).table;
+    let (listed, _) = resources.table.listed(listing);
     let text = terminals::document(&listed, version);
     files.insert(terminals::FILE.into(), text.into_bytes());
     for (name, text) in options {

@@ -1,23 +1,25 @@
 //! Categories of log messages, for the description and for the logger.
 
+use std::ffi::CStr;
+
 /// Categories of log messages with their descriptions, under the names of the standard.
-pub const LOG_CATEGORIES: [(&str, &str); 6] = [
-    ("logEvents", "Instantiation, initialisation, reset"),
+pub const LOG_CATEGORIES: [(&CStr, &str); 6] = [
+    (c"logEvents", "Instantiation, initialisation, reset"),
     (
-        "logStatusWarning",
+        c"logStatusWarning",
         "Something unexpected that does not stop the run, such as an onset outside the tested range",
     ),
     (
-        "logStatusDiscard",
+        c"logStatusDiscard",
         "A value or a step that was refused; everything is as it was before",
     ),
     (
-        "logStatusError",
+        c"logStatusError",
         "A call that failed; the instance has to be reset or set back to a saved state",
     ),
     (
-        "logStatusFatal",
+        c"logStatusFatal",
         "A defect of the program; the instance cannot be used any more",
     ),
-    ("logAll", "Everything"),
+    (c"logAll", "Everything"),
 ];

@@ -26,7 +26,7 @@ pub use computed::{ComputedNumber, Formula, Known, OnsetNumbers, Present};
 pub(crate) use computed_rows::{LINEAR_ROTATION_RAD, fill_computed_dependencies};
 pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
-pub use listing::{ListedVariables, Listing};
+pub use listing::Listing;
 pub use parameters::{ModeParameter, SectionParameter};
 pub use response::Response;
 pub use variable::{

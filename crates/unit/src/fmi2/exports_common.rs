@@ -71,8 +71,7 @@ pub(crate) fn made(
         Ok(Err(refusal)) => refusal.message,
         Err(panic) => format!("internal error ({})", panic_text(&*panic)),
     };
-    let message = format!("{}: {why}", logger.function(function));
-    logger.log(fmi2Status::fmi2Error, Category::Error, &message);
+    logger.say(fmi2Status::fmi2Error, Category::Error, function, why);
     None
 }
 

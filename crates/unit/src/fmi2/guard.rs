@@ -55,21 +55,17 @@ impl Component {
             RefusalEffect::Discard => (fmi2Status::fmi2Discard, Category::Discard),
             RefusalEffect::Call | RefusalEffect::Error => (fmi2Status::fmi2Error, Category::Error),
         };
-        let message = format!("{}: {refusal}", self.logger.function(function));
-        self.logger.log(status, category, &message);
+        self.logger.say(status, category, function, refusal);
         status
     }
 
     #[cold]
     fn poison(&mut self, function: &str, panic: &(dyn Any + Send)) -> fmi2Status {
         self.poisoned = true;
-        let message = format!(
-            "{}: internal error ({}); this instance cannot be used any more",
-            self.logger.function(function),
-            panic_text(panic)
-        );
+        let why = panic_text(panic);
+        let why = format_args!("internal error ({why}); this instance cannot be used any more");
         let status = fmi2Status::fmi2Error;
-        self.logger.log(status, Category::Fatal, &message);
+        self.logger.say(status, Category::Fatal, function, why);
         status
     }
 
@@ -154,12 +150,10 @@ pub(crate) use exported;
 
 #[cold]
 fn poisoned(component: &Component, function: &str) -> fmi2Status {
-    let message = format!(
-        "{}: an earlier internal error has made this instance unusable; free it",
-        component.logger.function(function)
-    );
+    let why = "an earlier internal error has made this instance unusable; free it";
     let status = fmi2Status::fmi2Error;
-    component.logger.log(status, Category::Fatal, &message);
+    let logger = &component.logger;
+    logger.say(status, Category::Fatal, function, why);
     status
 }
 
@@ -170,10 +164,8 @@ fn poisoned(component: &Component, function: &str) -> fmi2Status {
 pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &str) -> fmi2Status {
     // SAFETY: by the contract of this function
     if let Some(component) = unsafe { handle.cast::<Component>().as_ref() } {
-        let message = format!("{}: {why}", component.logger.function(function));
-        component
-            .logger
-            .log(fmi2Status::fmi2Error, Category::Error, &message);
+        let status = fmi2Status::fmi2Error;
+        component.logger.say(status, Category::Error, function, why);
     }
     fmi2Status::fmi2Error
 }

@@ -4,9 +4,11 @@
 //! are ever passed. Refusals are written even where logging is switched off: their reason must not be lost.
 
 use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Status};
+use crate::log_categories::LOG_CATEGORIES;
 use std::ffi::{CStr, CString, c_char, c_void};
+use std::fmt::Display;
 
-/// Category of a message: index in [`crate::log_categories::LOG_CATEGORIES`].
+/// Category of a message: index in [`LOG_CATEGORIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Category {
     Events,
@@ -18,7 +20,7 @@ pub(crate) enum Category {
 }
 
 impl Category {
-    const EVERY: [Category; 6] = [
+    const EVERY: [Self; 6] = [
         Self::Events,
         Self::Warning,
         Self::Discard,
@@ -28,14 +30,7 @@ impl Category {
     ];
 
     fn name(self) -> &'static CStr {
-        match self {
-            Self::Events => c"logEvents",
-            Self::Warning => c"logStatusWarning",
-            Self::Discard => c"logStatusDiscard",
-            Self::Error => c"logStatusError",
-            Self::Fatal => c"logStatusFatal",
-            Self::All => c"logAll",
-        }
+        LOG_CATEGORIES[self as usize].0
     }
 
     /// The category of this name.
@@ -116,6 +111,18 @@ impl Logger {
             (true, []) => vec![Category::All],
             (true, some) => some.to_vec(),
         };
+    }
+
+    /// Writes what a function of the interface has to say.
+    pub(crate) fn say(
+        &self,
+        status: fmi2Status,
+        category: Category,
+        function: &str,
+        what: impl Display,
+    ) {
+        let message = format!("{}: {what}", self.function(function));
+        self.log(status, category, &message);
     }
 
     /// Writes a message.

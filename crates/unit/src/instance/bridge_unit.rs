@@ -9,7 +9,6 @@ use super::bridge_search::slow_wind;
 use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
 use super::section::OnsetCard;
-use super::sensitivity::SectionValues;
 use super::unit::Prepared;
 use crate::bridge::motion_index;
 use crate::bridge_options::BridgeOptions;
@@ -116,24 +115,6 @@ impl BridgeUnit {
             .set_gusts(&mut self.inputs, gusts, gust_rates);
     }
 
-    /// What a role stands for in the motion of the mass-normalised modes.
-    fn pick_modal(&self, modal: &Outputs, role: Role) -> f64 {
-        match role {
-            Role::NodeMotion(node, response, dof) => {
-                let row = 3 * node + motion_index(dof);
-                self.at_row(row, modal.lists()[response as usize])
-            }
-            Role::Damper(d, response) => {
-                let list = modal.lists()[response as usize];
-                product(&self.built.own.strokes, d, list)
-            }
-            Role::Mode(m, ModeOutput::Coordinate) => modal.displacement[m] / self.own.roots[m],
-            Role::Mode(m, ModeOutput::Rate) => modal.rate[m] / self.own.roots[m],
-            Role::Mode(m, ModeOutput::Force) => modal.self_excited_force[m] * self.own.roots[m],
-            _ => 0.0,
-        }
-    }
-
     /// Displacement in a row of the shapes by mass-normalised coordinates.
     pub(super) fn at_row(&self, row: usize, modes: &[f64]) -> f64 {
         product(&self.built.own.shapes, row, modes)
@@ -211,12 +192,19 @@ impl CoupledKind for ModalBridge {
         [all, still]
     }
 
-    /// Modes are mass-normalised in the state.
-    fn pick(unit: &BridgeUnit, instant: &SectionValues, role: Role) -> f64 {
+    fn pick(unit: &BridgeUnit, modal: &Outputs, role: Role) -> f64 {
+        let (own, roots) = (&unit.built.own, &unit.own.roots);
         match role {
-            Role::Filter(entry) => instant.of_state(entry),
-            Role::FilterRate(entry) => instant.of_rate(entry),
-            other => unit.pick_modal(&instant.outputs, other),
+            Role::NodeMotion(node, response, dof) => {
+                let row = 3 * node + motion_index(dof);
+                unit.at_row(row, modal.lists()[response as usize])
+            }
+            Role::Damper(d, response) => product(&own.strokes, d, modal.lists()[response as usize]),
+            // modes are mass-normalised in the state
+            Role::Mode(m, ModeOutput::Coordinate) => modal.displacement[m] / roots[m],
+            Role::Mode(m, ModeOutput::Rate) => modal.rate[m] / roots[m],
+            Role::Mode(m, ModeOutput::Force) => modal.self_excited_force[m] * roots[m],
+            _ => 0.0,
         }
     }
 
@@ -303,7 +291,7 @@ impl CoupledKind for ModalBridge {
 
     fn write_outputs(unit: &BridgeUnit, memory: &mut Memory) {
         for (index, role) in &unit.own.responses {
-            memory.values[*index] = unit.pick_modal(&unit.outputs, *role);
+            memory.values[*index] = Self::pick(unit, &unit.outputs, *role);
         }
     }
 }

@@ -6,13 +6,12 @@ use super::damping::PresentDamping;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{SectionValues, check_finite};
+use super::sensitivity::SectionValues;
 use super::trust::beyond_linear;
-use super::unit::{Differentiable, Prepared, Unit};
+use super::unit::{Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::lifecycle::State;
-use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
@@ -69,8 +68,8 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Displacements and rates of the coordinates at release with the initial values in `values`.
     fn motion_at_release(unit: &Coupled<Self>, values: &[f64]) -> [Vec<f64>; 2];
 
-    /// What a variable that is no computed number stands for.
-    fn pick(unit: &Coupled<Self>, instant: &SectionValues, role: Role) -> f64;
+    /// What a role stands for in outputs of the coordinates; zero for what inputs and release do not act on.
+    fn pick(unit: &Coupled<Self>, outputs: &Outputs, role: Role) -> f64;
 
     /// Of outputs of the coordinates, or their derivatives, what [`Known::Motion`](crate::variables::Known::Motion) stands for in `state`.
     fn motion(
@@ -227,7 +226,7 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         &mut self,
         resources: &Resources,
         memory: &mut Memory,
-    ) -> Result<&mut dyn Differentiable> {
+    ) -> Result<&mut dyn Prepared> {
         if self.stale {
             let built = self.own.build(resources, &memory.values)?;
             S::replaces(self);
@@ -274,45 +273,6 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     }
 }
 
-impl<S: CoupledKind> Prepared for Coupled<S> {
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
-        self.load_inputs_once(memory);
-        let factor = self.indices.turbulence_factor;
-        match factor.map_or(0.0, |index| memory.values[index]) {
-            0.0 => {
-                let stepper = &mut self.built.stepper;
-                stepper.advance(&mut memory.system, &self.inputs, step)?;
-            }
-            factor => S::advance_in_turbulence(self, memory, step, factor)?,
-        }
-        Ok(false)
-    }
-
-    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
-        self.load_inputs_once(memory);
-        let stepper = &mut self.built.stepper;
-        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
-        check_finite(&*rates)
-    }
-
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
-        self.load_inputs_once(memory);
-        let stepper = &mut self.built.stepper;
-        stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
-        check_finite(self.outputs.lists().into_iter().flatten())?;
-        S::write_outputs(self, memory);
-        Ok(())
-    }
-
-    /// Onset and divergence. A search that fails is no reason to end a run.
-    fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
-        if !self.calculated.are_known() {
-            let card = S::found(self, resources, memory);
-            self.calculated.enter(card, memory, notices);
-        }
-    }
-}
-
 impl<S: CoupledKind> Coupled<S> {
     pub(super) fn new(own: S, resources: &Resources) -> Result<Self> {
         let table = &resources.table;
@@ -345,7 +305,7 @@ impl<S: CoupledKind> Coupled<S> {
     }
 
     /// Loads the inputs of the memory of the unit where they may be others; with a rate and in turbulence a step carries them on.
-    fn load_inputs_once(&mut self, memory: &Memory) {
+    pub(super) fn load_inputs_once(&mut self, memory: &Memory) {
         if self.inputs_stay {
             return;
         }
@@ -374,13 +334,23 @@ impl<S: CoupledKind> Coupled<S> {
         &mut self,
         resources: &Resources,
         other: &Memory,
-        result: &mut dyn FnMut(&mut Self) -> Result<Vec<f64>>,
+        result: impl FnOnce(&mut Self) -> Result<Vec<f64>>,
     ) -> Result<Vec<f64>> {
         let of_other = self.own.build(resources, &other.values)?;
         let present = std::mem::replace(&mut self.built, of_other);
         let found = result(self);
         self.built = present;
         found
+    }
+
+    /// What a variable that is no computed number stands for.
+    pub(super) fn pick(&self, instant: &SectionValues, role: Role) -> f64 {
+        let first = self.indices.first_filter;
+        match role {
+            Role::Filter(i) => instant.of_state(first + i),
+            Role::FilterRate(i) => instant.of_rate(first + i),
+            other => S::pick(self, &instant.outputs, other),
+        }
     }
 
     /// All that there is in a state, with the inputs that are loaded.

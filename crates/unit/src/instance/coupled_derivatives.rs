@@ -1,4 +1,4 @@
-//! Derivatives of sections and bridges. Outputs and rates of the state are linear in state, forces and gusts, `y = C(V) z + D w`,
+//! What sections and bridges compute, and its derivatives. Outputs and rates of the state are linear in state, forces and gusts, `y = C(V) z + D w`,
 //! `ż = A(V) z + E w`, so their derivatives are what one of each does; those with respect to the wind speed are closed too. Only
 //! parameters are differenced.
 
@@ -7,14 +7,51 @@ use super::coupled_present::PresentSlopes;
 use super::layout::Source;
 use super::memory::Memory;
 use super::sensitivity::{SectionValues, add, central_difference, check_finite, parameter_step};
-use super::unit::Differentiable;
+use super::unit::Prepared;
 use crate::error::Result;
 use crate::lifecycle::State;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::variables::{ComputedNumber, Role};
 
-impl<S: CoupledKind> Differentiable for Coupled<S> {
+impl<S: CoupledKind> Prepared for Coupled<S> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
+        self.load_inputs_once(memory);
+        let factor = self.indices.turbulence_factor;
+        match factor.map_or(0.0, |index| memory.values[index]) {
+            0.0 => {
+                let stepper = &mut self.built.stepper;
+                stepper.advance(&mut memory.system, &self.inputs, step)?;
+            }
+            factor => S::advance_in_turbulence(self, memory, step, factor)?,
+        }
+        Ok(false)
+    }
+
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
+        self.load_inputs_once(memory);
+        let stepper = &mut self.built.stepper;
+        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
+        check_finite(&*rates)
+    }
+
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
+        self.load_inputs_once(memory);
+        let stepper = &mut self.built.stepper;
+        stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
+        check_finite(self.outputs.lists().into_iter().flatten())?;
+        S::write_outputs(self, memory);
+        Ok(())
+    }
+
+    /// Onset and divergence. A search that fails is no reason to end a run.
+    fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
+        if !self.calculated.are_known() {
+            let card = S::found(self, resources, memory);
+            self.calculated.enter(card, memory, notices);
+        }
+    }
+
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
     fn output_rates(
         &mut self,
@@ -42,7 +79,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         };
         let rate = |role: &Role| match role {
             Role::Computed(number) => Ok(self.slope(resources, memory, number, by, notices)?),
-            response => Ok(S::pick(self, &rates, *response)),
+            response => Ok(self.pick(&rates, *response)),
         };
         outputs.iter().map(rate).collect()
     }
@@ -60,8 +97,8 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
             (Source::Section, _) => {
                 let step = parameter_step(memory.values[known]);
                 return central_difference(resources, memory, known, step, |other| {
-                    let mut found = |unit: &mut Self| unit.unknowns(resources, other, unknowns);
-                    Ok(self.with_parameters(resources, other, &mut found)?)
+                    let found = |unit: &mut Self| unit.unknowns(resources, other, unknowns);
+                    Ok(self.with_parameters(resources, other, found)?)
                 });
             }
             (Source::Limit, _) => None,
@@ -79,7 +116,7 @@ impl<S: CoupledKind> Differentiable for Coupled<S> {
         };
         let derivative = |unknown: &Role| match unknown {
             Role::Computed(number) => self.slope(resources, memory, number, by, notices),
-            other => Ok(instant.as_ref().map_or(0.0, |i| S::pick(self, i, *other))),
+            other => Ok(instant.as_ref().map_or(0.0, |i| self.pick(i, *other))),
         };
         Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
     }

@@ -19,6 +19,8 @@ pub(super) struct CoupledIndices {
     pub limit: usize,
     /// Factor on the turbulence of the archive.
     pub turbulence_factor: Option<usize>,
+    /// Where the state begins that [`Role::Filter`] counts.
+    pub first_filter: usize,
     /// Entry of the state that a variable is; by index.
     pub state_entry: Vec<Option<usize>>,
 }
@@ -39,9 +41,10 @@ impl CoupledIndices {
         initial.extend(all(&|v| matches!(v.role, Role::InitialRate(_))));
         // the state begins with all displacements, then all rates; on a bridge every entry is numbered
         let dofs = table.dofs();
+        let first_filter = 2 * dofs.len();
         let of = |dof: Dof| dofs.iter().position(|d| *d == dof);
         let entries = table.variables().iter().map(|v| match v.role {
-            Role::Filter(i) => Some(2 * dofs.len() + i),
+            Role::Filter(i) => Some(first_filter + i),
             Role::Response(Response::Displacement, dof) => of(dof),
             Role::Response(Response::Rate, dof) => of(dof).map(|i| dofs.len() + i),
             _ => None,
@@ -51,6 +54,7 @@ impl CoupledIndices {
             inputs,
             initial,
             limit: index_of(table, Role::OnsetSearchLimit)?,
+            first_filter,
             turbulence_factor: table.find(Role::TurbulenceFactor),
             state_entry: entries.collect(),
         })

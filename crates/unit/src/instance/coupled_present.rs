@@ -200,7 +200,7 @@ impl<S: CoupledKind> Coupled<S> {
             // flags have no derivative
             Role::Computed(number) if number.is_flag() => 0.0,
             Role::Computed(number) => number.evaluate(&present).value,
-            other => S::pick(self, &instant, *other),
+            other => self.pick(&instant, *other),
         };
         Ok(unknowns.iter().map(value).collect())
     }

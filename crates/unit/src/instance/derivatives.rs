@@ -36,17 +36,15 @@ impl Instance {
         orders: &[i32],
         rates: &mut [f64],
     ) -> CallResult<()> {
-        for (reference, order) in references.iter().zip(orders) {
-            self.response_of(*reference)?;
-            check_order(*order)?;
-        }
-        if references.is_empty() {
+        let output = |(reference, order): (&u32, &i32)| {
+            let role = self.response_of(*reference)?;
+            check_order(*order).map(|()| role)
+        };
+        let outputs = references.iter().zip(orders).map(output);
+        let outputs = outputs.collect::<CallResult<Vec<_>>>()?;
+        if outputs.is_empty() {
             return Ok(());
         }
-        let outputs = references
-            .iter()
-            .map(|r| self.response_of(*r))
-            .collect::<CallResult<Vec<_>>>()?;
         let (resources, memory) = (&self.resources, &mut self.memory);
         let unit = self.unit.prepared(resources, memory)?;
         let found = unit.output_rates(resources, memory, &outputs, &mut self.notices)?;

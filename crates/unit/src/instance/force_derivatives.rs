@@ -1,20 +1,75 @@
-//! Derivatives of forces alone: they are linear in motion, states and gusts; wind and parameters are differenced.
+//! What forces alone are computed to be, and their derivatives: they are linear in motion, states and gusts; wind and parameters are differenced.
 
-use super::force_unit::{ForceUnit, SET};
+use super::force_unit::{ForceUnit, NOT_SET, SET};
 use super::memory::Memory;
 use super::sensitivity::central_difference;
-use super::unit::Differentiable;
+use super::trust::shown;
+use super::unit::Prepared;
 use crate::error::Result;
 use crate::lifecycle::State;
-use crate::refusal::CallResult;
+use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
+use crate::response::wind_at_rest;
 use crate::section::Dof;
 use crate::variables::{ForceOutput, Role};
 
 /// Relative step of the differences with respect to wind and parameters.
 const RELATIVE_STEP: f64 = 1e-5;
 
-impl Differentiable for ForceUnit {
+impl Prepared for ForceUnit {
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
+        self.rates_now(memory, rates);
+        if rates.iter().all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        Err(Refusal::discard("derivatives: the filters have overflowed"))
+    }
+
+    fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
+        let index = *self.inner.get(i)?;
+        let part = self.parts.iter().find(|part| index < part.inner.end)?;
+        let [strip, number] = part.at_inner(index);
+        let mut work = std::mem::take(&mut self.work);
+        work.rates.clear();
+        self.add_rates(memory, part, strip, &mut work);
+        self.work = work;
+        self.work.rates.get(number).copied()
+    }
+
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
+        let wind = memory.values[self.inputs[0]];
+        let end = wind + memory.input_rates[0] * step;
+        if wind_at_rest(end, wind) < 0.0 {
+            return Err(Refusal::discard(format!(
+                "wind_speed: expected zero or a positive wind speed, found {} m/s at the end of the step",
+                shown(end)
+            )));
+        }
+        let mut before = std::mem::take(&mut self.work.before);
+        before.set_to(&memory.system);
+        let taken = self.take_motion(memory, &before);
+        memory.system.values[0] = memory.values[self.prediction] * step;
+        let first = self.first();
+        memory.system.values[1..first].fill(NOT_SET);
+        // a force that cannot be put out is refused with its step
+        let found = taken.and_then(|()| self.ahead(memory, false));
+        match &found {
+            Ok(()) => self.put_out(memory),
+            Err(_) => memory.system.set_to(&before),
+        }
+        self.work.before = before;
+        found?;
+        Ok(true)
+    }
+
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
+        let renewed = self.renewed(memory);
+        let found = self.present(memory, renewed);
+        found.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
+        self.put_out(memory);
+        Ok(())
+    }
+
     fn output_rates(
         &mut self,
         _: &Resources,

@@ -6,14 +6,14 @@
 use super::force_parts::{StripsUnderModel, coordinate};
 use super::layout::{Source, index_of};
 use super::memory::Memory;
-use super::trust::{beyond_linear, shown};
-use super::unit::{Differentiable, Prepared, Unit};
+use super::trust::beyond_linear;
+use super::unit::{Prepared, Unit};
 use crate::error::Result;
 use crate::force_options::StripsOfModel;
 use crate::lifecycle::State;
-use crate::refusal::{CallResult, Refusal};
+use crate::refusal::CallResult;
 use crate::resources::Resources;
-use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow, wind_at_rest};
+use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow};
 use crate::variables::{
     ComputedNumber, ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState,
     VariableTable, strip_states,
@@ -43,7 +43,7 @@ pub(super) struct ForceUnit {
     /// The gusts of each strip, where the unit takes some.
     pub gusts: Vec<[usize; 2]>,
     density: usize,
-    prediction: usize,
+    pub prediction: usize,
     pub derivatives: usize,
     /// Entry of the system's state that each filter is, then each lagging gust, in the order of [`Role::Filter`].
     pub entries: Vec<usize>,
@@ -77,7 +77,7 @@ pub(super) struct ForceWork {
     pub strip: Vec<f64>,
     /// Rates strip by strip.
     pub rates: Vec<f64>,
-    before: SectionState,
+    pub before: SectionState,
 }
 
 impl ForceUnit {
@@ -296,7 +296,7 @@ impl Unit for ForceUnit {
         self.steady_flow_pending = true;
     }
 
-    fn prepared(&mut self, _: &Resources, memory: &mut Memory) -> Result<&mut dyn Differentiable> {
+    fn prepared(&mut self, _: &Resources, memory: &mut Memory) -> Result<&mut dyn Prepared> {
         if memory.state == State::Initialization && self.steady_flow_pending {
             if self.integrated {
                 self.check_stated(memory)?;
@@ -310,61 +310,6 @@ impl Unit for ForceUnit {
 
     fn state_index(&self, index: usize) -> Option<usize> {
         self.state_index[index]
-    }
-}
-
-impl Prepared for ForceUnit {
-    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
-        self.rates_now(memory, rates);
-        if rates.iter().all(|x| x.is_finite()) {
-            return Ok(());
-        }
-        Err(Refusal::discard("derivatives: the filters have overflowed"))
-    }
-
-    fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
-        let index = *self.inner.get(i)?;
-        let part = self.parts.iter().find(|part| index < part.inner.end)?;
-        let [strip, number] = part.at_inner(index);
-        let mut work = std::mem::take(&mut self.work);
-        work.rates.clear();
-        self.add_rates(memory, part, strip, &mut work);
-        self.work = work;
-        self.work.rates.get(number).copied()
-    }
-
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
-        let wind = memory.values[self.inputs[0]];
-        let end = wind + memory.input_rates[0] * step;
-        if wind_at_rest(end, wind) < 0.0 {
-            return Err(Refusal::discard(format!(
-                "wind_speed: expected zero or a positive wind speed, found {} m/s at the end of the step",
-                shown(end)
-            )));
-        }
-        let mut before = std::mem::take(&mut self.work.before);
-        before.set_to(&memory.system);
-        let taken = self.take_motion(memory, &before);
-        memory.system.values[0] = memory.values[self.prediction] * step;
-        let first = self.first();
-        memory.system.values[1..first].fill(NOT_SET);
-        // a force that cannot be put out is refused with its step
-        let found = taken.and_then(|()| self.ahead(memory, false));
-        match &found {
-            Ok(()) => self.put_out(memory),
-            Err(_) => memory.system.set_to(&before),
-        }
-        self.work.before = before;
-        found?;
-        Ok(true)
-    }
-
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
-        let renewed = self.renewed(memory);
-        let found = self.present(memory, renewed);
-        found.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
-        self.put_out(memory);
-        Ok(())
     }
 }
 

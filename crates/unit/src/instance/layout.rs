@@ -121,44 +121,31 @@ impl Access {
     }
 }
 
-/// Where a real variable that is no part of the state is read at once, without any work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ReadableWhen {
-    /// Among the stored values.
-    Always,
-    /// Among them as long as the outputs are those of the present.
-    WithOutputs,
-    /// Nowhere.
-    Never,
-}
-
 /// What reading a variable at every step needs, and no more: between steps, whatever can be read may be read.
 #[derive(Debug, Clone, Copy)]
 struct FastRead {
     /// Its index in the system state; an invalid index if it is not a state.
     entry: u32,
-    stored_value: ReadableWhen,
+    /// Whether it is read among the stored values without any work: while the outputs are not those of the present, and while they are.
+    stored: [bool; 2],
 }
 
 impl FastRead {
     fn new(access: &Access, state_index: Option<usize>) -> Self {
-        let (stored_value, entry) = match (access.data_type, access.source, state_index) {
-            (DataType::Real, Source::Response | Source::State, Some(_)) => {
-                (ReadableWhen::Never, state_index)
+        let source = Some(access.source).filter(|_| access.data_type == DataType::Real);
+        let is_state = matches!(source, Some(Source::Response | Source::State));
+        let entry = state_index.filter(|_| is_state);
+        let stored = match source {
+            Some(Source::Response) => [false, entry.is_none()],
+            Some(Source::Calculated | Source::Status | Source::State | Source::Rate) | None => {
+                [false; 2]
             }
-            (DataType::Real, Source::Response, None) => (ReadableWhen::WithOutputs, None),
-            (
-                DataType::Real,
-                Source::Calculated | Source::Status | Source::State | Source::Rate,
-                _,
-            ) => (ReadableWhen::Never, None),
-            (DataType::Real, ..) => (ReadableWhen::Always, None),
-            _ => (ReadableWhen::Never, None),
+            _ => [true; 2],
         };
         let entry = entry.and_then(|entry| u32::try_from(entry).ok());
         Self {
             entry: entry.unwrap_or(u32::MAX),
-            stored_value,
+            stored,
         }
     }
 }
@@ -231,11 +218,6 @@ impl VariableLayout {
         if let Some(state) = memory.system.values.get(fast.entry as usize) {
             return Some(*state);
         }
-        let stored = match fast.stored_value {
-            ReadableWhen::Always => true,
-            ReadableWhen::WithOutputs => outputs_current,
-            ReadableWhen::Never => false,
-        };
-        stored.then(|| memory.values[index])
+        fast.stored[usize::from(outputs_current)].then(|| memory.values[index])
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::flutter::{
     FastMotion, FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
     UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, stands_at_samples,
@@ -128,16 +128,19 @@ fn plain_without_samples(
 /// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
 const SEARCHED_STATES: usize = 100;
 
-/// Refuses a search of all eigenvalues that would seem to hang.
-fn check_searchable(section: &CoupledSection) -> Result<()> {
-    match section.states() {
-        states if states > SEARCHED_STATES => Err(Error::input(
-            "search of all eigenvalues",
-            format!("at most {SEARCHED_STATES} states"),
-            states.to_string(),
-        )),
-        _ => Ok(()),
-    }
+/// The search of all eigenvalues up to `limit` m/s; one that would seem to hang is refused.
+fn search_up_to(section: &CoupledSection, limit: f64) -> Result<OnsetSearch> {
+    let states = section.states();
+    ensure(
+        states <= SEARCHED_STATES,
+        "search of all eigenvalues",
+        format_args!("at most {SEARCHED_STATES} states"),
+        states,
+    )?;
+    Ok(OnsetSearch {
+        speed_max_m_s: limit,
+        ..OnsetSearch::default()
+    })
 }
 
 /// Why damping is not known in wind slower than every test of a model; no parameter of the section changes it.
@@ -213,7 +216,10 @@ impl OnsetCard {
         // what cannot be judged is not called stable
         self.numbers.stable_below =
             growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
-        match onset_of(model, section, limit) {
+        let (name, tested) = (model.model.kind(), Some(model.tested_range));
+        let found = search_up_to(section, limit)
+            .and_then(|search| simulated_onset(name, section, &search, tested));
+        match found {
             Ok(found) => self.take(found, limit),
             Err(why) => self.onset_unknown(&why),
         }
@@ -264,20 +270,12 @@ impl OnsetCard {
     /// was judged up to a lower speed is stable up to there.
     pub(super) fn take(&mut self, found: FlutterSearch, limit: f64) {
         let (at, tested, warnings) = match found {
-            FlutterSearch::Onset(o) => (
-                (o.at.speed_m_s, o.at.frequency_hz, o.at.reduced_velocity),
-                o.in_tested_range,
-                o.warnings,
-            ),
+            FlutterSearch::Onset(o) => (o.at, o.in_tested_range, o.warnings),
             FlutterSearch::UnstableAtOrBelow(start) => {
                 let (speed, why) = (start.at.speed_m_s, start.explain());
                 self.warnings
                     .push(format!("the onset lies at {speed:.3} m/s or lower: {why}"));
-                (
-                    (speed, start.at.frequency_hz, start.at.reduced_velocity),
-                    start.in_tested_range,
-                    start.warnings,
-                )
+                (start.at, start.in_tested_range, start.warnings)
             }
             FlutterSearch::StableUpTo(range) => {
                 let judged = range.from_m_s <= range.to_m_s;
@@ -296,7 +294,8 @@ impl OnsetCard {
                 return;
             }
         };
-        self.set_onset(at.0, at.1, at.2, tested == Some(true));
+        let (speed, velocity) = (at.speed_m_s, at.reduced_velocity);
+        self.set_onset(speed, at.frequency_hz, velocity, tested == Some(true));
         self.warnings.extend(warnings);
     }
 
@@ -332,24 +331,6 @@ pub(super) fn growth_of(
     section: &CoupledSection,
     limit: f64,
 ) -> Result<UnwantedGrowth> {
-    check_searchable(section)?;
-    let search = OnsetSearch {
-        speed_max_m_s: limit,
-        ..OnsetSearch::default()
-    };
+    let search = search_up_to(section, limit)?;
     unwanted_growth(section, &search, Some(model.tested_range))
-}
-
-fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Result<FlutterSearch> {
-    check_searchable(section)?;
-    let search = OnsetSearch {
-        speed_max_m_s: limit,
-        ..OnsetSearch::default()
-    };
-    simulated_onset(
-        model.model.kind(),
-        section,
-        &search,
-        Some(model.tested_range),
-    )
 }

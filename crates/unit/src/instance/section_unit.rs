@@ -6,7 +6,6 @@ use super::damping::PresentDamping;
 use super::layout::index_of;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
-use super::sensitivity::SectionValues;
 use crate::aerodynamics::{Realizable, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -148,8 +147,13 @@ impl CoupledKind for SuspendedSection {
         [displacements.to_vec(), rates.to_vec()]
     }
 
-    fn pick(_: &SectionUnit, instant: &SectionValues, role: Role) -> f64 {
-        instant.pick(role)
+    fn pick(unit: &SectionUnit, outputs: &Outputs, role: Role) -> f64 {
+        let Role::Response(response, dof) = role else {
+            return 0.0;
+        };
+        let mut dofs = unit.section().structure().dofs.iter();
+        let row = dofs.position(|d| *d == dof);
+        row.map_or(0.0, |row| outputs.lists()[response as usize][row])
     }
 
     fn motion(
@@ -159,9 +163,7 @@ impl CoupledKind for SuspendedSection {
         response: Response,
         dof: Dof,
     ) -> f64 {
-        let mut dofs = unit.built.stepper.section().structure().dofs.iter();
-        let row = dofs.position(|d| *d == dof);
-        row.map_or(0.0, |row| outputs.lists()[response as usize][row])
+        Self::pick(unit, outputs, Role::Response(response, dof))
     }
 
     fn rotation(unit: &SectionUnit, memory: &Memory) -> f64 {

@@ -1,4 +1,4 @@
-//! Outputs by what they stand for, their slopes over the wind speed in closed form, and differences over parameters.
+//! Outputs, their slopes over the wind speed in closed form, and differences over parameters.
 
 use super::memory::Memory;
 use crate::aerodynamics::Realization;
@@ -6,28 +6,12 @@ use crate::error::Result;
 use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
-use crate::section::Dof;
-use crate::variables::Role;
 use nalgebra::{DMatrix, DVector};
 
 /// Relative step of the central differences: truncation about 1e-8, rounding of an onset search about 1e-9.
 const RELATIVE_STEP: f64 = 1e-4;
 /// Step of a parameter that is zero.
 const STEP_FROM_ZERO: f64 = 1e-6;
-
-/// The entry of `outputs` that a role stands for; zero for what inputs and release do not act on.
-pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
-    let Role::Response(response, dof) = role else {
-        return 0.0;
-    };
-    let list = outputs.lists()[response as usize];
-    let index = match dof {
-        Dof::Vertical => 0,
-        Dof::Lateral => 1,
-        Dof::Torsion => list.len().saturating_sub(1),
-    };
-    list.get(index).copied().unwrap_or(0.0)
-}
 
 /// All that a section has at an instant, or its derivative with respect to one known.
 #[derive(Debug, Default)]
@@ -65,19 +49,6 @@ impl SectionValues {
             outputs: speed_sensitivity(stepper, state, inputs),
             state: Vec::new(),
             rate: rate_by_speed(stepper, state, inputs),
-        }
-    }
-
-    /// The entry that a role stands for; zero for what inputs and release do not act on.
-    pub(super) fn pick(&self, role: Role) -> f64 {
-        let filter = |of: &[f64], i: usize| {
-            let motion = 2 * self.outputs.displacement.len();
-            of.get(motion + i).copied().unwrap_or(0.0)
-        };
-        match role {
-            Role::Filter(i) => filter(&self.state, i),
-            Role::FilterRate(i) => filter(&self.rate, i),
-            other => pick(&self.outputs, other),
         }
     }
 

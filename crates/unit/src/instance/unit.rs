@@ -64,11 +64,8 @@ pub(super) trait Unit: Debug + Send {
     ///
     /// # Errors
     /// When the values give nothing that can be simulated.
-    fn prepared(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-    ) -> Result<&mut dyn Differentiable>;
+    fn prepared(&mut self, resources: &Resources, memory: &mut Memory)
+    -> Result<&mut dyn Prepared>;
 
     /// What is calculated from the parameters, of a unit that has such numbers.
     fn calculated(&mut self) -> Option<&mut CalculatedNumbers> {
@@ -97,7 +94,8 @@ pub(super) trait Unit: Debug + Send {
     }
 }
 
-/// What a unit computes, with what follows from the parameters as they are.
+/// What a unit computes, with what follows from the parameters as they are, and derivatives of that in time and with respect to inputs,
+/// states and parameters.
 pub(super) trait Prepared: Unit {
     /// One step of `step` seconds from the time of the memory; returns whether the outputs after it are in the memory.
     /// On an error everything is as it was.
@@ -136,10 +134,7 @@ pub(super) trait Prepared: Unit {
         _notices: &mut Vec<String>,
     ) {
     }
-}
 
-/// Numbers of the present moment, and derivatives of a unit in time and with respect to inputs, states and parameters.
-pub(super) trait Differentiable: Prepared {
     /// First time derivatives of these outputs, per second.
     ///
     /// # Errors

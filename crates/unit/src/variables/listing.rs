@@ -12,18 +12,10 @@ pub enum Listing {
     Reals,
 }
 
-/// The variables that a description lists.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ListedVariables {
-    /// As a table of their own, whose dependencies are indices in it.
-    pub table: VariableTable,
-    /// Their value references: the indices in the full table, so that one runtime serves both.
-    pub references: Vec<usize>,
-}
-
 impl VariableTable {
-    /// The variables that are listed.
-    pub fn listed(&self, listing: Listing) -> ListedVariables {
+    /// The variables that a description lists, as a table of their own, whose dependencies are indices in it; and their value references:
+    /// the indices in the full table, so that one runtime serves both.
+    pub fn listed(&self, listing: Listing) -> (Self, Vec<usize>) {
         let real = |v: &Variable| matches!(v.value, StartValue::Real(_));
         let references: Vec<usize> = (0..self.variables.len())
             .filter(|&i| self.variables[i].is_listed)
@@ -45,13 +37,10 @@ impl VariableTable {
             }
             variable
         });
-        let variables = variables.collect();
-        ListedVariables {
-            table: VariableTable {
-                variables,
-                onset_undetermined: self.onset_undetermined.clone(),
-            },
-            references,
-        }
+        let table = Self {
+            variables: variables.collect(),
+            onset_undetermined: self.onset_undetermined.clone(),
+        };
+        (table, references)
     }
 }

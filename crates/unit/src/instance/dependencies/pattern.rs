@@ -69,12 +69,12 @@ impl<S: CoupledKind> Pattern<S> {
         let responses: Vec<usize> = (0..table.len()).filter(is_response).collect();
         let roles: Vec<Role> = responses.iter().map(|index| table[*index].role).collect();
         let mut entries = |of: &Memory, wind: f64| {
-            unit.with_parameters(resources, of, &mut |unit| {
+            unit.with_parameters(resources, of, |unit| {
                 S::load_inputs(unit, of);
                 let mut all = Vec::with_capacity(roles.len() * (air + 1));
                 for column in 0..=air {
                     let values = response(unit, of, [forces, gusts, air], column, wind)?;
-                    all.extend(roles.iter().map(|role| S::pick(unit, &values, *role)));
+                    all.extend(roles.iter().map(|role| unit.pick(&values, *role)));
                 }
                 Ok(all)
             })
