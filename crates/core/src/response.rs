@@ -48,15 +48,6 @@ const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// States at most whose step becomes a matrix: that of more takes seconds to make and leaves the caches of any processor.
 const STATES_OF_A_MATRIX: usize = 800;
 
-/// A step by the newest matrix, that may be taken again as it is.
-#[derive(Debug, Clone, Copy)]
-struct RepeatableStep {
-    /// Its size, s.
-    step_s: f64,
-    /// Columns of the matrix that meet something other than zero.
-    columns: usize,
-}
-
 /// Steps a coupled section.
 ///
 /// ```
@@ -86,8 +77,8 @@ pub struct Stepper {
     steps: StepCache<2>,
     steps_in_gusts: StepCache<2>,
     samples: StepCache<3>,
-    /// The last step, where it was one by a matrix.
-    repeatable: Option<RepeatableStep>,
+    /// Size (s) of the last step, where it was one by the newest matrix, and how many columns of that meet something other than zero.
+    repeatable: Option<(f64, usize)>,
     series: PowerSeries,
     /// Of the discrete model.
     sampling: Option<Sampling>,
@@ -258,17 +249,17 @@ impl Stepper {
     /// a state as it was.
     #[inline(always)]
     pub fn repeat(&mut self, state: &mut SectionState, inputs: &Inputs, step_s: f64) -> bool {
-        let (Some(last), Some(matrix)) = (&self.repeatable, self.steps.newest()) else {
+        let (Some((last_s, columns)), Some(matrix)) = (self.repeatable, self.steps.newest()) else {
             return false;
         };
-        if last.step_s != step_s {
+        if last_s != step_s {
             return false;
         }
-        let operand = if last.columns == state.values.len() {
+        let operand = if columns == state.values.len() {
             &state.values
         } else {
             load(&mut self.operand, &state.values, inputs);
-            &self.operand[..last.columns]
+            &self.operand[..columns]
         };
         let right = advanced(matrix, operand, &mut self.next);
         if right {
@@ -289,7 +280,7 @@ impl Stepper {
             step_matrix(&a, &b, step_s)
         })?;
         let columns = active_columns(inputs, state.values.len());
-        self.repeatable = Some(RepeatableStep { step_s, columns });
+        self.repeatable = Some((step_s, columns));
         if self.repeat(state, inputs, step_s) {
             return Ok(());
         }

@@ -327,6 +327,11 @@ impl ModelDescription {
         self.variables.iter().find(|v| v.name == name)
     }
 
+    /// The variable with this index, which counts from one.
+    pub(super) fn variable_at(&self, index: usize) -> Option<&ScalarVariable> {
+        self.variables.get(index.checked_sub(1)?)
+    }
+
     /// The declared types by name, the first of each: to look them up for many variables.
     pub fn types_by_name(&self) -> HashMap<&str, &SimpleType> {
         let mut types = HashMap::new();

@@ -118,18 +118,18 @@ impl Fmu {
             .map_err(|e| e.in_file(FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
         let is_fmi3 = |version: &str| version.starts_with('3');
-        let description = if root.attribute("fmiVersion").is_some_and(is_fmi3) {
-            let (root, elements, translation) = reading_fmi3::translated(&root);
-            findings.0.extend(translation.0);
-            let (mut description, reading) = reading::read(&root);
-            findings.0.extend(reading.0);
-            description.elements = elements;
-            description
-        } else {
-            let (description, reading) = reading::read(&root);
-            findings.0.extend(reading.0);
-            description
+        let is_fmi3 = root.attribute("fmiVersion").is_some_and(is_fmi3);
+        let (root, elements) = match is_fmi3 {
+            true => {
+                let (root, elements, translation) = reading_fmi3::translated(&root);
+                findings.0.extend(translation.0);
+                (root, elements)
+            }
+            false => (root, Vec::new()),
         };
+        let (mut description, reading) = reading::read(&root);
+        findings.0.extend(reading.0);
+        description.elements = elements;
         Ok(Self {
             path: path.to_path_buf(),
             folder: Arc::new(folder),

@@ -322,15 +322,11 @@ fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
     let d = plan.fmu.model_description();
     let mut tried = 0;
     for unknown in &d.outputs {
-        let Some(v) = unknown
-            .index
-            .checked_sub(1)
-            .and_then(|i| d.variables.get(i))
-        else {
+        let Some(v) = d.variable_at(unknown.index) else {
             continue;
         };
         for on in unknown.dependencies.iter().flatten() {
-            let Some(known) = on.checked_sub(1).and_then(|i| d.variables.get(i)) else {
+            let Some(known) = d.variable_at(*on) else {
                 continue;
             };
             if v.kind != VariableType::Real || known.kind != VariableType::Real {

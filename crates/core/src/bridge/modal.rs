@@ -14,7 +14,7 @@ use crate::aerodynamics::{ContinuousRealization, Realization, Transfer, Transfer
 use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, DVectorView};
 use std::f64::consts::TAU;
 
 /// Self-excited forces on the mass-normalised modal coordinates, over `½ρV²B²` with the width and the wind of the bridge.
@@ -123,27 +123,16 @@ impl ModalForces {
             total.e0 += sums.modal(&aero.e0) * pressure;
             total.e1 += sums.modal(&aero.e1) * (pressure * k);
             total.e2 += sums.modal(&aero.e2) * (pressure * k * k);
-            for chain in section_chains(&aero) {
-                // filters run with the wind of their own group
-                let rate = 1.0 / k;
+            // filters run with the wind of their own group
+            for bank in section_banks(sums, &aero, 1.0 / k, pressure) {
                 let alike =
-                    |bank: &ModalBank| bank.rate == rate && bank.a == chain.a && bank.b == chain.b;
-                let at = banks.iter().position(alike).unwrap_or_else(|| {
-                    let outputs = vec![DMatrix::zeros(n, n); chain.b.len()];
-                    let (a, b) = (chain.a.clone(), chain.b.clone());
-                    banks.push(ModalBank {
-                        a,
-                        b,
-                        rate,
-                        outputs,
-                    });
-                    banks.len() - 1
-                });
-                for (l, output) in banks[at].outputs.iter_mut().enumerate() {
-                    // Σ_i s_ij c_i I^ij of the motion j that drives the filter
-                    let mut only = DMatrix::zeros(aero.e0.nrows(), aero.e0.ncols());
-                    only.set_column(chain.input, &chain.c.column(l));
-                    *output += sums.modal(&only) * pressure;
+                    |b: &&mut ModalBank| b.rate == bank.rate && b.a == bank.a && b.b == bank.b;
+                match banks.iter_mut().find(alike) {
+                    Some(known) => {
+                        let outputs = known.outputs.iter_mut().zip(bank.outputs);
+                        outputs.for_each(|(sum, own)| *sum += own);
+                    }
+                    None => banks.push(bank),
                 }
             }
         }
@@ -152,17 +141,14 @@ impl ModalForces {
     }
 }
 
-/// The filters that one motion of a section drives.
-struct SectionChain {
-    input: usize,
-    a: DMatrix<f64>,
-    b: DVector<f64>,
-    c: DMatrix<f64>,
-}
-
-/// The filters of a section sorted by the motion that drives them. Filters without links are scaled to a unit drive, so
-/// that lags shared by several motions are one bank.
-fn section_chains(aero: &ContinuousRealization) -> Vec<SectionChain> {
+/// The filters of a section, one bank for each motion that drives some. Filters without links are scaled to a unit drive, so that lags
+/// shared by several motions are one bank.
+fn section_banks(
+    sums: &GroupSums,
+    aero: &ContinuousRealization,
+    rate: f64,
+    pressure: f64,
+) -> Vec<ModalBank> {
     let (states, inputs) = aero.b.shape();
     let chain = |input: usize| {
         let mut driven: Vec<bool> = (0..states).map(|l| aero.b[(l, input)] != 0.0).collect();
@@ -185,9 +171,25 @@ fn section_chains(aero: &ContinuousRealization) -> Vec<SectionChain> {
                 *drive = 1.0;
             }
         }
-        SectionChain { input, a, b, c }
+        // Σ_i s_ij c_i I^ij of the motion j that drives a filter
+        let output = |c: DVectorView<'_, f64>| {
+            let mut only = DMatrix::zeros(aero.e0.nrows(), inputs);
+            only.set_column(input, &c);
+            let mut output = sums.modal(&only) * pressure;
+            // a zero has no sign
+            output.iter_mut().for_each(|x| *x += 0.0);
+            output
+        };
+        let outputs = c.column_iter().map(output).collect();
+        ModalBank {
+            a,
+            b,
+            rate,
+            outputs,
+        }
     };
-    (0..inputs).map(chain).filter(|c| !c.b.is_empty()).collect()
+    let banks = (0..inputs).map(chain);
+    banks.filter(|bank| !bank.b.is_empty()).collect()
 }
 
 /// All banks side by side, mode by mode.

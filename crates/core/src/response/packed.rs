@@ -316,19 +316,13 @@ fn add<S: FourLanes, const N: usize>(
     }
 }
 
-/// `x`, or zero where it has died out; `spoilt` stays zero as long as all are finite. Without a branch: this is part of
-/// every step.
-#[inline(always)]
-fn flush_subnormal(x: f64, spoilt: &mut f64) -> f64 {
-    *spoilt += 0.0 * x;
-    if x.abs() < DIED_OUT { 0.0 } else { x }
-}
-
-/// Whether all values are finite; those that have died out become zero.
+/// Whether all values are finite; those that have died out become zero. Without a branch: this is part of every step.
 pub(super) fn flush_subnormals(values: &mut [f64]) -> bool {
     let mut spoilt = 0.0;
     for x in values {
-        *x = flush_subnormal(*x, &mut spoilt);
+        // stays zero as long as all are finite
+        spoilt += 0.0 * *x;
+        *x = if x.abs() < DIED_OUT { 0.0 } else { *x };
     }
     spoilt == 0.0
 }

@@ -53,13 +53,12 @@ impl NonlinearSection {
     /// # Errors
     /// [`Error::Input`] when the degrees of freedom differ, [`Error::Numerical`] when one has no mass.
     pub fn new(structure: Structure, theory: QuasiSteady) -> Result<Self> {
-        if theory.dofs() != structure.dofs {
-            return Err(Error::input(
-                "nonlinear section",
-                format!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
-                Dof::names(theory.dofs()),
-            ));
-        }
+        ensure(
+            theory.dofs() == structure.dofs,
+            "nonlinear section",
+            format_args!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
+            Dof::names(theory.dofs()),
+        )?;
         let inverse_mass = structure.mass.clone().try_inverse().ok_or_else(|| {
             Error::Numerical("nonlinear section: a degree of freedom has no mass".into())
         })?;
@@ -153,7 +152,7 @@ impl NonlinearSection {
                 let time = step_s * i as f64 + h * j as f64;
                 state = self
                     .runge_kutta(&state, wind, time, h)
-                    .map_err(|e| at_time(e, time))?;
+                    .map_err(|e| e.within(format!("t = {time:.3} s")))?;
             }
             rows.push(state.as_slice().to_vec());
         }
@@ -197,11 +196,6 @@ impl NonlinearSection {
             if i < n { z[n + i] } else { acceleration[i - n] }
         }))
     }
-}
-
-/// The same error with the time of the run in front.
-fn at_time(error: Error, time: f64) -> Error {
-    error.within(format!("t = {time:.3} s"))
 }
 
 /// Over all quantities: largest difference as a part of the largest value.

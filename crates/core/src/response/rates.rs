@@ -126,7 +126,7 @@ impl Stepper {
     /// `[q̈, F]` after a step that could be [repeated](Self::repeat); `None` after any other.
     #[inline(always)]
     pub fn repeat_outputs(&mut self, state: &SectionState, inputs: &Inputs) -> Option<&[f64]> {
-        let columns = self.repeatable?.columns;
+        let (_, columns) = self.repeatable?;
         let most = state.values.len() + inputs.force.len();
         let operand = if columns == state.values.len() {
             &state.values

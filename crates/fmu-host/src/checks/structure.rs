@@ -41,7 +41,7 @@ fn same_members(
         );
     }
     for unknown in found.iter().filter(|u| !expected.contains(&u.index)) {
-        if let Some(v) = variable(d, unknown.index) {
+        if let Some(v) = d.variable_at(unknown.index) {
             f.error(
                 place(list, unknown),
                 format!("only variables of which holds: {why}"),
@@ -49,10 +49,6 @@ fn same_members(
             );
         }
     }
-}
-
-fn variable(d: &ModelDescription, index: usize) -> Option<&ScalarVariable> {
-    index.checked_sub(1).and_then(|i| d.variables.get(i))
 }
 
 fn indices(
@@ -83,7 +79,7 @@ pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
     let derivatives: BTreeSet<usize> = d.derivatives.iter().map(|u| u.index).collect();
     let states: BTreeSet<usize> = derivatives
         .iter()
-        .filter_map(|i| variable(d, *i)?.derivative)
+        .filter_map(|i| d.variable_at(*i)?.derivative)
         .collect();
     let expected = indices(d, |index, v| {
         let unknown = matches!(
@@ -109,7 +105,7 @@ pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
 
 pub(super) fn state_derivatives(d: &ModelDescription, f: &mut FmuFindings) {
     for unknown in &d.derivatives {
-        if let Some(v) = variable(d, unknown.index)
+        if let Some(v) = d.variable_at(unknown.index)
             && v.derivative.is_none()
         {
             f.error(
@@ -124,7 +120,7 @@ pub(super) fn state_derivatives(d: &ModelDescription, f: &mut FmuFindings) {
 pub(super) fn order(d: &ModelDescription, f: &mut FmuFindings) {
     for (list, unknowns) in lists(d) {
         for unknown in unknowns {
-            if variable(d, unknown.index).is_none() {
+            if d.variable_at(unknown.index).is_none() {
                 f.error(
                     place(list, unknown),
                     format!("an index in 1 .. {}", d.variables.len()),
@@ -155,7 +151,7 @@ pub(super) fn dependencies(d: &ModelDescription, f: &mut FmuFindings) {
     for (list, unknowns) in lists(d) {
         for unknown in unknowns {
             let on = unknown.dependencies.as_deref().unwrap_or_default();
-            for index in on.iter().filter(|i| variable(d, **i).is_none()) {
+            for index in on.iter().filter(|i| d.variable_at(**i).is_none()) {
                 f.error(
                     place(list, unknown),
                     format!("dependencies in 1 .. {}", d.variables.len()),

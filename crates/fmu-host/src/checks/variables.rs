@@ -226,8 +226,7 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut FmuFindings) {
 pub(super) fn derivatives(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
         let Some(of) = v.derivative else { continue };
-        let state = of.checked_sub(1).and_then(|i| d.variables.get(i));
-        match state {
+        match d.variable_at(of) {
             None => f.error(
                 v.place(),
                 format!("`derivative` in 1 .. {}", d.variables.len()),

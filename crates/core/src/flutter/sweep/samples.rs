@@ -40,18 +40,18 @@ pub fn stands_at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<
 /// The onset to this part of the speed.
 fn moved(section: &CoupledSection, onset: SweptOnset, known: f64) -> Result<Option<SweptOnset>> {
     let begin = onset.speed_m_s;
-    let start = ModeSample::near(section, begin, TAU * onset.frequency_hz)?;
-    let beside = begin * (1.0 - FIRST_STEP.copysign(start.lambda.re));
-    let (growth, mut omega) = (ValueAt::new(begin, start.lambda.re), start.lambda.im);
+    let (start, _) = mode_near(section, begin, TAU * onset.frequency_hz)?;
+    let beside = begin * (1.0 - FIRST_STEP.copysign(start.re));
+    let (growth, mut omega) = (ValueAt::new(begin, start.re), start.im);
     let ends = [f64::INFINITY, known];
     let found = secant(growth, beside, ends, MAX_STEPS, |speed| -> Result<_> {
         if (speed / begin - 1.0).abs() >= NEAR {
             return Ok(None);
         }
-        let now = ModeSample::near(section, speed, omega)?;
-        omega = now.lambda.im;
-        let alone = now.others <= ROUNDING * now.lambda.norm();
-        Ok(alone.then_some(now.lambda.re))
+        let (now, others) = mode_near(section, speed, omega)?;
+        omega = now.im;
+        let alone = others <= ROUNDING * now.norm();
+        Ok(alone.then_some(now.re))
     })?;
     Ok(found.map(|speed_m_s| SweptOnset {
         speed_m_s,
@@ -60,32 +60,20 @@ fn moved(section: &CoupledSection, onset: SweptOnset, known: f64) -> Result<Opti
     }))
 }
 
-/// A mode at a wind speed.
-struct ModeSample {
-    /// Its eigenvalue in continuous time, rad/s.
-    lambda: Complex<f64>,
-    /// Fastest growth of all modes but this one and its conjugate, 1/s.
-    others: f64,
-}
-
-impl ModeSample {
-    /// The one whose eigenvalue is nearest to `iω`.
-    fn near(section: &CoupledSection, speed_m_s: f64, omega: f64) -> Result<Self> {
-        let modes = section.at(speed_m_s)?.eigenvalues()?;
-        let wanted = Complex::new(0.0, omega);
-        let upper = modes.iter().filter(|z| z.im > 0.0);
-        let lambda = upper.fold(Complex::new(f64::NAN, f64::NAN), |best, z| {
-            if (z - wanted).norm() >= (best - wanted).norm() {
-                best
-            } else {
-                *z
-            }
-        });
-        let own = |z: &&Complex<f64>| **z != lambda && **z != lambda.conj();
-        let others = modes.iter().filter(own).map(|z| z.re);
-        Ok(Self {
-            lambda,
-            others: others.fold(f64::NEG_INFINITY, f64::max),
-        })
-    }
+/// The eigenvalue in continuous time, rad/s, that is nearest to `iω` at a wind speed, and the fastest growth, 1/s, of all modes but this
+/// one and its conjugate.
+fn mode_near(section: &CoupledSection, speed_m_s: f64, omega: f64) -> Result<(Complex<f64>, f64)> {
+    let modes = section.at(speed_m_s)?.eigenvalues()?;
+    let wanted = Complex::new(0.0, omega);
+    let upper = modes.iter().filter(|z| z.im > 0.0);
+    let lambda = upper.fold(Complex::new(f64::NAN, f64::NAN), |best, z| {
+        if (z - wanted).norm() >= (best - wanted).norm() {
+            best
+        } else {
+            *z
+        }
+    });
+    let own = |z: &&Complex<f64>| **z != lambda && **z != lambda.conj();
+    let others = modes.iter().filter(own).map(|z| z.re);
+    Ok((lambda, others.fold(f64::NEG_INFINITY, f64::max)))
 }
