@@ -46,8 +46,8 @@ use crate::trained_model::TrainedModel;
 #[derive(Debug, Clone, PartialEq)]
 pub struct VariableTable {
     variables: Vec<Variable>,
-    /// Why the onset of what was exported is no result, where the data leave it that far open.
-    pub(crate) onset_undetermined: Option<String>,
+    /// What the data leave open of the onset of what was exported, where that is known.
+    pub(crate) onset_bounds: Option<OnsetBounds>,
 }
 
 impl VariableTable {
@@ -103,7 +103,7 @@ impl VariableTable {
         variables.iter().try_for_each(check_start)?;
         Ok(Self {
             variables,
-            onset_undetermined: bounds.and_then(|b| b.undetermined.clone()),
+            onset_bounds: bounds.cloned(),
         })
     }
 

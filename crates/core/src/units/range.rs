@@ -22,9 +22,9 @@ pub struct ReducedFrequencyGap {
 }
 
 impl ReducedFrequencyGap {
-    /// The part of the gap in which nothing is known, or `None` if it is narrow enough. Interpolation over `ln K` errs in
+    /// The part of the gap in which nothing is known, `K` to `K`, or `None` if it is narrow enough. Interpolation over `ln K` errs in
     /// proportion to the product of the distances to both tests, and may do so as in the middle of the widest step.
-    fn unknown(self) -> Option<(f64, f64)> {
+    pub fn unknown(self) -> Option<(f64, f64)> {
         let (from, to) = (self.from.full_width(), self.to.full_width());
         let (width, widest) = ((to / from).ln(), WIDEST_STEP.ln());
         let near = 0.5 * (width - (width * width - widest * widest).max(0.0).sqrt());

@@ -7,7 +7,7 @@ use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
 use super::sensitivity::SectionValues;
-use super::trust::beyond_linear;
+use super::trust::{beyond_linear, shown};
 use super::unit::{Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -86,13 +86,19 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Wind speeds at which it was tested, m/s, without a search; `None` where there are none, or they are not known.
     fn tested_winds(unit: &Coupled<Self>) -> Option<[f64; 2]>;
 
+    /// Between which winds, m/s, around the present one a motion is far from every test, although slower and faster ones were tested.
+    fn untested_gap(_unit: &Coupled<Self>, _memory: &Memory) -> Option<[f64; 2]> {
+        None
+    }
+
     fn wind_is_tested(
         unit: &mut Coupled<Self>,
         _resources: &Resources,
         memory: &mut Memory,
         _notices: &mut Vec<String>,
     ) -> bool {
-        unit.beside_tests(memory) == Some(Ordering::Equal)
+        let between = unit.beside_tests(memory) == Some(Ordering::Equal);
+        between && Self::untested_gap(unit, memory).is_none()
     }
 
     /// Onset and divergence for the parameters that it has been built with, by a search.
@@ -149,6 +155,8 @@ pub(super) struct Coupled<S: CoupledKind> {
     pub wind_was: Option<Ordering>,
     /// Whether it has been said since the initialisation that it is outside: a gust may cross a limit at every step.
     pub wind_left: bool,
+    /// Whether it has been said that it lies in a gap between tests.
+    gap_met: bool,
     /// The same of the rotation, which is beyond linear theory.
     rotation_left: bool,
     pub calculated: CalculatedNumbers,
@@ -206,6 +214,8 @@ impl<S: CoupledKind> Unit for Coupled<S> {
 
     fn begin_initialization(&mut self) {
         (self.wind_was, self.wind_left, self.rotation_left) = (None, false, false);
+        self.gap_met = false;
+        self.calculated.begin_run();
         self.release_pending = true;
     }
 
@@ -249,6 +259,14 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         if self.beside_tests(memory) != self.wind_was {
             self.watch_wind(memory, notices);
         }
+        if let Some([from, to]) = S::untested_gap(self, memory).filter(|_| !self.gap_met) {
+            self.gap_met = true;
+            let wind = shown(self.indices.wind_speed(memory));
+            notices.push(format!(
+                "wind_speed = {wind} m/s is in a gap between tests, {from:.3} to {to:.3} m/s for a motion at its frequency in \
+                 still air: the forces are interpolated over it"
+            ));
+        }
         S::watch(self, resources, memory, notices);
         let rotation = S::rotation(self, memory);
         if rotation.abs() > LINEAR_ROTATION_RAD && !self.rotation_left {
@@ -287,6 +305,7 @@ impl<S: CoupledKind> Coupled<S> {
             states_set: false,
             wind_was: None,
             wind_left: false,
+            gap_met: false,
             rotation_left: false,
             calculated: CalculatedNumbers::new(table),
             inputs: Inputs::steady(0.0, coordinates),

@@ -46,10 +46,15 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
 
     /// Onset and divergence. A search that fails is no reason to end a run.
     fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
-        if !self.calculated.are_known() {
-            let card = S::found(self, resources, memory);
-            self.calculated.enter(card, memory, notices);
+        if self.calculated.are_known() {
+            return;
         }
+        if !self.calculated.have_been_searched() {
+            let card = S::found(self, resources, memory);
+            self.calculated.enter(card, memory);
+        }
+        self.calculated
+            .tell(&resources.table, &memory.values, notices);
     }
 
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.

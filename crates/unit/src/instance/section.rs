@@ -11,7 +11,7 @@ use crate::flutter::{
 use crate::onset_start::simulated_onset;
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::{Model, TrainedModel};
-use crate::units::{ReducedFrequency, ReducedVelocity};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
 use crate::variables::{OnsetNumbers, Role, SectionParameter, VariableTable};
 
 /// The section of the model with the parameters in `values` (one number per variable of `table`).
@@ -125,6 +125,9 @@ fn plain_without_samples(
     }
 }
 
+/// Part of a `K` by which what was followed up to an end of the tests may lie below it.
+const AT_THE_END: f64 = 1e-6;
+
 /// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
 const SEARCHED_STATES: usize = 100;
 
@@ -177,6 +180,7 @@ impl OnsetCard {
         };
         card.search_onset(model, section, limit, plain);
         card.judge(slow_wind);
+        card.look_beside_tests(section, model.tested_range);
         card
     }
 
@@ -246,6 +250,27 @@ impl OnsetCard {
             "static divergence at {divergence:.3} m/s, {flutter}: the margin to flutter does not count it"
         ));
         self.numbers.stable_below = false;
+    }
+
+    /// Nor is what data say nothing of: below the onset a motion comes to lie below every test, or in a gap between them, or
+    /// does not oscillate any more.
+    fn look_beside_tests(&mut self, section: &CoupledSection, tested: ReducedFrequencyRange) {
+        if !self.numbers.stable_below {
+            return;
+        }
+        let (speed, width) = (self.numbers.speed_m_s.value, section.structure().width_m);
+        let ends = tested.lower_ends().map(|(end, _)| end.full_width());
+        let end = ends.fold(0.0, f64::max);
+        let lowest = end * (1.0 - AT_THE_END) * speed / width;
+        let all = section.at(speed).and_then(|section| section.eigenvalues());
+        let inside = all.map(|all| all.iter().filter(|z| z.im >= lowest).count());
+        if inside.is_ok_and(|count| count >= section.structure().dofs.len()) {
+            return;
+        }
+        self.numbers.stable_below = false;
+        self.warnings.push(format!(
+            "below {speed:.3} m/s a motion falls below K {end:.3}, where these data say nothing of it"
+        ));
     }
 
     /// The card of parameters that give no section at all.

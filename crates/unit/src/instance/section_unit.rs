@@ -13,6 +13,7 @@ use crate::flutter::UnwantedGrowth;
 use crate::resources::Resources;
 use crate::response::{Outputs, SectionState, Stepper};
 use crate::section::{Dof, SectionModel};
+use crate::units::{ReducedFrequencyGap, ReducedFrequencyRange};
 use crate::variables::{Response, Role, VariableTable};
 use std::sync::OnceLock;
 
@@ -104,8 +105,7 @@ impl SuspendedSection {
 }
 
 impl CoupledKind for SuspendedSection {
-    /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
-    type Own = Option<[f64; 2]>;
+    type Own = TestedWinds;
 
     const TESTED_AT: &'static str = "this section was tested at its frequencies in still air";
 
@@ -113,7 +113,7 @@ impl CoupledKind for SuspendedSection {
         let (_, coupled) = self.coupled(resources, values)?;
         let stepper = Stepper::in_gusts(coupled, resources.gusts.as_ref());
         Ok(Built {
-            own: tested_winds(&stepper, resources),
+            own: TestedWinds::new(&stepper, resources.model.tested_range),
             stepper,
             damping: PresentDamping::default(),
         })
@@ -172,7 +172,14 @@ impl CoupledKind for SuspendedSection {
 
     #[inline]
     fn tested_winds(unit: &SectionUnit) -> Option<[f64; 2]> {
-        unit.built.own
+        unit.built.own.between
+    }
+
+    #[inline]
+    fn untested_gap(unit: &SectionUnit, memory: &Memory) -> Option<[f64; 2]> {
+        let wind = unit.indices.wind_speed(memory);
+        let mut gaps = unit.built.own.gaps.iter();
+        gaps.find(|[from, to]| *from < wind && wind < *to).copied()
     }
 
     fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
@@ -230,17 +237,33 @@ impl CoupledKind for SuspendedSection {
     }
 }
 
-/// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where there
-/// are none.
-fn tested_winds(stepper: &Stepper, resources: &Resources) -> Option<[f64; 2]> {
-    let s = stepper.section().structure();
-    let (slowest, fastest) = s
-        .still_air_rad_s()
-        .fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
-    let range = resources.model.tested_range;
-    let low = fastest * s.width_m / range.max.full_width();
-    let high = slowest * s.width_m / range.min.full_width();
-    (low <= high).then_some([low, high])
+/// Wind speeds, m/s, at which a section was tested, by its motions at their frequencies in still air.
+#[derive(Debug, Clone)]
+pub(super) struct TestedWinds {
+    /// From the lowest to the highest at which every motion lies between the lowest and the highest test; `None` where there are none.
+    between: Option<[f64; 2]>,
+    /// Those at which a motion lies far from every test.
+    gaps: Vec<[f64; 2]>,
+}
+
+impl TestedWinds {
+    fn new(stepper: &Stepper, range: ReducedFrequencyRange) -> Self {
+        let s = stepper.section().structure();
+        let all: Vec<f64> = s.still_air_rad_s().collect();
+        let (slowest, fastest) = all
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
+        let low = fastest * s.width_m / range.max.full_width();
+        let high = slowest * s.width_m / range.min.full_width();
+        let gaps = range.gaps().filter_map(ReducedFrequencyGap::unknown);
+        Self {
+            between: (low <= high).then_some([low, high]),
+            gaps: gaps
+                .flat_map(|gap| all.iter().map(move |w| (w * s.width_m, gap)))
+                .map(|(speed, (from, to))| [speed / to, speed / from])
+                .collect(),
+        }
+    }
 }
 
 fn response_indices(table: &VariableTable) -> Result<ResponseIndices> {

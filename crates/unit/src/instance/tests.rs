@@ -3,6 +3,7 @@
 mod after_changes;
 #[allow(unsafe_code)]
 mod allocations;
+mod beside_tests;
 mod damping;
 mod differences;
 mod followed;

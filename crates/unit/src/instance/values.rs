@@ -107,7 +107,8 @@ impl Instance {
                 Err(why) => {
                     let calculated = self.unit.calculated();
                     if let Some(numbers) = calculated.filter(|numbers| !numbers.are_known()) {
-                        numbers.enter(OnsetCard::unknown(&why), memory, &mut self.notices);
+                        numbers.enter(OnsetCard::unknown(&why), memory);
+                        numbers.tell(&self.resources.table, &memory.values, &mut self.notices);
                     }
                 }
             },

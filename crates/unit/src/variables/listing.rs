@@ -39,7 +39,7 @@ impl VariableTable {
         });
         let table = Self {
             variables: variables.collect(),
-            onset_undetermined: self.onset_undetermined.clone(),
+            onset_bounds: self.onset_bounds.clone(),
         };
         (table, references)
     }

@@ -1,0 +1,105 @@
+//! What was not tested is not called tested or stable, and each run is told so.
+
+use super::{Exported, fixture, index, instance};
+use crate::instance::Instance;
+use crate::onset_bounds::OnsetBounds;
+use crate::resources::{OptionFiles, Resources};
+use crate::section::Dof;
+use crate::trained_model::TrainedModel;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+
+fn trained() -> TrainedModel {
+    TrainedModel::from_json(std::str::from_utf8(&fixture("rational")).unwrap()).unwrap()
+}
+
+fn flags<const N: usize>(unit: &mut Instance, names: [&str; N]) -> [bool; N] {
+    names.map(|name| unit.boolean(index(unit, name)).unwrap())
+}
+
+/// Between tests that are far from each other the wind is not one that was tested, and what passes there below the onset is not known.
+#[test]
+fn a_gap_between_tests_is_no_test() {
+    let mut model = trained();
+    let k = ReducedFrequency::from_full_width;
+    let parts = [
+        ReducedFrequencyRange::between(k(0.05), k(0.1)),
+        ReducedFrequencyRange::between(k(0.27), k(4.0)),
+    ];
+    model.tested_range = ReducedFrequencyRange::covering(parts).unwrap();
+    let (json, tested) = (model.to_json().unwrap(), model.tested_range);
+    let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+    let mut unit = Instance::new(resources).unwrap();
+    unit.enter_initialization();
+    let (section, wind) = (model.section.clone(), index(&unit, "wind_speed"));
+    let structure = section.structure().unwrap();
+    let mut seen = [false; 2];
+    for speed in 1..60 {
+        let speed = f64::from(speed);
+        unit.set_reals(&[wind], &[speed]).unwrap();
+        let k = |w| ReducedFrequency::from_circular(w, section.width_m, speed);
+        let all = structure.still_air_rad_s().all(|w| tested.contains(k(w)));
+        assert_eq!(flags(&mut unit, ["wind_in_tested_range"]), [all], "{speed}");
+        seen[usize::from(all)] = true;
+    }
+    assert_eq!((seen, model.section.dofs()), ([true; 2], Dof::TWO.to_vec()));
+    unit.take_notices();
+    // the onset lies among the tests, the other motion in the gap
+    let names = ["onset_found", "onset_in_tested_range", "stable_below_onset"];
+    assert_eq!(flags(&mut unit, names), [true, true, false]);
+    let notices = unit.take_notices().join("\n");
+    assert!(
+        notices.contains("these data say nothing of it"),
+        "{notices}"
+    );
+    unit.set_reals(&[wind], &[35.0]).unwrap();
+    unit.exit_initialization().unwrap();
+    let notices = unit.take_notices().join("\n");
+    assert!(notices.contains("is in a gap between tests"), "{notices}");
+}
+
+/// Another run has another log: what must be known of the onset stands in each, once.
+#[test]
+fn each_run_is_told_what_its_onset_is_worth() {
+    let bounds = OnsetBounds {
+        low_m_s: 5.0,
+        high_m_s: 60.0,
+        undetermined: Some("not determined by these data".into()),
+    };
+    let json = serde_json::to_string(&bounds).unwrap();
+    let files = OptionFiles {
+        bounds: Some(json.as_bytes()),
+        ..OptionFiles::default()
+    };
+    let mut unit =
+        Instance::new(Resources::from_bytes(&fixture("rational"), files).unwrap()).unwrap();
+    let told = |unit: &mut Instance, what: &str| {
+        flags(unit, ["onset_found"]);
+        flags(unit, ["onset_found"]);
+        unit.take_notices().join("\n").matches(what).count()
+    };
+    for run in 0..2 {
+        unit.enter_initialization();
+        assert_eq!(
+            told(&mut unit, "not determined by these data"),
+            1,
+            "run {run}"
+        );
+        let damping = index(&unit, "torsion_damping_ratio");
+        for ratio in [0.01, 0.02] {
+            unit.set_reals(&[damping], &[ratio]).unwrap();
+            let times = usize::from(ratio == 0.01);
+            assert_eq!(
+                told(&mut unit, "interval of what was exported"),
+                times,
+                "run {run}"
+            );
+        }
+        unit.reset();
+    }
+    // without an interval nothing is said of one
+    let mut unit = instance(Exported::Section("rational"), false).unwrap();
+    unit.enter_initialization();
+    let damping = index(&unit, "torsion_damping_ratio");
+    unit.set_reals(&[damping], &[0.01]).unwrap();
+    assert_eq!(told(&mut unit, "interval of what was exported"), 0);
+}
