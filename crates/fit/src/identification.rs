@@ -13,6 +13,7 @@ pub(crate) mod form;
 mod frequency;
 pub(crate) mod frequency_options;
 mod grid;
+mod joint;
 mod kept_record;
 pub(crate) mod least_squares;
 mod minimum_state;

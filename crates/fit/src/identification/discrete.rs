@@ -116,12 +116,13 @@ pub fn fit_discrete(
         counts: parameters.iter().map(|(_, filters)| *filters).collect(),
         systems: pass.systems(),
     };
-    let fitted = FittedSystems::new(dofs, systems, 1.0, "the filters")?;
+    let names = |(_, filters): &(f64, usize)| (0..*filters).map(|l| format!("c{l}")).collect();
+    let (chains, names) = (
+        vec![Vec::new(); parameters.len()],
+        parameters.iter().map(names),
+    );
+    let fitted = FittedSystems::new(dofs, systems, chains, names.collect(), 1.0, "the filters")?;
     let model = model(&fitted, dofs, &parameters, delta_s)?;
-    let entries = fitted.reports(|e| {
-        let names = (0..parameters[e].1).map(|l| format!("c{l}")).collect();
-        Ok((names, Vec::new()))
-    })?;
     let shared = parameters.iter().all(|p| *p == parameters[0]);
     let report = FitReport {
         method: format!(
@@ -133,17 +134,13 @@ pub fn fit_discrete(
         ),
         weights: fit.weights.describe().into(),
         samples: fitted.systems.whole(0).rows,
-        tested_range: records.tested_range()?,
-        condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
-        entries,
-        search: Vec::new(),
         orders: if shared { fitted.orders(0) } else { Vec::new() },
         alpha_guideline: Some(guideline(&parameters, spanned, delta_s, &records)),
         static_terms: [records.removed_means.clone(), fitted.constants()?].concat(),
         memory: memory(&parameters, &records, delta_s)?,
-        constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
         notes: records.odd_air(),
+        ..FitReport::new(records.tested_range()?, fitted.reports()?, Vec::new())
     };
     Ok(Fitted {
         model: Model::DiscreteLaguerre(model),

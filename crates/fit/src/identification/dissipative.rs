@@ -8,7 +8,7 @@
 //! 2. damping in the limit of fast motion: `−(e₁ + e₁ᵀ) ⪰ δI`;
 //! 3. damping of every real mode shape above the tested range: `−sym Im G(K)/K ⪰ 0` for `K ≥ K_max`.
 //!
-//! The inequalities hold for heave and torsion together, and for sway by itself ([`Motions`]). A deck whose tests end with
+//! The inequalities hold for heave and torsion together, and for sway by itself ([`Dissipation::parts`]). A deck whose tests end with
 //! growth (a bluff one) keeps it: where `sym Im G/K` at `K_max` has a positive part `P` in the fit that the data alone give,
 //! condition 3 reads `P (K_max/K)² − sym Im G(K)/K ⪰ 0`, since a fit damped from `K_max` on would be damped at the end of the
 //! tested range too, on the unsafe side.
@@ -23,19 +23,15 @@ mod conic;
 mod edge;
 mod equations;
 mod everywhere;
-mod motions;
 mod report;
 
 use super::affine::{AffineMap, AffineSpace};
 use super::basis::Basis;
-use crate::error::{Error, Result};
-use condition::Condition;
+use crate::error::{Error, Result, ensure};
+use condition::{Condition, Dissipation};
 use conic::shortest;
-use edge::TestedRangeEnd;
 pub use equations::Constraints;
 pub(crate) use equations::FitRequirements;
-use equations::{equations, satisfy};
-use motions::Motions;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use report::GrowthLimit;
 
@@ -49,6 +45,10 @@ const ACTIVE: f64 = 1e-7;
 pub(crate) const NOTHING_HELD: f64 = 1e-6;
 /// Part of a gradient outside those of other constraints below which it adds no direction.
 pub(crate) const SAME_DIRECTION: f64 = 1e-8;
+/// Part of an equation outside the others below which it repeats them.
+const RANK_TOLERANCE: f64 = 1e-10;
+/// Relative difference to which a repeated equation has to agree with the others.
+const AGREEMENT: f64 = 1e-8;
 /// Times that further `K` are stated; two or three are the rule.
 const ROUNDS: usize = 30;
 
@@ -59,15 +59,6 @@ pub(crate) enum Strictness {
     Sampled,
     /// At every `K ≥ K_max`.
     Everywhere,
-}
-
-/// The conditions on one model with given poles.
-pub(crate) struct Dissipation<'a> {
-    bases: &'a [Basis],
-    k_max: f64,
-    motions: Motions<'a>,
-    conditions: Vec<Condition>,
-    equations: Vec<(ActiveConstraint, f64)>,
 }
 
 /// The fit under the conditions.
@@ -82,98 +73,95 @@ pub(crate) struct Solution {
     pub space: AffineSpace,
 }
 
-impl<'a> Dissipation<'a> {
-    /// For the bases of all transfer functions, row by row.
-    pub(crate) fn new(bases: &'a [Basis], requirements: &FitRequirements) -> Self {
-        let motions = Motions::new(bases, &requirements.dofs);
-        let mut conditions = Vec::new();
-        if requirements.constraints == Constraints::Dissipative {
-            for part in 0..motions.parts.len() {
-                conditions.extend(Condition::all(&motions, requirements.k_max, part));
-            }
-        }
-        Self {
-            equations: equations(bases, motions.count, requirements),
-            k_max: requirements.k_max,
-            bases,
-            motions,
-            conditions,
-        }
-    }
+/// The least of the joint objective of transfer functions under what is asked of them; `None` when least squares alone satisfy it.
+///
+/// # Errors
+/// Limits at K → 0 that the columns cannot meet, and conditions that no coefficients satisfy.
+pub(crate) fn constrained(
+    entries: &[AffineMap],
+    bases: &[Basis],
+    requirements: &FitRequirements,
+    strictness: Strictness,
+) -> Result<Option<Solution>> {
+    Dissipation::new(bases, requirements, entries).solve(strictness)
+}
 
-    /// The end of the tested range for every part, from the fit that the data alone give.
-    fn edges(&self, alone: &[Vec<f64>]) -> Vec<TestedRangeEnd> {
-        let first = |part: usize| self.conditions.iter().find(|s| s.part == part);
-        (0..self.motions.parts.len())
-            .filter_map(first)
-            .map(|s| TestedRangeEnd::new(s.matrix(&self.motions, alone)))
-            .collect()
-    }
-
-    /// The least of the joint objective under the conditions; `None` when least squares alone satisfy them.
-    ///
-    /// # Errors
-    /// Limits at K → 0 that the columns cannot meet, and conditions that no coefficients satisfy.
-    pub(crate) fn solve(
-        &self,
-        entries: &[AffineMap],
-        strictness: Strictness,
-    ) -> Result<Option<Solution>> {
-        let width = entries.iter().map(AffineMap::end).max().unwrap_or(0);
-        let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-        let edges = self.edges(&alone);
-        let equalities = satisfy(&self.equations, self.bases, entries, width)?;
+impl Dissipation<'_> {
+    fn solve(mut self, strictness: Strictness) -> Result<Option<Solution>> {
+        let equalities = self.satisfied()?;
         let start = &equalities.start;
-        let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(start)).collect();
-        let mut conditions = self.conditions.clone();
+        let at = |free: &DVector<f64>| -> Vec<Vec<f64>> {
+            self.entries.iter().map(|e| e.coefficients(free)).collect()
+        };
+        let at_start = at(start);
+        let mut conditions = std::mem::take(&mut self.conditions);
         let (mut free, mut coefficients) = (start.clone(), at_start.clone());
         let mut holds = vec![false; conditions.len()];
-        let broken = |s: &Condition| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
+        let broken = |s: &Condition| self.excesses(s, &at_start).0.max() > TOLERANCE;
         let mut more = match conditions.iter().any(broken) {
             true => None,
-            false => Some(self.broken_between(&at_start, &edges, strictness)),
+            false => Some(self.broken_between(&at_start, strictness)),
         };
         for _ in 0..=ROUNDS {
             if more.as_ref().is_some_and(Vec::is_empty) {
                 if free.amax() == 0.0 {
                     return Ok(None);
                 }
-                let held = held(&conditions, &holds);
-                let solution = self.solution(entries, free, coefficients, &edges, held, equalities);
-                return Ok(Some(solution));
+                let held = conditions.iter().zip(holds).filter(|(_, held)| *held);
+                let mut held: Vec<&Condition> = held.map(|(s, _)| s).collect();
+                held.sort_by(|a, b| a.order(b));
+                return Ok(Some(self.solution(free, coefficients, &held, equalities)));
             }
             conditions.extend(more.into_iter().flatten());
-            let cone = |s: &Condition| {
-                let edge = &edges[s.part];
-                s.cone(&self.motions, entries, &at_start, edge, &equalities)
-            };
+            let cone = |s: &Condition| self.cone(s, &at_start, &equalities);
             let cones: Vec<_> = conditions.iter().map(cone).collect();
-            let (further, holding) = shortest(&cones, width)?;
+            let (further, holding) = shortest(&cones, self.width)?;
             (free, holds) = (start + further, holding);
-            coefficients = entries.iter().map(|e| e.coefficients(&free)).collect();
-            more = Some(self.broken_between(&coefficients, &edges, strictness));
+            coefficients = at(&free);
+            more = Some(self.broken_between(&coefficients, strictness));
         }
         Err(Error::Numerical(format!(
             "dissipative fit: damping for every K not reached after {ROUNDS} rounds; `constraints = \"none\"` fits without"
         )))
     }
 
+    /// The free numbers that satisfy the equations.
+    fn satisfied(&self) -> Result<AffineSpace> {
+        let mut space = AffineSpace::whole(self.width);
+        let n = self.count;
+        for (equation, wanted) in &self.equations {
+            let mut gradient = DVector::zeros(self.width);
+            for (e, (entry, basis)) in self.entries.iter().zip(self.bases).enumerate() {
+                if equation.weight(e / n, e % n) != 0.0 {
+                    let row = equation.gradient(e / n, e % n, basis);
+                    entry.add_gradient(&row, 1.0, &mut gradient);
+                }
+            }
+            let target = wanted - equation.value_in(self.bases, &self.alone);
+            if !space.hold(&gradient, target, RANK_TOLERANCE) {
+                let short = target - gradient.dot(&space.start);
+                ensure(
+                    short.abs() <= AGREEMENT * wanted.abs().max(gradient.norm()),
+                    "limits",
+                    "limits at K → 0 that the columns of the model can meet",
+                    "a feed-through is missing, or one limit repeats another",
+                )?;
+            }
+        }
+        Ok(space)
+    }
+
     /// Condition 3 where it is broken although it is not stated there.
-    fn broken_between(
-        &self,
-        coefficients: &[Vec<f64>],
-        edges: &[TestedRangeEnd],
-        strictness: Strictness,
-    ) -> Vec<Condition> {
-        if strictness == Strictness::Sampled {
-            return Vec::new();
-        }
-        let mut all = Vec::new();
-        for (part, edge) in edges.iter().enumerate() {
-            let ks = self.broken_at(part, coefficients, edge).into_iter();
-            all.extend(ks.map(|k| Condition::above(k, k / self.k_max, &self.motions, part)));
-        }
-        all
+    fn broken_between(&self, coefficients: &[Vec<f64>], strictness: Strictness) -> Vec<Condition> {
+        let parts = match strictness {
+            Strictness::Sampled => 0,
+            Strictness::Everywhere => self.edges.len(),
+        };
+        let of_part = |part| {
+            let ks = self.broken_at(part, coefficients).into_iter();
+            ks.map(move |k| self.above(k, k / self.k_max, part))
+        };
+        (0..parts).flat_map(of_part).collect()
     }
 
     /// Eigenvalues of a condition's matrix beyond what it may have, over its scale, and eigenvectors.
@@ -181,10 +169,9 @@ impl<'a> Dissipation<'a> {
         &self,
         condition: &Condition,
         coefficients: &[Vec<f64>],
-        edges: &[TestedRangeEnd],
     ) -> (DVector<f64>, DMatrix<f64>) {
-        let edge = &edges[condition.part];
-        let beyond = condition.matrix(&self.motions, coefficients) - &edge.own * condition.own;
+        let edge = &self.edges[condition.part];
+        let beyond = self.matrix(condition, coefficients) - &edge.own * condition.own;
         let eigen = SymmetricEigen::new(beyond / (edge.size * condition.scale));
         let excesses = eigen.eigenvalues.add_scalar(condition.margin);
         (excesses, eigen.eigenvectors)
@@ -192,30 +179,25 @@ impl<'a> Dissipation<'a> {
 
     fn solution(
         &self,
-        entries: &[AffineMap],
         free: DVector<f64>,
         coefficients: Vec<Vec<f64>>,
-        edges: &[TestedRangeEnd],
-        held: Vec<&Condition>,
+        held: &[&Condition],
         mut space: AffineSpace,
     ) -> Solution {
-        let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let account = |(equation, _): &(ActiveConstraint, f64)| ActiveConstraint {
-            alone: equation.value_in(self.bases, &alone),
+            alone: equation.value_in(self.bases, &self.alone),
             held: equation.value_in(self.bases, &coefficients),
             ..equation.clone()
         };
         let mut active: Vec<_> = self.equations.iter().map(account).collect();
         for s in held {
-            let (excesses, directions) = self.excesses(s, &coefficients, edges);
-            for (m, excess) in excesses.iter().enumerate() {
+            let (excesses, directions) = self.excesses(s, &coefficients);
+            for (excess, direction) in excesses.iter().zip(directions.column_iter()) {
                 if *excess <= -ACTIVE {
                     continue;
                 }
-                let direction = directions.column(m).into_owned();
-                let constraint =
-                    self.active_constraint(s, &direction, edges, &alone, &coefficients);
-                if let Some(gradient) = self.free_gradient(s, &constraint, entries) {
+                let constraint = self.active_constraint(s, &direction.into_owned(), &coefficients);
+                if let Some(gradient) = self.free_gradient(s, &constraint) {
                     space.hold(&gradient, gradient.dot(&free), SAME_DIRECTION);
                 }
                 active.push(constraint);
@@ -234,24 +216,29 @@ impl<'a> Dissipation<'a> {
         &self,
         condition: &Condition,
         direction: &DVector<f64>,
-        edges: &[TestedRangeEnd],
-        alone: &[Vec<f64>],
         coefficients: &[Vec<f64>],
     ) -> ActiveConstraint {
-        let (part, own) = (condition.part, condition.own);
-        let value =
-            |x: &[Vec<f64>]| direction.dot(&(condition.matrix(&self.motions, x) * direction));
-        let follows = (own > 0.0).then(|| edges[part].change(direction)).flatten();
+        let (n, own) = (self.count, condition.own);
+        let (part, edge) = (&self.parts[condition.part], &self.edges[condition.part]);
+        let value = |x: &[Vec<f64>]| direction.dot(&(self.matrix(condition, x) * direction));
+        let follows = (own > 0.0).then(|| edge.change(direction)).flatten();
+        // over all motions, of which the others are still
+        let place = |i: usize| part.iter().position(|motion| *motion == i);
+        let weight = |w: &DMatrix<f64>, i, j| match (place(i), place(j)) {
+            (Some(a), Some(b)) => w[(a, b)] * own,
+            _ => 0.0,
+        };
+        let whole = (0..n).map(|i| place(i).map_or(0.0, |a| direction[a]));
         ActiveConstraint {
             kind: condition.kind,
             k: condition.k,
             entry: None,
-            direction: self.motions.whole(part, direction.as_slice()).data.into(),
-            alone: value(alone),
+            direction: whole.collect(),
+            alone: value(&self.alone),
             held: value(coefficients),
             limit: follows.map(|weights| GrowthLimit {
                 k_max: self.k_max,
-                weights: self.motions.whole_matrix(part, &(weights * own)),
+                weights: DMatrix::from_fn(n, n, |i, j| weight(&weights, i, j)),
             }),
         }
     }
@@ -261,24 +248,15 @@ impl<'a> Dissipation<'a> {
         &self,
         condition: &Condition,
         constraint: &ActiveConstraint,
-        entries: &[AffineMap],
     ) -> Option<DVector<f64>> {
         let v = DVector::from_column_slice(&constraint.direction);
-        let held = condition.gradient(&self.motions, &(&v * v.transpose()), entries);
+        let held = self.gradient(condition, &(&v * v.transpose()));
         let Some(limit) = &constraint.limit else {
             return Some(held);
         };
-        let follows = Condition::above(self.k_max, 1.0, &self.motions, condition.part);
+        let follows = self.above(self.k_max, 1.0, condition.part);
         let norm = held.norm();
-        let free = held - follows.gradient(&self.motions, &limit.weights, entries);
+        let free = held - self.gradient(&follows, &limit.weights);
         (free.norm() > NOTHING_HELD * norm).then_some(free)
     }
-}
-
-/// The conditions that hold something, in their order.
-fn held<'a>(conditions: &'a [Condition], holds: &[bool]) -> Vec<&'a Condition> {
-    let pairs = conditions.iter().zip(holds);
-    let mut held: Vec<&Condition> = pairs.filter_map(|(s, held)| held.then_some(s)).collect();
-    held.sort_by(|a, b| a.order(b));
-    held
 }

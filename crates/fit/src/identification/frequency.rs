@@ -10,13 +10,13 @@ use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
-use super::report::{FitReport, Fitted, FittedTable};
+use super::report::{FitReport, Fitted};
 use super::samples::{EntrySamples, sort_by_entry, state_requirements};
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use joint::{Joint, JointFit};
+use joint::{EntryFits, Joint};
 use poles::choose_poles;
 use std::collections::BTreeMap;
 
@@ -50,7 +50,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     let spanned = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
     let tested_range = tested_range(samples, spanned)?;
-    let fitted = match fit.form {
+    let Fitted { model, report } = match fit.form {
         Form::MinimumState { .. } => fit_minimum_state(&entries, dofs, fit, spanned)?,
         _ => fit_linear(&entries, dofs, fit, spanned)?,
     };
@@ -60,12 +60,6 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
             fit.regularization
         ));
     }
-    let FittedTable {
-        model,
-        reports,
-        search,
-        constraints,
-    } = fitted;
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} numbers of the transfer matrix",
@@ -76,18 +70,11 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
         weights: describe(fit.weights).into(),
         samples: samples.len(),
         tested_range,
-        condition: reports.iter().map(|r| r.condition).fold(1.0, f64::max),
-        entries: reports,
-        search,
-        orders: Vec::new(),
-        alpha_guideline: None,
-        static_terms: Vec::new(),
-        memory: Vec::new(),
-        constraints,
         covariance_assumption:
             "weighted residuals are independent and of one variance; the poles count as known"
                 .into(),
         notes,
+        ..report
     };
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
@@ -117,16 +104,14 @@ fn fit_linear(
     dofs: &[Dof],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
-) -> Result<FittedTable> {
+) -> Result<Fitted> {
     let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let (poles, search) = choose_poles(entries, &forms, fit, tested, None)?;
-    let by_themselves = JointFit::alone(entries, &fit.form, &poles, true)?;
+    let by_themselves = EntryFits::alone(entries, &fit.form, &poles, true)?;
     let reports = by_themselves.reports()?;
-    let alone = FittedTable {
+    let alone = Fitted {
         model: model_of(&fit.form, dofs, &reports)?,
-        reports,
-        search,
-        constraints: None,
+        report: FitReport::new(tested, reports, search),
     };
     if fit.constraints == Constraints::None {
         return Ok(alone);
@@ -138,31 +123,27 @@ fn fit_linear(
         requirements: fit.requirements(dofs, tested),
     };
     let bound = by_themselves.held(&joint, Strictness::Everywhere)?;
-    if bound.constrained.is_none() {
+    if bound.solution().is_none() {
         return Ok(alone);
     }
     let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&joint, poles)))?;
     let together = joint.at(&poles)?;
     let reports = together.reports()?;
     let model = model_of(&fit.form, dofs, &reports)?;
-    let active = together
-        .constrained
-        .map(|solution| solution.active)
-        .unwrap_or_default();
+    let active = together.solution().map(|solution| solution.active.clone());
     let constraints = ConstraintReport::new(
-        active,
+        active.unwrap_or_default(),
         dofs,
-        &alone.reports,
+        &alone.report.entries,
         &bound.bases,
         &reports,
         alone.model,
     );
-    Ok(FittedTable {
-        model,
-        reports,
-        search,
+    let report = FitReport {
         constraints: Some(constraints),
-    })
+        ..FitReport::new(tested, reports, search)
+    };
+    Ok(Fitted { model, report })
 }
 
 fn describe(weights: FrequencyWeights) -> &'static str {

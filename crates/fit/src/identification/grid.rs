@@ -7,11 +7,11 @@ use super::basis::{Basis, assemble};
 use super::discrete::discrete_pass;
 use super::dissipative::Strictness;
 use super::form::{Form, number_of_filters};
+use super::joint::JointFit;
 use super::least_squares::Factor;
 use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
 use super::time::continuous::{RecordFit, Rows};
-use super::time::fitted::JointTimeFit;
 use super::time::pass::{ColumnOrder, OnProgress, Pass};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
@@ -143,8 +143,8 @@ impl Grid {
             .map(|factor| factor.solve(leading))
             .collect::<Result<Vec<_>>>()?;
         let mut objective = systems.objective(per_input, &|_, _| true);
-        if let Some(constrained) = self.constrained(systems, value, filters)? {
-            objective = constrained.objective();
+        if let Some((constrained, own)) = self.constrained(systems, value, filters)? {
+            objective = own;
             let n = self.dofs.len();
             for e in 0..n * n {
                 for (c, x) in constrained.values(e).iter().enumerate() {
@@ -167,13 +167,13 @@ impl Grid {
         })
     }
 
-    /// The fit under its constraints, where these are asked for and bind.
+    /// The fit under its constraints with its objective, where these are asked for and bind.
     fn constrained(
         &self,
         systems: &Rc<Systems>,
         value: usize,
         filters: usize,
-    ) -> Result<Option<JointTimeFit>> {
+    ) -> Result<Option<(JointFit, f64)>> {
         let GridAxis::Continuous(poles, fit) = &self.axis else {
             return Ok(None);
         };
@@ -188,13 +188,9 @@ impl Grid {
             counts: vec![self.leading(filters); entries],
             systems: vec![Rc::clone(systems)],
         };
-        let joint = JointTimeFit::new(
-            &systems,
-            &vec![basis; entries],
-            &requirements,
-            Strictness::Sampled,
-        )?;
-        Ok(Some(joint).filter(|j| j.constrained.is_some()))
+        let bases = vec![basis; entries];
+        let held = systems.held(&bases, &requirements, Strictness::Sampled)?;
+        Ok(Some(held).filter(|(joint, _)| joint.constrained.is_some()))
     }
 
     /// Coefficients that a system of input `j` alone takes: the constant, if any, then that input's.

@@ -55,7 +55,7 @@ impl StreamingQr {
         self.pending_rows += 1;
         self.rows += 1;
         if self.pending_rows == BLOCK_ROWS {
-            self.factor_pending();
+            reflect_pending(self);
         }
     }
 
@@ -73,7 +73,7 @@ impl StreamingQr {
             self.pending_rows += count;
             at += count;
             if self.pending_rows == BLOCK_ROWS {
-                self.factor_pending();
+                reflect_pending(self);
             }
         }
         self.rows += rows;
@@ -104,7 +104,7 @@ impl StreamingQr {
 
     /// The factorisation of all rows so far.
     pub(crate) fn finish(mut self) -> Factor {
-        self.factor_pending();
+        reflect_pending(&mut self);
         Factor {
             r: self.upper.columns(0, self.columns).into_owned(),
             qtb: self
@@ -115,54 +115,44 @@ impl StreamingQr {
             rows: self.rows,
         }
     }
+}
 
-    /// Reflects the pending rows into `R`, one column after the other, with the widest vectors of the processor: they add in the
-    /// order of any other.
-    fn factor_pending(&mut self) {
-        reflect_pending(self);
-    }
-
-    #[inline(always)]
-    fn reflect_pending(&mut self) {
-        let rows = self.pending_rows;
-        for j in 0..self.columns {
-            let (head, tail) = self.pending.split_at_mut((j + 1) * BLOCK_ROWS);
+vectorised! {
+    /// Reflects the pending rows into `R`, one column after the other, with the widest vectors of the processor: they add in the order of
+    /// any other.
+    fn reflect_pending<'a>(qr: &'a mut StreamingQr) -> () {
+        let rows = qr.pending_rows;
+        for j in 0..qr.columns {
+            let (head, tail) = qr.pending.split_at_mut((j + 1) * BLOCK_ROWS);
             let v = &head[j * BLOCK_ROWS..j * BLOCK_ROWS + rows];
             let below = dot(v, v);
             if below == 0.0 {
                 continue;
             }
-            let pivot = self.upper[(j, j)];
+            let pivot = qr.upper[(j, j)];
             let norm = (pivot * pivot + below).sqrt();
             // the sign that adds: no cancellation in the head of the reflection vector
             let reflected = if pivot > 0.0 { -norm } else { norm };
             let first = pivot - reflected;
             let scale = 1.0 / (norm * (norm + pivot.abs()));
-            self.upper[(j, j)] = reflected;
+            qr.upper[(j, j)] = reflected;
             for (k, column) in tail.chunks_exact_mut(BLOCK_ROWS).enumerate() {
                 let column = &mut column[..rows];
-                let top = &mut self.upper[(j, j + 1 + k)];
+                let top = &mut qr.upper[(j, j + 1 + k)];
                 let along = scale * (first * *top + dot(v, column));
                 *top -= along * first;
                 subtract(column, along, v);
             }
         }
-        let reached = self.columns * BLOCK_ROWS;
-        for (rest, column) in self
+        let reached = qr.columns * BLOCK_ROWS;
+        for (rest, column) in qr
             .rest
             .iter_mut()
-            .zip(self.pending[reached..].chunks_exact(BLOCK_ROWS))
+            .zip(qr.pending[reached..].chunks_exact(BLOCK_ROWS))
         {
             *rest += dot(&column[..rows], &column[..rows]);
         }
-        self.pending_rows = 0;
-    }
-}
-
-vectorised! {
-    /// Reflects the pending rows into `R`.
-    fn reflect_pending<'a>(qr: &'a mut StreamingQr) -> () {
-        qr.reflect_pending();
+        qr.pending_rows = 0;
     }
 }
 

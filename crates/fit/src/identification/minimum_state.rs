@@ -13,7 +13,7 @@ use super::dissipative::{ActiveConstraint, Constraints, FitRequirements, Strictn
 use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
 use super::frequency_options::FrequencyFit;
-use super::report::{FittedTable, SearchPoint, SearchReport};
+use super::report::{FitReport, Fitted, SearchPoint, SearchReport};
 use super::samples::{EntrySamples, shares};
 use super::search::{Bounds, best_of, descend, search_poles};
 use crate::aerodynamics::MinimumStateModel;
@@ -50,7 +50,7 @@ pub(super) fn fit_minimum_state(
     dofs: &[Dof],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
-) -> Result<FittedTable> {
+) -> Result<Fitted> {
     let states = fit.form.filters();
     let mut task = LagSearch {
         entries,
@@ -77,12 +77,12 @@ pub(super) fn fit_minimum_state(
             points,
         });
     }
-    let (alone, _) = task.finish(dofs, &best, search)?;
+    let (alone, _) = task.finish(dofs, &best, tested, search)?;
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
     task.requirements = Some(fit.requirements(dofs, tested));
-    task.constrain(dofs, best, alone)
+    task.constrain(dofs, best, tested, alone)
 }
 
 impl LagSearch<'_> {
@@ -293,16 +293,16 @@ impl LagSearch<'_> {
         &self,
         dofs: &[Dof],
         x: &[f64],
+        tested: ReducedFrequencyRange,
         search: Vec<SearchReport>,
-    ) -> Result<(FittedTable, Option<Vec<ActiveConstraint>>)> {
+    ) -> Result<(Fitted, Option<Vec<ActiveConstraint>>)> {
         let rows = self.rows(x, Strictness::Everywhere)?;
         let model = self.model_of(dofs, x, &rows.values);
         model.validate()?;
-        let fitted = FittedTable {
-            reports: self.reports(&model, &rows.values, &rows.solutions)?,
+        let reports = self.reports(&model, &rows.values, &rows.solutions)?;
+        let fitted = Fitted {
             model: Model::MinimumState(model),
-            search,
-            constraints: None,
+            report: FitReport::new(tested, reports, search),
         };
         Ok((fitted, rows.active))
     }

@@ -5,11 +5,10 @@
 use super::basis::{Basis, model_of};
 use super::degenerate::note_lags;
 use super::dissipative::ConstraintReport;
-use super::entry_report::EntryReport;
 use super::form::Form;
 use super::options::TimeFit;
 use super::own::describe_own;
-use super::report::{FitReport, Fitted, MemoryReport, OrderReport, SearchReport, enough_rows};
+use super::report::{FitReport, Fitted, MemoryReport, SearchReport, enough_rows};
 use super::time::continuous::{RecordFit, Rows, padded};
 use super::time::fitted::FittedSystems;
 use super::time::pass::OnProgress;
@@ -62,6 +61,7 @@ pub fn fit_records(
     let (found, search, constraints) = task.under_constraints(chosen)?;
     let entries = found.reports()?;
     let model = model_of(&fit.form, &records.dofs, &entries)?;
+    let alike = found.chains.iter().all(|c| *c == found.chains[0]);
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} record(s) in the time domain",
@@ -70,21 +70,21 @@ pub fn fit_records(
             records.each.len()
         ),
         weights: fit.weights.describe().into(),
-        samples: found.fitted.systems.whole(0).rows,
-        tested_range: records.tested_range()?,
-        condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
-        entries,
-        search,
-        orders: found.orders(),
-        alpha_guideline: None,
-        static_terms: [records.removed_means.clone(), found.fitted.constants()?].concat(),
-        memory: found.memory()?,
+        samples: found.systems.whole(0).rows,
+        orders: match fit.form {
+            Form::Rational { .. } => Vec::new(),
+            _ if !alike => Vec::new(),
+            _ => found.orders(fit.form.feed_through().count()),
+        },
+        static_terms: [records.removed_means.clone(), found.constants()?].concat(),
+        memory: task.memory(&found.chains)?,
         constraints,
         covariance_assumption:
             "noise of the forces is white before the low-pass, motions are exact, the poles count \
                                 as known"
                 .into(),
         notes: records.odd_air(),
+        ..FitReport::new(records.tested_range()?, entries, search)
     };
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
@@ -103,7 +103,7 @@ impl<'a> RecordFit<'a> {
 
     /// The pass over every sample, then least squares: a fit at the unconstrained poles and, where the constrained ones
     /// are others, one at those.
-    fn least_squares_at(&'a self, chosen: &[EntryPoles]) -> Result<Vec<FitAtPoles<'a>>> {
+    fn least_squares_at(&'a self, chosen: &[EntryPoles]) -> Result<Vec<FittedSystems<'a>>> {
         let mut sets: Vec<Vec<Vec<f64>>> = chosen.iter().map(|c| c.chains.clone()).collect();
         sets.dedup();
         let feed = self.fit.form.feed_through().count();
@@ -125,22 +125,14 @@ impl<'a> RecordFit<'a> {
         }
         let pass = self.pass(&candidates, Rows::ALL, PASSES, PASSES)?;
         let mut systems = pass.systems().into_iter();
+        let (dofs, filters) = (&self.records.dofs, self.fit.form.describe());
         let fit = |(chains, count): (Vec<Vec<f64>>, usize)| {
-            let systems = ForceSystems {
+            let forces = ForceSystems {
                 counts: chains.iter().map(|c| feed + c.len()).collect(),
                 systems: systems.by_ref().take(count).collect(),
             };
-            let filters = self.fit.form.describe();
-            Ok(FitAtPoles {
-                task: self,
-                chains,
-                fitted: FittedSystems::new(
-                    &self.records.dofs,
-                    systems,
-                    self.noise_ratio(),
-                    &filters,
-                )?,
-            })
+            let names = self.bases(&chains)?.iter().map(Basis::names).collect();
+            FittedSystems::new(dofs, forces, chains, names, self.noise_ratio(), &filters)
         };
         sets.into_iter().zip(counts).map(fit).collect()
     }
@@ -150,61 +142,48 @@ impl<'a> RecordFit<'a> {
     fn under_constraints(
         &'a self,
         mut chosen: Vec<EntryPoles>,
-    ) -> Result<(FitAtPoles<'a>, Vec<SearchReport>, Option<ConstraintReport>)> {
+    ) -> Result<(
+        FittedSystems<'a>,
+        Vec<SearchReport>,
+        Option<ConstraintReport>,
+    )> {
         let (dofs, asked) = (&self.records.dofs, chosen.len() > 1);
         let requirements = self.fit.requirements(dofs, self.records.spanned_range()?)?;
         let mut fits = self.least_squares_at(&chosen)?.into_iter();
         let none = || Error::Numerical("fit to records: no fit".into());
         let mut found = fits.next().ok_or_else(none)?;
-        let (reports, bases) = (found.reports()?, found.bases()?);
+        let (reports, bases) = (found.reports()?, self.bases(&found.chains)?);
         let model = model_of(&self.fit.form, dofs, &reports)?;
         if asked {
-            found.fitted.constrain(&bases, &requirements)?;
+            found.constrain(&bases, &requirements)?;
         }
-        if found.fitted.active().is_none() {
+        if found.active().is_none() {
             return Ok((found, chosen.swap_remove(0).search, None));
         }
         if let Some(other) = fits.next() {
             found = other;
-            found.fitted.constrain(&found.bases()?, &requirements)?;
+            found.constrain(&self.bases(&found.chains)?, &requirements)?;
         }
-        let active = found.fitted.active().unwrap_or_default();
+        let active = found.active().unwrap_or_default();
         let with = found.reports()?;
         let constraints = ConstraintReport::new(active, dofs, &reports, &bases, &with, model);
         Ok((found, chosen.swap_remove(1).search, Some(constraints)))
     }
-}
 
-/// A fit at given poles.
-struct FitAtPoles<'a> {
-    task: &'a RecordFit<'a>,
-    /// Poles of the filters of every transfer function, row by row.
-    chains: Vec<Vec<f64>>,
-    fitted: FittedSystems<'a>,
-}
-
-impl FitAtPoles<'_> {
-    fn bases(&self) -> Result<Vec<Basis>> {
-        let form = &self.task.fit.form;
-        self.chains.iter().map(|c| Basis::new(form, c)).collect()
-    }
-
-    fn reports(&self) -> Result<Vec<EntryReport>> {
-        self.fitted.reports(|e| {
-            let basis = Basis::new(&self.task.fit.form, &self.chains[e])?;
-            Ok((basis.names(), self.chains[e].clone()))
-        })
+    fn bases(&self, chains: &[Vec<f64>]) -> Result<Vec<Basis>> {
+        let form = &self.fit.form;
+        chains.iter().map(|c| Basis::new(form, c)).collect()
     }
 
     /// Memory of the slowest chain against the rest, or what is discarded, before the motion.
-    fn memory(&self) -> Result<Vec<MemoryReport>> {
+    fn memory(&self, chains: &[Vec<f64>]) -> Result<Vec<MemoryReport>> {
         let memory_of = |record: &DimensionlessRecord| {
             let mut memory_samples = 0;
-            for chain in &self.chains {
+            for chain in chains {
                 let own = FilterBank::new(chain.clone())?.memory(record.delta_s())?;
                 memory_samples = memory_samples.max(own);
             }
-            let discarded = (self.task.fit.discard_s / record.step_s).ceil() as usize;
+            let discarded = (self.fit.discard_s / record.step_s).ceil() as usize;
             Ok(MemoryReport {
                 record: record.header.name.to_owned(),
                 memory_samples,
@@ -212,17 +191,7 @@ impl FitAtPoles<'_> {
                 step_s: record.step_s,
             })
         };
-        self.task.records.each.iter().map(memory_of).collect()
-    }
-
-    /// Fewer filters (shared poles only).
-    fn orders(&self) -> Vec<OrderReport> {
-        let form = &self.task.fit.form;
-        let shared = self.chains.iter().all(|c| *c == self.chains[0]);
-        if !shared || matches!(form, Form::Rational { .. }) {
-            return Vec::new();
-        }
-        self.fitted.orders(form.feed_through().count())
+        self.records.each.iter().map(memory_of).collect()
     }
 }
 

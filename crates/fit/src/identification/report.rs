@@ -148,6 +148,30 @@ pub struct AlphaGuideline {
 }
 
 impl FitReport {
+    /// The account of these transfer functions and of the search of their poles, for a fit to say the rest.
+    pub(super) fn new(
+        tested_range: ReducedFrequencyRange,
+        entries: Vec<EntryReport>,
+        search: Vec<SearchReport>,
+    ) -> Self {
+        Self {
+            method: String::new(),
+            weights: String::new(),
+            samples: 0,
+            tested_range,
+            condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
+            entries,
+            search,
+            orders: Vec::new(),
+            alpha_guideline: None,
+            static_terms: Vec::new(),
+            memory: Vec::new(),
+            constraints: None,
+            covariance_assumption: String::new(),
+            notes: Vec::new(),
+        }
+    }
+
     /// How well the data tell the coefficients apart, in words.
     pub fn condition_in_words(&self) -> String {
         format!(
@@ -239,14 +263,6 @@ impl SearchReport {
             }
         }
     }
-}
-
-/// A model fitted to a table and the account of how it was found.
-pub(super) struct FittedTable {
-    pub model: Model,
-    pub reports: Vec<EntryReport>,
-    pub search: Vec<SearchReport>,
-    pub constraints: Option<ConstraintReport>,
 }
 
 /// A degree-of-freedom count that leaves something to estimate the variance from.

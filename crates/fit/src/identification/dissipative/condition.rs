@@ -1,10 +1,12 @@
-//! The conditions, one by one, as cones in the free numbers of a fit.
+//! The conditions on a model with given poles, one by one, as cones in the free numbers of its fit.
 
 use super::conic::Cone;
 use super::edge::TestedRangeEnd;
-use super::motions::Motions;
-use super::report::ConstraintKind;
+use super::equations::{Constraints, FitRequirements, equations};
+use super::report::{ActiveConstraint, ConstraintKind};
 use crate::identification::affine::{AffineMap, AffineSpace};
+use crate::identification::basis::Basis;
+use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use std::cmp::Ordering;
 
@@ -35,95 +37,154 @@ pub(super) struct Condition {
 }
 
 impl Condition {
-    /// All conditions on one part of the motions, condition 3 at `K_max` first.
-    pub(super) fn all(motions: &Motions<'_>, k_max: f64, part: usize) -> Vec<Self> {
-        let feed = motions.distinct[0].feed();
-        let step = REACH.ln() / (SAMPLES as f64 - 1.0);
-        let mut all: Vec<Self> = (0..SAMPLES)
-            .map(|i| {
-                let ratio = (step * i as f64).exp();
-                Self::above(k_max * ratio, ratio, motions, part)
-            })
-            .collect();
-        let added_mass = || Self {
-            scale: 1.0 / k_max,
-            margin: MARGIN,
-            ..Self::limit(ConstraintKind::AddedMass, motions, part)
-        };
-        all.extend(
-            feed.e1
-                .then(|| Self::limit(ConstraintKind::FastMotion, motions, part)),
-        );
-        all.extend(feed.e2.then(added_mass));
-        all
-    }
-
-    /// Condition 3 at one `K`, `ratio` times the highest tested one.
-    pub(super) fn above(k: f64, ratio: f64, motions: &Motions<'_>, part: usize) -> Self {
-        let kind = ConstraintKind::AboveTestedRange;
-        Self {
-            k: Some(k),
-            // without e₁ the filters alone are left, which fade
-            scale: if motions.distinct[0].feed().e1 {
-                1.0
-            } else {
-                ratio.powi(-2)
-            },
-            margin: MARGIN,
-            own: ratio.powi(-2),
-            rows: rows(kind, Some(k), motions),
-            ..Self::limit(kind, motions, part)
-        }
-    }
-
-    /// A condition in the limit of fast motion.
-    pub(super) fn limit(kind: ConstraintKind, motions: &Motions<'_>, part: usize) -> Self {
-        Self {
-            kind,
-            part,
-            k: None,
-            scale: 1.0,
-            margin: FAST_MARGIN,
-            own: 0.0,
-            rows: rows(kind, None, motions),
-        }
-    }
-
     /// Part by part, condition 3 in the order of `K`, then the others.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let at = |c: &Self| c.k.unwrap_or(f64::INFINITY);
         let parts = self.part.cmp(&other.part);
         parts.then(at(self).total_cmp(&at(other)))
     }
+}
 
-    /// Symmetric part of `M` in the motions of its part.
-    pub(super) fn matrix(&self, motions: &Motions<'_>, coefficients: &[Vec<f64>]) -> DMatrix<f64> {
-        let part = &motions.parts[self.part];
+/// A fit at given poles and all that it is held to.
+pub(crate) struct Dissipation<'a> {
+    /// Of the transfer functions, row by row.
+    pub(super) bases: &'a [Basis],
+    /// Their coefficients over the free numbers.
+    pub(super) entries: &'a [AffineMap],
+    /// Their coefficients by the data alone.
+    pub(super) alone: Vec<Vec<f64>>,
+    /// Number of free numbers.
+    pub(super) width: usize,
+    pub(super) k_max: f64,
+    /// Number of motions.
+    pub(super) count: usize,
+    /// Those that conditions hold together: heave and torsion; sway by itself. Shapes that mix sway with the others are fed
+    /// energy by quasi-steady theory itself (`[[2C_D, C_D′ − C_L], [2C_L, C_L′ + C_D]]` is indefinite at small drag), and nothing
+    /// grows for it: frequencies of sway are far from the others', or its mass is.
+    pub(super) parts: Vec<Vec<usize>>,
+    /// Which of `distinct` the basis of a transfer function is, row by row.
+    pub(super) basis_of: Vec<usize>,
+    pub(super) distinct: Vec<&'a Basis>,
+    pub(super) conditions: Vec<Condition>,
+    /// The end of the tested range for every part, from the fit that the data alone give; none without conditions.
+    pub(super) edges: Vec<TestedRangeEnd>,
+    pub(super) equations: Vec<(ActiveConstraint, f64)>,
+}
+
+impl<'a> Dissipation<'a> {
+    /// For the bases and coefficients of all transfer functions, row by row.
+    pub(super) fn new(
+        bases: &'a [Basis],
+        requirements: &FitRequirements,
+        entries: &'a [AffineMap],
+    ) -> Self {
+        let (mut distinct, mut basis_of) = (Vec::<&Basis>::new(), Vec::new());
+        for basis in bases {
+            let known = distinct.iter().position(|d| d.same_columns(basis));
+            basis_of.push(known.unwrap_or(distinct.len()));
+            if known.is_none() {
+                distinct.push(basis);
+            }
+        }
+        let dofs = &requirements.dofs;
+        let (sway, deck) = (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
+        let parts: [Vec<usize>; 2] = [deck, sway];
+        let count = bases.len().isqrt();
+        let mut fit = Self {
+            bases,
+            entries,
+            alone: entries.iter().map(|e| e.values.clone()).collect(),
+            width: entries.iter().map(AffineMap::end).max().unwrap_or(0),
+            k_max: requirements.k_max,
+            count,
+            parts: parts.into_iter().filter(|p| !p.is_empty()).collect(),
+            basis_of,
+            distinct,
+            conditions: Vec::new(),
+            edges: Vec::new(),
+            equations: equations(bases, count, requirements),
+        };
+        if requirements.constraints == Constraints::Dissipative {
+            for part in 0..fit.parts.len() {
+                let own = fit.all(part);
+                let edge = TestedRangeEnd::new(fit.matrix(&own[0], &fit.alone));
+                fit.edges.push(edge);
+                fit.conditions.extend(own);
+            }
+        }
+        fit
+    }
+
+    /// All conditions on one part of the motions, condition 3 at `K_max` first.
+    fn all(&self, part: usize) -> Vec<Condition> {
+        let feed = self.distinct[0].feed();
+        let step = REACH.ln() / (SAMPLES as f64 - 1.0);
+        let mut all: Vec<Condition> = (0..SAMPLES)
+            .map(|i| {
+                let ratio = (step * i as f64).exp();
+                self.above(self.k_max * ratio, ratio, part)
+            })
+            .collect();
+        let fast = || self.limit(ConstraintKind::FastMotion, None, part);
+        let added_mass = || Condition {
+            scale: 1.0 / self.k_max,
+            margin: MARGIN,
+            ..self.limit(ConstraintKind::AddedMass, None, part)
+        };
+        all.extend(feed.e1.then(fast));
+        all.extend(feed.e2.then(added_mass));
+        all
+    }
+
+    /// Condition 3 at one `K`, `ratio` times the highest tested one.
+    pub(super) fn above(&self, k: f64, ratio: f64, part: usize) -> Condition {
+        let fading = ratio.powi(-2);
+        Condition {
+            // without e₁ the filters alone are left, which fade
+            scale: if self.distinct[0].feed().e1 {
+                1.0
+            } else {
+                fading
+            },
+            margin: MARGIN,
+            own: fading,
+            ..self.limit(ConstraintKind::AboveTestedRange, Some(k), part)
+        }
+    }
+
+    /// A condition in the limit of fast motion, or what is common to those at a `K`.
+    pub(super) fn limit(&self, kind: ConstraintKind, k: Option<f64>, part: usize) -> Condition {
+        let rows = self.distinct.iter().map(|basis| kind.row(k, basis));
+        Condition {
+            kind,
+            part,
+            k,
+            scale: 1.0,
+            margin: FAST_MARGIN,
+            own: 0.0,
+            rows: rows.collect(),
+        }
+    }
+
+    /// Symmetric part of the matrix of a condition in the motions of its part.
+    pub(super) fn matrix(&self, condition: &Condition, coefficients: &[Vec<f64>]) -> DMatrix<f64> {
+        let part = &self.parts[condition.part];
         let full = DMatrix::from_fn(part.len(), part.len(), |i, j| {
-            let e = part[i] * motions.count + part[j];
-            let row = &self.rows[motions.basis_of[e]];
-            row.iter()
-                .zip(&coefficients[e])
-                .map(|(a, c)| a * c)
-                .sum::<f64>()
+            let e = part[i] * self.count + part[j];
+            let row = condition.rows[self.basis_of[e]].iter();
+            row.zip(&coefficients[e]).map(|(a, c)| a * c).sum::<f64>()
         });
         (&full + full.transpose()) * 0.5
     }
 
     /// Gradient of `Σ weights ∘ M` with respect to the free numbers.
-    pub(super) fn gradient(
-        &self,
-        motions: &Motions<'_>,
-        weights: &DMatrix<f64>,
-        entries: &[AffineMap],
-    ) -> DVector<f64> {
-        let n = motions.count;
-        let width = entries.iter().map(AffineMap::end).max().unwrap_or(0);
-        let mut gradient = DVector::zeros(width);
-        for (e, entry) in entries.iter().enumerate() {
-            let weight = weights[(e / n, e % n)];
+    pub(super) fn gradient(&self, condition: &Condition, weights: &DMatrix<f64>) -> DVector<f64> {
+        let mut gradient = DVector::zeros(self.width);
+        for (e, entry) in self.entries.iter().enumerate() {
+            let weight = weights[(e / self.count, e % self.count)];
             if weight != 0.0 {
-                entry.add_gradient(&self.rows[motions.basis_of[e]], weight, &mut gradient);
+                let row = &condition.rows[self.basis_of[e]];
+                entry.add_gradient(row, weight, &mut gradient);
             }
         }
         gradient
@@ -132,22 +193,20 @@ impl Condition {
     /// `M ⪯ own growth − margin` in the free numbers from the start on.
     pub(super) fn cone(
         &self,
-        motions: &Motions<'_>,
-        entries: &[AffineMap],
+        condition: &Condition,
         start: &[Vec<f64>],
-        edge: &TestedRangeEnd,
         equalities: &AffineSpace,
     ) -> Cone {
-        let n = motions.count;
-        let held = &motions.parts[self.part];
+        let (held, edge) = (&self.parts[condition.part], &self.edges[condition.part]);
         let size = held.len();
-        let floor = DMatrix::identity(size, size) * (self.margin * self.scale * edge.size);
-        let room = &edge.own * self.own - floor - self.matrix(motions, start);
+        let floor =
+            DMatrix::identity(size, size) * (condition.margin * condition.scale * edge.size);
+        let room = &edge.own * condition.own - floor - self.matrix(condition, start);
         let gradient = |i: usize, j: usize| {
-            let mut weights = DMatrix::zeros(n, n);
+            let mut weights = DMatrix::zeros(self.count, self.count);
             weights[(held[i], held[j])] += 0.5;
             weights[(held[j], held[i])] += 0.5;
-            let mut gradient = self.gradient(motions, &weights, entries);
+            let mut gradient = self.gradient(condition, &weights);
             equalities.project(&mut gradient);
             gradient
         };
@@ -159,9 +218,4 @@ impl Condition {
             [room[(0, 0)], room[(1, 1)], room[(0, 1)]],
         )
     }
-}
-
-fn rows(kind: ConstraintKind, k: Option<f64>, motions: &Motions<'_>) -> Vec<Vec<f64>> {
-    let distinct = motions.distinct.iter();
-    distinct.map(|basis| kind.row(k, basis)).collect()
 }

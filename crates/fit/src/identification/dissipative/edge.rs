@@ -14,7 +14,7 @@ pub(super) struct TestedRangeEnd {
 
 impl TestedRangeEnd {
     /// Of the matrix `sym Im G/K` there.
-    pub(crate) fn new(matrix: DMatrix<f64>) -> Self {
+    pub(super) fn new(matrix: DMatrix<f64>) -> Self {
         let n = matrix.nrows();
         let norm = matrix.norm();
         let eigen = SymmetricEigen::new(matrix);

@@ -1,19 +1,10 @@
 //! Equations that coefficients have to satisfy besides: symmetric added mass, limits at K → 0.
 
 use super::report::{ActiveConstraint, ConstraintKind};
-
-use crate::error::{Result, ensure};
-use crate::identification::affine::{AffineMap, AffineSpace};
 use crate::identification::basis::Basis;
 use crate::identification::form::{LEAST_CHOSEN, MOST_CHOSEN};
 use crate::section::Dof;
-use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
-
-/// Part of an equation outside the others below which it repeats them.
-const RANK_TOLERANCE: f64 = 1e-10;
-/// Relative difference to which a repeated equation has to agree with the others.
-const AGREEMENT: f64 = 1e-8;
 
 /// What a fitted model has to be besides close to the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -85,39 +76,4 @@ pub(super) fn equations(
         }
     }
     all
-}
-
-/// The free numbers that satisfy the equations.
-///
-/// # Errors
-/// [`Error::Input`](crate::error::Error::Input) for limits that the columns of the model cannot meet.
-pub(super) fn satisfy(
-    equations: &[(ActiveConstraint, f64)],
-    bases: &[Basis],
-    entries: &[AffineMap],
-    width: usize,
-) -> Result<AffineSpace> {
-    let mut space = AffineSpace::whole(width);
-    let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-    let n = entries.len().isqrt();
-    for (equation, wanted) in equations {
-        let mut gradient = DVector::zeros(width);
-        for (e, (entry, basis)) in entries.iter().zip(bases).enumerate() {
-            if equation.weight(e / n, e % n) != 0.0 {
-                let row = equation.gradient(e / n, e % n, basis);
-                entry.add_gradient(&row, 1.0, &mut gradient);
-            }
-        }
-        let target = wanted - equation.value_in(bases, &alone);
-        if !space.hold(&gradient, target, RANK_TOLERANCE) {
-            let short = target - gradient.dot(&space.start);
-            ensure(
-                short.abs() <= AGREEMENT * wanted.abs().max(gradient.norm()),
-                "limits",
-                "limits at K → 0 that the columns of the model can meet",
-                "a feed-through is missing, or one limit repeats another",
-            )?;
-        }
-    }
-    Ok(space)
 }

@@ -5,9 +5,7 @@
 //! it is singular, `K²` is an eigenvalue of its inverse's system matrix `A − B e₁⁻¹ C` (Rosenbrock), which finds every `K` at which an
 //! eigenvalue of `H` changes its sign.
 
-use super::Dissipation;
-use super::condition::Condition;
-use super::edge::TestedRangeEnd;
+use super::condition::Dissipation;
 use super::report::ConstraintKind;
 use crate::state_space::{eigenvalues, golden_section};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -21,14 +19,15 @@ const WIDTH: f64 = 1e-4;
 
 impl Dissipation<'_> {
     /// The `K` at which the largest eigenvalue of `H` is positive and largest, one for each stretch where it is.
-    pub(super) fn broken_at(
-        &self,
-        part: usize,
-        coefficients: &[Vec<f64>],
-        edge: &TestedRangeEnd,
-    ) -> Vec<f64> {
-        let excess = |k: f64| self.largest(part, k, coefficients, edge);
-        let Some(mut ks) = self.sign_changes(part, coefficients, edge) else {
+    pub(super) fn broken_at(&self, part: usize, coefficients: &[Vec<f64>]) -> Vec<f64> {
+        // largest eigenvalue of H over the size at the end of the tested range
+        let edge = &self.edges[part];
+        let excess = |k: f64| {
+            let condition = self.above(k, k / self.k_max, part);
+            let beyond = self.matrix(&condition, coefficients) - &edge.own * condition.own;
+            SymmetricEigen::new(beyond / edge.size).eigenvalues.max()
+        };
+        let Some(mut ks) = self.sign_changes(part, coefficients) else {
             return Vec::new();
         };
         ks.retain(|k| *k > self.k_max);
@@ -62,38 +61,19 @@ impl Dissipation<'_> {
         worst
     }
 
-    /// Largest eigenvalue of `H` over the size at the end of the tested range.
-    fn largest(
-        &self,
-        part: usize,
-        k: f64,
-        coefficients: &[Vec<f64>],
-        edge: &TestedRangeEnd,
-    ) -> f64 {
-        let condition = Condition::above(k, k / self.k_max, &self.motions, part);
-        let beyond = condition.matrix(&self.motions, coefficients) - &edge.own * condition.own;
-        SymmetricEigen::new(beyond / edge.size).eigenvalues.max()
-    }
-
     /// All `K` at which `H` is singular; `None` without `e₁`, whose inverse it takes.
-    fn sign_changes(
-        &self,
-        part: usize,
-        coefficients: &[Vec<f64>],
-        edge: &TestedRangeEnd,
-    ) -> Option<Vec<f64>> {
-        let motions = &self.motions.parts[part];
+    fn sign_changes(&self, part: usize, coefficients: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let (motions, edge) = (&self.parts[part], &self.edges[part]);
         let n = motions.len();
-        let fast = Condition::limit(ConstraintKind::FastMotion, &self.motions, part);
-        let e1 = fast.matrix(&self.motions, coefficients);
-        let inverse = e1.try_inverse()?;
-        let filters: usize = self.motions.distinct.iter().map(|b| b.poles().len()).sum();
+        let fast = self.limit(ConstraintKind::FastMotion, None, part);
+        let inverse = self.matrix(&fast, coefficients).try_inverse()?;
+        let filters: usize = self.distinct.iter().map(|b| b.poles().len()).sum();
         let states = n * (filters + 1);
         let mut a = DMatrix::zeros(states, states);
         let mut b = DMatrix::zeros(states, n);
         let mut c = DMatrix::zeros(n, states);
         let mut at = 0;
-        for (d, basis) in self.motions.distinct.iter().enumerate() {
+        for (d, basis) in self.distinct.iter().enumerate() {
             let chain = basis.filters();
             let squared = &chain.a * &chain.a;
             let driven = &chain.on_motion + &chain.a * &chain.on_rate;
@@ -106,10 +86,10 @@ impl Dissipation<'_> {
                     }
                     for j in 0..n {
                         for e in [
-                            motions[i] * self.motions.count + motions[j],
-                            motions[j] * self.motions.count + motions[i],
+                            motions[i] * self.count + motions[j],
+                            motions[j] * self.count + motions[i],
                         ] {
-                            if self.motions.basis_of[e] == d {
+                            if self.basis_of[e] == d {
                                 c[(i, at + l * n + j)] += 0.5 * coefficients[e][feed + l];
                             }
                         }

@@ -1,12 +1,12 @@
-//! All transfer functions of a table at once, held together by constraints.
+//! All transfer functions of a table at given poles, each by itself and together under constraints.
 
 use crate::error::Result;
-use crate::identification::affine::AffineMap;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
-use crate::identification::dissipative::{Dissipation, FitRequirements, Solution, Strictness};
+use crate::identification::dissipative::{FitRequirements, Solution, Strictness};
 use crate::identification::entry_report::EntryReport;
 use crate::identification::form::Form;
+use crate::identification::joint::JointFit;
 use crate::identification::report::{relative_noise, variance};
 use crate::identification::samples::{EntrySamples, shares};
 use nalgebra::{DMatrix, DVector};
@@ -19,37 +19,42 @@ pub(super) struct Joint<'a> {
     pub entries: &'a [EntrySamples],
     pub form: &'a Form,
     pub requirements: FitRequirements,
-    /// What the weighted residuals of each entry are multiplied with, see [`JointFit::shares_by_noise`].
+    /// What the weighted residuals of each entry are multiplied with, see [`EntryFits::shares_by_noise`].
     pub shares: Vec<f64>,
 }
 
 /// All entries at given poles: each by itself and, once they are held, together under the constraints where these bind.
-pub(super) struct JointFit<'a> {
+pub(super) struct EntryFits<'a> {
     entries: &'a [EntrySamples],
     pub bases: Vec<Basis>,
     solutions: Vec<LinearSolution>,
-    shares: Vec<f64>,
     /// The entries as they are held together; none before they are.
-    linear: Vec<AffineMap>,
-    pub constrained: Option<Solution>,
+    joint: Option<JointFit>,
 }
 
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
-    pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
-        JointFit::alone(self.entries, self.form, poles, true)?.held(self, Strictness::Everywhere)
+    pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<EntryFits<'a>> {
+        EntryFits::alone(self.entries, self.form, poles, true)?.held(self, Strictness::Everywhere)
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
     pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);
-        let alone = JointFit::alone(self.entries, self.form, poles, native)?;
-        Ok(alone.held(self, Strictness::Sampled)?.residuals())
+        let alone = EntryFits::alone(self.entries, self.form, poles, native)?;
+        let held = alone.held(self, Strictness::Sampled)?;
+        let mut all = Vec::new();
+        for (e, (entry, share)) in self.entries.iter().zip(&self.shares).enumerate() {
+            let values = held.coefficients(e);
+            all.extend(entry.weighted_residuals(&held.bases[e], values, *share));
+            all.extend(held.solutions[e].penalty(values).map(|r| r * share));
+        }
+        Ok(DVector::from_vec(all))
     }
 }
 
-impl<'a> JointFit<'a> {
+impl<'a> EntryFits<'a> {
     /// Each entry by itself, in the columns of the model or in orthonormal ones that span the same space.
     pub(super) fn alone(
         entries: &'a [EntrySamples],
@@ -67,32 +72,22 @@ impl<'a> JointFit<'a> {
             entries,
             solutions: each.map(|(e, b)| e.fit(b)).collect::<Result<_>>()?,
             bases,
-            shares: Vec::new(),
-            linear: Vec::new(),
-            constrained: None,
+            joint: None,
         })
     }
 
     /// The same held together by what is asked of them.
-    pub(super) fn held(mut self, joint: &Joint<'_>, strictness: Strictness) -> Result<Self> {
-        self.shares.clone_from(&joint.shares);
-        let least = LEAST_SHARE
-            * self
-                .shares
-                .iter()
-                .copied()
-                .fold(f64::MIN_POSITIVE, f64::max);
-        let mut at = 0;
-        for (solution, share) in self.solutions.iter().zip(&self.shares) {
-            self.linear.push(AffineMap {
-                values: solution.coefficients.clone(),
-                spread: solution.spread()? / share.max(least),
-                at,
-            });
-            at += solution.unknowns;
+    pub(super) fn held(mut self, task: &Joint<'_>, strictness: Strictness) -> Result<Self> {
+        let shares = task.shares.iter().copied();
+        let least = LEAST_SHARE * shares.fold(f64::MIN_POSITIVE, f64::max);
+        let mut joint = JointFit::default();
+        for (solution, share) in self.solutions.iter().zip(&task.shares) {
+            let spread = solution.spread()? / share.max(least);
+            joint.add(solution.coefficients.clone(), spread, *share);
         }
-        let conditions = Dissipation::new(&self.bases, &joint.requirements);
-        self.constrained = conditions.solve(&self.linear, strictness)?;
+        let entries = joint.parts.clone();
+        let held = joint.held(entries, &self.bases, &task.requirements, strictness)?;
+        self.joint = Some(held);
         Ok(self)
     }
 
@@ -117,23 +112,17 @@ impl<'a> JointFit<'a> {
         noisy
     }
 
-    /// Coefficients of an entry.
-    fn coefficients(&self, e: usize) -> &[f64] {
-        match &self.constrained {
-            Some(constrained) => &constrained.coefficients[e],
-            None => &self.solutions[e].coefficients,
-        }
+    /// What holds the entries together; none where nothing does.
+    pub(super) fn solution(&self) -> Option<&Solution> {
+        self.joint.as_ref()?.constrained.as_ref()
     }
 
-    fn residuals(&self) -> DVector<f64> {
-        let mut all = Vec::new();
-        for (e, entry) in self.entries.iter().enumerate() {
-            let values = self.coefficients(e);
-            let share = self.shares[e];
-            all.extend(entry.weighted_residuals(&self.bases[e], values, share));
-            all.extend(self.solutions[e].penalty(values).map(|r| r * share));
+    /// Coefficients of an entry.
+    fn coefficients(&self, e: usize) -> &[f64] {
+        match &self.joint {
+            Some(joint) => joint.values(e),
+            None => &self.solutions[e].coefficients,
         }
-        DVector::from_vec(all)
     }
 
     /// Accounts of all entries.
@@ -150,7 +139,7 @@ impl<'a> JointFit<'a> {
                 .iter()
                 .zip(&entry.rows)
                 .map(|(r, row)| r * row.weight);
-            let sum = match self.constrained {
+            let sum = match self.solution() {
                 Some(_) => weighted.chain(fit.penalty(values)).map(|r| r * r).sum(),
                 None => fit.factor.residual_sum(fit.unknowns, 0),
             };
@@ -163,21 +152,14 @@ impl<'a> JointFit<'a> {
         reports.into_iter().enumerate().map(finished).collect()
     }
 
-    /// Covariance of the coefficients of an entry from the variances of the weighted residuals of all entries: what the
-    /// active constraints take is known.
+    /// Covariance of the coefficients of an entry from the variances of the weighted residuals of all entries.
     fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Result<Option<DMatrix<f64>>> {
         let Some(own) = variances[e] else {
             return Ok(None);
         };
-        if self.linear.is_empty() {
-            return Ok(Some(self.solutions[e].inverse_gram()? * own));
+        match &self.joint {
+            Some(joint) => Ok(joint.covariance(e, |part| variances[part].unwrap_or(0.0))),
+            None => Ok(Some(self.solutions[e].inverse_gram()? * own)),
         }
-        let all = self.linear.iter().zip(&self.shares).zip(variances);
-        let free = all.map(|((linear, share), v)| {
-            let variance = v.unwrap_or(0.0) * share * share;
-            (linear.spread.ncols(), variance)
-        });
-        let constrained = self.constrained.as_ref();
-        Ok(constrained.map(|c| c.space.covariance(&self.linear[e], free)))
     }
 }

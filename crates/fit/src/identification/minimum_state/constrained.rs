@@ -1,13 +1,13 @@
 //! The minimum-state form under constraints: for given lags and `E` they are convex in `D` and the feed-through of all forces.
 
-use super::{FittedTable, LagSearch, LinearProblem, LinearSolution};
+use super::{Fitted, LagSearch, LinearProblem, LinearSolution};
 use crate::error::Result;
 use crate::identification::affine::AffineMap;
-use crate::identification::dissipative::{
-    ActiveConstraint, ConstraintReport, Dissipation, Strictness,
-};
+use crate::identification::dissipative::{ActiveConstraint, ConstraintReport, Strictness};
+use crate::identification::joint::JointFit;
 use crate::identification::report::SearchPoint;
 use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
 use nalgebra::DMatrix;
 
 /// All forces at one point of the search.
@@ -26,13 +26,14 @@ impl LagSearch<'_> {
         &self,
         dofs: &[Dof],
         best: Vec<f64>,
-        alone: FittedTable,
-    ) -> Result<FittedTable> {
+        tested: ReducedFrequencyRange,
+        alone: Fitted,
+    ) -> Result<Fitted> {
         if self.rows(&best, Strictness::Everywhere)?.active.is_none() {
             return Ok(alone);
         }
         let point = self.normalised(self.descended(best).as_slice());
-        let mut search = alone.search.clone();
+        let mut search = alone.report.search.clone();
         for report in &mut search {
             report.chosen = SearchPoint {
                 poles: self.lags_at(&point),
@@ -40,10 +41,11 @@ impl LagSearch<'_> {
             };
             report.points.push(report.chosen.clone());
         }
-        let (mut fitted, active) = self.finish(dofs, &point, search)?;
-        let bases = vec![self.roger_basis(&alone.reports[0].poles)?; self.entries.len()];
-        fitted.constraints = active.map(|active| {
-            let (before, with) = (&alone.reports, &fitted.reports);
+        let (mut fitted, active) = self.finish(dofs, &point, tested, search)?;
+        let before = &alone.report.entries;
+        let bases = vec![self.roger_basis(&before[0].poles)?; self.entries.len()];
+        fitted.report.constraints = active.map(|active| {
+            let with = &fitted.report.entries;
             ConstraintReport::new(active, dofs, before, &bases, with, alone.model)
         });
         Ok(fitted)
@@ -66,27 +68,15 @@ impl LagSearch<'_> {
         let Some(requirements) = &self.requirements else {
             return Ok(rows);
         };
-        let (mut forces, mut entries, mut at) = (Vec::new(), Vec::new(), 0);
+        let (mut joint, mut entries) = (JointFit::default(), Vec::new());
         for solution in &rows.solutions {
-            let force = AffineMap {
-                values: solution.coefficients.clone(),
-                spread: solution.spread()?,
-                at,
-            };
-            at += solution.unknowns;
-            entries.extend((0..self.n).map(|j| self.entry_of(&force, j, &e)));
-            forces.push(force);
+            let force = joint.add(solution.coefficients.clone(), solution.spread()?, 1.0);
+            entries.extend((0..self.n).map(|j| self.entry_of(force, j, &e)));
         }
         let bases = vec![self.roger_basis(&lags)?; self.entries.len()];
-        if let Some(constrained) =
-            Dissipation::new(&bases, requirements).solve(&entries, strictness)?
-        {
-            rows.values = forces
-                .iter()
-                .map(|f| f.coefficients(&constrained.free))
-                .collect();
-            rows.active = Some(constrained.active);
-        }
+        let joint = joint.held(entries, &bases, requirements, strictness)?;
+        rows.values = (0..self.n).map(|i| joint.of_part(i)).collect();
+        rows.active = joint.constrained.map(|constrained| constrained.active);
         Ok(rows)
     }
 

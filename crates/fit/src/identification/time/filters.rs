@@ -78,13 +78,14 @@ impl FilterStep {
             }
         }
     }
+}
 
+vectorised! {
     /// `drive (w[k−1], u[k−1], u[k])`.
-    #[inline(always)]
-    fn drive(&self, input: &Filtered, out: &mut [f64]) {
+    fn drive<'a>(step: &'a FilterStep, input: &'a Filtered, out: &'a mut [f64]) -> () {
         let rows = input.input.len() - 1;
         let [w0, w1, w2, w3] = &input.states;
-        for (drive, out) in self.drive.iter().zip(out.chunks_exact_mut(BLOCK_ROWS)) {
+        for (drive, out) in step.drive.iter().zip(out.chunks_exact_mut(BLOCK_ROWS)) {
             let before = w0.iter().zip(w1).zip(w2.iter().zip(w3));
             let samples = input.input.windows(2);
             for ((x, ((a, b), (c, d))), u) in out[..rows].iter_mut().zip(before).zip(samples) {
@@ -96,13 +97,6 @@ impl FilterStep {
                     + drive[5] * u[1];
             }
         }
-    }
-}
-
-vectorised! {
-    /// What [`FilterStep::advance`] does first.
-    fn drive<'a>(step: &'a FilterStep, input: &'a Filtered, out: &'a mut [f64]) -> () {
-        step.drive(input, out);
     }
 }
 

@@ -1,7 +1,6 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
 use super::continuous::{RecordFit, Rows, padded};
-use super::fitted::JointTimeFit;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
@@ -189,9 +188,8 @@ impl PoleGroup {
                 systems: vec![Rc::clone(system)],
             };
             let bases = vec![basis; self.members.len()];
-            return Ok(
-                JointTimeFit::new(&systems, &bases, requirements, Strictness::Sampled)?.objective(),
-            );
+            let (_, objective) = systems.held(&bases, requirements, Strictness::Sampled)?;
+            return Ok(objective);
         }
         let Some((i, j)) = self.entry else {
             let n = system.order.inputs;

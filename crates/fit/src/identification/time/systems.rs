@@ -1,7 +1,12 @@
 //! Systems of equations of one candidate model: what all records say of every force, and which columns of it a model has.
 
 use super::pass::{ColumnOrder, Pass, Stretch};
+use crate::error::Result;
+use crate::identification::basis::Basis;
+use crate::identification::dissipative::{FitRequirements, Strictness};
+use crate::identification::joint::JointFit;
 use crate::identification::least_squares::{Factor, StreamingQr};
+use crate::identification::report::{LEAST_NOISE, relative_noise};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -144,6 +149,68 @@ impl ForceSystems {
         let columns: Vec<usize> = (0..leading).collect();
         Some(reduced(systems.alone(i, j)?, &columns))
     }
+
+    /// All transfer functions in the columns of `bases`, row by row, held together by what is asked of them, and the objective of
+    /// that fit. As in the search of poles, the weighted residuals of every transfer function that has rows of its own count
+    /// relative to its weighted data, else those of every force, constant included.
+    ///
+    /// # Errors
+    /// Rows that do not determine the coefficients, and constraints that no coefficients satisfy.
+    pub(crate) fn held(
+        &self,
+        bases: &[Basis],
+        requirements: &FitRequirements,
+        strictness: Strictness,
+    ) -> Result<(JointFit, f64)> {
+        let n = bases.len().isqrt();
+        let apart = (0..n).all(|i| (0..n).all(|j| self.alone(i, j).is_some()))
+            && !self.of_force(0).order.constant;
+        let count = if apart { n * n } else { n } as f64;
+        let (mut joint, mut entries, mut sums) = (JointFit::default(), Vec::new(), Vec::new());
+        for i in 0..n {
+            let factors: Vec<Cow<'_, Factor>> = match apart {
+                true => (0..n).filter_map(|j| self.alone(i, j)).collect(),
+                false => vec![self.whole(i)],
+            };
+            for factor in factors {
+                let columns = factor.columns();
+                let (total, residual) = (factor.total_sum(0), factor.residual_sum(columns, 0));
+                let share = if total > 0.0 {
+                    let noise = relative_noise(residual, total, factor.rows, columns);
+                    (total * count).sqrt().recip() / noise
+                } else {
+                    1.0
+                };
+                let values = factor.solve(columns)?.as_slice().to_vec();
+                let part = joint.add(values, factor.inverse_upper(columns)? / share, share);
+                sums.push([residual, total]);
+                if apart {
+                    entries.push(part.clone());
+                    continue;
+                }
+                let places = |j| self.places(i, j).into_iter().map(|p| (p, 1.0));
+                let picked = |j| part.picked(&places(j).collect::<Vec<_>>());
+                entries.extend((0..n).map(picked));
+            }
+        }
+        let joint = joint.held(entries, bases, requirements, strictness)?;
+        let objective = likeliest(&joint, &sums);
+        Ok((joint, objective))
+    }
+}
+
+/// Geometric mean of the relative weighted residuals of parts with the constraints, from the sums of the squares of the residuals without
+/// them and of the data: where it is least, the likelihood of data that scatter by themselves each is largest.
+fn likeliest(joint: &JointFit, sums: &[[f64; 2]]) -> f64 {
+    let (mut logarithms, mut count) = (0.0, 0.0);
+    for (part, [residual, total]) in sums.iter().enumerate() {
+        if *total > 0.0 {
+            let relative = (residual + joint.added(part)) / total;
+            logarithms += (relative + LEAST_NOISE * LEAST_NOISE).ln();
+            count += 1.0;
+        }
+    }
+    (0.5 * logarithms / f64::max(count, 1.0)).exp()
 }
 
 fn reduced<'a>(factor: &'a Factor, columns: &[usize]) -> Cow<'a, Factor> {
