@@ -30,7 +30,6 @@ mod of_data;
 mod onset;
 mod parameters;
 mod record_covariance;
-mod scattered;
 mod segments;
 mod speed_groups;
 mod speed_onsets;

@@ -1,6 +1,5 @@
 //! Estimated parameters of a model, their covariance, and the model as a function of them.
 
-use super::columns::LinearModel;
 use super::design::Design;
 use super::parameters::{Coordinates, Parameter, per_chain};
 use super::speed_groups::speed_groups;
@@ -244,24 +243,6 @@ impl CoefficientUncertainty {
                 model.validate()?;
                 Ok(Model::DiscreteLaguerre(model))
             }
-        }
-    }
-
-    /// The model as a linear function of its parameters, where poles are among them.
-    ///
-    /// # Errors
-    /// Chains whose columns cannot be told apart.
-    pub(crate) fn linear(&self) -> Result<Option<LinearModel>> {
-        match &self.coordinates {
-            Coordinates::Continuous {
-                form,
-                chains,
-                searched,
-            } if !searched.is_empty() => {
-                let values = self.values();
-                LinearModel::new(form, &self.dofs, &chains.concat(), searched, values).map(Some)
-            }
-            _ => Ok(None),
         }
     }
 

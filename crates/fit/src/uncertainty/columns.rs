@@ -6,11 +6,9 @@
 
 use super::parameters::{STEP, SearchedPole, moved_pole};
 use crate::error::{Error, Result};
-use crate::identification::basis::{Basis, assemble};
+use crate::identification::basis::Basis;
 use crate::identification::form::Form;
-use crate::section::Dof;
-use crate::trained_model::Model;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 /// Frequencies at which columns are compared, for each column.
 const POINTS_PER_COLUMN: usize = 4;
@@ -27,9 +25,28 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
+    /// For the chains of every transfer function, row by row, their coefficients one after the other, and the searched poles.
+    ///
+    /// # Errors
+    /// Chains whose columns cannot be told apart.
+    pub(super) fn each(
+        form: &Form,
+        chains: &[Vec<f64>],
+        values: &[f64],
+        searched: &[SearchedPole],
+    ) -> Result<Vec<Self>> {
+        let (mut first, n) = (0, chains.len().isqrt());
+        let expanded = |(e, chain): (usize, &Vec<f64>)| {
+            let own = Self::new(form, chain, &values[first..], [e / n, e % n], searched)?;
+            first += own.native.ncols();
+            Ok(own)
+        };
+        chains.iter().enumerate().map(expanded).collect()
+    }
+
     /// For the chain of the transfer function `(i, j)`, whose coefficients come first in `values`, with room for derivatives where
     /// poles were searched.
-    pub(super) fn new(
+    fn new(
         form: &Form,
         chain: &[f64],
         values: &[f64],
@@ -111,68 +128,6 @@ fn express(
     Ok(DMatrix::from_fn(scale.len(), count, |i, j| {
         solution[(i, j)] / scale[i]
     }))
-}
-
-/// A model as a linear function of its parameters: that of the estimate and its slopes, in chains that hold both.
-///
-/// A pole far from the estimate with coefficients that were not refitted for it makes no sense; the linear model is
-/// what the covariance speaks of, however far it is followed.
-#[derive(Debug, Clone)]
-pub(crate) struct LinearModel {
-    form: Form,
-    dofs: Vec<Dof>,
-    estimate: Vec<f64>,
-    searched: usize,
-    /// Every transfer function, row by row.
-    entries: Vec<Expansion>,
-}
-
-impl LinearModel {
-    /// For the chains of every transfer function, row by row, the estimates and the searched poles.
-    pub(super) fn new(
-        form: &Form,
-        dofs: &[Dof],
-        chains: &[Vec<f64>],
-        searched: &[SearchedPole],
-        estimate: Vec<f64>,
-    ) -> Result<Self> {
-        let (mut entries, mut first, n) = (Vec::new(), 0, dofs.len());
-        for (e, chain) in chains.iter().enumerate() {
-            let own = Expansion::new(form, chain, &estimate[first..], [e / n, e % n], searched)?;
-            first += own.native.ncols();
-            entries.push(own);
-        }
-        let filters = entries.first().map_or(0, |e| e.extended.len());
-        Ok(Self {
-            form: Form::TakenakaMalmquist {
-                filters,
-                feed_through: form.feed_through(),
-                pole_per_transfer_function: true,
-            },
-            dofs: dofs.to_vec(),
-            estimate,
-            searched: searched.len(),
-            entries,
-        })
-    }
-
-    /// The linear model at other parameters.
-    pub(super) fn model_at(&self, values: &[f64]) -> Result<Model> {
-        let poles = self.estimate.len() - self.searched;
-        let moved = DVector::from_fn(self.searched, |m, _| {
-            values[poles + m] - self.estimate[poles + m]
-        });
-        let mut first = 0;
-        let mut list = Vec::with_capacity(self.entries.len());
-        for Expansion { native, slopes, .. } in &self.entries {
-            let own = DVector::from_column_slice(&values[first..first + native.ncols()]);
-            first += native.ncols();
-            let all: DVector<f64> = native * own + slopes * &moved;
-            list.push(all.as_slice().to_vec());
-        }
-        let chains: Vec<Vec<f64>> = self.entries.iter().map(|e| e.extended.clone()).collect();
-        assemble(&self.form, &self.dofs, &chains, &list)
-    }
 }
 
 #[cfg(test)]

@@ -10,22 +10,26 @@ use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
 use super::onset::{OnsetError, onset_error};
 use super::record_covariance::record_uncertainty;
-use super::scattered::ScatteredTunnel;
-use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
+use crate::aerodynamics::{FlatPlate, RationalModel, Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::samples::part_of;
-use crate::identification::{Fitted, TimeFit, fit_records};
+use crate::identification::{Fitted, fit_records};
 use crate::numbered::{OnDone, numbered};
-use crate::section::SectionModel;
+use crate::section::{Dof, SectionModel, Structure};
+use crate::signal::random_stream;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
+use nalgebra::Complex;
+use rand_distr::{Distribution, StandardNormal};
 
 /// Highest wind speed at which an onset is looked for, m/s.
 const SPEED_MAX_M_S: f64 = 80.0;
 /// Reduced frequencies at which derivatives are compared.
 const DERIVATIVE_POINTS: usize = 8;
+/// Stream of the truth's random numbers; the records' noise has the streams from zero.
+const STREAM: u64 = 1 << 40;
 
 /// Runs the campaign over and over, each time with noise of its own, in parallel.
 ///
@@ -34,18 +38,35 @@ const DERIVATIVE_POINTS: usize = 8;
 pub fn coverage(plan: &CoveragePlan, progress: OnDone<'_>) -> Result<CoverageReport> {
     let campaign = KnownDeck::new(plan)?;
     let runs = numbered(plan.repetitions, progress, |r| campaign.repeat(r))?;
-    campaign.summary(plan, &runs)
+    campaign.summary(&runs)
 }
 
-struct KnownDeck {
-    section: SectionModel,
+/// A virtual campaign whose truth is known, and may differ between mean speeds and between runs.
+struct KnownDeck<'a> {
+    plan: &'a CoveragePlan,
+    structure: Structure,
     model: Box<dyn Transfer + Sync>,
-    records: ScatteredTunnel,
-    tunnel: TunnelPlan,
-    fit: TimeFit,
+    /// Records of the truth itself, without noise.
+    straight: Vec<Record>,
+    /// The same with every force turned by a right angle: together they make records of transfer functions of other size and phase. None
+    /// where nothing scatters.
+    turned: Vec<Record>,
     tested: ReducedFrequencyRange,
     true_onset_m_s: f64,
     bias_m_s: f64,
+}
+
+/// `i G(K)`.
+struct QuarterTurned<'a>(&'a dyn Transfer);
+
+impl Transfer for QuarterTurned<'_> {
+    fn dofs(&self) -> &[Dof] {
+        self.0.dofs()
+    }
+
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        Ok(self.0.transfer(k)? * Complex::i())
+    }
 }
 
 /// One repetition.
@@ -55,8 +76,8 @@ struct Repetition {
     speeds_differ: bool,
 }
 
-impl KnownDeck {
-    fn new(plan: &CoveragePlan) -> Result<Self> {
+impl<'a> KnownDeck<'a> {
+    fn new(plan: &'a CoveragePlan) -> Result<Self> {
         plan.validate()?;
         let section = SectionModel::table_4_1();
         let model: Box<dyn Transfer + Sync> = match plan.truth {
@@ -67,25 +88,26 @@ impl KnownDeck {
             noise_fraction: 0.0,
             ..plan.tunnel.clone()
         };
-        let (width_m, speeds, runs) = (section.width_m, plan.speed_scatter, plan.run_scatter);
-        let records = ScatteredTunnel::new(&quiet, model.as_ref(), width_m, speeds, runs)?;
+        let records = |m: &dyn Transfer| quiet.records_from_model(m, "truth", section.width_m);
         let mut campaign = Self {
-            true_onset_m_s: 0.0,
-            bias_m_s: 0.0,
-            section,
+            plan,
+            structure: section.structure()?,
+            straight: records(model.as_ref())?,
+            turned: match plan.speed_scatter > 0.0 || plan.run_scatter > 0.0 {
+                true => records(&QuarterTurned(model.as_ref()))?,
+                false => Vec::new(),
+            },
             model,
-            records,
-            tunnel: plan.tunnel.clone(),
-            fit: plan.time_fit(),
             tested: ReducedFrequencyRange::between(
                 ReducedFrequency::from_full_width(0.02),
                 ReducedFrequency::from_full_width(10.0),
             ),
+            true_onset_m_s: 0.0,
+            bias_m_s: 0.0,
         };
-        let structure = campaign.section.structure()?;
         let found = determinant_onset(
             "truth",
-            &structure,
+            &campaign.structure,
             campaign.model.as_ref(),
             campaign.tested,
             SPEED_MAX_M_S,
@@ -95,7 +117,7 @@ impl KnownDeck {
             .ok_or_else(|| Error::Numerical("coverage: the truth does not flutter".into()))?
             .at
             .speed_m_s;
-        let (_, onset, tested) = campaign.fitted(&campaign.records.straight)?;
+        let (_, onset, tested) = campaign.fitted(&campaign.straight)?;
         campaign.tested = tested;
         let onset = onset
             .ok_or_else(|| Error::Numerical("coverage: the fit without noise is stable".into()))?;
@@ -109,9 +131,10 @@ impl KnownDeck {
         records: &[Record],
     ) -> Result<(CoefficientUncertainty, Option<Onset>, ReducedFrequencyRange)> {
         let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
-        let Fitted { model, report } = fit_records(&sources, &self.fit, &|_| ())?;
-        let estimate = record_uncertainty(&sources, &self.fit, &report, &|_| ())?;
-        let section = CoupledSection::with_model(&self.section.structure()?, &model)?;
+        let fit = self.plan.time_fit();
+        let Fitted { model, report } = fit_records(&sources, &fit, &|_| ())?;
+        let estimate = record_uncertainty(&sources, &fit, &report, &|_| ())?;
+        let section = CoupledSection::with_model(&self.structure, &model)?;
         let search = OnsetSearch {
             speed_max_m_s: SPEED_MAX_M_S,
             ..OnsetSearch::default()
@@ -120,12 +143,33 @@ impl KnownDeck {
         Ok((estimate, found.onset().cloned(), report.tested_range))
     }
 
+    /// Records of one campaign, still without noise.
+    fn scattered(&self, seed: u64) -> Vec<Record> {
+        let mut records = self.straight.clone();
+        let mut random = random_stream(seed, STREAM);
+        let mut factor = |deviation: f64| {
+            let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+            Complex::new(deviation * normal(), deviation * normal())
+        };
+        for (record, turned) in records.iter_mut().zip(&self.turned) {
+            let run = factor(self.plan.run_scatter);
+            for (force, turned) in record.force.iter_mut().zip(&turned.force) {
+                // one motion per record: each force of a record is a transfer function of its own at that speed
+                let change = factor(self.plan.speed_scatter) + run;
+                for (f, t) in force.iter_mut().zip(turned) {
+                    *f += change.re * *f + change.im * t;
+                }
+            }
+        }
+        records
+    }
+
     fn repeat(&self, repetition: usize) -> Result<Option<Repetition>> {
-        let seed = self.tunnel.seed.wrapping_add(repetition as u64);
-        let mut records = self.records.draw(seed);
+        let seed = self.plan.tunnel.seed.wrapping_add(repetition as u64);
+        let mut records = self.scattered(seed);
         let plan = TunnelPlan {
             seed,
-            ..self.tunnel.clone()
+            ..self.plan.tunnel.clone()
         };
         for (index, record) in records.iter_mut().enumerate() {
             plan.add_noise(record, index);
@@ -134,7 +178,7 @@ impl KnownDeck {
         let Some(onset) = onset else {
             return Ok(None);
         };
-        let error = onset_error(&estimate, &self.section.structure()?, &onset, None)?;
+        let error = onset_error(&estimate, &self.structure, &onset, None)?;
         Ok(Some(Repetition {
             error,
             derivatives_inside: self.derivatives(&estimate)?,
@@ -160,7 +204,7 @@ impl KnownDeck {
         Ok(inside)
     }
 
-    fn summary(&self, plan: &CoveragePlan, runs: &[Option<Repetition>]) -> Result<CoverageReport> {
+    fn summary(&self, runs: &[Option<Repetition>]) -> Result<CoverageReport> {
         let good: Vec<&Repetition> = runs.iter().flatten().collect();
         if good.len() < 2 {
             return Err(Error::Numerical(
@@ -177,7 +221,7 @@ impl KnownDeck {
             |r: &Repetition, target: f64| (onset(r) - target).abs() <= r.error.half_width_m_s();
         let holds = |target: f64| IntervalCoverage::count(good.iter().map(|r| inside(r, target)));
         let mut report = CoverageReport {
-            plan: plan.clone(),
+            plan: self.plan.clone(),
             true_onset_m_s: self.true_onset_m_s,
             bias_m_s: self.bias_m_s,
             mean_error_m_s: average - self.true_onset_m_s,

@@ -174,8 +174,7 @@ pub(crate) struct ResamplingPlan {
 }
 
 /// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
-/// along its slope (see [`super::LinearModel`]). The answer does not depend on the number of
-/// threads. `None` for blocks of an estimate that no longer knows its data, and where no draw has an onset.
+/// along its slope (see [`ModelDraws`]). The answer does not depend on the number of threads. `None` for blocks of an estimate that no longer knows its data, and where no draw has an onset.
 pub(crate) fn resample_onset(
     estimate: &CoefficientUncertainty,
     structure: &Structure,

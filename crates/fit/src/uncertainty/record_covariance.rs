@@ -83,30 +83,18 @@ struct Entries {
 
 impl Entries {
     fn new(report: &FitReport, parameters: &FitParameters) -> Result<Self> {
-        let inputs = report.entries.len().isqrt();
-        let expanded = |(e, entry): (usize, &EntryReport)| {
-            let (form, place) = (&parameters.form, [e / inputs, e % inputs]);
-            Expansion::new(
-                form,
-                &entry.poles,
-                &entry.values(),
-                place,
-                &parameters.searched,
-            )
-        };
         let entries = report.entries.iter();
+        let chains: Vec<Vec<f64>> = entries.clone().map(|e| e.poles.clone()).collect();
+        let values: Vec<Vec<f64>> = entries.map(EntryReport::values).collect();
+        let (form, searched) = (&parameters.form, &parameters.searched);
         Ok(Self {
-            inputs,
-            each: entries
-                .clone()
-                .enumerate()
-                .map(expanded)
-                .collect::<Result<_>>()?,
-            values: entries.map(EntryReport::values).collect(),
+            inputs: chains.len().isqrt(),
+            each: Expansion::each(form, &chains, &values.concat(), searched)?,
+            values,
             first: parameters.first.clone(),
             constants: Vec::new(),
             parameters: parameters.all.len(),
-            shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
+            shared: chains.windows(2).all(|w| w[0] == w[1]),
         })
     }
 

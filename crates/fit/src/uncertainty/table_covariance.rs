@@ -43,7 +43,8 @@ pub fn table_uncertainty(
     let parameters = FitParameters::new(&fit.form, &fit.poles, &fit.own, report);
     let count = parameters.all.len();
     let first_pole = count - parameters.searched.len();
-    let mut runs: Vec<MotionSamples> = Vec::new();
+    // rows of one motion at one frequency and speed
+    let mut runs: Vec<(Dof, Vec<Block>)> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
         let searched = parameters
             .searched
@@ -57,21 +58,31 @@ pub fn table_uncertainty(
         let (residuals, variance) =
             rows_of(entry, report, &parameters.form, &searched, first, &mut rows)?;
         for ((sample, line), residual) in entry.rows.iter().zip(rows).zip(residuals) {
-            let place = runs.iter().position(|run| run.holds(entry.motion, sample));
-            let place = place.unwrap_or_else(|| {
-                runs.push(MotionSamples {
-                    motion: entry.motion,
-                    k: sample.k,
-                    mean_speed_m_s: sample.mean_speed_m_s,
-                    rows: Vec::new(),
-                });
-                runs.len() - 1
-            });
-            runs[place].rows.push((line, residual, variance));
+            let row = Block {
+                name: String::new(),
+                speed_m_s: sample.mean_speed_m_s,
+                k: Some(sample.k),
+                rows: DMatrix::from_row_slice(1, count, &line),
+                residual: DVector::from_element(1, residual),
+                variance: DVector::from_element(1, variance),
+            };
+            let own = |(motion, run): &&mut (Dof, Vec<Block>)| {
+                *motion == entry.motion && of_one_run(&run[0], &row)
+            };
+            match runs.iter_mut().find(own) {
+                Some((_, run)) => run.push(row),
+                None => runs.push((entry.motion, vec![row])),
+            }
         }
     }
     let tangent = parameters.tangent(report)?;
-    let blocks = runs.into_iter().map(MotionSamples::block).collect();
+    let block = |(motion, rows): &(Dof, Vec<Block>)| {
+        let k = rows[0].k.unwrap_or_default();
+        let speed = rows[0].speed_m_s.map(|v| format!(", {v:.2} m/s"));
+        let speed = speed.unwrap_or_default();
+        Block::joined(format!("{} motion, K = {k:.3}{speed}", motion.name()), rows)
+    };
+    let blocks = runs.iter().map(block).collect();
     let searched = parameters.sentence() + &constraint_sentence(report);
     CoefficientUncertainty::new(
         format!(
@@ -87,39 +98,11 @@ pub fn table_uncertainty(
     )
 }
 
-/// All samples of one motion at one frequency and speed.
-struct MotionSamples {
-    motion: Dof,
-    k: f64,
-    mean_speed_m_s: Option<f64>,
-    rows: Vec<(Vec<f64>, f64, f64)>,
-}
-
-impl MotionSamples {
-    fn holds(&self, motion: Dof, row: &EntrySample) -> bool {
-        let near = |a: f64, b: f64| (a / b).ln().abs() < SAME_RUN;
-        let same_speed = match (self.mean_speed_m_s, row.mean_speed_m_s) {
-            (Some(a), Some(b)) => near(a, b),
-            _ => true,
-        };
-        self.motion == motion && near(self.k, row.k) && same_speed
-    }
-
-    fn block(self) -> Block {
-        let width = self.rows.first().map_or(0, |r| r.0.len());
-        let count = self.rows.len();
-        let speed = self
-            .mean_speed_m_s
-            .map_or_else(String::new, |v| format!(", {v:.2} m/s"));
-        Block {
-            name: format!("{} motion, K = {:.3}{speed}", self.motion.name(), self.k),
-            speed_m_s: self.mean_speed_m_s,
-            k: Some(self.k),
-            rows: DMatrix::from_fn(count, width, |i, c| self.rows[i].0[c]),
-            residual: DVector::from_fn(count, |i, _| self.rows[i].1),
-            variance: DVector::from_fn(count, |i, _| self.rows[i].2),
-        }
-    }
+/// Whether rows of one motion are of one test run: frequency and, where it is known, speed are the same.
+fn of_one_run(a: &Block, b: &Block) -> bool {
+    let near = |a: f64, b: f64| (a / b).ln().abs() < SAME_RUN;
+    let alike = |a: Option<f64>, b: Option<f64>| a.zip(b).is_none_or(|(a, b)| near(a, b));
+    alike(a.k, b.k) && alike(a.speed_m_s, b.speed_m_s)
 }
 
 /// Weighted residuals of one transfer function and their variance; its columns are written into `rows`, from the parameter `first` on and

@@ -2,7 +2,7 @@
 //!
 //! The covariance of a fit holds all its parameters, searched poles among them: with a pole the coefficients move
 //! together, and drawn at fixed poles they would be another model. The model is therefore followed along its slope with
-//! respect to the poles, in chains of filters that span it (`LinearModel`): a linear function of
+//! respect to the poles, in chains of filters that span it ([`ModelDraws`]): a linear function of
 //! the parameters, of which standard errors speak as well.
 
 use super::coefficients;
