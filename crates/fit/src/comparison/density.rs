@@ -43,11 +43,10 @@ pub fn probability_density(
     let second = values("compared signal", pair.compared(), standard_score)?;
     let (low, high) = extremes(first.iter().chain(&second).copied());
     let step = (high - low) / POINTS as f64;
-    let [reference, compared] = [&first, &second].map(|x| Density::new(x, [low, high]));
+    let [(reference, own), (compared, other)] = [&first, &second].map(|x| density(x, [low, high]));
     let overlap: f64 = reference
-        .values
         .iter()
-        .zip(&compared.values)
+        .zip(&compared)
         .map(|(p, q)| (p * q).sqrt() * step)
         .sum();
     Ok(Metric {
@@ -55,9 +54,9 @@ pub fn probability_density(
         details: DensityDetails {
             first: low + 0.5 * step,
             step,
-            bandwidths: [reference.bandwidth, compared.bandwidth],
-            reference: reference.values,
-            compared: compared.values,
+            bandwidths: [own, other],
+            reference,
+            compared,
         },
     })
 }
@@ -94,43 +93,29 @@ const STAGES: i32 = 7;
 /// Least bandwidth, in `range/n` of `n` values that differ: neighbours of a sinusoid are up to `π range/n` apart.
 const SPACINGS: f64 = 2.0;
 
-/// Density estimate at the centres of [`POINTS`] equal cells of a range.
-struct Density {
-    /// Per unit of the sample; their sum times the cell width is 1.
-    values: Vec<f64>,
-    /// Standard deviation of the kernel, in the unit of the sample.
-    bandwidth: f64,
-}
-
-impl Density {
-    /// Of a sample within `low..=high`, `low < high`.
-    fn new(sample: &[f64], [low, high]: [f64; 2]) -> Self {
-        let range = high - low;
-        let mut histogram = vec![0.0; POINTS];
-        for x in sample {
-            let cell = ((x - low) / range * POINTS as f64) as usize;
-            histogram[cell.min(POINTS - 1)] += 1.0 / sample.len() as f64;
-        }
-        let mut coefficients = cosine_transform(&histogram);
-        let count = distinct(sample) as f64;
-        let (least, greatest) = extremes(sample.iter().copied());
-        // values of a signal without randomness are no sample: a kernel below their distance shows each of them
-        let spacing = SPACINGS * (greatest - least) / (range * count);
-        let time = diffusion_time(&coefficients, count).max(spacing.powi(2));
-        for (k, a) in coefficients.iter_mut().enumerate() {
-            *a *= (-0.5 * time * (PI * k as f64).powi(2)).exp();
-        }
-        // Truncated ringing of a sample with gaps may leave tiny negative values.
-        let cell = range / POINTS as f64;
-        let values = cosine_sum(&coefficients)
-            .into_iter()
-            .map(|p| (p / cell).max(0.0))
-            .collect();
-        Self {
-            values,
-            bandwidth: time.sqrt() * range,
-        }
+/// Density of a sample within `low..=high`, `low < high`, at the centres of [`POINTS`] equal cells, per unit of the sample, so that its sum
+/// times the cell width is 1; and the bandwidth, the standard deviation of the kernel in the unit of the sample.
+fn density(sample: &[f64], [low, high]: [f64; 2]) -> (Vec<f64>, f64) {
+    let range = high - low;
+    let mut histogram = vec![0.0; POINTS];
+    for x in sample {
+        let cell = ((x - low) / range * POINTS as f64) as usize;
+        histogram[cell.min(POINTS - 1)] += 1.0 / sample.len() as f64;
     }
+    let mut coefficients = cosine_transform(&histogram);
+    let count = distinct(sample) as f64;
+    let (least, greatest) = extremes(sample.iter().copied());
+    // values of a signal without randomness are no sample: a kernel below their distance shows each of them
+    let spacing = SPACINGS * (greatest - least) / (range * count);
+    let time = diffusion_time(&coefficients, count).max(spacing.powi(2));
+    for (k, a) in coefficients.iter_mut().enumerate() {
+        *a *= (-0.5 * time * (PI * k as f64).powi(2)).exp();
+    }
+    // Truncated ringing of a sample with gaps may leave tiny negative values.
+    let cell = range / POINTS as f64;
+    let values = cosine_sum(&coefficients).into_iter();
+    let values = values.map(|p| (p / cell).max(0.0)).collect();
+    (values, time.sqrt() * range)
 }
 
 /// Values nearer to each other than this part of the range are one: periods of a signal repeat to within the rounding of its time,
@@ -345,8 +330,7 @@ mod tests {
     fn values_are_the_sum_of_reflected_kernels() {
         let sample = logistic(300);
         let [low, high] = [sample[0], sample[299]];
-        let density = Density::new(&sample, [low, high]);
-        let h = density.bandwidth;
+        let (values, h) = density(&sample, [low, high]);
         let kernel = |x: f64| (-0.5 * (x / h).powi(2)).exp() / (h * (2.0 * PI).sqrt());
         let cell = (high - low) / POINTS as f64;
         for k in [0, 100, 2047, 4000] {
@@ -356,20 +340,16 @@ mod tests {
                 .map(|s| kernel(x - s) + kernel(x - 2.0 * low + s) + kernel(x - 2.0 * high + s))
                 .sum();
             // The sample is moved to the centres of cells, 0.0007 wide of a bandwidth of 0.5.
-            assert_relative_eq!(density.values[k], sum / 300.0, max_relative = 2e-3);
+            assert_relative_eq!(values[k], sum / 300.0, max_relative = 2e-3);
         }
-        assert_abs_diff_eq!(
-            density.values.iter().sum::<f64>() * cell,
-            1.0,
-            epsilon = 1e-12
-        );
+        assert_abs_diff_eq!(values.iter().sum::<f64>() * cell, 1.0, epsilon = 1e-12);
     }
 
     #[test]
     fn bandwidth_agrees_with_another_implementation_and_with_the_optimum() {
         let bandwidth = |n: usize| {
             let sample = logistic(n);
-            Density::new(&sample, [sample[0], sample[n - 1]]).bandwidth
+            density(&sample, [sample[0], sample[n - 1]]).1
         };
         // KDEpy 1.1.12 (PyPI), improved_sheather_jones of this sample, 0.1608866, times 2: its bandwidth is a part
         // of its grid, twice as wide as the sample, but is scaled by the range of the sample. Its grid has 1024

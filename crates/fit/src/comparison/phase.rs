@@ -86,14 +86,20 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
     }
     let correlation = CrossCorrelation::new(pair.reference(), pair.compared());
     let whole = correlation.largest_magnitude();
-    let refined = Refinement {
-        correlation: &correlation,
-        overlap_normalised: parameters.overlap_normalised,
+    // the correlation over what it is divided by
+    let divided = |lag: isize| {
+        let divisor = match parameters.overlap_normalised {
+            true => correlation.overlap_energy(lag),
+            false => 1.0,
+        };
+        let value = correlation.at(lag);
+        if divisor > 0.0 { value / divisor } else { 0.0 }
     };
+    let reach = (correlation.sample_count() / 16) as isize;
     let lag = match parameters.lag {
         LagEstimate::WholeSample => whole as f64,
-        LagEstimate::Parabolic => refined.parabolic(refined.climb(whole)),
-        LagEstimate::BandLimited => refined.band_limited(refined.climb(whole)),
+        LagEstimate::Parabolic => parabolic(&divided, climb(&divided, whole, reach)),
+        LagEstimate::BandLimited => band_limited(&divided, climb(&divided, whole, reach)),
     };
     let lag_s = lag * pair.time_step_s();
     Ok(Metric {
@@ -106,85 +112,57 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
     })
 }
 
-/// Search of the lag between the samples.
-struct Refinement<'a> {
-    correlation: &'a CrossCorrelation,
-    overlap_normalised: bool,
+/// Whole lag at the local maximum of a correlation next to `start`, at most a sixteenth of the record (`reach`) away: the division favours
+/// lags at which hardly anything overlaps.
+fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> isize {
+    let magnitude = |lag: isize| correlation(lag).abs();
+    let mut lag = start;
+    loop {
+        let next = if magnitude(lag + 1) > magnitude(lag - 1) {
+            lag + 1
+        } else {
+            lag - 1
+        };
+        if (next - start).abs() > reach || magnitude(next) <= magnitude(lag) {
+            return lag;
+        }
+        lag = next;
+    }
 }
 
-impl Refinement<'_> {
-    /// What the correlation is divided by at a whole lag.
-    fn divisor(&self, lag: isize) -> f64 {
-        if self.overlap_normalised {
-            self.correlation.overlap_energy(lag)
-        } else {
-            1.0
-        }
+/// Vertex of the parabola through the magnitudes around `top`.
+fn parabolic(correlation: &dyn Fn(isize) -> f64, top: isize) -> f64 {
+    let [before, here, after] = [-1, 0, 1].map(|k| correlation(top + k).abs());
+    let (slope, curvature) = (0.5 * (after - before), after - 2.0 * here + before);
+    if curvature < 0.0 {
+        top as f64 - (slope / curvature).clamp(-1.0, 1.0)
+    } else {
+        top as f64
     }
+}
 
-    fn magnitude(&self, lag: isize) -> f64 {
-        let divisor = self.divisor(lag);
-        if divisor > 0.0 {
-            self.correlation.at(lag).abs() / divisor
-        } else {
-            0.0
-        }
-    }
-
-    /// Whole lag at the local maximum next to `start`, at most a sixteenth of the record away: the division
-    /// favours lags at which hardly anything overlaps.
-    fn climb(&self, start: isize) -> isize {
-        let reach = (self.correlation.sample_count() / 16) as isize;
-        let mut lag = start;
-        loop {
-            let next = if self.magnitude(lag + 1) > self.magnitude(lag - 1) {
-                lag + 1
-            } else {
-                lag - 1
-            };
-            if (next - start).abs() > reach || self.magnitude(next) <= self.magnitude(lag) {
-                return lag;
-            }
-            lag = next;
-        }
-    }
-
-    fn parabolic(&self, top: isize) -> f64 {
-        let [before, here, after] = [-1, 0, 1].map(|k| self.magnitude(top + k));
-        let (slope, curvature) = (0.5 * (after - before), after - 2.0 * here + before);
-        if curvature < 0.0 {
-            top as f64 - (slope / curvature).clamp(-1.0, 1.0)
-        } else {
-            top as f64
-        }
-    }
-
-    /// Maximum of the band-limited function through the values around `top`, within one sample of it: the sum of
-    /// sinc functions under a Gaussian window, good to about 1e-7 for content up to 0.7 of the Nyquist frequency.
-    ///
-    /// The correlation is interpolated, not the signals: these end abruptly and would ring there.
-    fn band_limited(&self, top: isize) -> f64 {
-        const HALF_WIDTH: isize = 32;
-        const WINDOW_SIGMA: f64 = HALF_WIDTH as f64 / 6.0;
-        let sign = self.correlation.at(top).signum();
-        let values: Vec<(f64, f64)> = (-HALF_WIDTH..=HALF_WIDTH)
-            .map(|k| {
-                let value = self.correlation.at(top + k).signum() * self.magnitude(top + k);
-                (k as f64, sign * value)
+/// Maximum of the band-limited function through the values around `top`, within one sample of it: the sum of
+/// sinc functions under a Gaussian window, good to about 1e-7 for content up to 0.7 of the Nyquist frequency.
+///
+/// The correlation is interpolated, not the signals: these end abruptly and would ring there.
+fn band_limited(correlation: &dyn Fn(isize) -> f64, top: isize) -> f64 {
+    const HALF_WIDTH: isize = 32;
+    const WINDOW_SIGMA: f64 = HALF_WIDTH as f64 / 6.0;
+    let sign = correlation(top).signum();
+    let values: Vec<(f64, f64)> = (-HALF_WIDTH..=HALF_WIDTH)
+        .map(|k| (k as f64, sign * correlation(top + k)))
+        .collect();
+    let interpolated = |offset: f64| -> f64 {
+        values
+            .iter()
+            .map(|(k, value)| {
+                let x = offset - k;
+                let window = (-0.5 * (x / WINDOW_SIGMA).powi(2)).exp();
+                value * window * sinc(x)
             })
-            .collect();
-        let interpolated = |offset: f64| -> f64 {
-            values
-                .iter()
-                .map(|(k, value)| {
-                    let x = offset - k;
-                    let window = (-0.5 * (x / WINDOW_SIGMA).powi(2)).exp();
-                    value * window * sinc(x)
-                })
-                .sum()
-        };
-        top as f64 + place_of_maximum(interpolated, -1.0, 1.0)
-    }
+            .sum()
+    };
+    top as f64 + place_of_maximum(interpolated, -1.0, 1.0)
 }
 
 /// `sin(πx)/(πx)`.

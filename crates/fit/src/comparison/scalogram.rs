@@ -53,28 +53,6 @@ impl Scalogram {
         }
     }
 
-    #[inline(always)]
-    fn add(&mut self, power: &[f64]) {
-        // silence would have an infinite logarithm
-        const FLOOR: f64 = 1e-30;
-        let mean = sum(power) / power.len() as f64;
-        if mean == 0.0 {
-            return;
-        }
-        self.mean_power += mean;
-        let sums = self.local.iter_mut().zip(&mut self.global);
-        let sums = sums.zip(self.power.iter_mut().zip(&mut self.deviation));
-        for (p, ((local, global), (power, deviation))) in power.iter().zip(sums) {
-            let ratio = p / mean;
-            let ratio = if ratio < FLOOR { FLOOR } else { ratio };
-            let (share, logarithm) = (ratio * mean, ln(ratio));
-            *power += share;
-            *local += share * logarithm;
-            *global += mean * logarithm;
-            *deviation += logarithm.abs();
-        }
-    }
-
     /// Statistic Θ of the levels taken, which are `step_hz` apart.
     pub(super) fn statistic(&self, step_hz: f64) -> f64 {
         let local = self.local.iter().zip(&self.power).map(|(l, p)| l / p);
@@ -90,10 +68,27 @@ impl Scalogram {
 vectorised! {
     /// Adds a level to the sums; its power is left in `power`.
     fn add_level<'a>(sums: &'a mut Scalogram, row: &'a [Complex64], power: &'a mut [f64]) -> () {
+        // silence would have an infinite logarithm
+        const FLOOR: f64 = 1e-30;
         for (p, w) in power.iter_mut().zip(row) {
             *p = w.re * w.re + w.im * w.im;
         }
-        sums.add(power);
+        let mean = sum(power) / power.len() as f64;
+        if mean == 0.0 {
+            return;
+        }
+        sums.mean_power += mean;
+        let of_bands = sums.local.iter_mut().zip(&mut sums.global);
+        let of_times = sums.power.iter_mut().zip(&mut sums.deviation);
+        for (p, ((local, global), (power, deviation))) in power.iter().zip(of_bands.zip(of_times)) {
+            let ratio = p / mean;
+            let ratio = if ratio < FLOOR { FLOOR } else { ratio };
+            let (share, logarithm) = (ratio * mean, ln(ratio));
+            *power += share;
+            *local += share * logarithm;
+            *global += mean * logarithm;
+            *deviation += logarithm.abs();
+        }
     }
 
     /// Adds a signal to the moments.
