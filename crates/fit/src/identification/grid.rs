@@ -11,7 +11,7 @@ use super::joint::JointFit;
 use super::least_squares::Factor;
 use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
-use super::time::continuous::{RecordFit, Rows};
+use super::time::continuous::RecordFit;
 use super::time::pass::{ColumnOrder, OnProgress, Pass};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
@@ -286,13 +286,12 @@ impl GridAxis {
                     records,
                     progress,
                 };
-                let chains = |p: &f64| vec![vec![*p; filters]; inputs];
-                let candidates: Vec<_> = poles.iter().map(chains).collect();
-                let rows = Rows {
-                    stretches: 1,
-                    ..Rows::THINNED
+                let everywhere = |p: &f64| -> Result<Vec<Basis>> {
+                    let basis = Basis::orthonormal(&task.fit.form, &vec![*p; filters])?;
+                    Ok(vec![basis; inputs])
                 };
-                task.pass(&candidates, rows, 1, 1)
+                let bases: Vec<_> = poles.iter().map(everywhere).collect::<Result<_>>()?;
+                task.pass(&bases, task.thinning(), 1, 1, 1)
             }
         }
     }

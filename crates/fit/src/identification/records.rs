@@ -9,7 +9,7 @@ use super::form::Form;
 use super::options::TimeFit;
 use super::own::describe_own;
 use super::report::{FitReport, Fitted, MemoryReport, SearchReport, enough_rows};
-use super::time::continuous::{RecordFit, Rows, padded};
+use super::time::continuous::{RecordFit, padded};
 use super::time::fitted::FittedSystems;
 use super::time::pass::OnProgress;
 use super::time::record::{DimensionlessRecord, Records};
@@ -104,26 +104,26 @@ impl<'a> RecordFit<'a> {
     /// The pass over every sample, then least squares: a fit at the unconstrained poles and, where the constrained ones
     /// are others, one at those.
     fn least_squares_at(&'a self, chosen: &[EntryPoles]) -> Result<Vec<FittedSystems<'a>>> {
-        let mut sets: Vec<Vec<Vec<f64>>> = chosen.iter().map(|c| c.chains.clone()).collect();
+        let mut sets: Vec<Vec<Vec<f64>>> =
+            chosen.iter().map(|(chains, _)| chains.clone()).collect();
         sets.dedup();
         let feed = self.fit.form.feed_through().count();
         let longest = sets.iter().flatten().map(Vec::len).max().unwrap_or(0);
-        let padded_row = |row: &[Vec<f64>]| row.iter().map(|c| padded(c, longest)).collect();
-        let mut candidates: Vec<Vec<Vec<f64>>> = Vec::new();
-        let mut counts = Vec::new();
+        let (mut bases, mut counts) = (Vec::new(), Vec::new());
         for chains in &sets {
-            let mut of_force: Vec<_> = chains
-                .chunks(self.records.dofs.len())
-                .map(padded_row)
-                .collect();
+            let padded_row = |row: &[Vec<f64>]| row.iter().map(|c| padded(c, longest)).collect();
+            let rows = chains.chunks(self.records.dofs.len());
+            let mut of_force: Vec<Vec<Vec<f64>>> = rows.map(padded_row).collect();
             // filters that serve all forces are filtered once
             if of_force.iter().all(|row| *row == of_force[0]) {
                 of_force.truncate(1);
             }
             counts.push(of_force.len());
-            candidates.extend(of_force);
+            for row in &of_force {
+                bases.push(self.bases(row)?);
+            }
         }
-        let pass = self.pass(&candidates, Rows::ALL, PASSES, PASSES)?;
+        let pass = self.pass(&bases, 1, 0, PASSES, PASSES)?;
         let mut systems = pass.systems().into_iter();
         let (dofs, filters) = (&self.records.dofs, self.fit.form.describe());
         let fit = |(chains, count): (Vec<Vec<f64>>, usize)| {
@@ -158,7 +158,7 @@ impl<'a> RecordFit<'a> {
             found.constrain(&bases, &requirements)?;
         }
         if found.active().is_none() {
-            return Ok((found, chosen.swap_remove(0).search, None));
+            return Ok((found, chosen.swap_remove(0).1, None));
         }
         if let Some(other) = fits.next() {
             found = other;
@@ -167,7 +167,7 @@ impl<'a> RecordFit<'a> {
         let active = found.active().unwrap_or_default();
         let with = found.reports()?;
         let constraints = ConstraintReport::new(active, dofs, &reports, &bases, &with, model);
-        Ok((found, chosen.swap_remove(1).search, Some(constraints)))
+        Ok((found, chosen.swap_remove(1).1, Some(constraints)))
     }
 
     fn bases(&self, chains: &[Vec<f64>]) -> Result<Vec<Basis>> {

@@ -7,11 +7,13 @@ use super::parameters::{Coordinates, FitParameters, Parameter, constraint_senten
 use super::segments::{StretchRows, sandwich};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
+use crate::identification::basis::Basis;
 use crate::identification::discrete::discrete_pass;
+use crate::identification::form::Form;
 use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
 use crate::identification::report::FitReport;
-use crate::identification::time::continuous::{RecordFit, Rows, padded};
+use crate::identification::time::continuous::{RecordFit, padded};
 use crate::identification::time::pass::{ColumnOrder, OnProgress, Stretch};
 use crate::identification::time::record::{DimensionlessRecord, Records};
 use crate::identification::{DiscreteFit, EntryReport};
@@ -47,12 +49,8 @@ pub fn record_uncertainty(
     };
     let parameters = FitParameters::new(&fit.form, &fit.poles, &fit.own, report);
     let entries = Entries::new(report, &parameters)?;
-    let rows = Rows {
-        orthonormal: true,
-        thinned: false,
-        stretches: STRETCHES,
-    };
-    let closed = task.pass(&entries.candidates(), rows, 1, 1)?.stretches;
+    let bases = entries.bases(&fit.form)?;
+    let closed = task.pass(&bases, 1, STRETCHES, 1, 1)?.stretches;
     let tangent = parameters.tangent(report)?;
     let (design, blocks) = sandwich(entries.rows(&records.each, &closed)?, tangent)?;
     let searched = parameters.sentence() + &constraint_sentence(report);
@@ -133,14 +131,16 @@ impl Entries {
         (entries, parameters)
     }
 
-    /// Chains of the pass, for all inputs: one, or one an entry.
-    fn candidates(&self) -> Vec<Vec<Vec<f64>>> {
+    /// Bases of the pass, for all inputs: one, or one an entry.
+    fn bases(&self, form: &Form) -> Result<Vec<Vec<Basis>>> {
         let count = if self.shared { 1 } else { self.each.len() };
         let chains = self.each.iter().take(count).map(|e| &e.extended);
         let longest = chains.clone().map(Vec::len).max().unwrap_or(0);
-        chains
-            .map(|c| vec![padded(c, longest); self.inputs])
-            .collect()
+        let of_inputs = |chain: &Vec<f64>| {
+            let basis = Basis::orthonormal(form, &padded(chain, longest))?;
+            Ok(vec![basis; self.inputs])
+        };
+        chains.map(of_inputs).collect()
     }
 
     /// Rows of every force in every stretch that tells something.

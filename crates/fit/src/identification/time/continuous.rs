@@ -19,32 +19,6 @@ pub(crate) struct RecordFit<'a> {
     pub progress: OnProgress<'a>,
 }
 
-/// Which rows a pass makes.
-#[derive(Clone, Copy)]
-pub(crate) struct Rows {
-    /// Columns of orthonormal filters in place of those of the model.
-    pub orthonormal: bool,
-    /// Only as many rows as the low-passed signals need.
-    pub thinned: bool,
-    /// As in [`PassPlan`].
-    pub stretches: usize,
-}
-
-impl Rows {
-    /// For a search of poles.
-    pub(crate) const THINNED: Self = Self {
-        orthonormal: true,
-        thinned: true,
-        stretches: 0,
-    };
-    /// For the fit itself.
-    pub(crate) const ALL: Self = Self {
-        orthonormal: false,
-        thinned: false,
-        stretches: 0,
-    };
-}
-
 /// A chain made as long as the longest of a pass (see [`RecordFit::pass`]); its first filters stay what they are.
 pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
     let last = chain.last().copied().unwrap_or(1.0);
@@ -54,25 +28,16 @@ pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
 }
 
 impl RecordFit<'_> {
-    /// One pass with the given candidates, a chain of filters for each input, all of one length.
+    /// One pass with the given candidates, a basis for each input, all of one length; `number` of so many passes, with a row every
+    /// `stride` samples and every segment cut into `stretches` as in [`PassPlan`].
     pub(crate) fn pass(
         &self,
-        candidates: &[Vec<Vec<f64>>],
-        rows: Rows,
+        bases: &[Vec<Basis>],
+        stride: usize,
+        stretches: usize,
         number: usize,
         passes: usize,
     ) -> Result<Pass> {
-        let basis = |poles: &Vec<f64>| {
-            if rows.orthonormal {
-                Basis::orthonormal(&self.fit.form, poles)
-            } else {
-                Basis::new(&self.fit.form, poles)
-            }
-        };
-        let bases = candidates
-            .iter()
-            .map(|chains| chains.iter().map(basis).collect())
-            .collect::<Result<Vec<Vec<_>>>>()?;
         let constant = self.fit.static_term == StaticTerm::Estimated;
         let plan = PassPlan {
             order: ColumnOrder {
@@ -83,13 +48,13 @@ impl RecordFit<'_> {
             weights: self.fit.weights,
             delta_s: None,
             discard_s: self.fit.discard_s,
-            stride: if rows.thinned { self.thinning() } else { 1 },
-            stretches: rows.stretches,
+            stride,
+            stretches,
             number: (number, passes),
         };
         pass_over(&self.records.each, &plan, self.progress, |record| {
             self.check_low_pass(record)?;
-            ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)
+            ContinuousColumns::new(record, bases, self.cutoff_hz(record), constant)
         })
     }
 
@@ -114,7 +79,7 @@ impl RecordFit<'_> {
 
     /// Every how many samples a row is enough: four rows per period of the cut-off still hold what the low-pass lets
     /// through.
-    fn thinning(&self) -> usize {
+    pub(crate) fn thinning(&self) -> usize {
         let stride = |r: &DimensionlessRecord| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize;
         self.records
             .each

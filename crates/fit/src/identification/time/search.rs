@@ -1,6 +1,6 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
-use super::continuous::{RecordFit, Rows, padded};
+use super::continuous::{RecordFit, padded};
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
@@ -36,11 +36,7 @@ struct PoleGroup {
 }
 
 /// Poles of the filters of every transfer function, row by row, and how they were found.
-#[derive(Clone)]
-pub(crate) struct EntryPoles {
-    pub chains: Vec<Vec<f64>>,
-    pub search: Vec<SearchReport>,
-}
+pub(crate) type EntryPoles = (Vec<Vec<f64>>, Vec<SearchReport>);
 
 /// Poles of every transfer function, by least squares alone and, where constraints are asked for, under these. Both searches
 /// share their passes. Poles that only some transfer functions share are those of least squares in either case: under
@@ -104,9 +100,13 @@ impl RecordFit<'_> {
                 trials.push((g, poles, at));
             }
         }
-        let everywhere = |chain: Vec<f64>| vec![chain; self.records.dofs.len()];
-        let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
-        let passed = self.pass(&chains, Rows::THINNED, pass, PASSES)?;
+        let everywhere = |chain: &Vec<f64>| -> Result<Vec<Basis>> {
+            let basis = Basis::orthonormal(&self.fit.form, chain)?;
+            Ok(vec![basis; self.records.dofs.len()])
+        };
+        let bases = candidates.iter().map(everywhere);
+        let bases: Vec<_> = bases.collect::<Result<_>>()?;
+        let passed = self.pass(&bases, self.thinning(), 0, pass, PASSES)?;
         let systems = passed.systems();
         for (g, poles, at) in trials {
             let objective = groups[g].objective(&poles, &systems[at])?;
@@ -130,10 +130,7 @@ fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<PoleGroup>) -> Result
         search.push(report);
     }
     let chains = poles.iter().zip(entries);
-    Ok(EntryPoles {
-        chains: chains.map(|(p, e)| e.form.expand(p)).collect(),
-        search,
-    })
+    Ok((chains.map(|(p, e)| e.form.expand(p)).collect(), search))
 }
 
 impl PoleGroup {

@@ -2,7 +2,7 @@
 
 use super::super::speed_prior::SpeedPrior;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
-use crate::aerodynamics::{Lags, RationalModel, Transfer};
+use crate::aerodynamics::{Lags, RationalModel, Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetSearch, find_onset};
@@ -145,13 +145,16 @@ impl SyntheticDeck {
             };
             let count = random.random_range(6..=14);
             let ks = range.tested(k, count, &mut random);
-            let tests = Tests {
-                ks,
-                noise: random.random_range(0.03..0.10),
-                speeds: random.random_range(1..=2),
-                speeds_scatter: plan.speeds_scatter,
-            };
-            let samples = tests.samples(&truth, &mut random)?;
+            let noise = random.random_range(0.03..0.10);
+            let (speeds, n) = (random.random_range(1..=2), truth.dofs.len());
+            let transfer = |k: &f64| truth.transfer(ReducedFrequency::from_full_width(*k));
+            let transfers = ks.iter().map(transfer).collect::<Result<Vec<_>>>()?;
+            let mut shifts = vec![vec![Complex::new(0.0, 0.0); n * n]; speeds];
+            if plan.speeds_scatter {
+                shift(&mut shifts, &transfers, noise, &mut random)?;
+            }
+            let points: Vec<_> = ks.into_iter().zip(transfers).collect();
+            let samples = samples(&truth.dofs, &points, noise, &shifts, &mut random);
             return Ok(Self {
                 range,
                 dofs,
@@ -271,95 +274,76 @@ fn onset(
     })
 }
 
-/// The tests of a deck.
-struct Tests {
-    ks: Vec<f64>,
-    /// Standard deviation of a transfer function at a test point, relative.
+/// Tests of transfer matrices at their `K`, which take turns between mean speeds: with the relative shift of every transfer function at its
+/// speed, and `noise`, the standard deviation of one at a test point, relative.
+fn samples(
+    dofs: &[Dof],
+    tested: &[(f64, TransferMatrix)],
     noise: f64,
-    /// Number of mean speeds, between which the points take turns.
-    speeds: usize,
-    speeds_scatter: bool,
+    shifts: &[Vec<Complex<f64>>],
+    random: &mut ChaCha8Rng,
+) -> Vec<TransferSample> {
+    let n = dofs.len();
+    let component = noise / std::f64::consts::SQRT_2;
+    let mut samples = Vec::new();
+    let mut points: Vec<_> = tested.iter().enumerate().collect();
+    points.sort_by_key(|(p, _)| p % shifts.len());
+    for (p, (k, g)) in points {
+        let speed = p % shifts.len();
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let mut normal = || -> f64 { StandardNormal.sample(random) };
+            let noise = Complex::new(normal(), normal()) * component;
+            let found = g[(i, j)] * (1.0 + noise + shifts[speed][i * n + j]);
+            for (part, value) in [(Part::Real, found.re), (Part::Imaginary, found.im)] {
+                samples.push(TransferSample {
+                    force: dofs[i],
+                    motion: dofs[j],
+                    part,
+                    k: ReducedFrequency::from_full_width(*k),
+                    value,
+                    mean_speed_m_s: Some(5.0 + 3.0 * speed as f64),
+                });
+            }
+        }
+    }
+    samples
 }
 
-impl Tests {
-    fn samples(
-        &self,
-        truth: &RationalModel,
-        random: &mut ChaCha8Rng,
-    ) -> Result<Vec<TransferSample>> {
-        let n = truth.dofs.len();
-        let transfers = self
-            .ks
-            .iter()
-            .map(|k| truth.transfer(ReducedFrequency::from_full_width(*k)));
-        let transfers: Vec<DMatrix<Complex<f64>>> = transfers.collect::<Result<_>>()?;
-        let size = |i: usize, j: usize| {
-            let sum: f64 = transfers.iter().map(|g| g[(i, j)].norm_sqr()).sum();
-            (sum / transfers.len() as f64).sqrt()
+/// Draws the relative shift of every transfer function at every mean speed: the same in absolute size for the motions of a force, with a
+/// variance that is drawn as measured decks have it.
+fn shift(
+    shifts: &mut [Vec<Complex<f64>>],
+    transfers: &[TransferMatrix],
+    noise: f64,
+    random: &mut ChaCha8Rng,
+) -> Result<()> {
+    let n = shifts[0].len().isqrt();
+    let size = |i: usize, j: usize| {
+        let sum: f64 = transfers.iter().map(|g| g[(i, j)].norm_sqr()).sum();
+        (sum / transfers.len() as f64).sqrt()
+    };
+    let prior = SpeedPrior::measured(None);
+    let nu = prior.degrees_of_freedom;
+    let chi = ChiSquared::new(nu).map_err(|e| Error::Numerical(e.to_string()))?;
+    let of_block = 0.5 * noise.powi(2) * OF_A_POINT;
+    for i in 0..n {
+        let mut deviation = || -> f64 {
+            let ratio = nu * prior.ratio / chi.sample(random);
+            ((ratio - 1.0).max(0.0) * of_block).sqrt()
         };
-        let shifts = self.shifts(n, &size, random)?;
-        let component = self.noise / std::f64::consts::SQRT_2;
-        let mut samples = Vec::new();
-        let mut points: Vec<(usize, &f64, &DMatrix<Complex<f64>>)> = Vec::new();
-        for (p, (k, g)) in self.ks.iter().zip(&transfers).enumerate() {
-            points.push((p % self.speeds, k, g));
-        }
-        points.sort_by_key(|(speed, _, _)| *speed);
-        for (speed, k, g) in points {
-            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-                let mut normal = || -> f64 { StandardNormal.sample(random) };
-                let noise = Complex::new(normal(), normal()) * component;
-                let found = g[(i, j)] * (1.0 + noise + shifts[speed][i * n + j]);
-                for (part, value) in [(Part::Real, found.re), (Part::Imaginary, found.im)] {
-                    samples.push(TransferSample {
-                        force: truth.dofs[i],
-                        motion: truth.dofs[j],
-                        part,
-                        k: ReducedFrequency::from_full_width(*k),
-                        value,
-                        mean_speed_m_s: Some(5.0 + 3.0 * speed as f64),
-                    });
-                }
-            }
-        }
-        Ok(samples)
-    }
-
-    /// Relative shift of every transfer function at every mean speed: the same in absolute size for the motions of a force, with a
-    /// variance that is drawn as measured decks have it.
-    fn shifts(
-        &self,
-        n: usize,
-        size: &dyn Fn(usize, usize) -> f64,
-        random: &mut ChaCha8Rng,
-    ) -> Result<Vec<Vec<Complex<f64>>>> {
-        let mut shifts = vec![vec![Complex::new(0.0, 0.0); n * n]; self.speeds];
-        if !self.speeds_scatter {
-            return Ok(shifts);
-        }
-        let prior = SpeedPrior::measured(None);
-        let nu = prior.degrees_of_freedom;
-        let chi = ChiSquared::new(nu).map_err(|e| Error::Numerical(e.to_string()))?;
-        let of_block = 0.5 * self.noise.powi(2) * OF_A_POINT;
-        for i in 0..n {
-            let mut deviation = || -> f64 {
-                let ratio = nu * prior.ratio / chi.sample(random);
-                ((ratio - 1.0).max(0.0) * of_block).sqrt()
+        let (in_size, in_phase) = (deviation(), deviation());
+        let squares = (0..n).map(|j| size(i, j).powi(2)).sum::<f64>() / n as f64;
+        for j in 0..n {
+            let part = if size(i, j) > 0.0 {
+                (squares.sqrt() / size(i, j)).min(3.0)
+            } else {
+                0.0
             };
-            let (in_size, in_phase) = (deviation(), deviation());
-            let squares = (0..n).map(|j| size(i, j).powi(2)).sum::<f64>() / n as f64;
-            for j in 0..n {
-                let part = if size(i, j) > 0.0 {
-                    (squares.sqrt() / size(i, j)).min(3.0)
-                } else {
-                    0.0
-                };
-                for speed in &mut shifts {
-                    let mut normal = || -> f64 { StandardNormal.sample(random) };
-                    speed[i * n + j] = Complex::new(in_size * normal(), in_phase * normal()) * part;
-                }
+            for speed in &mut *shifts {
+                let mut normal = || -> f64 { StandardNormal.sample(random) };
+                speed[i * n + j] = Complex::new(in_size * normal(), in_phase * normal()) * part;
             }
         }
-        Ok(shifts)
     }
+    Ok(())
 }
