@@ -118,7 +118,8 @@ fn nothing_grows_below_the_onset_with_models_from_records() {
             let constraints = report.constraints.as_ref().unwrap();
             assert!(!constraints.sentences.is_empty());
             assert_eq!(constraints.costs.len(), dofs.len() * dofs.len());
-            let known = record_uncertainty(&sources(&records), &fit, &report, &|_| ()).unwrap();
+            let known =
+                record_uncertainty(&sources(&records), &fit, &report, None, &|_| ()).unwrap();
             assert_held_numbers_are_known(&known, dofs);
         }
     }
@@ -157,7 +158,7 @@ fn tables_know_what_constraints_hold() {
         let fit = FrequencyFit::default();
         let samples = table.samples(&Dof::TWO);
         let report = fit_table(&samples, &Dof::TWO, &fit).unwrap().report;
-        let known = table_uncertainty(&samples, &Dof::TWO, &fit, &report).unwrap();
+        let known = table_uncertainty(&samples, &Dof::TWO, &fit, &report, None).unwrap();
         assert_held_numbers_are_known(&known, &Dof::TWO);
     }
 }

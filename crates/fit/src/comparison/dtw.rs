@@ -81,28 +81,20 @@ impl Antidiagonal {
     }
 }
 
-/// Antidiagonals `index` and `index − 1`.
-struct Checkpoint {
-    index: isize,
-    last: Antidiagonal,
-    before: Antidiagonal,
-}
+/// The number of an antidiagonal, that antidiagonal, and the one before it.
+type Checkpoint = (isize, [Antidiagonal; 2]);
 
-#[derive(Clone, Copy)]
-enum Step {
-    Row,
-    Column,
-    Diagonal,
-}
+/// From a cell to the one before it on the path: how many rows and how many antidiagonals back.
+type Step = [u8; 2];
 
-/// Cheapest predecessor; the first of equal ones.
+/// Cheapest predecessor and the step to it; the first of equal ones.
 fn cheapest(row: f64, column: f64, diagonal: f64) -> (f64, Step) {
-    let mut best = (row, Step::Row);
+    let mut best = (row, [1, 1]);
     if column < best.0 {
-        best = (column, Step::Column);
+        best = (column, [0, 1]);
     }
     if diagonal < best.0 {
-        best = (diagonal, Step::Diagonal);
+        best = (diagonal, [1, 2]);
     }
     best
 }
@@ -218,11 +210,7 @@ impl<'a> CostMatrix<'a> {
                 values,
             }
         };
-        Checkpoint {
-            index,
-            last: keep(index, last),
-            before: keep(index - 1, before),
-        }
+        (index, [keep(index, last), keep(index - 1, before)])
     }
 
     /// The path, from the last cell back through one checkpoint after the other.
@@ -231,18 +219,15 @@ impl<'a> CostMatrix<'a> {
         let mut d = self.last_diagonal();
         let mut cells = vec![(row as usize, (d - row) as usize)];
         while let Some(checkpoint) = checkpoints.pop() {
-            if checkpoint.index >= d {
+            let base = checkpoint.0;
+            if base >= d {
                 continue;
             }
-            let base = checkpoint.index;
             let steps = self.steps(checkpoint, row, d);
             while d > base {
                 let (first_row, of_cells) = &steps[(d - base - 1) as usize];
-                match of_cells[(row - first_row) as usize] {
-                    Step::Row => (row, d) = (row - 1, d - 1),
-                    Step::Column => d -= 1,
-                    Step::Diagonal => (row, d) = (row - 1, d - 2),
-                }
+                let [rows, diagonals] = of_cells[(row - first_row) as usize];
+                (row, d) = (row - isize::from(rows), d - isize::from(diagonals));
                 cells.push((row as usize, (d - row) as usize));
             }
         }
@@ -258,11 +243,7 @@ impl<'a> CostMatrix<'a> {
         apex_row: isize,
         apex_d: isize,
     ) -> Vec<(isize, Vec<Step>)> {
-        let Checkpoint {
-            index,
-            mut last,
-            mut before,
-        } = checkpoint;
+        let (index, [mut last, mut before]) = checkpoint;
         let mut all = Vec::with_capacity((apex_d - index) as usize);
         for d in index + 1..=apex_d {
             let (first, end) = self.row_range(d);

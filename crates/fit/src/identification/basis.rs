@@ -21,13 +21,6 @@ pub(crate) struct Basis {
     lags: bool,
 }
 
-/// Filters in dimensionless time, `x' = A x + b r + b₁ r'`; their outputs are their states.
-pub(crate) struct Filters {
-    pub a: DMatrix<f64>,
-    pub on_motion: DVector<f64>,
-    pub on_rate: DVector<f64>,
-}
-
 impl Basis {
     /// The basis of `form` with the poles `poles`, one per filter.
     pub(crate) fn new(form: &Form, poles: &[f64]) -> Result<Self> {
@@ -118,22 +111,19 @@ impl Basis {
             .collect()
     }
 
-    /// The filters as a linear system driven by the motion.
-    pub(crate) fn filters(&self) -> Filters {
+    /// The filters in dimensionless time, `x' = A x + b r + b₁ r'`: `A`, and `b` beside `b₁`; their outputs are their states.
+    pub(crate) fn filters(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let count = self.poles().len();
-        let (a, on_motion) = match self.lags {
+        let mut drive = DMatrix::zeros(count, 2);
+        if self.lags {
             // (1.28), corrected: δ' = r' − d δ
-            true => {
-                let poles = DVector::from_fn(count, |l, _| -self.poles()[l]);
-                (DMatrix::from_diagonal(&poles), DVector::zeros(count))
-            }
-            false => self.bank.matrices(),
-        };
-        Filters {
-            a,
-            on_motion,
-            on_rate: DVector::from_element(count, f64::from(u8::from(self.lags))),
+            drive.column_mut(1).fill(1.0);
+            let poles = DVector::from_fn(count, |l, _| -self.poles()[l]);
+            return (DMatrix::from_diagonal(&poles), drive);
         }
+        let (a, on_motion) = self.bank.matrices();
+        drive.set_column(0, &on_motion);
+        (a, drive)
     }
 }
 

@@ -15,7 +15,7 @@ use super::form::{FeedThrough, Form};
 use super::frequency_options::FrequencyFit;
 use super::report::{FitReport, Fitted, SearchPoint, SearchReport};
 use super::samples::{EntrySamples, shares};
-use super::search::{Bounds, best_of, descend, search_poles};
+use super::search::{Bounds, descend, search_poles};
 use crate::aerodynamics::MinimumStateModel;
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -68,14 +68,7 @@ pub(super) fn fit_minimum_state(
     let (best, points) = task.search(fit)?;
     let mut search = Vec::new();
     if let Some(bounds) = task.bounds {
-        search.push(SearchReport {
-            entry: None,
-            force: None,
-            min: bounds.min,
-            max: bounds.max,
-            chosen: best_of(&points)?,
-            points,
-        });
+        search.push(SearchReport::new(None, [bounds.min, bounds.max], points)?);
     }
     let (alone, _) = task.finish(dofs, &best, tested, search)?;
     if fit.constraints == Constraints::None {
@@ -123,14 +116,10 @@ impl LagSearch<'_> {
 
     /// Points of the search: variables of the lags, if they are searched, then `E` row by row.
     fn starts(&self, fit: &FrequencyFit) -> Result<Vec<Vec<f64>>> {
-        let roger = Form::Rational {
-            lags: self.states,
-            added_mass: self.feed.e2,
-        };
         let mut lags = Vec::new();
         lags.extend(self.given.or(fit.poles.start.as_ref()).cloned());
         if let Some(bounds) = self.bounds.filter(|_| lags.is_empty()) {
-            let residuals = |poles: &[f64]| self.residuals_of_roger(&roger, poles);
+            let residuals = |poles: &[f64]| self.residuals_of_roger(poles);
             let found = search_poles(self.states, &fit.poles, bounds, None, &residuals);
             lags.extend(found.ok().map(|found| found.chosen.poles));
             lags.push(bounds.poles(&vec![0.0; self.states]));
@@ -139,7 +128,7 @@ impl LagSearch<'_> {
         for lags in &lags {
             let variables = self.bounds.map_or_else(Vec::new, |b| b.free(lags));
             let mut push = |e: Vec<f64>| starts.push([variables.clone(), e].concat());
-            if let Ok(e) = self.rank_one(&roger, lags) {
+            if let Ok(e) = self.rank_one(lags) {
                 push(e);
             }
             for shift in 0..self.n {
@@ -149,8 +138,8 @@ impl LagSearch<'_> {
         Ok(starts)
     }
 
-    fn residuals_of_roger(&self, form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
-        let basis = Basis::orthonormal(form, poles)?;
+    fn residuals_of_roger(&self, poles: &[f64]) -> Result<DVector<f64>> {
+        let basis = Basis::orthonormal(&self.roger(), poles)?;
         let mut all = Vec::new();
         for (entry, share) in self.entries.iter().zip(&self.shares) {
             let fit = entry.fit(&basis)?;
@@ -160,8 +149,8 @@ impl LagSearch<'_> {
     }
 
     /// Directions in which the lag matrices of Roger's fit are strongest.
-    fn rank_one(&self, form: &Form, lags: &[f64]) -> Result<Vec<f64>> {
-        let basis = Basis::new(form, lags)?;
+    fn rank_one(&self, lags: &[f64]) -> Result<Vec<f64>> {
+        let basis = self.roger_basis(lags)?;
         let feed = self.feed.count();
         let mut terms = vec![DMatrix::zeros(self.n, self.n); self.states];
         for (at, entry) in self.entries.iter().enumerate() {
@@ -346,11 +335,15 @@ impl LagSearch<'_> {
         Ok(reports)
     }
 
-    fn roger_basis(&self, lags: &[f64]) -> Result<Basis> {
-        let form = Form::Rational {
-            lags: lags.len(),
+    /// Roger's form with as many lags.
+    fn roger(&self) -> Form {
+        Form::Rational {
+            lags: self.states,
             added_mass: self.feed.e2,
-        };
-        Basis::new(&form, lags)
+        }
+    }
+
+    fn roger_basis(&self, lags: &[f64]) -> Result<Basis> {
+        Basis::new(&self.roger(), lags)
     }
 }

@@ -4,7 +4,7 @@ use super::dissipative::ConstraintReport;
 use super::entry_report::EntryReport;
 use super::form::{Form, PoleSearch};
 use super::own::OwnFilters;
-use crate::error::{Result, ensure};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -235,6 +235,25 @@ impl FitReport {
 }
 
 impl SearchReport {
+    /// Of one that ended at the best of its points, between these bounds.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when no point has a finite objective.
+    pub(super) fn new(
+        entry: Option<(Dof, Dof)>,
+        [min, max]: [f64; 2],
+        points: Vec<SearchPoint>,
+    ) -> Result<Self> {
+        Ok(Self {
+            entry,
+            force: None,
+            min,
+            max,
+            chosen: best_of(&points)?,
+            points,
+        })
+    }
+
     fn judge(&self, min_ratio: f64, notes: &mut Vec<String>) {
         let whose = match (self.entry, self.force) {
             (Some((f, m)), _) => format!("{} force due to {} motion: ", f.name(), m.name()),
@@ -263,6 +282,16 @@ impl SearchReport {
             }
         }
     }
+}
+
+/// The point with the smallest objective.
+pub(super) fn best_of(points: &[SearchPoint]) -> Result<SearchPoint> {
+    points
+        .iter()
+        .filter(|p| p.objective.is_finite())
+        .min_by(|a, b| a.objective.total_cmp(&b.objective))
+        .cloned()
+        .ok_or_else(|| Error::Numerical("pole search: no point has a finite objective".into()))
 }
 
 /// A degree-of-freedom count that leaves something to estimate the variance from.

@@ -7,8 +7,8 @@
 //! one another are evaluated on all cores.
 
 use super::form::{Form, PoleSearch};
-use super::report::{SearchPoint, SearchReport};
-use crate::error::{Error, Result, ensure};
+use super::report::{SearchPoint, SearchReport, best_of};
+use crate::error::{Result, ensure};
 use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::state_space::golden_section;
@@ -181,14 +181,7 @@ pub(crate) fn search_poles(
     } else {
         levenberg_marquardt(&bounds, residuals, &mut points)?;
     }
-    Ok(SearchReport {
-        entry,
-        force: None,
-        min: bounds.least,
-        max: bounds.max,
-        chosen: best_of(&points)?,
-        points,
-    })
+    SearchReport::new(entry, [bounds.least, bounds.max], points)
 }
 
 /// Weighted residuals with the best coefficients for these poles.
@@ -302,16 +295,6 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Descent<'_> {
             .collect();
         Some(DMatrix::from_columns(&columns?))
     }
-}
-
-/// The point with the smallest objective.
-pub(crate) fn best_of(points: &[SearchPoint]) -> Result<SearchPoint> {
-    points
-        .iter()
-        .filter(|p| p.objective.is_finite())
-        .min_by(|a, b| a.objective.total_cmp(&b.objective))
-        .cloned()
-        .ok_or_else(|| Error::Numerical("pole search: no point has a finite objective".into()))
 }
 
 #[cfg(test)]

@@ -49,74 +49,41 @@ pub struct CoefficientUncertainty {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KnownData {
     pub(super) design: Design,
-    /// Reduced frequencies over which the scatter between mean speeds was asked.
-    tested: Option<ReducedFrequencyRange>,
     pub(super) effects: Vec<Effect>,
 }
 
 impl CoefficientUncertainty {
-    /// The estimates of a fit with the blocks it was made from; `tested` holds their reduced frequencies where
-    /// the scatter between mean speeds is asked.
+    /// The estimates of a fit with the blocks it was made from, and the scatter between mean speeds over `tested` reduced frequencies
+    /// where that is asked: without what the embedded measured `deck` says of it, for that deck itself.
     pub(super) fn new(
         assumption: String,
         tested: Option<ReducedFrequencyRange>,
+        deck: Option<&str>,
         dofs: Vec<Dof>,
         coordinates: Coordinates,
         parameters: Vec<Parameter>,
         design: Design,
     ) -> Result<Self> {
+        let contributions = design.contributions();
         let mut estimate = Self {
             assumption,
             dofs,
             coordinates,
             parameters,
-            covariance: DMatrix::zeros(0, 0),
+            covariance: &contributions * contributions.transpose(),
             blocks: design.names(),
             speeds: None,
             data: None,
         };
-        estimate.know(design, tested, None)?;
-        Ok(estimate)
-    }
-
-    /// The same without what an embedded measured deck says of the scatter between mean speeds: for that deck itself.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`](crate::error::Error::Numerical) when the covariance cannot be made again.
-    pub fn leaving_out(mut self, deck: &str) -> Result<Self> {
-        let (Some(data), Some(speeds)) = (self.data.take(), &self.speeds) else {
-            return Ok(self);
-        };
-        let said = format!("; {}", speeds.describe());
-        if let Some(without) = self.assumption.strip_suffix(&said) {
-            self.assumption = without.to_owned();
-        }
-        self.know(data.design, data.tested, Some(deck))?;
-        Ok(self)
-    }
-
-    /// Takes the covariance from its blocks, and the scatter between mean speeds where that is asked.
-    fn know(
-        &mut self,
-        design: Design,
-        tested: Option<ReducedFrequencyRange>,
-        without: Option<&str>,
-    ) -> Result<()> {
-        let contributions = design.contributions();
-        self.covariance = &contributions * contributions.transpose();
         let effects = match tested {
-            Some(tested) => self.add_speeds(&design, tested, SpeedPrior::measured(without))?,
+            Some(tested) => estimate.add_speeds(&design, tested, SpeedPrior::measured(deck))?,
             None => Vec::new(),
         };
-        for (i, parameter) in self.parameters.iter_mut().enumerate() {
-            parameter.standard_error = self.covariance[(i, i)].max(0.0).sqrt();
+        for (i, parameter) in estimate.parameters.iter_mut().enumerate() {
+            parameter.standard_error = estimate.covariance[(i, i)].max(0.0).sqrt();
         }
-        self.data = Some(KnownData {
-            design,
-            tested,
-            effects,
-        });
-        Ok(())
+        estimate.data = Some(KnownData { design, effects });
+        Ok(estimate)
     }
 
     /// Adds the scatter between mean speeds.
@@ -260,34 +227,11 @@ impl CoefficientUncertainty {
     /// Degrees of freedom of that standard error; `None` for an estimate that was read from a file, which no longer knows
     /// its data.
     pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
-        let KnownData {
-            design, effects, ..
-        } = self.data.as_ref()?;
+        let KnownData { design, effects } = self.data.as_ref()?;
         let gradient = DVector::from_column_slice(gradient);
         Some(speed_scatter::degrees_of_freedom(
             design, effects, &gradient,
         ))
-    }
-
-    /// Adds a draw of the scatter between speeds to parameters that were drawn from the blocks.
-    pub(crate) fn scatter_speeds(&self, values: &mut [f64], normal: &mut dyn FnMut() -> f64) {
-        let effects = self.data.iter().flat_map(|data| &data.effects);
-        for column in effects.flat_map(|e| e.columns.column_iter()) {
-            let z = normal();
-            for (value, change) in values.iter_mut().zip(column.iter()) {
-                *value += z * change;
-            }
-        }
-    }
-
-    /// Parameters of the fit in which each block counts as often as its weight says: exact for coefficients, one
-    /// Gauss–Newton step for searched poles, along what active constraints leave free. `None` for an estimate that was read from a file.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`](crate::error::Error::Numerical) when the weighted blocks do not determine all parameters.
-    pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<Option<Vec<f64>>> {
-        let reweighted = |data: &KnownData| Ok(self.moved_by(&data.design.reweighted(weights)?));
-        self.data.as_ref().map(reweighted).transpose()
     }
 
     /// The estimates and a step from them.
@@ -340,7 +284,7 @@ impl CoefficientUncertainty {
             parameter.value += change;
         }
         let (assumption, dofs) = ("blocks of one mean speed".into(), self.dofs.clone());
-        Self::new(assumption, None, dofs, coordinates, moved, own)
+        Self::new(assumption, None, None, dofs, coordinates, moved, own)
     }
 
     /// Puts these standard errors and covariances in the place of those of a fit that took residuals for independent.

@@ -133,7 +133,7 @@ impl<'a> KnownDeck<'a> {
         let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
         let fit = self.plan.time_fit();
         let Fitted { model, report } = fit_records(&sources, &fit, &|_| ())?;
-        let estimate = record_uncertainty(&sources, &fit, &report, &|_| ())?;
+        let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ())?;
         let section = CoupledSection::with_model(&self.structure, &model)?;
         let search = OnsetSearch {
             speed_max_m_s: SPEED_MAX_M_S,

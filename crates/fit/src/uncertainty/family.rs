@@ -144,7 +144,7 @@ impl DeckOutcome {
             FormEnsemble::new(samples, dofs, &|_| None)?.spread(&deck.structure, &search)?;
         match found {
             FlutterSearch::Onset(onset) => {
-                let estimate = table_uncertainty(samples, dofs, &fit, &report)?;
+                let estimate = table_uncertainty(samples, dofs, &fit, &report, None)?;
                 let error = onset_error(&estimate, &deck.structure, &onset, None)?;
                 self.onset_m_s = Some(onset.at.speed_m_s);
                 let interval = interval_with_forms(&error, &[spread]);

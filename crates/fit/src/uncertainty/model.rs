@@ -102,7 +102,10 @@ impl ModelUncertainty {
         tested: ReducedFrequencyRange,
     ) -> Result<Self> {
         Ok(Self {
-            derivatives: coefficients.derivatives(tested)?,
+            derivatives: derivative_intervals(
+                &coefficients,
+                &spread_over(tested, DERIVATIVE_POINTS),
+            )?,
             coefficients,
             onset: None,
             block_bootstrap: None,
@@ -140,11 +143,7 @@ impl ModelUncertainty {
         if self.is_own(onset) {
             return Ok(self.form_spread.clone());
         }
-        let search = OnsetSearch {
-            speed_max_m_s: REACH * onset.at.speed_m_s,
-            ..OnsetSearch::default()
-        };
-        let forms = self.forms.as_ref();
+        let (forms, search) = (self.forms.as_ref(), Self::search_of(onset));
         forms.map(|f| f.spread(structure, &search)).transpose()
     }
 
@@ -179,10 +178,13 @@ impl ModelUncertainty {
             ));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
-        if self.coefficients.known_bias().is_some() {
-            return self.coefficients.interval_knowing(structure, onset, known);
-        }
         let error = onset_error(&self.coefficients, structure, onset, known)?;
+        if let Some(bias) = self.coefficients.known_bias() {
+            return Ok(OnsetInterval::none(format!(
+                "{bias} (standard error of the scatter alone {:.3} m/s)",
+                error.standard_error_m_s
+            )));
+        }
         let spread = self.spread_of(structure, onset)?;
         Ok(interval_with_forms(&error, spread.as_slice()))
     }
@@ -273,13 +275,6 @@ impl ModelUncertainty {
     }
 }
 
-impl CoefficientUncertainty {
-    /// All derivatives of the model with their intervals, at a few reduced frequencies of the tested range.
-    pub fn derivatives(&self, tested: ReducedFrequencyRange) -> Result<Vec<DerivativeInterval>> {
-        derivative_intervals(self, &spread_over(tested, DERIVATIVE_POINTS))
-    }
-}
-
 /// One derivative at one reduced frequency.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -334,9 +329,6 @@ pub(crate) fn derivative_intervals(
 /// The interval of an onset with what the choice of its form leaves open, of one section or of several: variances add, and degrees
 /// of freedom as Satterthwaite adds them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
 pub fn interval_with_forms(error: &OnsetError, spreads: &[FormSpread]) -> OnsetInterval {
-    if spreads.is_empty() {
-        return error.interval();
-    }
     let (mut form, mut of_forms) = (None, 0.0);
     for spread in spreads {
         let Some(part) = spread.deviation_from_m_s(error.speed_m_s) else {
@@ -353,7 +345,7 @@ pub fn interval_with_forms(error: &OnsetError, spreads: &[FormSpread]) -> OnsetI
     };
     let (scatter, total) = (error.standard_error_m_s.powi(2), parts.standard_error_m_s());
     let squares = scatter.powi(2) / error.degrees_of_freedom + of_forms;
-    let freedom = if squares > 0.0 {
+    let freedom = if squares > 0.0 && !spreads.is_empty() {
         total.powi(4) / squares
     } else {
         error.degrees_of_freedom

@@ -33,10 +33,14 @@ impl ModelOfData {
         deck: Option<&str>,
     ) -> Result<Self> {
         let fitted = fit_table(samples, dofs, fit)?;
-        let estimate = table_uncertainty(samples, dofs, fit, &fitted.report);
+        let estimate = table_uncertainty(samples, dofs, fit, &fitted.report, deck);
         let own = |f: &FrequencyFit| (f == fit).then(|| fitted.clone());
         let forms = FormEnsemble::new(samples, dofs, &own).map(Some);
-        Ok(Self::new(fitted, estimate, forms, deck))
+        Ok(Self {
+            fitted,
+            estimate,
+            forms,
+        })
     }
 
     /// Of records, with the forms that fit the derivatives they show; `deck` as for a table.
@@ -52,7 +56,7 @@ impl ModelOfData {
     ) -> Result<Self> {
         let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
             let fitted = fit_records(records, fit, progress)?;
-            let estimate = record_uncertainty(records, fit, &fitted.report, progress);
+            let estimate = record_uncertainty(records, fit, &fitted.report, deck, progress);
             Ok((fitted, estimate))
         };
         // the order of every matrix, whatever that of the channels
@@ -61,7 +65,11 @@ impl ModelOfData {
         let others = || FormEnsemble::of_records(records, &dofs).map(Some);
         let (own, forms) = rayon::join(own, others);
         let (fitted, estimate) = own?;
-        Ok(Self::new(fitted, estimate, forms, deck))
+        Ok(Self {
+            fitted,
+            estimate,
+            forms,
+        })
     }
 
     /// Of records in discrete time.
@@ -75,25 +83,12 @@ impl ModelOfData {
         progress: OnProgress<'_>,
     ) -> Result<Self> {
         let fitted = fit_discrete(records, fit, progress)?;
-        let estimate = discrete_uncertainty(records, fit, &fitted.model, progress);
-        Ok(Self::new(fitted, estimate, Ok(None), deck))
-    }
-
-    fn new(
-        fitted: Fitted,
-        estimate: Result<CoefficientUncertainty>,
-        forms: Result<Option<FormEnsemble>>,
-        deck: Option<&str>,
-    ) -> Self {
-        let estimate = estimate.and_then(|estimate| match deck {
-            Some(deck) => estimate.leaving_out(deck),
-            None => Ok(estimate),
-        });
-        Self {
+        let estimate = discrete_uncertainty(records, fit, &fitted.model, deck, progress);
+        Ok(Self {
             fitted,
             estimate,
-            forms,
-        }
+            forms: Ok(None),
+        })
     }
 }
 

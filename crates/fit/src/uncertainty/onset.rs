@@ -4,12 +4,12 @@
 //! `dλ = uᴴ dA v / uᴴ v` (Murthy & Haftka, "Derivatives of eigenvalues and eigenvectors of a general complex matrix",
 //! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
 
-use super::coefficients::CoefficientUncertainty;
+use super::coefficients::{CoefficientUncertainty, KnownData};
 use super::draws::ModelDraws;
 use super::statistics::{SampledOnsets, two_sided_quantile};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::flutter::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval, OnsetSearch, find_onset};
+use crate::flutter::{BetweenSpeeds, Onset, OnsetSearch, find_onset};
 use crate::numbered::numbered;
 use crate::section::Structure;
 use crate::signal::random_stream;
@@ -79,51 +79,10 @@ pub(super) fn error_at(
     })
 }
 
-impl CoefficientUncertainty {
-    /// 95 % interval of an onset of the model with these coefficients, on any structure: as far as its data carry.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when the onset cannot be followed to nearby coefficients.
-    pub fn onset_interval(&self, structure: &Structure, onset: &Onset) -> Result<OnsetInterval> {
-        self.interval_knowing(structure, onset, None)
-    }
-
-    /// The same with the degrees of freedom of an estimate that no longer knows its data.
-    pub(super) fn interval_knowing(
-        &self,
-        structure: &Structure,
-        onset: &Onset,
-        degrees_of_freedom: Option<f64>,
-    ) -> Result<OnsetInterval> {
-        let error = onset_error(self, structure, onset, degrees_of_freedom)?;
-        Ok(match self.known_bias() {
-            Some(bias) => OnsetInterval::none(format!(
-                "{bias} (standard error of the scatter alone {:.3} m/s)",
-                error.standard_error_m_s
-            )),
-            None => error.interval(),
-        })
-    }
-}
-
 impl OnsetError {
     /// Half the width of the interval, m/s: Student's quantile times the standard error.
     pub(crate) fn half_width_m_s(&self) -> f64 {
         two_sided_quantile(CONFIDENCE, self.degrees_of_freedom) * self.standard_error_m_s
-    }
-
-    /// The interval for a card.
-    pub fn interval(&self) -> OnsetInterval {
-        OnsetInterval::about(
-            self.speed_m_s,
-            self.half_width_m_s(),
-            self.degrees_of_freedom,
-            ErrorParts {
-                scatter_m_s: self.standard_error_m_s,
-                form_m_s: None,
-                between_speeds: self.between_speeds,
-            },
-        )
     }
 }
 
@@ -220,13 +179,20 @@ fn drawn(
     if plan.resampling == Resampling::Normal {
         return Ok(Some(draws.parameters(&mut random)));
     }
-    let exponential = (0..estimate.blocks.len()).map(|_| Exp1.sample(&mut random));
-    let weights: Vec<f64> = exponential.collect();
-    let mut drawn = estimate.reweighted(&weights)?;
-    if let Some(values) = &mut drawn {
-        estimate.scatter_speeds(values, &mut || StandardNormal.sample(&mut random));
+    let Some(KnownData { design, effects }) = &estimate.data else {
+        return Ok(None);
+    };
+    // exact for coefficients, one Gauss–Newton step for searched poles, along what active constraints leave free
+    let weights = (0..estimate.blocks.len()).map(|_| Exp1.sample(&mut random));
+    let step = design.reweighted(&weights.collect::<Vec<f64>>())?;
+    let mut values = estimate.moved_by(&step);
+    for column in effects.iter().flat_map(|e| e.columns.column_iter()) {
+        let z: f64 = StandardNormal.sample(&mut random);
+        for (value, change) in values.iter_mut().zip(column.iter()) {
+            *value += z * change;
+        }
     }
-    Ok(drawn)
+    Ok(Some(values))
 }
 
 /// The section with the model that the parameters make.

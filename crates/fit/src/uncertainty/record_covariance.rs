@@ -25,7 +25,8 @@ use nalgebra::{DMatrix, DVector};
 const STRETCHES: usize = 4;
 
 /// Covariance of the coefficients of a continuous model that [`crate::identification::fit_records`] fitted to the same
-/// records with the same options, from one more pass over them.
+/// records with the same options, from one more pass over them. What an embedded measured `deck` says of the scatter between mean speeds
+/// is left out, for it is no witness of its own.
 ///
 /// # Errors
 /// [`Error::Input`] naming a record that cannot be read; [`Error::Numerical`] when there are too few segments to judge
@@ -34,6 +35,7 @@ pub fn record_uncertainty(
     records: &[&dyn RecordSource],
     fit: &TimeFit,
     report: &FitReport,
+    deck: Option<&str>,
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
     let records = Records::read(records, fit.static_term)?;
@@ -57,6 +59,7 @@ pub fn record_uncertainty(
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; {searched}"),
         Some(report.tested_range),
+        deck,
         records.dofs,
         parameters.coordinates(report),
         parameters.all,
@@ -219,11 +222,12 @@ impl Entries {
 }
 
 /// Covariance of the coefficients of the discrete model that [`crate::identification::fit_discrete`] fitted to the same
-/// records with the same options, from one more pass over them.
+/// records with the same options, from one more pass over them; `deck` as of [`record_uncertainty`].
 pub fn discrete_uncertainty(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,
     model: &Model,
+    deck: Option<&str>,
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
     let Model::DiscreteLaguerre(model) = model else {
@@ -263,6 +267,7 @@ pub fn discrete_uncertainty(
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; α is given"),
         Some(records.tested_range()?),
+        deck,
         records.dofs.clone(),
         Coordinates::Discrete {
             alpha,

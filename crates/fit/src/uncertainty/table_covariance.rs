@@ -18,7 +18,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 const SAME_RUN: f64 = 0.03;
 
 /// Covariance of the coefficients of a model that [`crate::identification::fit_table`] fitted to the same samples with
-/// the same options.
+/// the same options; `deck` as of [`super::record_uncertainty`].
 ///
 /// A table states no errors: the scatter of its points around the fit stands for them, so that measuring errors and
 /// what the form cannot follow are counted together.
@@ -31,6 +31,7 @@ pub fn table_uncertainty(
     dofs: &[Dof],
     fit: &FrequencyFit,
     report: &FitReport,
+    deck: Option<&str>,
 ) -> Result<CoefficientUncertainty> {
     if !fit.is_plain() {
         return Err(Error::Numerical(
@@ -91,6 +92,7 @@ pub fn table_uncertainty(
              from run to run; sandwich of the runs with the small-sample correction CR2; {searched}"
         ),
         Some(report.tested_range),
+        deck,
         dofs.to_vec(),
         parameters.coordinates(report),
         parameters.all,

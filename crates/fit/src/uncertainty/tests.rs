@@ -62,7 +62,7 @@ fn by_blocks(mut estimate: CoefficientUncertainty) -> CoefficientUncertainty {
 
 fn fitted(samples: &[TransferSample], fit: &FrequencyFit) -> (Model, CoefficientUncertainty) {
     let Fitted { model, report } = fit_table(samples, &Dof::TWO, fit).unwrap();
-    let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report).unwrap();
+    let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report, None).unwrap();
     (model, estimate)
 }
 
@@ -108,7 +108,7 @@ fn gradients_are_differences_of_onsets() {
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
     let fit = DiscreteFit::default();
     let model = fit_discrete(&sources, &fit, &|_| ()).unwrap().model;
-    let discrete = discrete_uncertainty(&sources, &fit, &model, &|_| ()).unwrap();
+    let discrete = discrete_uncertainty(&sources, &fit, &model, None, &|_| ()).unwrap();
     for (model, estimate) in [continuous, (model, discrete)] {
         let at = onset(&model);
         let omega = std::f64::consts::TAU * at.at.frequency_hz;

@@ -74,9 +74,9 @@ impl Dissipation<'_> {
         let mut c = DMatrix::zeros(n, states);
         let mut at = 0;
         for (d, basis) in self.distinct.iter().enumerate() {
-            let chain = basis.filters();
-            let squared = &chain.a * &chain.a;
-            let driven = &chain.on_motion + &chain.a * &chain.on_rate;
+            let (chain, drive) = basis.filters();
+            let squared = &chain * &chain;
+            let driven = drive.column(0) + &chain * drive.column(1);
             let feed = basis.feed().count();
             for l in 0..driven.len() {
                 for i in 0..n {

@@ -165,26 +165,17 @@ impl<'a> ContinuousColumns<'a> {
 }
 
 fn filter_step(basis: &Basis, a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> Result<FilterStep> {
-    let filters = basis.filters();
+    let (own, driven) = basis.filters();
     let count = basis.poles().len();
     let mut joint = DMatrix::zeros(ORDER + count, ORDER + count);
     joint.view_mut((0, 0), (ORDER, ORDER)).copy_from(a);
-    joint
-        .view_mut((ORDER, 0), (count, 1))
-        .copy_from(&filters.on_motion);
-    joint
-        .view_mut((ORDER, 1), (count, 1))
-        .copy_from(&filters.on_rate);
-    joint
-        .view_mut((ORDER, ORDER), (count, count))
-        .copy_from(&filters.a);
+    let mut behind = joint.rows_mut(ORDER, count);
+    behind.columns_mut(0, 2).copy_from(&driven);
+    behind.columns_mut(ORDER, count).copy_from(&own);
     let drive = b.clone().resize_vertically(ORDER + count, 0.0);
     let hold = hold(&joint, &drive, step)?;
-    let rest = filters
-        .a
-        .lu()
-        .solve(&(-&filters.on_motion))
-        .ok_or_else(|| Error::Numerical("filters: a pole at zero".into()))?;
+    let rest = own.lu().solve(&-driven.column(0));
+    let rest = rest.ok_or_else(|| Error::Numerical("filters: a pole at zero".into()))?;
     Ok(FilterStep {
         count,
         own: (0..count * count)

@@ -140,8 +140,6 @@ pub(crate) struct Stretch {
     pub segment: Option<usize>,
     /// Frequency of the motion in that segment, Hz.
     pub frequency_hz: Option<f64>,
-    /// Instant of its first row, s.
-    start_s: f64,
     /// Inputs that moved.
     pub set: Vec<usize>,
     /// One factor per candidate, all forces as right-hand sides.
@@ -208,7 +206,7 @@ fn one_record<C: Columns>(
         let (mut at, stop) = (block.first, block.first + block.rows());
         while at < stop {
             while ends.next_if_eq(&at).is_some() {
-                open.close(index, &mut closed);
+                open.close(index, record, &mut closed);
             }
             let whole = (at / BLOCK_ROWS + 1) * BLOCK_ROWS;
             let end = ends.peek().map_or(whole, |e| whole.min(*e));
@@ -224,7 +222,7 @@ fn one_record<C: Columns>(
         }
         Ok(())
     })?;
-    open.close(index, &mut closed);
+    open.close(index, record, &mut closed);
     let least = plan.order.width(1).max(16) * plan.stride;
     ensure(
         rows >= least,
@@ -232,7 +230,7 @@ fn one_record<C: Columns>(
         format_args!("at least {least} samples after discard_s"),
         rows,
     )?;
-    weigh(&mut closed, record, plan.weights);
+    weigh(&mut closed, plan.weights);
     if plan.delta_s.is_none() {
         // a second counts the same, however often it was sampled
         let weight = (record.step_s / finest_s).sqrt();
@@ -342,19 +340,23 @@ impl OpenStretch {
 
     /// Factors what has been taken, and starts anew. Inputs that begin to move later in a stretch make two of it, of which
     /// the last has the squares.
-    fn close(&mut self, record: usize, closed: &mut Vec<Stretch>) {
+    fn close(&mut self, index: usize, record: &DimensionlessRecord, closed: &mut Vec<Stretch>) {
         let done = std::mem::replace(self, Self::new(self.squares.len()));
+        let segments = &record.header.segments;
+        // rest before the first segment belongs to it; half a step, since boundaries fall between samples
+        let begun = |s: &&Segment| s.start_s <= done.start_s + 0.5 * record.step_s;
+        let begun = segments.iter().take_while(begun).count().saturating_sub(1);
+        let segment = (!segments.is_empty()).then_some(begun);
         let stretch = closed.last().map_or(0, |c: &Stretch| c.stretch + 1);
         let last = done.sets.len().saturating_sub(1);
         for (at, (set, systems)) in done.sets.into_iter().enumerate() {
             let own = if at == last { 1.0 } else { 0.0 };
             closed.push(Stretch {
-                record,
+                record: index,
                 stretch,
-                mean_speed_m_s: 0.0,
-                segment: None,
-                frequency_hz: None,
-                start_s: done.start_s,
+                mean_speed_m_s: record.header.mean_speed_m_s,
+                segment,
+                frequency_hz: segment.map(|s| segments[s].frequency_hz),
                 set,
                 factors: systems.into_iter().map(StreamingQr::finish).collect(),
                 weights: vec![1.0; done.squares.len()],
@@ -365,17 +367,8 @@ impl OpenStretch {
     }
 }
 
-/// Says where the stretches lie and gives all stretches of one segment, or of one record, the same weights.
-fn weigh(stretches: &mut [Stretch], record: &DimensionlessRecord, weights: TimeWeights) {
-    let segments = &record.header.segments;
-    for stretch in stretches.iter_mut() {
-        // rest before the first segment belongs to it; half a step, since boundaries fall between samples
-        let begun = |s: &&Segment| s.start_s <= stretch.start_s + 0.5 * record.step_s;
-        let last = segments.iter().take_while(begun).count().saturating_sub(1);
-        stretch.segment = (!segments.is_empty()).then_some(last);
-        stretch.frequency_hz = stretch.segment.map(|s| segments[s].frequency_hz);
-        stretch.mean_speed_m_s = record.header.mean_speed_m_s;
-    }
+/// Gives all stretches of one segment, or of one record, the same weights.
+fn weigh(stretches: &mut [Stretch], weights: TimeWeights) {
     // a record without segments is one
     let same =
         |a: &Stretch, b: &Stretch| weights != TimeWeights::PerSegment || a.segment == b.segment;

@@ -8,8 +8,8 @@ use crate::identification::dissipative::{FitRequirements, Strictness};
 use crate::identification::form::Form;
 use crate::identification::form::PoleSearch;
 use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
-use crate::identification::report::{SearchPoint, SearchReport};
-use crate::identification::search::{Bounds, best_of};
+use crate::identification::report::{SearchPoint, SearchReport, best_of};
+use crate::identification::search::Bounds;
 use crate::section::Dof;
 use crate::units::ReducedFrequencyRange;
 use std::rc::Rc;
@@ -234,19 +234,13 @@ impl PoleGroup {
     }
 
     fn report(self, dofs: &[Dof]) -> Result<SearchReport> {
-        let bounds = self.bounds;
-        let mut chosen = best_of(&self.points)?;
-        if let Some(vertex) = self.vertex(&chosen) {
-            chosen.poles = vec![vertex.clamp(bounds.least, bounds.max)];
+        let (entry, bounds) = (self.entry.map(|(i, j)| (dofs[i], dofs[j])), self.bounds);
+        let vertex = self.vertex(&best_of(&self.points)?);
+        let mut report = SearchReport::new(entry, [bounds.least, bounds.max], self.points)?;
+        if let Some(vertex) = vertex {
+            report.chosen.poles = vec![vertex.clamp(bounds.least, bounds.max)];
         }
-        Ok(SearchReport {
-            entry: self.entry.map(|(i, j)| (dofs[i], dofs[j])),
-            force: None,
-            min: bounds.least,
-            max: bounds.max,
-            points: self.points,
-            chosen,
-        })
+        Ok(report)
     }
 
     /// Vertex of the parabola through the best point and its neighbours, for one pole, in `ln p` and the square of the

@@ -125,9 +125,9 @@ fn ratios_are_those_of_the_embedded_decks() {
 fn the_prior_of_four_decks_serves_the_fifth() {
     let structure = structure();
     let judge = |name: &str, samples: &[TransferSample], fit: &FrequencyFit| {
-        let (model, estimate) = fitted(samples, fit);
+        let Fitted { model, report } = fit_table(samples, &Dof::TWO, fit).unwrap();
+        let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report, Some(name)).unwrap();
         let tested = estimate.tested_range().unwrap();
-        let estimate = estimate.leaving_out(name).unwrap();
         let at = onset_within(&model, Some(tested));
         onset_error(&estimate, &structure, &at, None).unwrap()
     };
@@ -208,7 +208,7 @@ fn small_couplings_do_not_widen_intervals() {
             ..FrequencyFit::default()
         };
         let Fitted { model, report } = fit_table(&samples, dofs, &fit).unwrap();
-        let estimate = table_uncertainty(&samples, dofs, &fit, &report).unwrap();
+        let estimate = table_uncertainty(&samples, dofs, &fit, &report, None).unwrap();
         let section = SectionModel {
             lateral: Some(Translation::new(15.0, 1.5, 0.003)),
             ..SectionModel::table_4_1()
@@ -255,7 +255,7 @@ fn forces_of_zero_leave_the_scatter_of_the_others() {
         ..TimeFit::default()
     };
     let report = fit_records(&sources, &fit, &|_| ()).unwrap().report;
-    let estimate = record_uncertainty(&sources, &fit, &report, &|_| ()).unwrap();
+    let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ()).unwrap();
     for (speed, alone) in estimate.at_each_speed() {
         let first = &alone.unwrap().parameters[0];
         assert_eq!(first.force, Some(Dof::Vertical));

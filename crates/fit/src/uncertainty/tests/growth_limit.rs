@@ -24,7 +24,7 @@ fn fit(constraints: Constraints, poles: PoleSearch) -> (FitReport, CoefficientUn
         ..FrequencyFit::default()
     };
     let Fitted { report, .. } = fit_table(&samples, &Dof::THREE, &fit).unwrap();
-    let estimate = table_uncertainty(&samples, &Dof::THREE, &fit, &report).unwrap();
+    let estimate = table_uncertainty(&samples, &Dof::THREE, &fit, &report, None).unwrap();
     (report, estimate)
 }
 

@@ -111,7 +111,7 @@ fn parameters_of_own_filters_make_the_model_of_records() {
             ..TimeFit::default()
         };
         let Fitted { model, report } = fit_records(&sources, &fit, &|_| ()).unwrap();
-        let estimate = record_uncertainty(&sources, &fit, &report, &|_| ()).unwrap();
+        let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ()).unwrap();
         error_of(&model, &estimate)
     };
     for own in kinds() {
