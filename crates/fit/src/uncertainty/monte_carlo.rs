@@ -7,7 +7,6 @@
 
 mod coefficients;
 mod distribution;
-mod force_draws;
 mod plan;
 mod results;
 mod run;
@@ -15,12 +14,12 @@ mod sampler;
 mod scatter;
 
 pub use distribution::Distribution;
-pub use force_draws::DrawnForces;
 pub use plan::{
     AerodynamicScatter, Correlation, MAX_SAMPLES, MonteCarloPlan, RandomParameter, SectionProperty,
 };
 pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile, Tally};
 pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo, summarise, tally};
+pub use scatter::DrawnForces;
 
 #[cfg(test)]
 mod tests;

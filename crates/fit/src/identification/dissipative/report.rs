@@ -218,27 +218,16 @@ impl ConstraintReport {
 
 /// One sentence a constraint; neighbouring reduced frequencies of one motion share theirs.
 fn sentences(active: &[ActiveConstraint], dofs: &[Dof]) -> Vec<String> {
-    let mut all = Vec::new();
-    let mut at = 0;
-    while at < active.len() {
-        let first = &active[at];
-        let whose = first.whose(dofs);
-        let mut end = at + 1;
-        while first.kind == ConstraintKind::AboveTestedRange
-            && active
-                .get(end)
-                .is_some_and(|c| c.kind == first.kind && c.whose(dofs) == whose)
-        {
-            end += 1;
-        }
-        all.push(sentence(&active[at..end], &whose, dofs));
-        at = end;
-    }
-    all
+    let share = |a: &ActiveConstraint, b: &ActiveConstraint| {
+        [a.kind, b.kind] == [ConstraintKind::AboveTestedRange; 2] && a.whose(dofs) == b.whose(dofs)
+    };
+    let runs = active.chunk_by(share);
+    runs.map(|run| sentence(run, dofs)).collect()
 }
 
-fn sentence(run: &[ActiveConstraint], whose: &str, dofs: &[Dof]) -> String {
+fn sentence(run: &[ActiveConstraint], dofs: &[Dof]) -> String {
     let first = &run[0];
+    let whose = first.whose(dofs);
     let would = |what: &str, symbol: &str| data_alone(run, what, symbol);
     let (i, j) = first.entry.unwrap_or_default();
     let (force, motion) = (dofs[i].name(), dofs[j].name());

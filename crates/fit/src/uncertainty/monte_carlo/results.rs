@@ -1,7 +1,7 @@
 //! What a Monte Carlo analysis gives.
 
-use super::force_draws::DrawnForces;
 use super::plan::MonteCarloPlan;
+use super::scatter::DrawnForces;
 use crate::flutter::{SweepOutcome, SweptOnset};
 use crate::plausibility::Finding;
 use crate::signal::mean_and_deviation;

@@ -1,11 +1,10 @@
 //! Onsets of many sections over all cores: drawn from a plan, or given.
 
 use super::coefficients;
-use super::force_draws::DrawnForces;
 use super::plan::MonteCarloPlan;
 use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
-use super::scatter::{CovarianceFactor, drawn_model};
+use super::scatter::{CovarianceFactor, DrawnForces, drawn_model};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::flutter::{
@@ -110,8 +109,12 @@ pub fn summarise(
     )?;
     let mut found = total.summarise(plan, limit, &model.name, nominal);
     found.findings = plan.findings(&model.section)?;
-    let by_plan = || DrawnForces::of_plan(&plan.aerodynamics);
-    found.drawn_forces = covariance.map(|c| c.draws).or_else(by_plan);
+    let relative_scatter = plan.aerodynamics.relative_scatter;
+    let by_plan = relative_scatter.map(|_| DrawnForces {
+        relative_scatter,
+        ..DrawnForces::default()
+    });
+    found.drawn_forces = covariance.map(|c| c.draws).or(by_plan);
     // nothing answers for what no sample had an answer for
     let answered = plan.samples > found.failed;
     let first = found.failures.first().map_or("", |f| f.reason.as_str());
