@@ -16,7 +16,7 @@ use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use joint::{EntryFits, Joint};
+use joint::EntryFits;
 use poles::choose_poles;
 use std::collections::BTreeMap;
 
@@ -116,18 +116,24 @@ fn fit_linear(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    let joint = Joint {
-        entries,
-        form: &fit.form,
-        shares: by_themselves.shares_by_noise(),
-        requirements: fit.requirements(dofs, tested),
-    };
-    let bound = by_themselves.held(&joint, Strictness::Everywhere)?;
+    let (requirements, shares) = (
+        fit.requirements(dofs, tested),
+        by_themselves.shares_by_noise(),
+    );
+    let bound = by_themselves.held(&requirements, &shares, Strictness::Everywhere)?;
     if bound.solution().is_none() {
         return Ok(alone);
     }
-    let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&joint, poles)))?;
-    let together = joint.at(&poles)?;
+    // a ridge weighs the terms of the model themselves, else only the space counts
+    let native = fit.regularization > 0.0;
+    let residuals = |poles: &[Vec<f64>]| {
+        let alone = EntryFits::alone(entries, &fit.form, poles, native)?;
+        let held = alone.held(&requirements, &shares, Strictness::Sampled)?;
+        Ok(held.residuals(&shares))
+    };
+    let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&residuals, poles)))?;
+    let together = EntryFits::alone(entries, &fit.form, &poles, true)?;
+    let together = together.held(&requirements, &shares, Strictness::Everywhere)?;
     let reports = together.reports()?;
     let model = model_of(&fit.form, dofs, &reports)?;
     let active = together.solution().map(|solution| solution.active.clone());

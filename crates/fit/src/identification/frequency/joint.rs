@@ -14,15 +14,6 @@ use nalgebra::{DMatrix, DVector};
 /// Share of an entry that the search leaves out (weight zero) over the largest: it is free to follow the others.
 const LEAST_SHARE: f64 = 1e-6;
 
-/// What stays the same for all poles.
-pub(super) struct Joint<'a> {
-    pub entries: &'a [EntrySamples],
-    pub form: &'a Form,
-    pub requirements: FitRequirements,
-    /// What the weighted residuals of each entry are multiplied with, see [`EntryFits::shares_by_noise`].
-    pub shares: Vec<f64>,
-}
-
 /// All entries at given poles: each by itself and, once they are held, together under the constraints where these bind.
 pub(super) struct EntryFits<'a> {
     entries: &'a [EntrySamples],
@@ -30,28 +21,6 @@ pub(super) struct EntryFits<'a> {
     solutions: Vec<LinearSolution>,
     /// The entries as they are held together; none before they are.
     joint: Option<JointFit>,
-}
-
-impl<'a> Joint<'a> {
-    /// The constrained fit in the columns of the model.
-    pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<EntryFits<'a>> {
-        EntryFits::alone(self.entries, self.form, poles, true)?.held(self, Strictness::Everywhere)
-    }
-
-    /// Weighted residuals of all entries, as the search of poles takes them.
-    pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
-        // a ridge weighs the terms of the model themselves, else only the space counts
-        let native = self.entries.iter().any(|e| e.ridge > 0.0);
-        let alone = EntryFits::alone(self.entries, self.form, poles, native)?;
-        let held = alone.held(self, Strictness::Sampled)?;
-        let mut all = Vec::new();
-        for (e, (entry, share)) in self.entries.iter().zip(&self.shares).enumerate() {
-            let values = held.coefficients(e);
-            all.extend(entry.weighted_residuals(&held.bases[e], values, *share));
-            all.extend(held.solutions[e].penalty(values).map(|r| r * share));
-        }
-        Ok(DVector::from_vec(all))
-    }
 }
 
 impl<'a> EntryFits<'a> {
@@ -76,19 +45,34 @@ impl<'a> EntryFits<'a> {
         })
     }
 
-    /// The same held together by what is asked of them.
-    pub(super) fn held(mut self, task: &Joint<'_>, strictness: Strictness) -> Result<Self> {
-        let shares = task.shares.iter().copied();
-        let least = LEAST_SHARE * shares.fold(f64::MIN_POSITIVE, f64::max);
+    /// The same held together by what is asked of them; weighted residuals of each entry are multiplied with its share, see
+    /// [`Self::shares_by_noise`].
+    pub(super) fn held(
+        mut self,
+        requirements: &FitRequirements,
+        shares: &[f64],
+        strictness: Strictness,
+    ) -> Result<Self> {
+        let largest = shares.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let mut joint = JointFit::default();
-        for (solution, share) in self.solutions.iter().zip(&task.shares) {
-            let spread = solution.spread()? / share.max(least);
+        for (solution, share) in self.solutions.iter().zip(shares) {
+            let spread = solution.spread()? / share.max(LEAST_SHARE * largest);
             joint.add(solution.coefficients.clone(), spread, *share);
         }
         let entries = joint.parts.clone();
-        let held = joint.held(entries, &self.bases, &task.requirements, strictness)?;
-        self.joint = Some(held);
+        self.joint = Some(joint.held(entries, &self.bases, requirements, strictness)?);
         Ok(self)
+    }
+
+    /// Weighted residuals of all entries together, as the search of poles takes them.
+    pub(super) fn residuals(&self, shares: &[f64]) -> DVector<f64> {
+        let mut all = Vec::new();
+        for (e, (entry, share)) in self.entries.iter().zip(shares).enumerate() {
+            let values = self.coefficients(e);
+            all.extend(entry.weighted_residuals(&self.bases[e], values, *share));
+            all.extend(self.solutions[e].penalty(values).map(|r| r * share));
+        }
+        DVector::from_vec(all)
     }
 
     /// Shares of the entries by their own scatter instead of their own size: under constraints the poles and the coefficients of

@@ -1,6 +1,5 @@
 //! Poles of fits to tables: of every group of entries that shares them, by itself and under constraints.
 
-use super::joint::Joint;
 use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
@@ -11,6 +10,9 @@ use crate::identification::samples::{EntrySamples, shares};
 use crate::identification::search::{Bounds, search_poles};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DVector;
+
+/// Weighted residuals of all entries under their constraints, from the poles of each.
+pub(super) type JointResiduals<'a> = &'a (dyn Fn(&[Vec<f64>]) -> Result<DVector<f64>> + Sync);
 
 /// Forms with the lags that are given, and the groups of entries whose poles are searched.
 fn searched(forms: &[EntryForm], fit: &FrequencyFit) -> Result<(Vec<EntryForm>, Vec<Vec<usize>>)> {
@@ -33,7 +35,7 @@ pub(super) fn choose_poles(
     forms: &[EntryForm],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
-    together: Option<(&Joint<'_>, Vec<Vec<f64>>)>,
+    together: Option<(JointResiduals<'_>, Vec<Vec<f64>>)>,
 ) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
     let (forms, groups) = searched(forms, fit)?;
     let stated = |f: &EntryForm| f.fixed.as_ref().map(|fixed| f.form.expand(fixed));
@@ -56,7 +58,7 @@ pub(super) fn choose_poles(
                 all
             };
             let residuals = |free: &[f64]| match joint {
-                Some(joint) => joint.residuals(&at(free)),
+                Some(joint) => joint(&at(free)),
                 None => relative_residuals(&group, form, &form.expand(free)),
             };
             let mut options = search_for(&fit.poles, form);
