@@ -102,10 +102,7 @@ impl ModelUncertainty {
         tested: ReducedFrequencyRange,
     ) -> Result<Self> {
         Ok(Self {
-            derivatives: derivative_intervals(
-                &coefficients,
-                &spread_over(tested, DERIVATIVE_POINTS),
-            )?,
+            derivatives: coefficients.derivatives(tested)?,
             coefficients,
             onset: None,
             block_bootstrap: None,
@@ -272,6 +269,13 @@ impl ModelUncertainty {
             other(&self.block_bootstrap),
             other(&self.drawn_coefficients),
         ))
+    }
+}
+
+impl CoefficientUncertainty {
+    /// All derivatives of the model with their intervals, at a few reduced frequencies of the tested range.
+    pub fn derivatives(&self, tested: ReducedFrequencyRange) -> Result<Vec<DerivativeInterval>> {
+        derivative_intervals(self, &spread_over(tested, DERIVATIVE_POINTS))
     }
 }
 
