@@ -10,9 +10,7 @@ use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::flutter::{find_onset, trace_modes_watched};
-use aerodeck::fmu::package::{
-    FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
-};
+use aerodeck::fmu::package::{Label, Overwrite, Runtime, package, write_archive};
 use aerodeck::study::bridge::{
     BridgeExportOptions, BridgeStudy, DerivativeScatter, Scatter, bridge_flutter,
 };
@@ -314,7 +312,7 @@ impl Bridge {
         };
         let written = Work::new(None).run(py, || {
             let results = bridge_flutter(&self.0)?;
-            let mut export = self.0.export(&BridgeExportOptions {
+            let (model, mut export) = self.0.export(&BridgeExportOptions {
                 nodes: nodes.unwrap_or_default(),
                 allow_unstable,
                 onset_interval: results.interval(),
@@ -322,8 +320,8 @@ impl Bridge {
             })?;
             let evidence = self.0.evidence(&results, &results.failed);
             export.verdict = Some(Verdict::judge(&evidence));
-            let (runtimes, label) = (Runtime::available()?, label.dated()?);
-            let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;
+            export.label = label.dated()?;
+            let bytes = package(&model, &Runtime::available()?, export)?;
             write_archive(&path, &bytes, Overwrite::replacing(overwrite))
         })?;
         written.map_err(raised)

@@ -104,7 +104,6 @@ pub fn export_fmu(
         Some(_) => (None, None),
     };
     let export = Export {
-        growing: GrowthPolicy::allowing(allow_unstable),
         force,
         bounds,
         gusts,
@@ -116,7 +115,7 @@ pub fn export_fmu(
         },
         label: label.dated().map_err(raised)?,
         version: version(fmi)?,
-        reference_runs: true,
+        ..GrowthPolicy::allowing(allow_unstable).into()
     };
     detached(py, || {
         let runtimes = match platforms {

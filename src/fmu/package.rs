@@ -39,7 +39,6 @@ use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result, ensure};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -52,7 +51,7 @@ const LICENCES: [(&str, &str); 3] = [
 
 const ICON: &[u8] = include_bytes!("package/model.png");
 
-/// What is exported of a model: its section in its forces or, with options, its forces alone.
+/// What is exported of a model: its section in its forces or, with options, its forces alone, or a whole bridge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
     /// What becomes of a model that makes its own section grow where it should not.
@@ -61,6 +60,10 @@ pub struct Export {
     pub force: Option<ForceOptions>,
     /// Forces of gusts, so that gusts are inputs.
     pub gusts: Option<GustForce>,
+    /// A whole bridge, of whose first section the model is.
+    pub bridge: Option<BridgeOptions>,
+    /// Turbulence that blows on the bridge.
+    pub turbulence: Option<TurbulenceOptions>,
     /// 95 % interval of the onset of the section, where it is known.
     pub bounds: Option<OnsetBounds>,
     /// Verdict on the section, or on the bridge whose forces they are, for the page that documents it; without, what the section's own
@@ -82,6 +85,8 @@ impl From<GrowthPolicy> for Export {
             growing,
             force: None,
             gusts: None,
+            bridge: None,
+            turbulence: None,
             bounds: None,
             verdict: None,
             listing: Listing::All,
@@ -95,142 +100,81 @@ impl From<GrowthPolicy> for Export {
 /// The FMU of a trained model as the bytes of its archive, with these runtimes in it.
 ///
 /// # Errors
-/// [`Error::Input`] for a model that cannot be exported, for no runtime at all, and for two of one platform;
-/// [`Error::Numerical`] for a model that grows where it should not, unless that is allowed.
+/// [`Error::Input`] for a model or a bridge that cannot be exported, for no runtime at all, and for two of one platform;
+/// [`Error::Numerical`] for a model that grows where it should not, unless that is allowed. What a bridge does below its onset is for
+/// the caller to judge.
 pub fn package(
     model: &TrainedModel,
     runtimes: &[Runtime],
     export: impl Into<Export>,
 ) -> Result<Vec<u8>> {
     let export = export.into();
-    let Export { force, gusts, .. } = &export;
-    check_listing(export.listing, export.version)?;
-    let further = force.iter().flat_map(|force| &force.further);
+    if (export.listing, export.version) == (Listing::Reals, FmiVersion::Three) {
+        let place = "real variables only";
+        return Err(Error::input(place, "FMI 2.0", "FMI 3.0"));
+    }
+    let further = export.force.iter().flat_map(|force| &force.further);
     for model in std::iter::once(model).chain(further.map(|f| &f.model)) {
         growth::check(model, export.growing)?;
     }
-    let force = force.as_ref().map(ForceOptions::to_json).transpose()?;
-    let gusts = gusts.as_ref().map(as_json).transpose()?;
-    let bounds = export.bounds.as_ref().map(as_json).transpose()?;
-    check_runtimes(runtimes)?;
-    let json = model.to_json()?;
-    let files = OptionFiles {
-        force: force.as_deref().map(str::as_bytes),
-        gusts: gusts.as_deref().map(str::as_bytes),
-        bounds: bounds.as_deref().map(str::as_bytes),
-    };
-    let resources = Resources::from_bytes(json.as_bytes(), files)?;
-    let options = [
-        (MODEL_FILE, Some(json)),
-        (FORCE_FILE, force),
-        (GUST_FILE, gusts),
-        (BOUNDS_FILE, bounds),
-    ];
-    let verdict = export.verdict.as_ref();
-    assembled(resources, options, runtimes, &export, |resources, xml| {
-        documentation::documentation(resources, runtimes, xml, verdict)
-    })
-}
-
-fn check_runtimes(runtimes: &[Runtime]) -> Result<()> {
     let expected = "a runtime for at least one platform";
-    ensure(!runtimes.is_empty(), "FMU", expected, "none")
-}
-
-fn check_listing(listing: Listing, version: FmiVersion) -> Result<()> {
-    match (listing, version) {
-        (Listing::Reals, FmiVersion::Three) => {
-            Err(Error::input("real variables only", "FMI 2.0", "FMI 3.0"))
+    ensure(!runtimes.is_empty(), "FMU", expected, "none")?;
+    let files = option_files(model, &export)?;
+    let bytes = |name: &str| files.get(name).map(|text| text.as_bytes());
+    let model = bytes(MODEL_FILE).unwrap_or_default();
+    let resources = match bytes(BRIDGE_FILE) {
+        Some(bridge) => Resources::of_bridge(model, bridge, bytes(TURBULENCE_FILE))?,
+        None => {
+            let options = OptionFiles {
+                force: bytes(FORCE_FILE),
+                gusts: bytes(GUST_FILE),
+                bounds: bytes(BOUNDS_FILE),
+            };
+            Resources::from_bytes(model, options)?
         }
-        _ => Ok(()),
-    }
-}
-
-fn description(
-    resources: &Resources,
-    listing: Listing,
-    label: &Label,
-    version: FmiVersion,
-) -> Result<String> {
-    match version {
-        FmiVersion::Two => model_description(resources, listing, label),
-        FmiVersion::Three => description_fmi3::model_description(resources, label),
-    }
-}
-
-fn as_json(options: &impl Serialize) -> Result<String> {
-    serde_json::to_string_pretty(options).map_err(|e| Error::Numerical(e.to_string()))
-}
-
-/// A whole bridge as it is exported.
-#[derive(Debug, Clone)]
-pub struct BridgeExport {
-    /// The force model of the first section, with the section that the first modes make.
-    pub model: TrainedModel,
-    /// The bridge.
-    pub bridge: BridgeOptions,
-    /// Turbulence that blows on it.
-    pub turbulence: Option<TurbulenceOptions>,
-    /// Verdict on the bridge, for the page that documents it; `None` where nothing was judged.
-    pub verdict: Option<Verdict>,
-    /// Which variables its description lists.
-    pub listing: Listing,
-    /// Whether it carries runs by which an importer sees that it does what it should.
-    pub reference_runs: bool,
-}
-
-/// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it.
-///
-/// # Errors
-/// [`Error::Input`] for numbers that make no bridge, for no runtime at all, and for two of one platform. What a bridge
-/// does below its onset is for the caller to judge.
-pub fn package_bridge(
-    export: &BridgeExport,
-    runtimes: &[Runtime],
-    label: &Label,
-    version: FmiVersion,
-) -> Result<Vec<u8>> {
-    check_runtimes(runtimes)?;
-    check_listing(export.listing, version)?;
-    let (json, options) = (export.model.to_json()?, export.bridge.to_json()?);
-    let field = export.turbulence.as_ref().map(serde_json::to_string);
-    let field = field
-        .transpose()
-        .map_err(|e| Error::Numerical(e.to_string()))?;
-    let resources = Resources::of_bridge(
-        json.as_bytes(),
-        options.as_bytes(),
-        field.as_deref().map(str::as_bytes),
-    )?;
-    let options = [
-        (MODEL_FILE, Some(json)),
-        (BRIDGE_FILE, Some(options)),
-        (TURBULENCE_FILE, field),
-    ];
-    let around = Export {
-        listing: export.listing,
-        label: label.clone(),
-        version,
-        reference_runs: export.reference_runs,
-        ..GrowthPolicy::Allow.into()
     };
-    let (bridge, verdict) = (&export.bridge, export.verdict.as_ref());
-    assembled(resources, options, runtimes, &around, |resources, xml| {
-        Ok(bridge_page::documentation(resources, bridge, xml, verdict))
-    })
+    assembled(resources, files, runtimes, &export)
 }
 
-/// The archive of `resources` and of the files that they are read from; the `page` that documents them follows its description.
+/// The model and what is exported of it as the texts that the unit reads, by the names of their files.
+fn option_files(model: &TrainedModel, export: &Export) -> Result<BTreeMap<&'static str, String>> {
+    let failed = |e: serde_json::Error| Error::Numerical(e.to_string());
+    let field = export.turbulence.as_ref().map(serde_json::to_string);
+    let gusts = export.gusts.as_ref().map(serde_json::to_string_pretty);
+    let bounds = export.bounds.as_ref().map(serde_json::to_string_pretty);
+    let all = [
+        (MODEL_FILE, Some(model.to_json())),
+        (FORCE_FILE, export.force.as_ref().map(ForceOptions::to_json)),
+        (
+            BRIDGE_FILE,
+            export.bridge.as_ref().map(BridgeOptions::to_json),
+        ),
+        (GUST_FILE, gusts.map(|text| text.map_err(failed))),
+        (BOUNDS_FILE, bounds.map(|text| text.map_err(failed))),
+        (TURBULENCE_FILE, field.map(|text| text.map_err(failed))),
+    ];
+    let all = all.into_iter();
+    all.filter_map(|(name, text)| Some(text?.map(|text| (name, text))))
+        .collect()
+}
+
+/// The archive of `resources` and of the files that they are read from.
 fn assembled(
     resources: Resources,
-    options: impl IntoIterator<Item = (&'static str, Option<String>)>,
+    options: BTreeMap<&str, String>,
     runtimes: &[Runtime],
     export: &Export,
-    page: impl FnOnce(&Resources, &Element) -> Result<String>,
 ) -> Result<Vec<u8>> {
-    let (listing, version) = (export.listing, export.version);
-    let xml = description(&resources, listing, &export.label, version)?;
-    let page = page(&resources, &Element::parse(&xml)?)?;
+    let (listing, version, verdict) = (export.listing, export.version, export.verdict.as_ref());
+    let xml = match version {
+        FmiVersion::Two => model_description(&resources, listing, &export.label),
+        FmiVersion::Three => description_fmi3::model_description(&resources, &export.label),
+    }?;
+    let described = Element::parse(&xml)?;
+    let page = match &resources.bridge {
+        Some(bridge) => bridge_page::documentation(&resources, bridge, &described, verdict),
+        None => documentation::documentation(&resources, runtimes, &described, verdict)?,
+    };
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     let icon = match version {
@@ -241,9 +185,8 @@ fn assembled(
     let (listed, _) = resources.table.listed(listing);
     let text = terminals::document(&listed, version);
     files.insert(terminals::FILE.into(), text.into_bytes());
-    for (name, text) in options {
-        files.extend(text.map(|text| (format!("resources/{name}"), text.into_bytes())));
-    }
+    let options = options.into_iter();
+    files.extend(options.map(|(name, text)| (format!("resources/{name}"), text.into_bytes())));
     files.insert("documentation/index.html".into(), page.into_bytes());
     let licences = "documentation/licenses";
     files.insert(

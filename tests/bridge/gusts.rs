@@ -6,11 +6,12 @@ use aerodeck::aerodynamics::RationalAdmittance;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::FieldTable;
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::package::BridgeExport;
+use aerodeck::fmu::package::Export;
 use aerodeck::fmu::resources::Resources;
 use aerodeck::response::{Inputs, SectionState, Stepper};
 use aerodeck::section::Dof;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
+use aerodeck::trained_model::TrainedModel;
 
 const WIND: f64 = 35.0;
 
@@ -18,18 +19,19 @@ const WIND: f64 = 35.0;
 struct GustUnit(Instance);
 
 impl GustUnit {
-    fn new(export: &BridgeExport) -> Self {
-        Self::starting(export, 0.0)
+    fn new(model: &TrainedModel, export: &Export) -> Self {
+        Self::starting(model, export, 0.0)
     }
 
-    fn starting(export: &BridgeExport, time: f64) -> Self {
+    fn starting(model: &TrainedModel, export: &Export, time: f64) -> Self {
         let json = export
             .turbulence
             .as_ref()
             .map(|t| serde_json::to_string(t).unwrap());
+        let bridge = export.bridge.as_ref().unwrap();
         let resources = Resources::of_bridge(
-            export.model.to_json().unwrap().as_bytes(),
-            export.bridge.to_json().unwrap().as_bytes(),
+            model.to_json().unwrap().as_bytes(),
+            bridge.to_json().unwrap().as_bytes(),
             json.as_deref().map(str::as_bytes),
         );
         let mut instance = Instance::new(resources.unwrap()).unwrap();
@@ -88,13 +90,10 @@ fn gust(strip: usize, time: f64) -> [f64; 2] {
 }
 
 /// Force on the mass-normalised modes per 1 m/s of wind by gusts of every node, summed here once more.
-fn by_gusts(
-    study: &BridgeStudy,
-    export: &BridgeExport,
-    of_node: &dyn Fn(usize) -> [f64; 2],
-) -> Vec<f64> {
+fn by_gusts(study: &BridgeStudy, export: &Export, of_node: &dyn Fn(usize) -> [f64; 2]) -> Vec<f64> {
     let bridge = &study.by_model;
-    let a = export.bridge.gusts.as_ref().unwrap().coefficients[0];
+    let gusts = export.bridge.as_ref().and_then(|b| b.gusts.as_ref());
+    let a = gusts.unwrap().coefficients[0];
     let width = bridge.width_m();
     bridge
         .modes
@@ -152,11 +151,11 @@ fn same(found: &[f64], expected: &[f64], tolerance: f64) {
 fn gusts_are_equal_forces() {
     let study = lively();
     let (strips, nodes, step) = (7, study.by_model.nodes.len(), 0.1);
-    let export = study
+    let (model, export) = study
         .export(&wanted(strips, RationalAdmittance::None))
         .unwrap();
     for rise in [0.0, 0.8] {
-        let mut unit = GustUnit::new(&export).run(WIND);
+        let mut unit = GustUnit::new(&model, &export).run(WIND);
         let mut stepper = stepper(&study);
         let mut state = stepper.released(&[0.0; 8], &[0.0; 8]).unwrap();
         let mut inputs = Inputs::steady(WIND, 8);
@@ -196,10 +195,10 @@ fn gusts_are_equal_forces() {
 fn lags_of_modes_are_those_of_strips() {
     let study = lively();
     let (nodes, step, parts) = (study.by_model.nodes.len(), 0.2, 40);
-    let export = study
+    let (model, export) = study
         .export(&wanted(nodes, RationalAdmittance::Sears))
         .unwrap();
-    let mut unit = GustUnit::new(&export).run(WIND);
+    let mut unit = GustUnit::new(&model, &export).run(WIND);
     // poles and weights of the admittance, from its source
     let lags = [
         [0.082_32, 0.1522],
@@ -292,14 +291,14 @@ fn turbulence_of_the_archive_is_buffeting() {
     };
     let expected = study.buffeting_by(&block, WIND, &field).unwrap();
     let step_s = field.step_s;
-    let export = study
+    let (model, export) = study
         .export(&BridgeExportOptions {
             nodes: block.nodes.clone(),
             turbulence: Some(field),
             ..BridgeExportOptions::default()
         })
         .unwrap();
-    let mut unit = GustUnit::new(&export).run(WIND);
+    let mut unit = GustUnit::new(&model, &export).run(WIND);
     let mut rows: Vec<Vec<f64>> = vec![Vec::new(); 6];
     for i in 0..6000 {
         // steps that do not fall on the samples every second time
@@ -326,7 +325,7 @@ fn turbulence_of_the_archive_is_buffeting() {
     let record_s = step_s * export.turbulence.as_ref().unwrap().u[0].len() as f64;
     let [first, later @ ..] = [0.0, 1e3, 1e7].map(|records| {
         let start = records * record_s;
-        let mut unit = GustUnit::starting(&export, start).run(WIND);
+        let mut unit = GustUnit::starting(&model, &export, start).run(WIND);
         unit.0.do_step(start, 5.0).unwrap();
         unit.get("node[1156].heave")
     });
@@ -335,7 +334,7 @@ fn turbulence_of_the_archive_is_buffeting() {
         assert!((heave / first - 1.0).abs() < 1e-6, "{heave} {first}");
     }
     // without it nothing moves
-    let mut calm = GustUnit::new(&export);
+    let mut calm = GustUnit::new(&model, &export);
     calm.set("turbulence_factor", 0.0);
     let mut calm = calm.run(WIND);
     calm.0.do_step(0.0, 5.0).unwrap();
@@ -346,7 +345,7 @@ fn turbulence_of_the_archive_is_buffeting() {
 #[test]
 fn derivatives_are_differences() {
     let study = lively();
-    let export = study.export(&wanted(3, RationalAdmittance::Sears)).unwrap();
+    let (model, export) = study.export(&wanted(3, RationalAdmittance::Sears)).unwrap();
     let unknowns = [
         "node[1156].heave_acceleration",
         "mode[23].force",
@@ -361,7 +360,7 @@ fn derivatives_are_differences() {
         ("wind_speed", 1e-2),
     ] {
         let at = |shift: f64| {
-            let mut unit = GustUnit::new(&export);
+            let mut unit = GustUnit::new(&model, &export);
             unit.set("wind_speed", WIND);
             unit.set("mode[23].initial_coordinate", 1.0);
             unit.set("strip[2].gust_w", 1.0);

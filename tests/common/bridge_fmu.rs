@@ -7,10 +7,8 @@ use aerodeck::files::bridge::FieldTable;
 use aerodeck::flutter::{find_onset, motion_at_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, package_bridge, write_archive,
-    write_fmu,
+    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, package, write_archive, write_fmu,
 };
-use aerodeck::fmu::variables::Listing;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 use serde_json::json;
 use std::fs;
@@ -23,12 +21,16 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         nodes: ["1156", "1081"].map(String::from).to_vec(),
         ..BridgeExportOptions::default()
     };
-    let export = study.export(&wanted).unwrap();
+    let (model, export) = study.export(&wanted).unwrap();
     for (name, version) in [
         ("bridge", FmiVersion::Two),
         ("bridge_fmi3", FmiVersion::Three),
     ] {
-        let bytes = package_bridge(&export, runtimes, &Label::default(), version).unwrap();
+        let export = Export {
+            version,
+            ..export.clone()
+        };
+        let bytes = package(&model, runtimes, export).unwrap();
         let path = folder.join(format!("{name}.fmu"));
         write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
     }
@@ -48,18 +50,11 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         ..ForceOptions::single(bridge.width_m())
     };
     let force = Export {
-        reference_runs: true,
-        growing: GrowthPolicy::Refuse,
         force: Some(options),
-        gusts: None,
-        bounds: None,
-        listing: Listing::All,
-        label: Label::default(),
-        version: FmiVersion::Two,
-        verdict: None,
+        ..GrowthPolicy::Refuse.into()
     };
     let fmu = folder.join("bridge_force.fmu");
-    write_fmu(&fmu, &export.model, runtimes, Overwrite::Refuse, force).unwrap();
+    write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, force).unwrap();
     let section = coupled(bridge);
     let onset = &onset(find_onset("bridge", &section, &SEARCH, None).unwrap()).at;
     let motion = motion_at_onset(bridge, &bridge.forces(), onset).unwrap();
@@ -141,7 +136,7 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
         }),
         ..BridgeExportOptions::default()
     };
-    let export = study.export(&wanted).unwrap();
-    let bytes = package_bridge(&export, runtimes, &Label::default(), FmiVersion::Two).unwrap();
+    let (model, export) = study.export(&wanted).unwrap();
+    let bytes = package(&model, runtimes, export).unwrap();
     write_archive(&folder.join("bridge_gusts.fmu"), &bytes, Overwrite::Refuse).unwrap();
 }

@@ -3,18 +3,17 @@
 use crate::bridges::{SEARCH, TWO, coupled, langenuen, langenuen_text, lively, read};
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{CheckReport, Fmu, Slave, Value};
-use aerodeck::fmu::package::{
-    BridgeExport, FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
-};
+use aerodeck::fmu::package::{Export, Overwrite, Runtime, package, write_archive};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::study::bridge::BridgeExportOptions;
+use aerodeck::trained_model::TrainedModel;
 use std::time::{Duration, Instant};
 
-fn opened(export: &BridgeExport) -> (tempfile::TempDir, Fmu) {
+fn opened(model: &TrainedModel, export: &Export) -> (tempfile::TempDir, Fmu) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bridge.fmu");
     let runtimes = [Runtime::embedded().unwrap()];
-    let bytes = package_bridge(export, &runtimes, &Label::default(), FmiVersion::Two).unwrap();
+    let bytes = package(model, &runtimes, export.clone()).unwrap();
     write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
     let fmu = Fmu::open(&path).unwrap();
     (folder, fmu)
@@ -32,9 +31,9 @@ fn timed(slave: &Slave, name: &str) -> (f64, Duration) {
 #[test]
 fn the_onset_is_that_of_the_parameters() {
     let study = langenuen("LN21-5200", TWO);
-    let export = study.export(&BridgeExportOptions::default()).unwrap();
-    assert!(export.bridge.onset.is_some());
-    let (_folder, fmu) = opened(&export);
+    let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
+    assert!(export.bridge.as_ref().unwrap().onset.is_some());
+    let (_folder, fmu) = opened(&model, &export);
     let mut slave = fmu.instantiate("bridge").unwrap();
     slave.setup(0.0, None, None).unwrap();
     slave.enter_initialization().unwrap();
@@ -42,7 +41,7 @@ fn the_onset_is_that_of_the_parameters() {
     let (_, damping) = timed(&slave, "damping_now");
     let (_, again) = timed(&slave, "damping_now");
     eprintln!("damping_now: {damping:?}, once more {again:?}");
-    let own = export.bridge.air_density_kg_m3;
+    let own = export.bridge.as_ref().unwrap().air_density_kg_m3;
     for density in [own, 1.6, 1.2, 2.0] {
         slave.set("air_density", &Value::Real(density)).unwrap();
         let (found, took) = timed(&slave, "onset_speed");
@@ -65,13 +64,13 @@ fn the_onset_is_that_of_the_parameters() {
 #[test]
 fn the_damping_is_that_of_the_present_wind() {
     for (study, tolerance) in [(langenuen("LN21-5200", TWO), 1e-9), (lively(), 1e-11)] {
-        let export = study.export(&BridgeExportOptions::default()).unwrap();
-        let (_folder, fmu) = opened(&export);
+        let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
+        let (_folder, fmu) = opened(&model, &export);
         let mut slave = fmu.instantiate("bridge").unwrap();
         slave.setup(0.0, None, None).unwrap();
         slave.enter_initialization().unwrap();
         slave.exit_initialization().unwrap();
-        let own = export.bridge.air_density_kg_m3;
+        let own = export.bridge.as_ref().unwrap().air_density_kg_m3;
         for density in [own, 1.6, own] {
             slave.set("air_density", &Value::Real(density)).unwrap();
             let mut other = study.by_model.clone();
@@ -110,8 +109,8 @@ fn modes_in(motion: usize) -> Vec<usize> {
         .collect()
 }
 
-fn checked(export: &BridgeExport) -> (CheckReport, Fmu) {
-    let (_folder, fmu) = opened(export);
+fn checked(model: &TrainedModel, export: &Export) -> (CheckReport, Fmu) {
+    let (_folder, fmu) = opened(model, export);
     let report = fmu.check();
     assert!(report.passed(), "{report:#?}");
     assert!(report.ran.is_some());
@@ -125,18 +124,18 @@ fn a_bridge_of_torsional_modes_is_exported() {
     let text = langenuen_text("LN21-5200", TWO, "linear_v_hat");
     let study = read(&text.replace("damping_ratio = 0.002", &select));
     assert_eq!(study.by_model.modes.len(), 3);
-    let mut export = study
+    let (model, mut export) = study
         .export(&BridgeExportOptions {
             allow_unstable: true,
             ..BridgeExportOptions::default()
         })
         .unwrap();
-    let (_, fmu) = checked(&export);
+    let (_, fmu) = checked(&model, &export);
     let filters = fmu.model_description().variable("filters").unwrap();
     let of_all = coupled(&study.by_model).aerodynamics().states();
     assert_eq!(filters.start, Some(Value::Integer(of_all as i32)));
     export.listing = Listing::Reals;
-    let (_, fmu) = checked(&export);
+    let (_, fmu) = checked(&model, &export);
     assert!(fmu.model_description().variable("filters").is_none());
     assert!(fmu.model_description().variable("flutter_speed").is_some());
 }

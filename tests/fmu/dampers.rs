@@ -5,19 +5,18 @@ use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::description_fmi3::model_description;
 use aerodeck::fmu::importer::{Fmu, Slave, Value};
-use aerodeck::fmu::package::{
-    BridgeExport, FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
-};
+use aerodeck::fmu::package::{Export, Label, Overwrite, Runtime, package, write_archive};
 use aerodeck::fmu::resources::Resources;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
+use aerodeck::trained_model::TrainedModel;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-fn opened(export: &BridgeExport) -> Fmu {
+fn opened(model: &TrainedModel, export: Export) -> Fmu {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bridge.fmu");
     let runtimes = [Runtime::embedded().unwrap()];
-    let bytes = package_bridge(export, &runtimes, &Label::default(), FmiVersion::Two).unwrap();
+    let bytes = package(model, &runtimes, export).unwrap();
     write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
     Fmu::open(&path).unwrap()
 }
@@ -53,7 +52,8 @@ fn fastest(bridge: &Bridge, speed: f64) -> (f64, f64) {
 #[test]
 fn a_damped_bridge_grows_as_its_eigenvalues_say() {
     let study = damped();
-    let fmu = opened(&study.export(&BridgeExportOptions::default()).unwrap());
+    let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
+    let fmu = opened(&model, export);
     let report = fmu.check();
     assert!(report.passed() && report.ran.is_some(), "{report:#?}");
     let search = OnsetSearch {
@@ -143,8 +143,10 @@ fn a_damper_outside_does_what_one_inside_does() {
         nodes: vec!["1156".to_owned()],
         ..BridgeExportOptions::default()
     };
-    let inside = opened(&with.structure(&wanted).unwrap());
-    let outside = opened(&plain.structure(&wanted).unwrap());
+    let [inside, outside] = [&with, &plain].map(|study| {
+        let (model, export) = study.structure(&wanted).unwrap();
+        opened(&model, export)
+    });
     let start = |fmu: &Fmu| {
         let mut slave = fmu.instantiate("structure").unwrap();
         slave.setup(0.0, None, None).unwrap();
@@ -209,7 +211,8 @@ fn the_onset_of_another_motion_is_followed() {
             "[[damper]]\nnode = \"1156\"\nmotion = \"torsion\"\narm_m = 13.0\nmass_kg = {mass}\nfrequency_hz = 0.32\ndamping_ratio = 0.1\n"
         );
         let study = read(&(langenuen_text("LN21-5200", TWO, "modified_akima") + &pair));
-        let fmu = opened(&study.export(&BridgeExportOptions::default()).unwrap());
+        let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
+        let fmu = opened(&model, export);
         let mut slave = fmu.instantiate("bridge").unwrap();
         slave.setup(0.0, None, None).unwrap();
         slave.enter_initialization().unwrap();
@@ -260,10 +263,10 @@ fn dampers_are_part_of_the_structure_of_a_system() {
 /// FMI 3.0: dampers are arrays; and what lies in an archive without dampers knows nothing of them.
 #[test]
 fn dampers_are_arrays_in_fmi_3() {
-    let export = damped().export(&BridgeExportOptions::default()).unwrap();
+    let (model, export) = damped().export(&BridgeExportOptions::default()).unwrap();
     let (model, bridge) = (
-        export.model.to_json().unwrap(),
-        export.bridge.to_json().unwrap(),
+        model.to_json().unwrap(),
+        export.bridge.unwrap().to_json().unwrap(),
     );
     let resources = Resources::of_bridge(model.as_bytes(), bridge.as_bytes(), None).unwrap();
     let text = model_description(&resources, &Label::default()).unwrap();
@@ -277,6 +280,6 @@ fn dampers_are_arrays_in_fmi_3() {
     ] {
         assert!(text.contains(&format!("name=\"{name}\"")), "{name}");
     }
-    let plain = lively().export(&BridgeExportOptions::default()).unwrap();
-    assert!(!plain.bridge.to_json().unwrap().contains("damper"));
+    let (_, plain) = lively().export(&BridgeExportOptions::default()).unwrap();
+    assert!(!plain.bridge.unwrap().to_json().unwrap().contains("damper"));
 }

@@ -6,7 +6,7 @@ use crate::{models, three_dof};
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::bridge::FieldTable;
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::package::BridgeExport;
+use aerodeck::fmu::package::Export;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
 use aerodeck::fmu::variables::{
     Causality, Dependency, DependencyKind, Role, StartValue, Variability, Variable, VariableTable,
@@ -52,10 +52,10 @@ impl ProbedUnit {
         })
     }
 
-    fn bridge(what: &str, export: &BridgeExport) -> Self {
+    fn bridge(what: &str, model: &TrainedModel, export: &Export) -> Self {
         let (model, bridge) = (
-            export.model.to_json().unwrap(),
-            export.bridge.to_json().unwrap(),
+            model.to_json().unwrap(),
+            export.bridge.as_ref().unwrap().to_json().unwrap(),
         );
         let turbulence = export
             .turbulence
@@ -309,8 +309,9 @@ fn sections_of_three_motions_depend_on_what_is_stated() {
 #[test]
 fn bridges_depend_on_what_is_stated() {
     for motions in [TWO, THREE] {
-        let export = langenuen("LN21-5200", motions).export(&BridgeExportOptions::default());
-        ProbedUnit::bridge(motions, &export.unwrap()).checked();
+        let exported = langenuen("LN21-5200", motions).export(&BridgeExportOptions::default());
+        let (model, export) = exported.unwrap();
+        ProbedUnit::bridge(motions, &model, &export).checked();
     }
 }
 
@@ -334,10 +335,8 @@ fn damped_bridges_in_gusts_depend_on_what_is_stated() {
         }),
         ..BridgeExportOptions::default()
     };
-    ProbedUnit::bridge("dampers and gusts", &study.export(&wanted).unwrap()).checked();
-    ProbedUnit::bridge(
-        "structure",
-        &study.structure(&BridgeExportOptions::default()).unwrap(),
-    )
-    .checked();
+    let (model, export) = study.export(&wanted).unwrap();
+    ProbedUnit::bridge("dampers and gusts", &model, &export).checked();
+    let (model, export) = study.structure(&BridgeExportOptions::default()).unwrap();
+    ProbedUnit::bridge("structure", &model, &export).checked();
 }

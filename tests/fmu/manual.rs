@@ -69,8 +69,8 @@ fn tables() -> String {
     let force = VariableTable::new(&model, Some(&options), Some(&gusts), None).unwrap();
     let text = langenuen_text("LN21-5200", TWO, "modified_akima");
     let study = read(&(text + BLOCKS));
-    let export = study.export(&BridgeExportOptions::default()).unwrap();
-    let (model, bridge) = (export.model.to_json(), export.bridge.to_json());
+    let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
+    let (model, bridge) = (model.to_json(), export.bridge.unwrap().to_json());
     let bridge = Resources::of_bridge(model.unwrap().as_bytes(), bridge.unwrap().as_bytes(), None);
     [
         table(

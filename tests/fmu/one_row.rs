@@ -48,8 +48,8 @@ fn section(kind: &str) -> Resources {
 
 fn bridge() -> Resources {
     let study = langenuen("LN21-5200", TWO);
-    let export = study.export(&BridgeExportOptions::default()).unwrap();
-    let (model, bridge) = (export.model.to_json(), export.bridge.to_json());
+    let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
+    let (model, bridge) = (model.to_json(), export.bridge.unwrap().to_json());
     Resources::of_bridge(model.unwrap().as_bytes(), bridge.unwrap().as_bytes(), None).unwrap()
 }
 
@@ -372,7 +372,7 @@ fn an_output_of_forces_alone_is_one_row() {
         check_strip(forces(&model, 3, Vec::new()), "strip[3].");
     }
     let study = langenuen("LN21-5200", TWO);
-    let export = study.export(&BridgeExportOptions::default()).unwrap();
-    let model = export.model.to_json().unwrap();
+    let (model, _) = study.export(&BridgeExportOptions::default()).unwrap();
+    let model = model.to_json().unwrap();
     check_strip(forces(model.as_bytes(), 2, vec![1081, 1156]), "node[1156].");
 }

@@ -7,9 +7,7 @@ use aerodeck::bridge::BridgeMode;
 use aerodeck::fmu::description_fmi3;
 use aerodeck::fmu::force_options::StripsOfModel;
 use aerodeck::fmu::importer::{Fmu, Slave, Value, replay};
-use aerodeck::fmu::package::{
-    FmiVersion, Label, Overwrite, Runtime, package, package_bridge, write_archive,
-};
+use aerodeck::fmu::package::{FmiVersion, Label, Overwrite, Runtime, package, write_archive};
 use aerodeck::fmu::resources::Resources;
 use aerodeck::fmu::variables::Causality;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart};
@@ -27,9 +25,8 @@ fn opened(bytes: &[u8]) -> Fmu {
 }
 
 fn structure(study: &BridgeStudy) -> Fmu {
-    let export = study.structure(&BridgeExportOptions::default()).unwrap();
-    let two = FmiVersion::Two;
-    opened(&package_bridge(&export, &runtimes(), &Label::default(), two).unwrap())
+    let (model, export) = study.structure(&BridgeExportOptions::default()).unwrap();
+    opened(&package(&model, &runtimes(), export).unwrap())
 }
 
 fn packed(forces: &SectionForcePart) -> Fmu {

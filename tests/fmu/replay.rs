@@ -3,7 +3,7 @@
 use crate::bridges::{TWO, langenuen_text, read};
 use crate::matrix_fmus;
 use aerodeck::fmu::importer::{Fmu, ReplayedRun, replay};
-use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
+use aerodeck::fmu::package::{Export, FmiVersion, Runtime, package};
 use aerodeck::study::bridge::BridgeExportOptions;
 use std::path::Path;
 
@@ -48,7 +48,7 @@ fn units_of_every_deck_repeat_their_runs() {
 #[test]
 fn a_bridge_repeats_its_runs() {
     let study = read(&langenuen_text("LN21-5200", TWO, "linear_v_hat"));
-    let export = study
+    let (model, export) = study
         .export(&BridgeExportOptions {
             allow_unstable: true,
             ..BridgeExportOptions::default()
@@ -57,8 +57,13 @@ fn a_bridge_repeats_its_runs() {
     let folder = tempfile::tempdir().unwrap();
     for version in [FmiVersion::Two, FmiVersion::Three] {
         let runtimes = [Runtime::embedded().unwrap()];
-        let bytes = package_bridge(&export, &runtimes, &Label::default(), version).unwrap();
-        let again = package_bridge(&export, &runtimes, &Label::default(), version).unwrap();
+        let [bytes, again] = [(); 2].map(|()| {
+            let export = Export {
+                version,
+                ..export.clone()
+            };
+            package(&model, &runtimes, export).unwrap()
+        });
         assert!(bytes == again);
         let file = folder.path().join(format!("{version:?}.fmu"));
         std::fs::write(&file, bytes).unwrap();

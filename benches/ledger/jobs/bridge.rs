@@ -28,10 +28,11 @@ fn write_unit(folder: &Path, study: &BridgeStudy) {
         nodes: ["1156", "1081"].map(String::from).to_vec(),
         ..BridgeExportOptions::default()
     };
-    let export = study.export(&wanted).expect("an export");
+    let (model, export) = study.export(&wanted).expect("an export");
+    let bridge = export.bridge.expect("a bridge");
     let files = [
-        ("model.json", export.model.to_json().expect("a model")),
-        ("bridge.json", export.bridge.to_json().expect("a bridge")),
+        ("model.json", model.to_json().expect("a model")),
+        ("bridge.json", bridge.to_json().expect("a bridge")),
     ];
     for (name, text) in files {
         std::fs::write(folder.join(name), text).expect("a file");

@@ -12,7 +12,7 @@ use super::summary::BridgeSummary;
 use super::text::{MORE, text};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
-use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
+use crate::fmu::package::{Label, Runtime, package};
 use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, BridgeStudy, demo_bridge_text};
 use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
@@ -63,14 +63,13 @@ fn packed(
     verdict: &Verdict,
     out: &mut OutputDir,
 ) -> Result<()> {
-    let mut export = study.export(&BridgeExportOptions {
+    let (model, mut export) = study.export(&BridgeExportOptions {
         onset_interval: results.interval(),
         ..BridgeExportOptions::default()
     })?;
     export.verdict = Some(verdict.clone());
-    let label = Label::default().dated()?;
-    let bytes = package_bridge(&export, &Runtime::available()?, &label, FmiVersion::Two)?;
-    out.write(BRIDGE_FMU, bytes)
+    export.label = Label::default().dated()?;
+    out.write(BRIDGE_FMU, package(&model, &Runtime::available()?, export)?)
 }
 
 /// The records of the virtual tunnel and the model trained on them.

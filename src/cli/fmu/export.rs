@@ -124,14 +124,24 @@ fn version(number: String) -> FmiVersion {
 }
 
 impl FmuExportArgs {
-    fn label(&self) -> Result<Label> {
+    /// The export with what is said of its origin, in the version and with the variables and runs that are wanted.
+    fn described(&self, export: Export) -> Result<Export> {
         let label = Label {
-            name: self.name.clone(),
+            name: self.name.clone().or(export.label.name),
             author: self.author.clone(),
             copyright: self.copyright.clone(),
             generated: None,
         };
-        label.dated()
+        Ok(Export {
+            label: label.dated()?,
+            version: self.fmi,
+            listing: match self.reals_only {
+                true => Listing::Reals,
+                false => Listing::All,
+            },
+            reference_runs: !self.no_reference,
+            ..export
+        })
     }
 
     fn runtimes(&self) -> Result<Vec<Runtime>> {
@@ -177,9 +187,7 @@ impl FmuExportArgs {
         options.validate()?;
         Ok(Some(options))
     }
-}
 
-impl FmuExportArgs {
     /// Writes the archive, in place of another only with --force.
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<()> {
         let overwrite = Overwrite::replacing(self.force);
@@ -190,13 +198,6 @@ impl FmuExportArgs {
             }
             other => other,
         })
-    }
-
-    fn listing(&self) -> Listing {
-        match self.reals_only {
-            true => Listing::Reals,
-            false => Listing::All,
-        }
     }
 }
 
@@ -232,7 +233,6 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
-        growing: GrowthPolicy::allowing(args.allow_unstable),
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
         bounds: evidence.as_ref().and_then(|e| {
@@ -240,10 +240,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
             OnsetBounds::from_interval(&onset.interval)
         }),
         verdict: verdict.clone(),
-        label: args.label()?,
-        version: args.fmi,
-        listing: args.listing(),
-        reference_runs: !args.no_reference,
+        ..args.described(GrowthPolicy::allowing(args.allow_unstable).into())?
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
     let runtimes = args.runtimes()?;

@@ -15,8 +15,7 @@ use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::onset_start::{OnsetStart, simulated_onset};
-use crate::fmu::package::BridgeExport;
-use crate::fmu::variables::Listing;
+use crate::fmu::package::{Export, GrowthPolicy};
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
 use crate::units::ReducedFrequencyRange;
 
@@ -66,12 +65,12 @@ fn check_growth(
 }
 
 impl BridgeStudy {
-    /// What goes into an FMU.
+    /// What goes into an FMU: the force model of the first section, with the section that the first modes make, and the bridge.
     ///
     /// # Errors
     /// [`Error::Input`] for nodes and strips that are none, and for gusts on sections without static coefficients;
     /// [`Error::Unstable`] for a bridge that grows below its onset, unless that is allowed.
-    pub fn export(&self, wanted: &BridgeExportOptions) -> Result<BridgeExport> {
+    pub fn export(&self, wanted: &BridgeExportOptions) -> Result<(TrainedModel, Export)> {
         let named = self.named(&wanted.nodes)?;
         let gusts = self.gusts(wanted)?;
         let search = self.search();
@@ -85,24 +84,19 @@ impl BridgeStudy {
         let bridge = &self.by_model;
         let divergence = divergence_with_forces(&bridge.structure(), &bridge.forces())?;
         let first = found.first_limit_m_s(divergence, search.speed_max_m_s);
-        Ok(BridgeExport {
-            model: self.first_model(first)?,
-            bridge: BridgeOptions {
-                onset: found
-                    .onset()
-                    .and_then(|o| OnsetStart::from_onset(o, &section)),
+        let onset = found.onset();
+        let field = wanted.turbulence.as_ref();
+        let export = Export {
+            bridge: Some(BridgeOptions {
+                onset: onset.and_then(|o| OnsetStart::from_onset(o, &section)),
                 onset_interval: self.bounds(wanted, &found),
                 ..self.options(&found, named, gusts)?
-            },
-            turbulence: wanted
-                .turbulence
-                .as_ref()
-                .map(|field| self.turbulence(field))
-                .transpose()?,
-            verdict: None,
-            listing: Listing::All,
-            reference_runs: true,
-        })
+            }),
+            turbulence: field.map(|field| self.turbulence(field)).transpose()?,
+            // it was judged here
+            ..GrowthPolicy::Allow.into()
+        };
+        Ok((self.first_model(first)?, export))
     }
 
     /// The interval of an onset as a unit has it; one without is better than none.

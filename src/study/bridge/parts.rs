@@ -6,7 +6,7 @@ use crate::bridge::{StripGroup, motion_index};
 use crate::error::{Error, Result};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
 use crate::fmu::force_options::{ForceOptions, FurtherModel, StripOptions};
-use crate::fmu::package::BridgeExport;
+use crate::fmu::package::Export;
 use crate::section::Dof;
 use crate::trained_model::{Model, Provenance, TrainedModel};
 use nalgebra::DMatrix;
@@ -56,26 +56,25 @@ impl BridgeStudy {
     ///
     /// # Errors
     /// As [`Self::export`]; [`Error::Input`] for gusts and turbulence, which blow on no structure alone.
-    pub fn structure(&self, wanted: &BridgeExportOptions) -> Result<BridgeExport> {
+    pub fn structure(&self, wanted: &BridgeExportOptions) -> Result<(TrainedModel, Export)> {
         if wanted.gust_strips.is_some() || wanted.turbulence.is_some() {
             let expected = "none: gusts belong to the forces, not to the structure";
             return Err(Error::input("gusts", expected, "some"));
         }
-        self.structure_of(self.export(wanted)?, wanted.nodes.is_empty())
+        let (model, whole) = self.export(wanted)?;
+        self.structure_of(model, whole, wanted.nodes.is_empty())
     }
 
     /// The structure of the whole bridge as it is exported, at its nodes or at all.
     pub(super) fn structure_of(
         &self,
-        mut whole: BridgeExport,
+        model: TrainedModel,
+        whole: Export,
         all_nodes: bool,
-    ) -> Result<BridgeExport> {
+    ) -> Result<(TrainedModel, Export)> {
         let nodes = self.by_model.nodes.len();
-        if all_nodes {
-            whole.bridge.named = (0..nodes).collect();
-        }
         let width_m = self.by_model.width_m();
-        whole.bridge = BridgeOptions {
+        let alone = |bridge: BridgeOptions| BridgeOptions {
             structure_alone: true,
             groups: vec![GroupOptions {
                 name: "no wind".to_owned(),
@@ -85,13 +84,20 @@ impl BridgeStudy {
                 forces: 0,
             }],
             forces: vec![no_forces()],
+            named: match all_nodes {
+                true => (0..nodes).collect(),
+                false => bridge.named,
+            },
             tested_range: None,
             onset_interval: None,
             onset: None,
-            ..whole.bridge
+            ..bridge
         };
-        let model = whole.model;
-        whole.model = TrainedModel {
+        let export = Export {
+            bridge: whole.bridge.map(alone),
+            ..whole
+        };
+        let model = TrainedModel {
             name: format!("{}, structure", model.name),
             model: no_forces(),
             section: self.by_model.equivalent_section(&Dof::TWO)?,
@@ -104,7 +110,7 @@ impl BridgeStudy {
             },
             ..model
         };
-        Ok(whole)
+        Ok((model, export))
     }
 
     /// The wind forces of every section, each on strips at its nodes, in the order of the nodes; with gusts as inputs where `gusts` states
@@ -117,7 +123,7 @@ impl BridgeStudy {
         wanted: &BridgeExportOptions,
         gusts: Option<RationalAdmittance>,
     ) -> Result<Vec<SectionForcePart>> {
-        self.section_forces_of(&self.export(wanted)?, gusts)
+        self.section_forces_of(&self.export(wanted)?.0, gusts)
     }
 
     /// Those of all sections as one.
@@ -137,10 +143,10 @@ impl BridgeStudy {
         Ok(all)
     }
 
-    /// The wind forces of the whole bridge as it is exported.
+    /// The wind forces of the whole bridge, which is exported with the model `whole`.
     pub(super) fn section_forces_of(
         &self,
-        whole: &BridgeExport,
+        whole: &TrainedModel,
         gusts: Option<RationalAdmittance>,
     ) -> Result<Vec<SectionForcePart>> {
         let matrices = gusts.map(|_| self.gust_matrices()).transpose()?;
@@ -185,14 +191,14 @@ impl BridgeStudy {
                 model: TrainedModel {
                     name,
                     section,
-                    tested_range: forces.tested.unwrap_or(whole.model.tested_range),
+                    tested_range: forces.tested.unwrap_or(whole.tested_range),
                     provenance: Provenance {
                         source: forces.source.clone(),
                         licence: forces.licence.clone(),
                         method: forces.method.clone(),
-                        ..whole.model.provenance.clone()
+                        ..whole.provenance.clone()
                     },
-                    experiment: whole.model.experiment.clone(),
+                    experiment: whole.experiment.clone(),
                     schema_version: model.schema_version(),
                     model,
                 },

@@ -4,9 +4,7 @@ use super::{BridgeExportOptions, BridgeStudy, SectionForcePart};
 use crate::aerodynamics::Transfer as _;
 use crate::error::Result;
 use crate::fmu::bridge_options::BridgeOptions;
-use crate::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Runtime, package, package_bridge,
-};
+use crate::fmu::package::{Export, FmiVersion, GrowthPolicy, Label, Runtime, package};
 use crate::fmu::ssp::{Connection, System, SystemComponent};
 use crate::section::Dof;
 use crate::verdict::Verdict;
@@ -76,10 +74,16 @@ impl BridgeStudy {
         runtimes: &[Runtime],
         label: &Label,
     ) -> Result<System> {
-        let whole = self.export(wanted)?;
-        let forces = self.joined(self.section_forces_of(&whole, None)?)?;
-        let mut structure = self.structure_of(whole, true)?;
-        structure.verdict = Some(verdict.clone());
+        let (model, whole) = self.export(wanted)?;
+        let forces = self.joined(self.section_forces_of(&model, None)?)?;
+        let (model, structure) = self.structure_of(model, whole, true)?;
+        let values = structure.bridge.as_ref().map(structure_values);
+        let experiment = model.experiment.clone();
+        let structure = Export {
+            verdict: Some(verdict.clone()),
+            label: label.clone(),
+            ..structure
+        };
         let (motions, back) = forces.connections();
         let from = |list: &[Connection]| list.iter().map(|c| c.from[1].clone()).collect();
         let to = |list: &[Connection]| list.iter().map(|c| c.to[1].clone()).collect();
@@ -90,10 +94,10 @@ impl BridgeStudy {
         let components = vec![
             SystemComponent {
                 name: STRUCTURE.to_owned(),
-                fmu: package_bridge(&structure, runtimes, label, FmiVersion::Two)?,
+                fmu: package(&model, runtimes, structure)?,
                 inputs: to(&back),
                 outputs: from(&motions),
-                values: structure_values(&structure.bridge),
+                values: values.unwrap_or_default(),
             },
             SystemComponent {
                 name: FORCE.to_owned(),
@@ -113,7 +117,7 @@ impl BridgeStudy {
             name: self.file.name.clone(),
             components,
             connections: motions.into_iter().chain(back).collect(),
-            experiment: structure.model.experiment,
+            experiment,
         })
     }
 }

@@ -8,9 +8,10 @@ use crate::cli::progress::Progress;
 use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
-use crate::fmu::package::{BridgeExport, package, package_bridge};
+use crate::fmu::package::{Export, Label, package};
 use crate::plausibility::sentences;
 use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart, bridge_flutter};
+use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use std::path::PathBuf;
 
@@ -94,59 +95,63 @@ impl FmuExportArgs {
         wanted.onset_interval = results.interval();
         let verdict = Verdict::judge(&study.evidence(&results, &results.failed));
         let answer = match self.kind {
-            ExportKind::Section => {
-                let export = study.export(&wanted).map_err(stages::or_allow_unstable)?;
-                self.bridge_unit(export, &verdict, BRIDGE_FMU)
-            }
-            ExportKind::Structure => {
-                let export = study
-                    .structure(&wanted)
-                    .map_err(stages::or_allow_unstable)?;
-                self.bridge_unit(export, &verdict, "bridge_structure.fmu")
-            }
             ExportKind::Force => self.bridge_forces(&study, &wanted, &verdict),
+            _ => self.bridge_unit(&study, &wanted, &verdict),
         };
         drop(stage);
         answer
     }
 
-    fn place(&self, name: &str) -> PathBuf {
-        let beside_the_file = || self.model.with_file_name(name);
-        self.out.clone().unwrap_or_else(beside_the_file)
+    /// Packs and writes a part of a bridge, by the name of its file; where it stands, and what is said of that.
+    fn written(
+        &self,
+        model: &TrainedModel,
+        export: Export,
+        verdict: &Verdict,
+        file: &str,
+    ) -> Result<PathBuf> {
+        let export = Export {
+            verdict: Some(verdict.clone()),
+            ..self.described(export)?
+        };
+        let bytes = package(model, &self.runtimes()?, export)?;
+        let beside_the_file = || self.model.with_file_name(file);
+        let path = self.out.clone().unwrap_or_else(beside_the_file);
+        self.write(&path, &bytes)?;
+        Ok(path)
     }
 
     /// The whole bridge, or its structure.
     fn bridge_unit(
         &self,
-        mut export: BridgeExport,
+        study: &BridgeStudy,
+        wanted: &BridgeExportOptions,
         verdict: &Verdict,
-        file: &str,
     ) -> Result<Answer> {
-        export.listing = self.listing();
-        export.reference_runs = !self.no_reference;
-        export.verdict = Some(verdict.clone());
-        let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
-        let path = self.place(file);
-        self.write(&path, &bytes)?;
-        let bridge = &export.bridge;
-        let named: Vec<String> = (0..bridge.named.len())
-            .map(|n| bridge.node_name(n))
-            .collect();
-        let text = headline::text(&bridge.name, verdict, &[]);
+        let (file, of, exported) = match self.kind {
+            ExportKind::Structure => (
+                "bridge_structure.fmu",
+                "the structure of ",
+                study.structure(wanted),
+            ),
+            _ => (BRIDGE_FMU, "", study.export(wanted)),
+        };
+        let (model, export) = exported.map_err(stages::or_allow_unstable)?;
+        let of_bridge = export.bridge.iter();
+        let named = of_bridge.flat_map(|b| (0..b.named.len()).map(|n| b.node_name(n)));
+        let named: Vec<String> = named.collect();
+        let path = self.written(&model, export, verdict, file)?;
+        let (name, modes) = (&study.file.name, study.by_model.modes.len());
+        let text = headline::text(name, verdict, &[]);
         let text = format!(
-            "{text}wrote {}: {}{} with {}; inputs and outputs at the {} {}\n",
+            "{text}wrote {}: {of}{name} with {}; inputs and outputs at the {} {}\n",
             path.display(),
-            if bridge.structure_alone {
-                "the structure of "
-            } else {
-                ""
-            },
-            bridge.name,
-            counted(bridge.modes.len(), "mode"),
+            counted(modes, "mode"),
             if named.len() == 1 { "node" } else { "nodes" },
             named.join(", ")
         );
-        let json = serde_json::json!({ "fmu": path, "nodes": named, "modes": bridge.modes.len(), "verdict": verdict });
+        let json =
+            serde_json::json!({ "fmu": path, "nodes": named, "modes": modes, "verdict": verdict });
         Ok(Answer::new(text, &json)?.with_outcome_of(verdict))
     }
 
@@ -167,13 +172,8 @@ impl FmuExportArgs {
         };
         let prediction = &mut forces.options.prediction_steps;
         *prediction = self.prediction.unwrap_or(*prediction);
-        let mut export = forces.packed(&self.label()?, self.fmi);
-        export.listing = self.listing();
-        export.reference_runs = !self.no_reference;
-        export.verdict = Some(verdict.clone());
-        let bytes = package(&forces.model, &self.runtimes()?, export)?;
-        let path = self.place("bridge_force.fmu");
-        self.write(&path, &bytes)?;
+        let export = forces.packed(&Label::default(), self.fmi);
+        let path = self.written(&forces.model, export, verdict, "bridge_force.fmu")?;
         let nodes = &forces.options.nodes;
         let text = headline::text(&study.file.name, verdict, &[]);
         let text = format!(
