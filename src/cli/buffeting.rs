@@ -103,10 +103,10 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
     let dofs = &results.dofs;
     let rms = dofs
         .iter()
-        .map(|d| format!("RMS {} {}", d.symbol(), d.shown_in().1));
-    let crossing = dofs.iter().map(|d| format!("ν {} Hz", d.symbol()));
-    let table = TextTable::default().figures(["V m/s"]);
-    let mut table = table.figures(rms.chain(crossing));
+        .map(|d| format!(" | >RMS {} {}", d.symbol(), d.shown_in().1));
+    let crossing = dofs.iter().map(|d| format!(" | >ν {} Hz", d.symbol()));
+    let heads: String = rms.chain(crossing).collect();
+    let mut table = TextTable::new(&format!(">V m/s{heads}"));
     for response in results.shown() {
         let rms = dofs.iter().zip(&response.rms);
         let rms = rms.map(|(dof, rms)| format!("{:.5}", dof.shown_in().0 * rms));

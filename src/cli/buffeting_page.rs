@@ -62,15 +62,7 @@ pub(super) fn page(
         .chain([tested(results), time_domain(results)].concat().lines().map(str::to_owned))
         .filter(|line| !line.is_empty())
         .collect(),
-        header: vec![
-            "V m/s",
-            "motion",
-            "mean",
-            "RMS",
-            "g",
-            "mean ± expected peak",
-            "acceleration",
-        ],
+        header: "V m/s | motion | mean | RMS | g | mean ± expected peak | acceleration",
         rows,
         figures,
     };

@@ -94,19 +94,9 @@ pub(crate) fn run(args: &CoverageArgs, progress: &Progress) -> Result<Answer> {
 
 /// The family by where tests lie.
 fn family(report: &FamilyReport) -> String {
-    let table = TextTable::default().words(["tests"]);
-    let mut table = table.figures([
-        "decks",
-        "onsets",
-        "held",
-        "no flutter",
-        "refused",
-        "false none",
-        "unsafe",
-        "met",
-        "half",
-        "error",
-    ]);
+    let mut table = TextTable::new(
+        "tests | >decks | >onsets | >held | >no flutter | >refused | >false none | >unsafe | >met | >half | >error",
+    );
     for r in &report.ranges {
         table.row(family_row(r));
     }

@@ -55,7 +55,7 @@ pub(super) fn laboratory_page(
                     "Lag of the force channels {:.3} ms.",
                     1e3 * report.lag_s
                 )],
-                header: vec!["run", "what was found"],
+                header: "run | what was found",
                 rows: report.runs.iter().map(run_row).collect(),
                 ..section("Runs")
             },
@@ -71,14 +71,7 @@ pub(super) fn laboratory_page(
                 ..section("Stages of the runs")
             },
             PageSection {
-                header: vec![
-                    "derivative",
-                    "V m/s",
-                    "f Hz",
-                    "V̂",
-                    "value",
-                    "standard error",
-                ],
+                header: "derivative | V m/s | f Hz | V̂ | value | standard error",
                 rows: estimates.iter().map(estimate_row).collect(),
                 ..section("Every derivative at every test point")
             },

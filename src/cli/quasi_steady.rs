@@ -137,9 +137,9 @@ fn equilibria(results: &QuasiSteadyStudy) -> String {
     let dofs = &results.dofs;
     let motions = dofs
         .iter()
-        .map(|d| format!("{} {}", d.symbol(), d.shown_in().1));
-    let table = TextTable::default().figures(["V m/s"]).figures(motions);
-    let mut table = table.figures(["stiffness left"]);
+        .map(|d| format!(">{} {} | ", d.symbol(), d.shown_in().1));
+    let motions: String = motions.collect();
+    let mut table = TextTable::new(&format!(">V m/s | {motions}>stiffness left"));
     let points = &results.equilibria.points;
     let shown = points
         .iter()

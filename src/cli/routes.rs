@@ -9,11 +9,9 @@ use std::fmt::Write as _;
 
 /// The table, the handbook lines, the cards and what was left out.
 pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
-    let columns = TextTable::default().words(["Force model", "route"]);
-    let columns = columns.figures(["V_F m/s", "f Hz", "V/(fB)", "V/(ωB)"]);
-    let columns = columns.figures(["|y|/B|θ|", "phase °", "dζ/dV s/m"]);
-    let columns = columns.words(["mode"]).figures(["V_D m/s"]);
-    let mut columns = columns.words(["kind; in tested range"]);
+    let mut columns = TextTable::new(
+        "Force model | route | >V_F m/s | >f Hz | >V/(fB) | >V/(ωB) | >|y|/B|θ| | >phase ° | >dζ/dV s/m | mode | >V_D m/s | kind; in tested range",
+    );
     for route in &table.routes {
         add(&mut columns, route);
     }

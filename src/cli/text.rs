@@ -246,7 +246,7 @@ pub(crate) fn onsets(results: &FlutterStudy) -> String {
 
 /// A line per model and route, with those of the onsets that are not determined.
 fn table(results: &FlutterStudy, undetermined: &[Onset]) -> String {
-    let mut table = of_onsets(&["Flutter onset", "method"]);
+    let mut table = of_onsets("Flutter onset | method");
     let name = |model: &str, method: OnsetMethod| [model.to_owned(), method.name().to_owned()];
     for o in &results.onsets {
         let name = name(&o.at.model, o.at.method);
@@ -269,10 +269,10 @@ fn table(results: &FlutterStudy, undetermined: &[Onset]) -> String {
 }
 
 /// A table of onsets: what says whose they are, then their [`figures`].
-pub(super) fn of_onsets(whose: &[&str]) -> TextTable {
-    let table = TextTable::default().words(whose.iter().copied());
-    let table = table.figures(["V m/s", "95 % interval", "f Hz", "V*"]);
-    table.words(["tested"])
+pub(super) fn of_onsets(whose: &str) -> TextTable {
+    TextTable::new(&format!(
+        "{whose} | >V m/s | >95 % interval | >f Hz | >V* | tested"
+    ))
 }
 
 /// The cells of an onset in its columns.

@@ -3,7 +3,6 @@
 use super::wrapping::beside;
 
 /// A table in making: its columns from left to right, then its rows.
-#[derive(Default)]
 pub(crate) struct TextTable {
     heads: Vec<String>,
     /// For each column, whether its cells stand at the right.
@@ -13,20 +12,21 @@ pub(crate) struct TextTable {
 }
 
 impl TextTable {
-    /// Further columns, of words: at the left.
-    pub(crate) fn words(self, heads: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        self.with(false, heads)
-    }
-
-    /// Further columns, of figures: at the right.
-    pub(crate) fn figures(self, heads: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        self.with(true, heads)
-    }
-
-    fn with<H: Into<String>>(mut self, at_right: bool, heads: impl IntoIterator<Item = H>) -> Self {
-        self.heads.extend(heads.into_iter().map(Into::into));
-        self.at_right.resize(self.heads.len(), at_right);
-        self
+    /// One of these columns, ` | ` between their heads: `>` before the head of one of figures, which stand at the right.
+    pub(crate) fn new(heads: &str) -> Self {
+        let heads = heads.split(" | ");
+        let columns = heads.map(|head| {
+            (
+                head.trim_start_matches('>').to_owned(),
+                head.starts_with('>'),
+            )
+        });
+        let (heads, at_right) = columns.unzip();
+        Self {
+            heads,
+            at_right,
+            rows: Vec::new(),
+        }
     }
 
     /// A row of one cell a column.
@@ -72,8 +72,7 @@ mod tests {
 
     #[test]
     fn columns_are_as_wide_as_their_cells() {
-        let table = TextTable::default().words(["mode"]).figures(["f Hz"]);
-        let mut table = table.words(["motion"]);
+        let mut table = TextTable::new("mode | >f Hz | motion");
         let row = ["a long name", "0.1234", "heave"];
         table.row(row.map(str::to_owned));
         table.row(["θ", "12.5", "torsion"].map(str::to_owned));

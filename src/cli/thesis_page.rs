@@ -156,7 +156,7 @@ fn not_computed() -> PageSection {
     ];
     PageSection {
         title: "Figures that are not computed".to_owned(),
-        header: vec!["figure", "why"],
+        header: "figure | why",
         rows: rows.map(|(a, b)| vec![a.to_owned(), b.to_owned()]).to_vec(),
         ..PageSection::default()
     }
@@ -186,7 +186,7 @@ fn first_order(progress: &Progress) -> Result<PageSection> {
             100.0 * results.validation_error,
             100.0 * results.model.worst_in_band
         )],
-        header: vec!["number", "thesis", "here"],
+        header: "number | thesis | here",
         rows: rows
             .map(|((what, printed), here)| vec![(*what).to_owned(), printed.to_owned(), here])
             .collect(),
@@ -233,7 +233,7 @@ fn onsets(results: &FlutterStudy, printed_m_s: f64, out: &OutputDir) -> PageSect
                     .to_owned(),
             ])
             .collect(),
-        header: vec!["model", "thesis, V m/s", "here, V m/s", "here, f Hz"],
+        header: "model | thesis, V m/s | here, V m/s | here, f Hz",
         rows: results.onsets.iter().map(row).collect(),
         figures: figures
             .into_iter()
@@ -284,7 +284,7 @@ fn errata() -> PageSection {
     ];
     PageSection {
         title: "Errata that change a number".to_owned(),
-        header: vec!["equation", "printed", "here"],
+        header: "equation | printed | here",
         rows: rows
             .map(|(a, b, c)| [a, b, c].map(str::to_owned).to_vec())
             .to_vec(),

@@ -36,7 +36,8 @@ pub(crate) struct SectionsPage {
 pub(crate) struct PageSection {
     pub(crate) title: String,
     pub(crate) text: Vec<String>,
-    pub(crate) header: Vec<&'static str>,
+    /// Heads of its columns, ` | ` between them.
+    pub(crate) header: &'static str,
     pub(crate) rows: Vec<Vec<String>>,
     /// Caption and SVG.
     pub(crate) figures: Vec<(String, String)>,

@@ -182,7 +182,7 @@ fn by_file(
     let found = study
         .buffeting_by(block, speed, &field)
         .map_err(|e| e.in_file(path))?;
-    let of_nodes = rows(&["RMS", "peak f."], &found.nodes, |n, i| {
+    let of_nodes = rows(">RMS | >peak f.", &found.nodes, |n, i| {
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
         vec![format!("{rms:.5e}"), of_motion(rms, format!("{peak:.3}"))]
     });
@@ -203,9 +203,8 @@ fn by_file(
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
 
 /// A line for each motion of each node, with the figures that `of` has of them.
-fn rows(heads: &[&str], nodes: &[String], of: impl Fn(usize, usize) -> Vec<String>) -> String {
-    let table = TextTable::default().words(["node", "motion"]);
-    let mut table = table.figures(heads.iter().copied());
+fn rows(heads: &str, nodes: &[String], of: impl Fn(usize, usize) -> Vec<String>) -> String {
+    let mut table = TextTable::new(&format!("node | motion | {heads}"));
     for (n, name) in nodes.iter().enumerate() {
         for (i, motion) in MOTIONS.into_iter().enumerate() {
             let name = [name.clone(), motion.to_owned()];
@@ -216,17 +215,9 @@ fn rows(heads: &[&str], nodes: &[String], of: impl Fn(usize, usize) -> Vec<Strin
 }
 
 fn table(results: &BridgeBuffeting) -> String {
-    let heads = [
-        "RMS, freq.",
-        "crossing Hz",
-        "expected",
-        "RMS, time",
-        "std. error",
-        "peak f.",
-        "accel., /s²",
-    ];
+    let heads = ">RMS, freq. | >crossing Hz | >expected | >RMS, time | >std. error | >peak f. | >accel., /s²";
     let frequency = &results.frequency;
-    rows(&heads, &results.nodes, |n, i| {
+    rows(heads, &results.nodes, |n, i| {
         let time = results.time.as_ref().map(|time| {
             [
                 format!("{:.5e}", time.rms[n][i]),

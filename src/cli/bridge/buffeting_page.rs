@@ -152,17 +152,7 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
     Ok(PageSection {
         title: format!("Buffeting at {speed} m/s"),
         text,
-        header: vec![
-            "node",
-            "motion",
-            "mean",
-            "RMS",
-            "RMS, records",
-            "g",
-            "mean − peak",
-            "mean + peak",
-            "acceleration",
-        ],
+        header: "node | motion | mean | RMS | RMS, records | g | mean − peak | mean + peak | acceleration",
         rows,
         figures: figures
             .into_iter()

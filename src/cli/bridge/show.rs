@@ -30,8 +30,7 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
         counted(bridge.modes.len(), "mode"),
         counted(bridge.groups.len(), "group"),
     );
-    let table = TextTable::default().figures(["mode", "f Hz", "mass kg", "ζ %"]);
-    let mut table = table.words(["main motion"]);
+    let mut table = TextTable::new(">mode | >f Hz | >mass kg | >ζ % | main motion");
     for m in &bridge.modes {
         table.row([
             m.number.to_string(),

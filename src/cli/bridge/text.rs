@@ -34,7 +34,7 @@ pub(super) fn text(
         counted(nodes, "node"),
         counted(modes, "mode")
     );
-    let mut table = of_onsets(&["Flutter onset by"]);
+    let mut table = of_onsets("Flutter onset by");
     for answer in &results.answers {
         let forces = std::iter::once(answer.forces.clone());
         match &answer.search {

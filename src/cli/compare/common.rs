@@ -104,7 +104,7 @@ pub(super) fn section(
 ) -> PageSection {
     PageSection {
         title: title.to_owned(),
-        header: vec!["section", "thesis", "here"],
+        header: "section | thesis | here",
         rows: statements
             .iter()
             .map(|s| vec![s.section.to_owned(), s.thesis.to_owned(), s.here.clone()])
@@ -119,10 +119,10 @@ pub(super) fn section(
 
 /// Mean of every metric over the frequencies, a line per deck or model, speed, motion and force.
 pub(super) fn metrics_table(summaries: &[ScoreSummary], name: fn(&ScoreSummary) -> &str) -> String {
-    let table = TextTable::default().words(["Means over frequencies"]);
-    let table = table.figures(["V m/s"]).words(["motion", "force"]);
-    let table = table.figures(ForceMetrics::NAMES);
-    let mut table = table.figures(["lowest M_phi"]);
+    let metrics = ForceMetrics::NAMES.join(" | >");
+    let mut table = TextTable::new(&format!(
+        "Means over frequencies | >V m/s | motion | force | >{metrics} | >lowest M_phi"
+    ));
     for s in summaries {
         let held_out = if s.case.held_out { "*" } else { " " };
         let case = [

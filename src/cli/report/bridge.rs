@@ -193,7 +193,7 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
             "Shares of the kinetic energy at the onset; phases to the mode with the largest share."
                 .to_owned(),
         ],
-        header: vec!["mode", "f in still air, Hz", "share %", "phase °"],
+        header: "mode | f in still air, Hz | share % | phase °",
         rows: named
             .map(|m| {
                 vec![
@@ -225,7 +225,7 @@ fn fewer(left_out: &[LeftOut], full: Option<f64>) -> PageSection {
     };
     PageSection {
         title: "Onset with fewer modes".to_owned(),
-        header: vec!["share from, %", "modes", "V m/s", "change %"],
+        header: "share from, % | modes | V m/s | change %",
         rows: left_out.iter().map(row).collect(),
         ..PageSection::default()
     }
@@ -246,13 +246,7 @@ fn data(facts: &BridgeSummary) -> PageSection {
     };
     PageSection {
         title: "Sections and their data".to_owned(),
-        header: vec![
-            "section",
-            "B m",
-            "tested K = ωB/V",
-            "forces from",
-            "licence",
-        ],
+        header: "section | B m | tested K = ωB/V | forces from | licence",
         rows: facts.sections.iter().map(row).collect(),
         ..PageSection::default()
     }
@@ -271,7 +265,7 @@ fn modes(facts: &BridgeSummary) -> PageSection {
     PageSection {
         title: "Modes in still air".to_owned(),
         text: vec!["Generalised masses belong to the shapes as they were read.".to_owned()],
-        header: vec!["mode", "f Hz", "generalised mass, kg", "ζ %", "main motion"],
+        header: "mode | f Hz | generalised mass, kg | ζ % | main motion",
         rows: facts.modes.iter().map(row).collect(),
         ..PageSection::default()
     }

@@ -30,9 +30,8 @@ pub(crate) fn text(selection: &Selection) -> String {
 /// A line per cell; what refuses it stands below its row.
 fn table<'a>(selection: &Selection, cells: impl Iterator<Item = &'a Cell>) -> String {
     let symbol = selection.symbol.as_str();
-    let errors = ["residual", "left out", "speed out", "freq. out"];
-    let table = TextTable::default().figures(["L", symbol]).figures(errors);
-    let mut table = table.words(["verdict"]);
+    let errors = ">residual | >left out | >speed out | >freq. out";
+    let mut table = TextTable::new(&format!(">L | >{symbol} | {errors} | verdict"));
     for cell in cells {
         table.row(row(cell));
         if !cell.rejected.is_empty() {
