@@ -3,7 +3,7 @@
 use super::figure::Figure;
 use super::geometry::Px;
 use super::scene::Scene;
-use super::style::{BLACK, COLOURS, GREY, Stroke};
+use super::style::{BLACK, COLOURS, GREY, Ink};
 use crate::aerodynamics::derivatives::notation::Axes;
 
 /// Width and height of one panel, px.
@@ -58,11 +58,8 @@ fn panel(scene: &mut Scene, axes: Axes) {
         arrow(scene, wind, &[from, from + Px::new(54.0, 0.0)]);
     }
     scene.text(Px::new(18.0, CENTRE.y - 42.0), "wind V", SIZE, wind);
-    scene.polygon(&deck(0.0), "#e8e8e8", Stroke::solid(BLACK, 1.4));
-    let ghost = Stroke {
-        dash: Some("5 4"),
-        ..Stroke::solid(GREY, 1.1)
-    };
+    scene.polygon(&deck(0.0), "#e8e8e8", Ink::solid(BLACK, 1.4));
+    let ghost = Ink::stroke(GREY, Some("5 4"), 1.1);
     scene.polygon(&deck(NOSE_UP_DEG), "none", ghost);
     arrow(scene, motion, &[CENTRE, CENTRE + Px::new(0.0, down * 98.0)]);
     arrow(scene, motion, &[CENTRE, CENTRE + Px::new(160.0, 0.0)]);
@@ -98,7 +95,7 @@ fn deck(turn_deg: f64) -> Vec<Px> {
 
 /// A line with a head at its end, whose tip stands a little beyond.
 fn arrow(scene: &mut Scene, colour: &'static str, way: &[Px]) {
-    scene.polyline(way, Stroke::solid(colour, 2.0));
+    scene.polyline(way, Ink::solid(colour, 2.0));
     let [.., before, end] = way else { return };
     let (dx, dy) = (end.x - before.x, end.y - before.y);
     let length = dx.hypot(dy);
@@ -106,13 +103,13 @@ fn arrow(scene: &mut Scene, colour: &'static str, way: &[Px]) {
     let point =
         |along: f64, aside: f64| *end + Px::new(along * u - aside * v, along * v + aside * u);
     let head = [point(6.0, 0.0), point(-5.0, 4.5), point(-5.0, -4.5)];
-    scene.polygon(&head, colour, Stroke::solid("none", 0.0));
+    scene.polygon(&head, colour, Ink::solid("none", 0.0));
 }
 
 /// Width B and semi-chord b under the deck.
 fn dimension(scene: &mut Scene) {
     let (left, right) = (CENTRE.x - HALF_WIDTH, CENTRE.x + HALF_WIDTH);
-    let thin = Stroke::solid(BLACK, 1.0);
+    let thin = Ink::solid(BLACK, 1.0);
     for (level, from, words) in [(285.0, left, "width B"), (310.0, CENTRE.x, "b = B/2")] {
         for x in [from, right] {
             scene.polyline(&[Px::new(x, level - 7.0), Px::new(x, level + 7.0)], thin);

@@ -3,9 +3,9 @@
 use super::axis::Axis;
 use super::drawing::{Drawing, titled};
 use super::figure::Figure;
+use super::flutter_figures::root_locus;
 use super::legend::Entry;
 use super::panel::Panel;
-use super::root_locus::root_locus;
 use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash, outcome_colour};
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -111,11 +111,11 @@ impl BridgeCurves<'_> {
         };
         let mut legend: Vec<Entry> = all.iter().filter_map(entry).collect();
         if all.iter().any(|(place, _)| place.is_none()) {
-            let others = Ink::stroke(PALE_GREY, None, 1.0);
+            let others = Ink::solid(PALE_GREY, 1.0);
             legend.push(Entry::new("other modes that take part", others));
         }
         let all = all.into_iter().map(|(place, branch)| {
-            let pale = Ink::stroke(PALE_GREY, None, 1.0);
+            let pale = Ink::solid(PALE_GREY, 1.0);
             (branch, place.map_or(pale, |i| ink(i, &branch.name)))
         });
         (all.collect(), legend)
@@ -158,7 +158,7 @@ pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result
     let highest = highest.map(|p| p.1).fold(0.0, f64::max);
     if let (Some(at), Some(outcome)) = (of.verdict.against, &of.verdict.outcome) {
         let at = at.speed_m_s;
-        let ink = Ink::stroke(outcome_colour(outcome), None, 1.6);
+        let ink = Ink::solid(outcome_colour(outcome), 1.6);
         frequency.add("required", vec![(at, 0.0), (at, highest)], ink);
         for panel in std::iter::once(&mut damping).chain(&mut close) {
             panel.add("required", vec![(at, -5.0), (at, 15.0)], ink);

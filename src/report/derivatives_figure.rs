@@ -6,7 +6,7 @@ use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
 use super::series::{PlottedSeries, labels_of};
-use super::style::{BLACK, GREY, Ink, Marker, Shape, colour, dash};
+use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
 
 /// One derivative (or any other quantity that is measured and fitted).
@@ -103,10 +103,10 @@ fn legend(
 }
 
 const PLACE: &str = "aerodynamic derivatives";
-const BAR: Ink = Ink::stroke(GREY, None, 1.6);
+const BAR: Ink = Ink::solid(GREY, 1.6);
 
 fn fitted_ink(i: usize) -> Result<Ink> {
-    Ok(Ink::line(colour(PLACE, i)?, dash(i)))
+    Ink::nth(PLACE, i)
 }
 
 fn reference_ink(i: usize) -> Result<Ink> {
@@ -121,12 +121,10 @@ fn measured_ink(i: usize, count: usize) -> Result<Ink> {
     } else {
         colour(PLACE, (i + 3) % 7)?
     };
-    Ok(Ink::Dots(Marker {
-        colour,
-        shape: SHAPES[i % SHAPES.len()],
-        radius: 2.7,
-        hollow: false,
-    }))
+    Ok(Ink {
+        size: 2.7,
+        ..Ink::dots(colour, SHAPES[i % SHAPES.len()])
+    })
 }
 
 /// The abscissae of all panels: reduced velocities from zero, angles from the lowest.

@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::font::text_width;
 use super::geometry::{Area, Px};
 use super::legend::{Entry, LegendLayout, lay_out, shortened};
-use super::panel::{Frame, LABEL_SIZE, Panel};
+use super::panel::{LABEL_SIZE, Panel, ROOM_BELOW};
 use super::scene::Scene;
 use super::style::BLACK;
 use crate::error::{Error, Result};
@@ -72,13 +72,17 @@ impl Drawing {
             panel.check(self.name)?;
         }
         let stacked = self.with_one_abscissa();
-        let (frames, legend) = self.frames();
-        let Some(Frame { width, axes, .. }) = frames.first() else {
+        let (left, width, legend) = self.widths();
+        let rows = self
+            .panels
+            .chunks(self.columns)
+            .map(|row| self.row(row, left, width));
+        let rows: Vec<(Area, f64)> = rows.collect();
+        if rows.is_empty() {
             return Err(Error::input(self.name, "data", "none"));
-        };
+        }
         let grid_width = self.columns as f64 * width;
-        let grid_height: f64 = frames.iter().map(|f| f.height).sum();
-        let left = axes.left;
+        let grid_height: f64 = rows.iter().map(|(_, height)| height).sum();
         let head = self.title.as_ref().map_or(EDGE, |_| TITLE_HEIGHT + EDGE);
         let foot = if legend.height > 0.0 {
             legend.height + 2.0 * EDGE
@@ -90,12 +94,12 @@ impl Drawing {
             scene.text(Px::new(left, EDGE + 16.0), title, TITLE_SIZE, BLACK);
         }
         let mut top = head;
-        for (row, frame) in stacked.chunks(self.columns).zip(&frames) {
+        for (row, (axes, height)) in stacked.chunks(self.columns).zip(rows) {
             for (column, panel) in row.iter().enumerate() {
-                let corner = Px::new(column as f64 * frame.width, top);
-                scene.moved(corner, |scene| panel.draw(scene, *frame));
+                let corner = Px::new(column as f64 * width, top);
+                scene.moved(corner, |scene| panel.draw(scene, axes));
             }
-            top += frame.height;
+            top += height;
         }
         legend.draw(&mut scene, Px::new(left, top + EDGE));
         Ok(scene.finish())
@@ -120,13 +124,12 @@ impl Drawing {
         panels
     }
 
-    /// A frame for each row, of one width and with axes in line, and the legend. When the legend or the title is wider
-    /// than the panels, the panels grow.
-    fn frames(&self) -> (Vec<Frame>, LegendLayout<'_>) {
+    /// Room at the left of the axes and width of every panel, and the legend. When the legend or the title is wider than the
+    /// panels, the panels grow.
+    fn widths(&self) -> (f64, f64, LegendLayout<'_>) {
         let line = f64::from(LABEL_SIZE);
         let widest = |p: &[Panel]| p.iter().map(Panel::tick_width).fold(0.0, f64::max);
-        let any = |row: &[Panel], has: fn(&Panel) -> bool| row.iter().any(has);
-        let y_label = any(&self.panels, |p| !p.y.label.is_empty());
+        let y_label = self.panels.iter().any(|p| !p.y.label.is_empty());
         let left = widest(&self.panels) + line + if y_label { line + 16.0 } else { 4.0 };
         let columns = self.columns as f64;
         let outside = left + EDGE;
@@ -138,26 +141,20 @@ impl Drawing {
             .map_or(0.0, |t| text_width(t, f64::from(TITLE_SIZE)));
         let width = wanted.max(outside + legend.width.max(title)) / columns;
         let legend = lay_out(&self.legend, columns * width - outside);
-        let frame = |row: &[Panel]| {
-            let titled = any(row, |p| p.title.is_some());
-            let named = any(row, |p| !p.x.label.is_empty());
-            let top = if titled { 26.0 } else { 8.0 };
-            let below = if named { 46.0 } else { 28.0 };
-            let axes = Area {
-                left,
-                top,
-                right: width - RIGHT,
-                bottom: top + self.axes.1,
-            };
-            Frame {
-                width,
-                height: axes.bottom + below,
-                axes,
-            }
+        (left, width, legend)
+    }
+
+    /// Where the axes of a row of panels are in their cells, in line with those of the others, and how tall it is.
+    fn row(&self, row: &[Panel], left: f64, width: f64) -> (Area, f64) {
+        let titled = row.iter().any(|p| p.title.is_some());
+        let named = row.iter().any(|p| !p.x.label.is_empty());
+        let top = if titled { 26.0 } else { 8.0 };
+        let axes = Area {
+            left,
+            top,
+            right: width - RIGHT,
+            bottom: top + self.axes.1,
         };
-        (
-            self.panels.chunks(self.columns).map(frame).collect(),
-            legend,
-        )
+        (axes, axes.bottom + if named { ROOM_BELOW } else { 28.0 })
     }
 }

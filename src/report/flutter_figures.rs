@@ -1,4 +1,4 @@
-//! Frequencies and damping ratios over wind speed, with the onsets.
+//! Frequencies and damping ratios over wind speed, with the onsets; eigenvalues as the wind speed rises.
 
 use super::axis::{Axis, significant};
 use super::drawing::Drawing;
@@ -7,7 +7,7 @@ use super::legend::Entry;
 use super::panel::{Note, Panel};
 use super::series::{distinct, index_of};
 use super::style::{
-    GREY, Ink, Marker, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale,
+    BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModeBranch, ModePoint, Onset, OnsetMethod};
@@ -149,7 +149,7 @@ impl VfVg {
         self.close.add(
             BAR,
             vec![(low_m_s, 0.0), (high_m_s, 0.0)],
-            Ink::stroke(colour, None, BAR_WIDTH),
+            Ink::solid(colour, BAR_WIDTH),
         );
     }
 
@@ -184,7 +184,7 @@ impl VfVg {
 
     /// The upright line that the onset has to exceed, over the height of each panel.
     fn draw_required(&mut self, speed_m_s: f64, outcome: &Outcome) {
-        let ink = Ink::stroke(outcome_colour(outcome), None, 1.6);
+        let ink = Ink::solid(outcome_colour(outcome), 1.6);
         let drawn = self.frequency.series.iter().flat_map(|s| &s.points);
         let highest = drawn.map(|p| p.1).fold(0.0, f64::max);
         let heights = [(0.0, highest), DAMPING_WINDOW_PERCENT, NEAR_ZERO_PERCENT];
@@ -201,7 +201,7 @@ impl VfVg {
     fn explain_kinds(&mut self, onsets: &[Onset]) {
         let mut add = |text: &str, ink| self.kinds.push(Entry::new(text, ink));
         for (i, name) in self.branches.iter().enumerate() {
-            let ink = Ink::stroke(GREY, None, branch_width(i));
+            let ink = Ink::solid(GREY, branch_width(i));
             add(&ModeBranch::in_words(name), ink);
         }
         if onsets.iter().any(|o| !o.spurious_speeds_m_s.is_empty()) {
@@ -213,7 +213,7 @@ impl VfVg {
             add("onset outside the tested range", ink);
         }
         if self.close.series.iter().any(|s| s.name == BAR) {
-            add("interval of the onset", Ink::stroke(GREY, None, BAR_WIDTH));
+            add("interval of the onset", Ink::solid(GREY, BAR_WIDTH));
         }
         if self.untested {
             let ink = Ink::line(PALE_GREY, None);
@@ -313,12 +313,11 @@ fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
 }
 
 fn onset_marker(colour: &'static str, shape: Shape, hollow: bool) -> Ink {
-    Ink::Dots(Marker {
-        colour,
-        shape,
-        radius: 4.5,
+    Ink {
+        size: 4.5,
         hollow,
-    })
+        ..Ink::dots(colour, shape)
+    }
 }
 
 /// The onset in words, for the legend; numbers first, as the middle of a line that is too long is left out.
@@ -332,4 +331,42 @@ fn statement(onset: &Onset) -> String {
         ModeBranch::in_words(&onset.branch),
         onset.at.method.name(),
     )
+}
+
+const ROOTS: &str = "root locus";
+
+/// Growth rate (1/s) against frequency (Hz) of the eigenvalues of `branches`, each with an ink of its own, as the wind speed rises: right of the
+/// zero line motions grow.
+pub(super) fn root_locus<'a>(
+    branches: impl IntoIterator<Item = (&'a ModeBranch, Ink)>,
+    title: &str,
+    legend: Vec<Entry>,
+) -> Result<Figure> {
+    let mut panel = Panel::new(
+        Axis::new("Growth rate (1/s)"),
+        Axis::new("Frequency (Hz)").zero_based(),
+    );
+    panel.uprights.push((0.0, BLACK));
+    for (branch, ink) in branches {
+        let points = branch.points.iter();
+        let places = points.map(|p| (p.eigenvalue.re, p.frequency_hz));
+        panel.add(&branch.name, places.collect(), ink);
+    }
+    Drawing::stacked(ROOTS, title, vec![panel], 260.0, vec![legend])
+}
+
+/// That of a section: a colour per model, a width per branch.
+pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result<Figure> {
+    let branches = branch_names(curves)?;
+    let mut drawn = Vec::new();
+    let mut models = Vec::new();
+    for (i, model) in curves.iter().enumerate() {
+        let colour = colour(ROOTS, i)?;
+        models.push(Entry::new(&model.model, Ink::line(colour, dash(i))));
+        for branch in model.branches.iter().filter(|b| !b.points.is_empty()) {
+            let width = branch_width(index_of(&branches, &branch.name));
+            drawn.push((branch, Ink::stroke(colour, dash(i), width)));
+        }
+    }
+    root_locus(drawn, title, models)
 }

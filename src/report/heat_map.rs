@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::geometry::{Area, Px};
 use super::legend::shortened;
 use super::scene::Scene;
-use super::style::{BLACK, GREY, Stroke};
+use super::style::{BLACK, GREY, Ink};
 use crate::error::{Error, Result, ensure};
 
 /// Stops of a colour scale that rises evenly in lightness and is read by colour-blind readers (viridis, CC0).
@@ -155,8 +155,8 @@ impl HeatMap {
         }
         if let Some((column, row)) = self.chosen {
             let frame = self.cell(corner, column, row).grown(1.5);
-            scene.outline(frame, Stroke::solid("#ffffff", 4.0));
-            scene.outline(frame, Stroke::solid("#d55e00", 2.2));
+            scene.outline(frame, Ink::solid("#ffffff", 4.0));
+            scene.outline(frame, Ink::solid("#d55e00", 2.2));
         }
         self.axes(scene, corner);
         let bar = corner + Px::new(WIDTH + 16.0, 0.0);

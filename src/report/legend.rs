@@ -105,11 +105,9 @@ impl LegendLayout<'_> {
     pub(super) fn draw(&self, scene: &mut Scene, corner: Px) {
         for (entry, place) in &self.placed {
             let middle = corner + *place + Px::new(0.0, 0.5 * ROW);
-            match entry.ink {
-                Ink::Line(stroke) => {
-                    scene.polyline(&[middle, middle + Px::new(SAMPLE, 0.0)], stroke);
-                }
-                Ink::Dots(marker) => scene.marker(middle + Px::new(0.5 * SAMPLE, 0.0), marker),
+            match entry.ink.shape {
+                None => scene.polyline(&[middle, middle + Px::new(SAMPLE, 0.0)], entry.ink),
+                Some(_) => scene.marker(middle + Px::new(0.5 * SAMPLE, 0.0), entry.ink),
             }
             let baseline = Px::new(SAMPLE + 8.0, 0.36 * f64::from(SIZE));
             scene.text(middle + baseline, &entry.label, SIZE, BLACK);

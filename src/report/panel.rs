@@ -6,15 +6,17 @@ use super::geometry::{Area, Px};
 use super::labels::Labels;
 use super::scene::Scene;
 use super::series::{PlottedSeries, index_of};
-use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, Stroke};
+use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY};
 use crate::error::{Error, Result, ensure};
 
 pub(super) const TICK_SIZE: u32 = 11;
 pub(super) const LABEL_SIZE: u32 = 12;
+/// Room below the axes for the ticks and the name of the abscissa, px.
+pub(super) const ROOM_BELOW: f64 = 46.0;
 const NOTE_SIZE: u32 = 11;
 const TICK_LENGTH: f64 = 4.0;
 /// Axes and rules.
-const THIN: Stroke = Stroke::solid(BLACK, 0.9);
+const THIN: Ink = Ink::solid(BLACK, 0.9);
 /// Curves are drawn with at most this many points per px of the panel's width.
 const POINTS_PER_PX: usize = 4;
 /// Distance of a label from its point from which on a line leads to it, px.
@@ -54,14 +56,6 @@ pub(super) struct Panel {
     pub(super) level: Option<f64>,
     /// Values of x with a thin line and its colour.
     pub(super) uprights: Vec<(f64, &'static str)>,
-}
-
-/// Where the axes of a panel are inside its cell, px.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
-    pub(super) width: f64,
-    pub(super) height: f64,
-    pub(super) axes: Area,
 }
 
 impl Panel {
@@ -133,9 +127,8 @@ impl Panel {
         scale.ticks().iter().map(width).fold(0.0, f64::max)
     }
 
-    /// Draws the panel, axes labels and title included.
-    pub(super) fn draw(&self, scene: &mut Scene, frame: Frame) {
-        let area = frame.axes;
+    /// Draws the panel with its axes around `area`, their labels and the title included.
+    pub(super) fn draw(&self, scene: &mut Scene, area: Area) {
         let (x, y) = self.scales();
         let map = Map { area, x, y };
         map.draw_axes(scene);
@@ -151,19 +144,19 @@ impl Panel {
                 scene.polyline(rule, *stroke);
             }
             for series in &self.series {
-                if let Ink::Line(stroke) = series.ink {
+                if series.ink.shape.is_none() {
                     let points = thinned(&series.points, (area.right - area.left) as usize);
-                    scene.polyline(&map.all(&points), stroke);
+                    scene.polyline(&map.all(&points), series.ink);
                 }
             }
         });
         let mut labels = Labels::new(area);
         for series in &self.series {
             let points = map.all(&series.points);
-            if let Ink::Dots(marker) = series.ink {
+            if series.ink.shape.is_some() {
                 for at in points {
-                    scene.marker(at, marker);
-                    labels.occupy(at, marker.radius + 1.5);
+                    scene.marker(at, series.ink);
+                    labels.occupy(at, series.ink.size + 1.5);
                 }
             } else if !self.notes.is_empty() {
                 labels.avoid(&points);
@@ -173,11 +166,11 @@ impl Panel {
         for note in &self.notes {
             draw_note(scene, &mut labels, map.px(note.at.0, note.at.1), note);
         }
-        self.write_labels(scene, frame);
+        self.write_labels(scene, area);
     }
 
     /// The level and the uprights.
-    fn rules(&self, map: &Map) -> Vec<([Px; 2], Stroke)> {
+    fn rules(&self, map: &Map) -> Vec<([Px; 2], Ink)> {
         let Area {
             left,
             top,
@@ -190,10 +183,7 @@ impl Panel {
         });
         let upright = |(at, colour): &(f64, &'static str)| {
             let x = map.x_px(*at);
-            let dashed = Stroke {
-                dash: Some("3 3"),
-                ..Stroke::solid(colour, 0.9)
-            };
+            let dashed = Ink::stroke(colour, Some("3 3"), 0.9);
             ([Px::new(x, top), Px::new(x, bottom)], dashed)
         };
         level
@@ -202,17 +192,17 @@ impl Panel {
             .collect()
     }
 
-    fn write_labels(&self, scene: &mut Scene, frame: Frame) {
-        let middle = frame.axes.middle();
+    fn write_labels(&self, scene: &mut Scene, area: Area) {
+        let middle = area.middle();
         if !self.x.label.is_empty() {
-            let at = Px::new(middle.x, frame.height - 8.0);
+            let at = Px::new(middle.x, area.bottom + ROOM_BELOW - 8.0);
             scene.label(at, &self.x.label, LABEL_SIZE, "middle");
         }
         if !self.y.label.is_empty() {
             scene.upright_label(Px::new(20.0, middle.y), &self.y.label, LABEL_SIZE);
         }
         if let Some(title) = &self.title {
-            let at = Px::new(middle.x, frame.axes.top - 8.0);
+            let at = Px::new(middle.x, area.top - 8.0);
             scene.label(at, title, LABEL_SIZE, "middle");
         }
     }
@@ -270,7 +260,7 @@ impl Map {
             right,
             bottom,
         } = self.area;
-        let (grid, tick) = (Stroke::solid(GRID, 1.0), Stroke::solid(BLACK, 1.0));
+        let (grid, tick) = (Ink::solid(GRID, 1.0), Ink::solid(BLACK, 1.0));
         let size = f64::from(TICK_SIZE);
         for value in self.x.ticks() {
             let x = self.x_px_of_place(value);
@@ -323,7 +313,7 @@ fn draw_note(scene: &mut Scene, labels: &mut Labels, at: Px, note: &Note) {
     if distance > LEADERLESS {
         let outside = 0.5 * LEADERLESS / distance;
         let start = at + Px::new(outside * dx, outside * dy);
-        scene.polyline(&[start, end], Stroke::solid(note.colour, 0.7));
+        scene.polyline(&[start, end], Ink::solid(note.colour, 0.7));
     }
     let baseline = area.bottom - 0.34 * f64::from(NOTE_SIZE);
     let at = Px::new(area.left + 3.0, baseline);

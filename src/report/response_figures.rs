@@ -1,12 +1,12 @@
-//! Time histories.
+//! Rows of points in panels: over time, metrics of goodness of fit over the frequency, and what something costs over its size.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::entries;
 use super::panel::Panel;
 use super::series::{PlottedSeries, labels_of};
-use super::style::{Ink, colour, dash};
+use super::style::{COLOURS, Ink, Shape, colour, dash};
 use crate::error::Result;
 
 /// Histories with a common ordinate.
@@ -58,4 +58,91 @@ pub(crate) fn scaled_history_figure(
         drawn.push(drawing);
     }
     Drawing::stacked(PLACE, title, drawn, 170.0, vec![entries(&labels, ink)?])
+}
+
+/// Panels row by row, each of one metric of one force over the frequency (Hz), with the ordinate from 0 to 1 in common; series of one label share ink and legend entry.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
+pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel], columns: usize) -> Result<Figure> {
+    const PLACE: &str = "metrics";
+    let labels = labels_of(panels.iter().flat_map(|p| &p.series));
+    let line = |i: usize| Ink::nth(PLACE, i);
+    let dots = |i: usize| Ok(Ink::dots(colour(PLACE, i)?, SHAPES[i % SHAPES.len()]));
+    let mut drawn = Vec::with_capacity(panels.len());
+    for panel in panels {
+        let mut y = Axis::new("");
+        y.range = Some((0.0, 1.05));
+        let mut drawing = Panel::new(Axis::new("Frequency (Hz)").zero_based(), y);
+        drawing.title = Some(panel.y_label.clone());
+        drawing.add_labelled(&panel.series, &labels, line)?;
+        drawing.add_labelled(&panel.series, &labels, dots)?;
+        drawn.push(drawing);
+    }
+    Drawing {
+        name: PLACE,
+        title: titled(title),
+        panels: drawn,
+        columns: columns.max(1),
+        axes: (230.0, 160.0),
+        legend: vec![entries(&labels, line)?],
+    }
+    .over_one_abscissa()
+    .draw()
+}
+
+const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Square, Shape::Diamond, Shape::Cross];
+
+/// One cost over one size, both axes logarithmic.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrowthPanel {
+    /// What is done, with the exponents.
+    pub title: String,
+    /// What the size counts.
+    pub x_label: String,
+    /// Size and cost, as measured.
+    pub measured: Vec<(f64, f64)>,
+    /// Ends of the line of the exponent fitted.
+    pub fitted: Vec<(f64, f64)>,
+    /// Ends of the line of the exponent expected.
+    pub expected: Vec<(f64, f64)>,
+}
+
+/// Panels of cost over size, `columns` beside each other, with `y_label` in common.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no data and numbers that are not finite.
+pub fn growth_figure(
+    title: &str,
+    panels: &[GrowthPanel],
+    y_label: &str,
+    columns: usize,
+) -> Result<Figure> {
+    let logarithmic = |label: &str| Axis::new(label).logarithmic();
+    let inks = [
+        Ink::dots(COLOURS[0], Shape::Circle),
+        Ink::solid(COLOURS[0], 1.3),
+        Ink::stroke(COLOURS[1], Some("7 3"), 1.3),
+    ];
+    let labels = ["measured", "fitted", "by theory"].map(str::to_owned);
+    let drawn = panels.iter().map(|panel| {
+        let mut drawing = Panel::new(logarithmic(&panel.x_label), logarithmic(y_label));
+        drawing.title = Some(panel.title.clone());
+        let all = [&panel.measured, &panel.fitted, &panel.expected];
+        for ((points, ink), label) in all.into_iter().zip(inks).zip(&labels) {
+            if !points.is_empty() {
+                drawing.add(label, points.clone(), ink);
+            }
+        }
+        drawing
+    });
+    Drawing {
+        name: "cost over size",
+        title: titled(title),
+        panels: drawn.collect(),
+        columns,
+        axes: (230.0, 150.0),
+        legend: vec![entries(&labels, |i| Ok(inks[i]))?],
+    }
+    .draw()
 }

@@ -3,7 +3,7 @@
 use super::figure::Figure;
 use super::font::FAMILIES;
 use super::geometry::{Area, Px};
-use super::style::{BLACK, Marker, Shape, Stroke};
+use super::style::{BLACK, Ink, Shape};
 use quick_xml::escape::escape;
 use std::fmt::{Display, Write as _};
 use uuid::Uuid;
@@ -38,18 +38,18 @@ impl Scene {
     }
 
     /// A line through all points.
-    pub(super) fn polyline(&mut self, points: &[Px], stroke: Stroke) {
+    pub(super) fn polyline(&mut self, points: &[Px], stroke: Ink) {
         let way = path(points);
         self.add(format_args!("<path d=\"{way}\" fill=\"none\"{stroke}/>"));
     }
 
     /// An area within corners.
-    pub(super) fn polygon(&mut self, corners: &[Px], fill: &str, rim: Stroke) {
+    pub(super) fn polygon(&mut self, corners: &[Px], fill: &str, rim: Ink) {
         let way = path(corners);
         self.add(format_args!("<path d=\"{way}Z\" fill=\"{fill}\"{rim}/>"));
     }
 
-    pub(super) fn circle(&mut self, centre: Px, radius: f64, fill: &str, rim: Option<Stroke>) {
+    pub(super) fn circle(&mut self, centre: Px, radius: f64, fill: &str, rim: Option<Ink>) {
         let rim = rim.map(|r| r.to_string()).unwrap_or_default();
         let (x, y, r) = (rounded(centre.x), rounded(centre.y), rounded(radius));
         self.add(format_args!(
@@ -68,7 +68,7 @@ impl Scene {
     }
 
     /// The sides of a rectangle.
-    pub(super) fn outline(&mut self, area: Area, stroke: Stroke) {
+    pub(super) fn outline(&mut self, area: Area, stroke: Ink) {
         let sides = sides(area);
         self.add(format_args!("<rect{sides} fill=\"none\"{stroke}/>"));
     }
@@ -104,18 +104,18 @@ impl Scene {
     }
 
     /// A marker; filled ones get a white rim that keeps neighbours apart.
-    pub(super) fn marker(&mut self, at: Px, marker: Marker) {
-        let r = marker.radius;
+    pub(super) fn marker(&mut self, at: Px, marker: Ink) {
+        let r = marker.size;
         let (fill, rim) = if marker.hollow {
-            (WHITE, Stroke::solid(marker.colour, 1.6))
+            (WHITE, Ink::solid(marker.colour, 1.6))
         } else {
-            (marker.colour, Stroke::solid(WHITE, 0.8))
+            (marker.colour, Ink::solid(WHITE, 0.8))
         };
         let around = |corners: &[[f64; 2]]| -> Vec<Px> {
             let corner = |c: &[f64; 2]| at + Px::new(c[0] * r, c[1] * r);
             corners.iter().map(corner).collect()
         };
-        match marker.shape {
+        match marker.shape.unwrap_or(Shape::Circle) {
             Shape::Circle => self.circle(at, r, fill, Some(rim)),
             Shape::Square => {
                 let corners = around(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]);
@@ -126,7 +126,7 @@ impl Scene {
                 self.polygon(&corners, fill, rim);
             }
             Shape::Cross => {
-                let ink = Stroke::solid(marker.colour, 1.8);
+                let ink = Ink::solid(marker.colour, 1.8);
                 self.polyline(&around(&[[-1.0, -1.0], [1.0, 1.0]]), ink);
                 self.polyline(&around(&[[-1.0, 1.0], [1.0, -1.0]]), ink);
             }
@@ -170,11 +170,11 @@ impl Scene {
     }
 }
 
-impl Display for Stroke {
+impl Display for Ink {
     /// The attributes of an element.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { colour, width, .. } = self;
-        write!(f, " stroke=\"{colour}\" stroke-width=\"{width}\"")?;
+        let Self { colour, size, .. } = self;
+        write!(f, " stroke=\"{colour}\" stroke-width=\"{size}\"")?;
         self.dash
             .map_or(Ok(()), |d| write!(f, " stroke-dasharray=\"{d}\""))
     }

@@ -74,41 +74,17 @@ pub(super) enum Shape {
     Cross,
 }
 
-/// Colour, width in px and dashes of a line.
+/// How something is drawn, in the panel and in the legend alike: a line through the points, or separate markers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stroke {
+pub(super) struct Ink {
     pub(super) colour: &'static str,
-    pub(super) width: f64,
+    /// Width of a line, radius of a marker, px.
+    pub(super) size: f64,
     pub(super) dash: Option<&'static str>,
-}
-
-impl Stroke {
-    /// A line without dashes.
-    pub(super) const fn solid(colour: &'static str, width: f64) -> Self {
-        Self {
-            colour,
-            width,
-            dash: None,
-        }
-    }
-}
-
-/// A mark at a point; a hollow one says "with reservation". Lengths in px.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Marker {
-    pub(super) colour: &'static str,
-    pub(super) shape: Shape,
-    pub(super) radius: f64,
+    /// Outline of the markers; `None` for a line.
+    pub(super) shape: Option<Shape>,
+    /// Of a marker that says "with reservation".
     pub(super) hollow: bool,
-}
-
-/// How something is drawn, in the panel and in the legend alike.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Ink {
-    /// A line through the points.
-    Line(Stroke),
-    /// Separate markers.
-    Dots(Marker),
 }
 
 /// Width of the lines of the i-th branch, px.
@@ -118,8 +94,21 @@ pub(super) fn branch_width(i: usize) -> f64 {
 const BRANCH_WIDTHS: [f64; 3] = [1.1, 2.3, 3.4];
 
 impl Ink {
+    /// Line of the i-th model, table or series.
+    ///
+    /// # Errors
+    /// As [`colour`].
+    pub(super) fn nth(place: &str, i: usize) -> Result<Self> {
+        Ok(Self::line(colour(place, i)?, dash(i)))
+    }
+
     pub(super) fn line(colour: &'static str, dash: Option<&'static str>) -> Self {
         Self::stroke(colour, dash, 1.8)
+    }
+
+    /// A line without dashes.
+    pub(super) const fn solid(colour: &'static str, width: f64) -> Self {
+        Self::stroke(colour, None, width)
     }
 
     /// A line of a width of its own, px.
@@ -128,19 +117,19 @@ impl Ink {
         dash: Option<&'static str>,
         width: f64,
     ) -> Self {
-        Self::Line(Stroke {
+        Self {
             colour,
-            width,
+            size: width,
             dash,
-        })
+            shape: None,
+            hollow: false,
+        }
     }
 
     pub(super) fn dots(colour: &'static str, shape: Shape) -> Self {
-        Self::Dots(Marker {
-            colour,
-            shape,
-            radius: 3.2,
-            hollow: false,
-        })
+        Self {
+            shape: Some(shape),
+            ..Self::solid(colour, 3.2)
+        }
     }
 }

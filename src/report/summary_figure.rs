@@ -58,7 +58,7 @@ fn mode_of(curve: &PageCurve) -> String {
 /// Draws what stands at a speed into both panels.
 fn marks(of: &StudyPage, panels: [&mut Panel; 2]) -> Vec<Entry> {
     let mut marks = Vec::new();
-    let required = Ink::stroke(required_colour(&of.verdict), None, 1.6);
+    let required = Ink::solid(required_colour(&of.verdict), 1.6);
     for (i, panel) in panels.into_iter().enumerate() {
         let mut mark = |text: String, ink| {
             if i == 0 {
@@ -72,7 +72,7 @@ fn marks(of: &StudyPage, panels: [&mut Panel; 2]) -> Vec<Entry> {
         }
         if let Some((low, high)) = of.interval {
             panel.shaded.push((low, high));
-            let ink = Ink::stroke(PALE_GREY, None, 6.0);
+            let ink = Ink::solid(PALE_GREY, 6.0);
             mark("its 95 % interval".to_owned(), ink);
         }
         if let Some(at) = of.verdict.against.map(|r| r.speed_m_s) {

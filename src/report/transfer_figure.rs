@@ -6,7 +6,7 @@ use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
 use super::series::{distinct, index_of};
-use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
+use super::style::{BLACK, GREY, Ink, Shape};
 use crate::comparison::forces::PerModel;
 use crate::error::Result;
 
@@ -41,7 +41,7 @@ pub(crate) fn transfer_figure(
 ) -> Result<Figure> {
     const PLACE: &str = "transfer functions";
     let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.model));
-    let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
+    let ink = |i: usize| Ink::nth(PLACE, i);
     let mut panels = Vec::with_capacity(2 * plots.len());
     for plot in plots {
         for phase in [false, true] {
@@ -102,7 +102,7 @@ fn reference_ink(plot: &TransferPlot) -> Ink {
     if plot.reference_is_points {
         Ink::dots(BLACK, Shape::Circle)
     } else {
-        Ink::stroke(BLACK, None, 2.6)
+        Ink::solid(BLACK, 2.6)
     }
 }
 

@@ -1,16 +1,17 @@
-//! Static equilibria, spectra and root mean squares of the response to turbulence.
+//! Static equilibria, and the response to turbulence: spectra, root mean squares, and envelopes along the span of a bridge.
 
 use super::axis::Axis;
 use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
-use super::style::{BLACK, Ink, Shape, colour, dash};
+use super::style::{BLACK, Ink, Shape};
 use crate::aeroelastic::EquilibriumPath;
 use crate::buffeting::SpectrumCurve;
 use crate::error::Result;
 use crate::section::Dof;
 use crate::study::BuffetingStudy;
+use crate::study::bridge::BridgeBuffeting;
 
 /// Components of the turbulence in words.
 const GUSTS: [&str; 2] = ["u", "w"];
@@ -34,7 +35,7 @@ pub(crate) fn equilibrium_figure(
     path: &EquilibriumPath,
 ) -> Result<Figure> {
     const PLACE: &str = "static equilibrium";
-    let line = Ink::line(colour(PLACE, 0)?, None);
+    let line = Ink::nth(PLACE, 0)?;
     let mut panels = Vec::with_capacity(dofs.len());
     for (i, dof) in dofs.iter().enumerate() {
         let (label, factor) = ordinate(*dof, "");
@@ -64,13 +65,10 @@ pub(crate) fn equilibrium_figure(
 /// [`crate::Error::Input`] for no points and numbers that are not finite.
 pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Result<Figure> {
     const PLACE: &str = "RMS over wind speed";
-    let total = Ink::line(colour(PLACE, 0)?, None);
-    let parts = [
-        Ink::line(colour(PLACE, 1)?, dash(1)),
-        Ink::line(colour(PLACE, 2)?, dash(2)),
-    ];
+    let total = Ink::nth(PLACE, 0)?;
+    let parts = [Ink::nth(PLACE, 1)?, Ink::nth(PLACE, 2)?];
     let stepped = Ink::dots(BLACK, Shape::Diamond);
-    let bar = Ink::stroke(BLACK, None, 1.2);
+    let bar = Ink::solid(BLACK, 1.2);
     let blows = |j: usize| {
         let mut responses = study.responses.iter();
         responses.any(|r| r.rms_by_gust[j].iter().any(|x| *x > 0.0))
@@ -125,7 +123,7 @@ pub(crate) fn buffeting_spectra_figure(
 ) -> Result<Figure> {
     const PLACE: &str = "spectra";
     let logarithmic = |label: &str| Axis::new(label).logarithmic();
-    let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
+    let ink = |i: usize| Ink::nth(PLACE, i);
     let labels: Vec<String> = nodes.iter().map(|n| format!("node {n}")).collect();
     let mut legend = entries(&labels, ink)?;
     let mut panels = Vec::new();
@@ -169,4 +167,41 @@ pub(crate) fn buffeting_spectra_figure(
     }
     panels.retain(|p| !p.series.is_empty());
     Drawing::stacked(PLACE, title, panels, 150.0, vec![legend])
+}
+
+/// Motions as panels name them, with the factor to the unit.
+const MOTIONS: [(&str, f64); 3] = [
+    ("vertical y (m)", 1.0),
+    ("lateral x (m)", 1.0),
+    ("rotation θ (°)", 180.0 / std::f64::consts::PI),
+];
+
+/// Mean, and mean ± peak, of every motion along the girder.
+///
+/// # Errors
+/// [`crate::Error::Input`] for numbers that are not finite.
+pub(crate) fn envelope_figure(of: &BridgeBuffeting, title: &str) -> Result<Figure> {
+    let envelope = &of.envelope;
+    let inks = [Ink::nth("envelope", 0)?, Ink::nth("envelope", 1)?];
+    let panel = |(i, (name, factor)): (usize, (&str, f64))| {
+        let along = Axis::new("Along the girder x (m)").tight();
+        let mut panel = Panel::new(along, Axis::new(name));
+        panel.level = Some(0.0);
+        for (sign, ink) in [(0.0, inks[0]), (1.0, inks[1]), (-1.0, inks[1])] {
+            let value = |n: usize| {
+                let peak = envelope.peak_factor[n][i] * envelope.rms[n][i];
+                factor * (envelope.mean[n][i] + sign * peak)
+            };
+            let places = envelope.along_m.iter().enumerate();
+            panel.add(name, places.map(|(n, x)| (*x, value(n))).collect(), ink);
+        }
+        panel
+    };
+    let panels = MOTIONS.into_iter().enumerate().map(panel).collect();
+    let legend = vec![
+        Entry::new("mean", inks[0]),
+        Entry::new("mean ± expected peak", inks[1]),
+    ];
+    let name = "envelope along the span";
+    Drawing::stacked(name, title, panels, 130.0, vec![legend])
 }
