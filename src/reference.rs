@@ -263,9 +263,9 @@ impl ReferenceCase {
                 self.figures.len()
             )))
         });
-        let judge = |(i, figure): (usize, &ReferenceFigure)| match &values {
-            Ok(values) => self.result(figure, Some(values[i]), None),
-            Err(error) => self.result(figure, None, Some(error.to_string())),
+        let judge = |(i, figure): (usize, &ReferenceFigure)| {
+            let found = values.as_ref().map(|values| values[i]);
+            self.result(figure, found.map_err(|e| e.to_string()))
         };
         self.figures.iter().enumerate().map(judge).collect()
     }
@@ -273,9 +273,12 @@ impl ReferenceCase {
     fn result(
         &self,
         figure: &ReferenceFigure,
-        found: Option<f64>,
-        problem: Option<String>,
+        found: std::result::Result<f64, String>,
     ) -> CaseResult {
+        let (found, problem) = match found {
+            Ok(found) => (Some(found), None),
+            Err(problem) => (None, Some(problem)),
+        };
         let deviation = found.map(|found| found - figure.expected);
         let usual = || "half of the last digit given".to_owned();
         CaseResult {

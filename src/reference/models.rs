@@ -71,9 +71,20 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
     Ok(figures)
 }
 
+/// The onset of a section in the forces of a model, by eigenvalues.
+fn onset_of(
+    section: &SectionModel,
+    model: &Model,
+    speed_max_m_s: f64,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<Onset> {
+    let coupled = CoupledSection::with_model(&section.structure()?, model)?;
+    by_eigenvalues(&coupled, speed_max_m_s, tested)
+}
+
 fn onset_of_fit(model: &Model) -> Result<f64> {
-    let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, model)?;
-    Ok(by_eigenvalues(&section, 80.0, None)?.at.speed_m_s)
+    let onset = onset_of(&SectionModel::table_4_1(), model, 80.0, None)?;
+    Ok(onset.at.speed_m_s)
 }
 
 fn lags(model: &Model) -> Vec<f64> {
@@ -88,8 +99,7 @@ fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
 }
 
 fn onset_of_records(model: &Model, tested: ReducedFrequencyRange) -> Result<Onset> {
-    let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, model)?;
-    by_eigenvalues(&section, 50.0, Some(tested))
+    onset_of(&SectionModel::table_4_1(), model, 50.0, Some(tested))
 }
 
 fn discrete_onset(records: &[Record], filters: usize) -> Result<Onset> {
@@ -136,7 +146,6 @@ pub(super) fn thesis_headline() -> Result<Vec<f64>> {
 pub(super) fn random_motion() -> Result<Vec<f64>> {
     let mut section = SectionModel::iabse_1_1a();
     section.air_density_kg_m3 = 1.2;
-    let structure = section.structure()?;
     let reduced = |speed: f64| {
         let frequencies = [
             section.vertical.frequency_hz.unwrap_or(f64::NAN),
@@ -156,8 +165,7 @@ pub(super) fn random_motion() -> Result<Vec<f64>> {
     };
     let records = plan.records_from_model(&WITHOUT_ROTARY, "flat plate", 0.5)?;
     let Fitted { model, report } = fit_records(&sources(&records), &TimeFit::default(), &|_| {})?;
-    let coupled = CoupledSection::with_model(&structure, &model)?;
-    let trained = by_eigenvalues(&coupled, 120.0, Some(report.tested_range))?;
+    let trained = onset_of(&section, &model, 120.0, Some(report.tested_range))?;
     Ok(vec![
         reduced(exact.at.speed_m_s),
         exact.at.speed_m_s,
@@ -257,9 +265,9 @@ pub(super) fn fitted(table: &DerivativeTable, fit: FrequencyFit) -> Result<f64> 
         ..fit
     };
     let model = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?.model;
-    let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, &model)?;
-    let tested = Some(table.tested_range(&Dof::TWO));
-    Ok(by_eigenvalues(&section, 50.0, tested)?.at.speed_m_s)
+    Ok(onset_of_records(&model, table.tested_range(&Dof::TWO))?
+        .at
+        .speed_m_s)
 }
 
 pub(super) fn rational_ln21_5200() -> Result<Vec<f64>> {
