@@ -3,7 +3,6 @@
 mod answer;
 mod bridge;
 mod buffeting;
-mod buffeting_page;
 mod campaign;
 mod command;
 mod common;

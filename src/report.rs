@@ -33,10 +33,9 @@ mod transfer_figure;
 mod wind_figures;
 
 pub(crate) use axes_sketch::axes_sketch;
-pub(crate) use bridge_figures::bridge_roots_figure;
-pub(crate) use bridge_figures::flutter_motion_figure;
-pub(crate) use bridge_figures::modes_figure;
-pub(crate) use bridge_figures::{BridgeCurves, bridge_curves_figure};
+pub(crate) use bridge_figures::{
+    bridge_curves_figure, bridge_roots_figure, flutter_motion_figure, modes_figure,
+};
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::Figure;
 pub(crate) use flutter_figures::root_locus_figure;

@@ -1,20 +1,16 @@
 //! `aerodeck bridge`: whole bridges.
 
-mod args;
 mod buffeting;
 mod buffeting_page;
 mod convert;
 pub(super) mod demo;
 pub(in crate::cli) mod files;
 mod flutter;
-mod inputs;
-mod page;
-mod response;
 mod show;
 pub(in crate::cli) mod summary;
 mod text;
 
-pub(crate) use args::read;
+pub(crate) use files::read;
 
 use super::answer::Answer;
 use super::progress::Progress;
@@ -28,7 +24,7 @@ pub(super) enum BridgeCommand {
     ///
     /// Example: aerodeck bridge show bridge.toml --out modes
     #[command(verbatim_doc_comment)]
-    Show(args::BridgeArgs),
+    Show(files::BridgeArgs),
     Buffeting(buffeting::BridgeBuffetingArgs),
     Convert(convert::BridgeConvertArgs),
 }

@@ -1,9 +1,7 @@
 //! `aerodeck report`: one self-contained page from a folder of results; `study` and `demo` end with it.
 
 mod bridge;
-mod curves;
 pub(in crate::cli) mod folder;
-mod live;
 mod parts;
 mod printed;
 mod variables;
@@ -22,9 +20,8 @@ use crate::files::text::read_text;
 use crate::fmu::package::with_report;
 use crate::report::{PageFigure, StudyPage, rendered, sections_of, summary_figure};
 use crate::study::Study;
-use curves::curves_of;
 use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
-use parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
+use parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row, sliders};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -110,7 +107,7 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
         (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
     }
     page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
-    page.live = live::sliders(&study, read(MODEL_FILE))?;
+    page.live = sliders(&study, read(MODEL_FILE))?;
     let turbulent = read(buffeting::PAGE).filter(|_| summary.buffeting.is_some());
     let turbulent = turbulent.and_then(|bytes| String::from_utf8(bytes).ok());
     page.taken_up = turbulent

@@ -9,7 +9,8 @@ use super::panel::Panel;
 use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash, outcome_colour};
 use crate::bridge::Bridge;
 use crate::error::Result;
-use crate::flutter::{BridgeMotion, CriticalPoint, FlutterCurves, ModeBranch, ModePoint, Onset};
+use crate::flutter::{BridgeMotion, ModeBranch, ModePoint};
+use crate::study::bridge::{BridgeFlutter, NAMED_SHARE};
 use crate::verdict::Verdict;
 
 /// The motions of a shape, as the legends name them; rotations count with half the width.
@@ -75,51 +76,42 @@ fn line(branch: &ModeBranch, place: impl Fn(&ModePoint) -> (f64, f64)) -> Vec<(f
     branch.points.iter().map(place).collect()
 }
 
-/// The curves of a bridge and what is drawn of them.
-pub(crate) struct BridgeCurves<'a> {
-    pub(crate) curves: &'a FlutterCurves,
-    /// Names of the branches in colour and on top, each with a dash of its own.
-    pub(crate) shown: &'a [String],
-    /// Names of the branches in grey; of the others nothing is drawn.
-    pub(crate) others: &'a [String],
-    pub(crate) onset: Option<&'a Onset>,
-    pub(crate) verdict: &'a Verdict,
-}
-
-impl BridgeCurves<'_> {
-    /// The modes with their inks and what the legend says of them; the line of the mode that flutters is the widest.
-    fn drawn(&self) -> (Vec<(&ModeBranch, Ink)>, Vec<Entry>) {
-        let flutters = |name: &str| self.onset.is_some_and(|o| o.branch == name);
-        let place = |name: &str| self.shown.iter().take(COLOURED).position(|s| s == name);
-        let ink = |i: usize, name: &str| {
-            let width = if flutters(name) { 3.2 } else { 1.6 };
-            Ink::stroke(COLOURS[i], dash(i), width)
+/// The modes that are drawn with their inks, those with the largest shares of the energy in colour and on top, and what the legend says
+/// of them; the line of the mode that flutters is the widest.
+fn drawn(of: &BridgeFlutter) -> (Vec<(&ModeBranch, Ink)>, Vec<Entry>) {
+    let onset = of.onset().map(|o| o.branch.as_str());
+    let (shown, shares) = (of.shown_modes(onset), of.shares());
+    let place = |name: &str| shown.iter().take(COLOURED).position(|s| s == name);
+    let takes_part = |name: &str| {
+        let mut named = shares.iter().filter(|m| m.energy_share >= NAMED_SHARE);
+        shares.is_empty() || named.any(|m| format!("mode {}", m.mode) == name)
+    };
+    let ink = |i: usize, name: &str| {
+        let width = if onset == Some(name) { 3.2 } else { 1.6 };
+        Ink::stroke(COLOURS[i], dash(i), width)
+    };
+    let wanted =
+        |b: &&ModeBranch| !b.points.is_empty() && (place(&b.name).is_some() || takes_part(&b.name));
+    let branches = of.curves.branches.iter().filter(wanted);
+    let mut all: Vec<_> = branches.map(|b| (place(&b.name), b)).collect();
+    all.sort_by_key(|(place, _)| *place);
+    let entry = |(place, b): &(Option<usize>, &ModeBranch)| {
+        let flutters = if onset == Some(&b.name) {
+            " (flutters)"
+        } else {
+            ""
         };
-        let branches = self.curves.branches.iter();
-        let wanted = |b: &&ModeBranch| {
-            !b.points.is_empty() && (place(&b.name).is_some() || self.others.contains(&b.name))
-        };
-        let mut all: Vec<_> = branches
-            .filter(wanted)
-            .map(|b| (place(&b.name), b))
-            .collect();
-        all.sort_by_key(|(place, _)| *place);
-        let entry = |(place, b): &(Option<usize>, &ModeBranch)| {
-            let flutters = if flutters(&b.name) { " (flutters)" } else { "" };
-            let words = format!("{}{flutters}", b.name);
-            Some(Entry::new(words, ink((*place)?, &b.name)))
-        };
-        let mut legend: Vec<Entry> = all.iter().filter_map(entry).collect();
-        if all.iter().any(|(place, _)| place.is_none()) {
-            let others = Ink::solid(PALE_GREY, 1.0);
-            legend.push(Entry::new("other modes that take part", others));
-        }
-        let all = all.into_iter().map(|(place, branch)| {
-            let pale = Ink::solid(PALE_GREY, 1.0);
-            (branch, place.map_or(pale, |i| ink(i, &branch.name)))
-        });
-        (all.collect(), legend)
+        let words = format!("{}{flutters}", b.name);
+        Some(Entry::new(words, ink((*place)?, &b.name)))
+    };
+    let mut legend: Vec<Entry> = all.iter().filter_map(entry).collect();
+    let pale = Ink::solid(PALE_GREY, 1.0);
+    if all.iter().any(|(place, _)| place.is_none()) {
+        legend.push(Entry::new("other modes that take part", pale));
     }
+    let all = all.into_iter();
+    let all = all.map(|(place, b)| (b, place.map_or(pale, |i| ink(i, &b.name))));
+    (all.collect(), legend)
 }
 
 /// Speeds around the onset in the lowest panel, over the onset.
@@ -130,14 +122,18 @@ const CLOSE: (f64, f64) = (0.8, 1.15);
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result<Figure> {
+pub(crate) fn bridge_curves_figure(
+    of: &BridgeFlutter,
+    verdict: &Verdict,
+    title: &str,
+) -> Result<Figure> {
     let speed = || Axis::new("Wind speed V (m/s)").tight();
     let mut frequency = Panel::new(speed(), Axis::new("Frequency f (Hz)").zero_based());
     let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
     damping.y.within = Some((-5.0, 15.0));
-    let (modes, legend) = of.drawn();
+    let (modes, legend) = drawn(of);
     let mut close = None;
-    if let Some(onset) = of.onset {
+    if let Some(onset) = of.onset() {
         let at = onset.at.speed_m_s;
         let window = [CLOSE.0 * at, CLOSE.1 * at];
         let mut panel = Panel::new(speed(), Axis::new("ζ (%) at the onset"));
@@ -156,7 +152,7 @@ pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result
     let mut stated = Vec::new();
     let highest = frequency.series.iter().flat_map(|s| &s.points);
     let highest = highest.map(|p| p.1).fold(0.0, f64::max);
-    if let (Some(at), Some(outcome)) = (of.verdict.against, &of.verdict.outcome) {
+    if let (Some(at), Some(outcome)) = (verdict.against, &verdict.outcome) {
         let at = at.speed_m_s;
         let ink = Ink::solid(outcome_colour(outcome), 1.6);
         frequency.add("required", vec![(at, 0.0), (at, highest)], ink);
@@ -166,16 +162,12 @@ pub(crate) fn bridge_curves_figure(of: &BridgeCurves<'_>, title: &str) -> Result
         let words = format!("required {at} m/s: {}", outcome.words());
         stated.push(Entry::new(words, ink));
     }
-    if let Some(CriticalPoint {
-        speed_m_s,
-        frequency_hz,
-        ..
-    }) = of.onset.map(|o| &o.at)
-    {
+    if let Some(onset) = of.onset() {
+        let (speed_m_s, frequency_hz) = (onset.at.speed_m_s, onset.at.frequency_hz);
         let ink = Ink::dots(GREY, Shape::Circle);
-        frequency.add("onset", vec![(*speed_m_s, *frequency_hz)], ink);
+        frequency.add("onset", vec![(speed_m_s, frequency_hz)], ink);
         for panel in std::iter::once(&mut damping).chain(&mut close) {
-            panel.add("onset", vec![(*speed_m_s, 0.0)], ink);
+            panel.add("onset", vec![(speed_m_s, 0.0)], ink);
         }
         let words = format!("onset {speed_m_s:.3} m/s, {frequency_hz:.4} Hz");
         stated.push(Entry::new(words, ink));
@@ -212,8 +204,8 @@ fn of_crossing(modes: &[(&ModeBranch, Ink)], flutters: &str, window: [f64; 2]) -
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub(crate) fn bridge_roots_figure(of: &BridgeCurves<'_>, title: &str) -> Result<Figure> {
-    let (modes, legend) = of.drawn();
+pub(crate) fn bridge_roots_figure(of: &BridgeFlutter, title: &str) -> Result<Figure> {
+    let (modes, legend) = drawn(of);
     root_locus(modes, title, legend)
 }
 

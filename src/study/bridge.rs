@@ -13,6 +13,7 @@ mod scatter;
 mod system;
 mod untested;
 
+pub(crate) use answers::NAMED_SHARE;
 pub use answers::{
     BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
 };

@@ -4,10 +4,9 @@ use super::super::answer::Answer;
 use super::super::headline;
 use super::super::progress::Progress;
 use super::super::text_table::TextTable;
-use super::args::BridgeArgs;
 use super::buffeting_page::{self, forces, of_motion};
-use super::files::BUFFETING_PAGE;
-use super::page;
+use super::files::{BUFFETING_PAGE, BridgeArgs};
+use super::flutter::renew;
 use crate::buffeting::TurbulenceField;
 use crate::cli::common::warn;
 use crate::error::{Error, Result};
@@ -93,7 +92,7 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     }
     let text = headline::stated(&study.file.name, verdict.as_ref()) + &text;
     let answer = out.answer(text, json)?.with_outcome_of(verdict.as_ref());
-    page::renew(&folder, &file)?;
+    renew(&folder, &file)?;
     Ok(answer.passed_if(unstable.is_empty()))
 }
 

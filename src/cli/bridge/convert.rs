@@ -2,7 +2,7 @@
 
 use super::super::answer::Answer;
 use super::super::common::warn;
-use super::inputs;
+use super::summary::named;
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, ModesFormat, write_modes};
@@ -90,7 +90,7 @@ fn may_write(args: &BridgeConvertArgs, file: &BridgeFile) -> Result<()> {
         let name = path.file_name().unwrap_or_default();
         (!beside || TABLES.iter().any(|t| *t == name)) && is_target(&file.directory.join(path))
     };
-    let (expected, found) = if is_target(&args.bridge) || inputs::named(file)?.iter().any(is_read) {
+    let (expected, found) = if is_target(&args.bridge) || named(file)?.iter().any(is_read) {
         (
             "another file than those the bridge is read from",
             "one of them, which was left as it is",

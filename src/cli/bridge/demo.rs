@@ -6,8 +6,7 @@ use super::super::progress::Progress;
 use super::super::stages;
 use super::super::text::ending;
 use super::files::BRIDGE_FMU;
-use super::flutter::computed;
-use super::page;
+use super::flutter::{computed, leave};
 use super::summary::BridgeSummary;
 use super::text::{MORE, text};
 use crate::error::{Error, Result};
@@ -48,7 +47,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
         failed,
         ..BridgeSummary::new(&study, &results, &verdict)?
     };
-    page::leave(&mut summary, &mut out)?;
+    leave(&mut summary, &mut out)?;
     let written = out.commit()?;
     text.push_str(&ending(&written, MORE, progress.verbose));
     Ok(Answer::new(text, &summary)?

@@ -1,6 +1,13 @@
-//! The files that commands of a bridge leave and its page takes up, and the branches they draw in colour.
+//! A bridge file on the command line, and the files that commands of a bridge leave and its page takes up.
 
-use crate::flutter::ModeShare;
+use crate::cli::common::{folder_of, warn};
+use crate::cli::output::OutputDir;
+use crate::cli::progress::Progress;
+use crate::error::Result;
+use crate::files::bridge::BridgeFile;
+use crate::files::text::read_text;
+use crate::study::bridge::BridgeStudy;
+use std::path::{Path, PathBuf};
 
 /// The FMU of a bridge.
 pub(crate) const BRIDGE_FMU: &str = "bridge.fmu";
@@ -18,27 +25,39 @@ pub(crate) const RESPONSE_FIGURE: &str = "flutter_response";
 pub(crate) const BUFFETING_PAGE: &str = "buffeting.html";
 /// Frequencies and damping ratios as numbers.
 pub(crate) const CURVES: &str = "bridge_curves.csv";
-/// Modes that are drawn in colour.
-const SHOWN: usize = 6;
 
-/// Modes with less of the kinetic energy at the onset take no part.
-pub(crate) const NAMED_SHARE: f64 = 1e-3;
-
-/// The branches of the modes that take part in the flutter.
-pub(crate) fn taking_part(shares: &[ModeShare]) -> Vec<String> {
-    let named = shares.iter().filter(|m| m.energy_share >= NAMED_SHARE);
-    named.map(|m| format!("mode {}", m.mode)).collect()
+/// A bridge file and the folder of its results.
+#[derive(clap::Args)]
+pub(crate) struct BridgeArgs {
+    /// The bridge file (bridge.toml; see docs/bridge.md).
+    pub bridge: PathBuf,
+    /// Folder of the results; by default the folder of the bridge file.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
 }
 
-/// The branches of the modes with the largest shares of the energy, the one that flutters among them.
-pub(crate) fn shown_modes(shares: &[ModeShare], fluttering: Option<&str>) -> Vec<String> {
-    let named = |m: &ModeShare| format!("mode {}", m.mode);
-    let mut shown: Vec<String> = shares.iter().take(SHOWN).map(named).collect();
-    if let (Some(last), Some(branch)) = (shown.last().cloned(), fluttering)
-        && !shown.iter().any(|s| s == branch)
-    {
-        shown.retain(|s| *s != last);
-        shown.push(branch.to_owned());
+impl BridgeArgs {
+    /// The file as it stands there.
+    pub(super) fn text(&self) -> Result<String> {
+        read_text(&self.bridge)
     }
-    shown
+
+    /// The bridge.
+    pub(super) fn study(&self, progress: &Progress) -> Result<BridgeStudy> {
+        read(&self.bridge, progress)
+    }
+
+    /// Where its results go.
+    pub(super) fn out(&self) -> Result<OutputDir> {
+        OutputDir::new(self.out.as_deref().unwrap_or(folder_of(&self.bridge)))
+    }
+}
+
+/// The bridge of a file, with what a reader should know of it on the terminal.
+pub(crate) fn read(file: &Path, progress: &Progress) -> Result<BridgeStudy> {
+    let study = progress.during("reading the bridge", || {
+        BridgeFile::read(file).and_then(BridgeStudy::new)
+    })?;
+    warn(file, &study.warnings());
+    Ok(study)
 }

@@ -1,24 +1,24 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
-use super::super::answer::Answer;
-use super::super::figures;
-use super::super::output::OutputDir;
-use super::super::progress::Progress;
-use super::super::report::folder::{SUMMARY, is_of_a_study};
-use super::super::result_files::{beside_models, curves_csv, over_v_hat};
-use super::super::text::ending;
-use super::args::BridgeArgs;
 use super::files::{
-    CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, RESPONSE_FIGURE, ROOTS_FIGURE,
-    shown_modes, taking_part,
+    BridgeArgs, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, RESPONSE_FIGURE,
+    ROOTS_FIGURE,
 };
-use super::summary::BridgeSummary;
-use super::{inputs, page, response, text};
+use super::summary::{BridgeSummary, leave_inputs};
+use super::text;
+use crate::cli::answer::Answer;
+use crate::cli::figures;
+use crate::cli::output::OutputDir;
+use crate::cli::progress::Progress;
+use crate::cli::report::folder::{REPORT, SUMMARY, is_of_a_study};
+use crate::cli::report::{self, page_of};
+use crate::cli::result_files::{beside_models, curves_csv, over_v_hat};
+use crate::cli::text::ending;
 use crate::error::Result;
 use crate::files::text::csv_cell;
-use crate::flutter::BridgeMotion;
+use crate::flutter::{BridgeMotion, ModePoint, NodeMotion};
 use crate::report::{
-    BridgeCurves, bridge_curves_figure, bridge_roots_figure, derivatives_figure,
+    PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, derivatives_figure,
     flutter_motion_figure, scaled_history_figure,
 };
 use crate::study::bridge::{
@@ -27,10 +27,19 @@ use crate::study::bridge::{
 };
 use crate::study::derivative_lines;
 use crate::verdict::Verdict;
+use nalgebra::Complex;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Phases of an animation over one period.
 const PHASES: usize = 24;
+/// Speeds over the onset.
+const AROUND: [f64; 3] = [0.95, 1.0, 1.05];
+/// Periods that are shown, and points of each.
+const PERIODS: (usize, usize) = (16, 40);
+/// Rotation at the release, degrees.
+const RELEASED_DEG: f64 = 1.0;
 
 /// Flutter of a whole bridge: onset by tables and by model, modes that take part, V-f and V-ζ, motion at flutter, divergence
 ///
@@ -76,7 +85,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     if let Some(line) = &scatter {
         let _ = writeln!(text, "{line}");
     }
-    let inputs = inputs::leave(&args.bridge.bridge, &study.file, &mut out)?;
+    let inputs = leave_inputs(&args.bridge.bridge, &study.file, &mut out)?;
     for failed in &failed {
         let _ = writeln!(text, "failed: {failed}");
     }
@@ -91,7 +100,7 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
             ..BridgeSummary::new(&study, &results, &verdict)?
         };
         summary.comparisons.extend(scatter);
-        page::leave(&mut summary, &mut out)?;
+        leave(&mut summary, &mut out)?;
     }
     let mut json = serde_json::json!({
         "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
@@ -149,8 +158,7 @@ fn scattered(
     results: &BridgeFlutter,
     progress: &Progress,
 ) -> Result<Option<ScatteredOnset>> {
-    let onset = results.answers.last().and_then(|a| a.search.onset());
-    let (Some(scatter), Some(onset)) = (scatter, onset) else {
+    let (Some(scatter), Some(onset)) = (scatter, results.onset()) else {
         return Ok(None);
     };
     let found = progress.counting("samples of the bridge", |on_done| {
@@ -187,6 +195,28 @@ pub(super) fn computed(
     Ok((results, failed))
 }
 
+/// Leaves the summary and the page that is made from it, with the names of all files in the summary.
+pub(super) fn leave(summary: &mut BridgeSummary, out: &mut OutputDir) -> Result<()> {
+    out.stage(REPORT)?;
+    out.stage(SUMMARY)?;
+    summary.files = out.targets();
+    out.write_json(SUMMARY, "summary", summary)?;
+    report::leave(out)
+}
+
+/// Writes the report of `folder` again where it is of the bridge file with this text: it takes up what was computed since.
+pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
+    let summary = std::fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
+    let summary = serde_json::from_str::<serde_json::Value>(&summary).unwrap_or_default();
+    if summary["bridge_file"] != text {
+        return Ok(());
+    }
+    let page = page_of(folder)?;
+    let mut out = OutputDir::new(folder)?;
+    out.write(REPORT, page)?;
+    out.commit().map(drop)
+}
+
 /// Stages figures and tables.
 fn staged(
     study: &BridgeStudy,
@@ -194,37 +224,18 @@ fn staged(
     verdict: &Verdict,
     out: &mut OutputDir,
 ) -> Result<()> {
-    let answer = results.answers.last();
-    let motion = answer.and_then(|a| a.motion.as_ref());
-    let onset = answer.and_then(|a| a.search.onset());
-    let shares = motion.map_or(&[][..], |m| &m.modes);
-    let shown = shown_modes(shares, onset.map(|o| o.branch.as_str()));
-    let others = match motion {
-        Some(_) => taking_part(shares),
-        None => results
-            .curves
-            .branches
-            .iter()
-            .map(|b| b.name.clone())
-            .collect(),
-    };
-    let drawn = BridgeCurves {
-        curves: &results.curves,
-        shown: &shown,
-        others: &others,
-        onset,
-        verdict,
-    };
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
     if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
-        figures::write(FLUTTER_FIGURE, out, || bridge_curves_figure(&drawn, &title))?;
+        figures::write(FLUTTER_FIGURE, out, || {
+            bridge_curves_figure(results, verdict, &title)
+        })?;
         let title = format!("{}: eigenvalues as the wind rises", study.file.name);
-        figures::write(ROOTS_FIGURE, out, || bridge_roots_figure(&drawn, &title))?;
+        figures::write(ROOTS_FIGURE, out, || bridge_roots_figure(results, &title))?;
         let curves = std::slice::from_ref(&results.curves);
         out.write(CURVES, curves_csv(&study.file.name, curves))?;
     }
-    if let Some(panels) = response::panels(results) {
+    if let Some(panels) = panels(results) {
         let title = format!("{}: the mode that flutters", study.file.name);
         figures::write(RESPONSE_FIGURE, out, || {
             scaled_history_figure(&title, &panels, "Time t (s)", 2)
@@ -233,7 +244,7 @@ fn staged(
     for number in 0..study.sections.len() {
         write_derivatives(study, number, out)?;
     }
-    if let Some(motion) = motion {
+    if let Some(motion) = results.answers.last().and_then(|a| a.motion.as_ref()) {
         let title = format!("{}: motion at flutter", study.file.name);
         figures::write(MOTION_FIGURE, out, || {
             flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title)
@@ -284,7 +295,7 @@ fn animation_csv(motion: &BridgeMotion) -> String {
     let mut text = "phase,node,along_m,vertical,lateral,rotation\n".to_owned();
     for i in 0..PHASES {
         let phase = i as f64 / PHASES as f64;
-        let (sin, cos) = (std::f64::consts::TAU * phase).sin_cos();
+        let (sin, cos) = (TAU * phase).sin_cos();
         for n in &motion.nodes {
             let [y, x, t] = n.motion.map(|z| z[0] * cos - z[1] * sin);
             let _ = writeln!(
@@ -296,4 +307,67 @@ fn animation_csv(motion: &BridgeMotion) -> String {
         }
     }
     text
+}
+
+/// Vertical and lateral displacement (m) and rotation (degrees) of the node that turns most, by the shape at the onset and the
+/// eigenvalues at the speeds of the curves nearest to those around it; `None` where no mode that flutters was followed.
+fn panels(results: &BridgeFlutter) -> Option<Vec<TimePanel>> {
+    let onset = results.onset()?;
+    let z = displaced(results.answers.last()?.motion.as_ref()?)?;
+    let branch = results
+        .curves
+        .branches
+        .iter()
+        .find(|b| b.name == onset.branch)?;
+    let mut runs = Vec::with_capacity(AROUND.len());
+    for factor in AROUND {
+        let wanted = factor * onset.at.speed_m_s;
+        let distance = |p: &&ModePoint| (p.speed_m_s - wanted).abs();
+        let nearest = branch.points.iter();
+        let nearest = nearest.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let at_onset = factor == 1.0;
+        let (speed, lambda) = match at_onset {
+            true => (
+                onset.at.speed_m_s,
+                Complex::new(0.0, TAU * onset.at.frequency_hz),
+            ),
+            false => {
+                let lambda = nearest.eigenvalue;
+                (nearest.speed_m_s, Complex::new(lambda.re, lambda.im))
+            }
+        };
+        let percent = 100.0 * (speed / onset.at.speed_m_s - 1.0);
+        let label = match at_onset {
+            true => format!("{speed:.1} m/s, the onset"),
+            false => format!("{speed:.1} m/s ({percent:+.1} %)"),
+        };
+        runs.push((label, lambda));
+    }
+    let period = TAU / runs[0].1.im;
+    let names = ["vertical y (m)", "lateral x (m)", "rotation θ (°)"];
+    let panel = |(i, name): (usize, &str)| TimePanel {
+        y_label: name.to_owned(),
+        series: runs
+            .iter()
+            .map(|(label, lambda)| {
+                let points = (0..=PERIODS.0 * PERIODS.1).map(|n| {
+                    let t = period * n as f64 / PERIODS.1 as f64;
+                    (t, (z[i] * (lambda * t).exp()).re)
+                });
+                PlottedSeries::new(label.clone(), points.collect())
+            })
+            .collect(),
+    };
+    Some(names.into_iter().enumerate().map(panel).collect())
+}
+
+/// Motion of the node that turns most, with that rotation 1° and real.
+fn displaced(motion: &BridgeMotion) -> Option<[Complex<f64>; 3]> {
+    let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
+    let turns = |n: &&NodeMotion| complex(n.motion[2]).norm();
+    let nodes = motion.nodes.iter();
+    let most = nodes.max_by(|a, b| turns(a).total_cmp(&turns(b)))?;
+    let [y, x, theta] = most.motion.map(complex);
+    let unit = theta / RELEASED_DEG.to_radians();
+    Some([y / unit, x / unit, theta / unit * 1f64.to_degrees()])
 }

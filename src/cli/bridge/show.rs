@@ -4,7 +4,7 @@ use super::super::answer::Answer;
 use super::super::figures;
 use super::super::progress::Progress;
 use super::super::text_table::TextTable;
-use super::args::BridgeArgs;
+use super::files::BridgeArgs;
 use crate::error::{Result, counted};
 use crate::report::modes_figure;
 use std::fmt::Write as _;

@@ -1,12 +1,11 @@
 //! The onset card of a bridge, in words.
 
 use super::super::common::speed_or;
-use super::files::NAMED_SHARE;
 use crate::cli::headline;
 use crate::cli::text::{figures, of_onsets};
 use crate::error::counted;
 use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
-use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
+use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy, NAMED_SHARE};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 

@@ -1,12 +1,11 @@
 //! The page of a whole bridge, from the folder that `bridge flutter` or `demo --bridge` left.
 
-use super::curves::curves_of;
 use super::folder::{SUMMARY, digest, parsed};
-use super::parts::{card, first_derivatives, known, of_svg, round, row, sentence_row};
+use super::parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row};
 use super::variables::variables_of;
 use crate::cli::bridge::files::{
     BRIDGE_FMU, BUFFETING_PAGE, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE,
-    NAMED_SHARE, RESPONSE_FIGURE, ROOTS_FIGURE, shown_modes,
+    RESPONSE_FIGURE, ROOTS_FIGURE,
 };
 use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
 use crate::error::Result;
@@ -15,7 +14,7 @@ use crate::flutter::ModeShare;
 use crate::report::{
     PageCurve, PageFigure, PageSection, StudyPage, rendered, sections_of, summary_figure,
 };
-use crate::study::bridge::LeftOut;
+use crate::study::bridge::{LeftOut, NAMED_SHARE};
 use std::path::Path;
 
 /// The page of the results in `folder`, whose summary is `text`.
@@ -31,9 +30,6 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
         own.then(|| std::fs::read(folder.join(name)).ok()).flatten()
     };
     let text_of = |name: &str| read(name).and_then(|bytes| String::from_utf8(bytes).ok());
-    let route = facts.flutter.answers.last();
-    let shares = route.and_then(|r| r.motion.as_ref());
-    let shares = shares.map_or(&[][..], |m| &m.modes);
     // found in the order of the routes, the model last
     let own = facts.onsets.last();
     let answers = facts.flutter.answers.iter();
@@ -55,7 +51,7 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
         onsets: facts.onsets.iter().map(row).chain(without).collect(),
         comparisons: facts.comparisons.clone(),
         sections: vec![
-            taking_part(shares),
+            taking_part(facts.flutter.shares()),
             fewer(&facts.flutter.left_out, own.map(|o| o.at.speed_m_s)),
         ],
         appendix: vec![data(&facts), modes(&facts)],
@@ -74,10 +70,8 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
     page.sections.retain(|s| !s.rows.is_empty());
     if let Some(curves) = text_of(CURVES) {
         let (speeds, curves) = curves_of(&curves, "")?;
-        (page.speeds, page.curves) = (
-            speeds,
-            chosen(curves, &shown_modes(shares, own.map(|o| o.branch.as_str()))),
-        );
+        let shown = facts.flutter.shown_modes(own.map(|o| o.branch.as_str()));
+        (page.speeds, page.curves) = (speeds, chosen(curves, &shown));
     }
     page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
     if read(BRIDGE_FMU).is_some() {

@@ -1,8 +1,16 @@
-//! Parts that the pages of a section and of a bridge share.
+//! Parts of the pages of a section and of a bridge.
 
+use crate::cli::result_files::CURVES;
 use crate::cli::text::interval;
+use crate::error::{Error, Result};
 use crate::flutter::{ModeBranch, Onset, OnsetInterval};
-use crate::report::PageFigure;
+use crate::fmu::package::live_module;
+use crate::report::{PageCurve, PageFigure};
+use crate::study::Study;
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::json;
+use std::collections::BTreeMap;
 
 /// The ends of an interval that is known.
 pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
@@ -109,4 +117,69 @@ pub(super) fn of_svg(text: &str, title: &str, caption: &'static str) -> Option<P
         caption,
         svg,
     })
+}
+
+/// Wind speeds and curves of `curves.csv`; `own` is the model of the answer.
+pub(super) fn curves_of(text: &str, own: &str) -> Result<(Vec<f64>, Vec<PageCurve>)> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let broken =
+        |found: String| Error::input(CURVES, "curves as `aerodeck study` writes them", found);
+    let mut points: Vec<(String, String, f64, f64, f64)> = Vec::new();
+    for row in reader.records() {
+        let row = row.map_err(|e| broken(e.to_string()))?;
+        let number = |i: usize| {
+            let field = row.get(i).unwrap_or("");
+            field
+                .parse::<f64>()
+                .map_err(|_| broken(format!("`{field}`")))
+        };
+        let name = |i: usize| row.get(i).unwrap_or("").to_owned();
+        points.push((name(0), name(1), number(2)?, number(3)?, number(4)?));
+    }
+    let mut speeds: Vec<f64> = points.iter().map(|p| p.2).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let (mut models, mut branches) = (Vec::<String>::new(), Vec::<String>::new());
+    let place = |names: &mut Vec<String>, name: &String| {
+        names.iter().position(|n| n == name).unwrap_or_else(|| {
+            names.push(name.clone());
+            names.len() - 1
+        })
+    };
+    let mut curves: BTreeMap<(usize, usize), PageCurve> = BTreeMap::new();
+    for (model, branch, speed, frequency, damping) in &points {
+        let at = (place(&mut models, model), place(&mut branches, branch));
+        let curve = curves.entry(at).or_insert_with(|| PageCurve {
+            model: at.0,
+            branch: at.1,
+            own: model == own,
+            label: format!("{model}, {branch}"),
+            frequency: vec![None; speeds.len()],
+            damping: vec![None; speeds.len()],
+        });
+        let i = speeds.partition_point(|v| v < speed);
+        curve.frequency[i] = Some(*frequency);
+        curve.damping[i] = Some(100.0 * damping);
+    }
+    Ok((speeds, curves.into_values().collect()))
+}
+
+/// The sliders for the exported model of a study: the request that is asked first, as `crate::live` takes it, and the module that
+/// answers; `None` where there is no such model, or no module to ask.
+pub(super) fn sliders(study: &Study, model: Option<Vec<u8>>) -> Result<Option<String>> {
+    let (Some(model), Some(module)) = (model, live_module()?) else {
+        return Ok(None);
+    };
+    let range = study.speeds();
+    let sliders = json!({
+        "module": BASE64_STANDARD.encode(module),
+        "model": String::from_utf8_lossy(&model),
+        "section": study.section,
+        "speed_min_m_s": range.speed_min_m_s,
+        "speed_max_m_s": range.speed_max_m_s,
+        "speeds": range.speeds,
+    });
+    Ok(Some(sliders.to_string()))
 }

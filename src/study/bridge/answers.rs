@@ -6,10 +6,10 @@ use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, MovedOnset, Onset, OnsetInterval,
-    OnsetSearch, UnwantedGrowth, divergence_speed, divergence_with_forces, find_onset,
-    find_onset_of_modes, motion_at_onset, pk_onset, static_deflection, static_part, trace_modes,
-    unwanted_growth_below,
+    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, ModeShare, MovedOnset, Onset,
+    OnsetInterval, OnsetSearch, UnwantedGrowth, divergence_speed, divergence_with_forces,
+    find_onset, find_onset_of_modes, motion_at_onset, pk_onset, static_deflection, static_part,
+    trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{ModesLeftOut, UntestedParts};
@@ -18,6 +18,11 @@ use std::sync::Arc;
 
 /// Modes below this share of the energy are left out together, in turn for each number.
 const SHARES: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
+
+/// Modes with less of the kinetic energy at the onset take no part.
+pub(crate) const NAMED_SHARE: f64 = 1e-3;
+/// Modes that are drawn in colour.
+const SHOWN: usize = 6;
 
 /// One route to the onset.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -87,10 +92,33 @@ pub struct BridgeFlutter {
 }
 
 impl BridgeFlutter {
-    /// The interval of the onset by the models, as an FMU states it.
+    /// The onset by the models.
+    pub fn onset(&self) -> Option<&Onset> {
+        self.answers.last()?.search.onset()
+    }
+
+    /// Its interval, as an FMU states it.
     pub fn interval(&self) -> Option<OnsetInterval> {
-        let by_model = self.answers.last()?;
-        Some(by_model.search.onset()?.interval.clone())
+        Some(self.onset()?.interval.clone())
+    }
+
+    /// The modes in the motion by the models, by their share of the energy; none where there is no motion.
+    pub(crate) fn shares(&self) -> &[ModeShare] {
+        let motion = self.answers.last().and_then(|a| a.motion.as_ref());
+        motion.map_or(&[], |m| &m.modes)
+    }
+
+    /// The branches of the modes with the largest shares of the energy, the one that flutters among them.
+    pub(crate) fn shown_modes(&self, fluttering: Option<&str>) -> Vec<String> {
+        let named = |m: &ModeShare| format!("mode {}", m.mode);
+        let mut shown: Vec<String> = self.shares().iter().take(SHOWN).map(named).collect();
+        if let (Some(last), Some(branch)) = (shown.last().cloned(), fluttering)
+            && !shown.iter().any(|s| s == branch)
+        {
+            shown.retain(|s| *s != last);
+            shown.push(branch.to_owned());
+        }
+        shown
     }
 
     /// All onsets found, one a route at most.
