@@ -125,36 +125,6 @@ impl Citation {
     }
 }
 
-/// One reference figure of a case.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ReferenceFigure {
-    quantity: String,
-    /// Empty for a dimensionless figure.
-    unit: String,
-    expected: f64,
-    /// Decimals to which the reference is given.
-    decimals: usize,
-    /// How far off a result may be; left out, half of the last digit.
-    within: Option<f64>,
-    /// Why so far.
-    reason: Option<String>,
-    /// Left out, that of the case.
-    source: Option<Citation>,
-    /// Whether it stands in the short table of the README.
-    #[serde(default)]
-    headline: bool,
-}
-
-impl ReferenceFigure {
-    /// Allowed deviation in the unit of the figure.
-    fn allowed(&self) -> f64 {
-        // half a digit, and the rounding of the comparison itself
-        let last_digit = 0.5 * 10f64.powi(-(self.decimals as i32)) * (1.0 + 1e-9);
-        self.within.unwrap_or(last_digit)
-    }
-}
-
 /// A reference case: what is computed and the figures it should give.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -164,40 +134,88 @@ struct ReferenceCase {
     /// What is computed, in words.
     what: String,
     source: Citation,
-    figures: Vec<ReferenceFigure>,
+    figures: Vec<CaseResult>,
 }
 
-/// One figure after the computation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// One figure of a case and, after the computation, what came of it; files state the figure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct CaseResult {
     /// Name of the case.
+    #[serde(skip_deserializing)]
     pub name: String,
     /// What is computed, in words.
+    #[serde(skip_deserializing)]
     pub what: String,
     /// The figure.
     pub quantity: String,
-    /// Its unit.
+    /// Its unit; empty for a dimensionless figure.
     pub unit: String,
     /// The reference.
     pub expected: f64,
     /// Decimals to which the reference is given.
     pub decimals: usize,
     /// What was computed; `None` when the computation failed.
+    #[serde(skip_deserializing)]
     pub found: Option<f64>,
     /// `found − expected`.
+    #[serde(skip_deserializing)]
     pub deviation: Option<f64>,
-    /// Allowed deviation.
+    /// Allowed deviation; left out in a file, half of the last digit.
+    #[serde(rename(deserialize = "within"), default = "unstated")]
     pub tolerance: f64,
     /// Reason of the tolerance.
+    #[serde(default = "usual_reason")]
     pub reason: String,
     /// Whether the deviation is within the tolerance.
+    #[serde(skip_deserializing)]
     pub passed: bool,
-    /// Whose figure it is.
+    /// Whose figure it is; left out in a file, that of the case.
+    #[serde(default = "of_the_case")]
     pub source: Citation,
     /// Whether it stands in the short table of the README.
+    #[serde(default)]
     pub headline: bool,
     /// Why the computation failed, if it did.
+    #[serde(skip_deserializing)]
     pub problem: Option<String>,
+}
+
+fn unstated() -> f64 {
+    f64::NAN
+}
+
+fn usual_reason() -> String {
+    "half of the last digit given".to_owned()
+}
+
+fn of_the_case() -> Citation {
+    Citation::Stated(String::new())
+}
+
+impl CaseResult {
+    /// Judged by what was computed, or by why nothing was.
+    fn judged(self, found: std::result::Result<f64, String>) -> Self {
+        // half a digit, and the rounding of the comparison itself
+        let last_digit = 0.5 * 10f64.powi(-(self.decimals as i32)) * (1.0 + 1e-9);
+        let tolerance = match self.tolerance.is_nan() {
+            true => last_digit,
+            false => self.tolerance,
+        };
+        let (found, problem) = match found {
+            Ok(found) => (Some(found), None),
+            Err(problem) => (None, Some(problem)),
+        };
+        let deviation = found.map(|found| found - self.expected);
+        Self {
+            found,
+            deviation,
+            tolerance,
+            passed: deviation.is_some_and(|d| d.abs() <= tolerance),
+            problem,
+            ..self
+        }
+    }
 }
 
 /// The cases of the files, in the order of [`COMPUTATIONS`].
@@ -263,40 +281,18 @@ impl ReferenceCase {
                 self.figures.len()
             )))
         });
-        let judge = |(i, figure): (usize, &ReferenceFigure)| {
+        let judge = |(i, figure): (usize, &CaseResult)| {
             let found = values.as_ref().map(|values| values[i]);
-            self.result(figure, found.map_err(|e| e.to_string()))
+            let own = figure.source != of_the_case();
+            let of = CaseResult {
+                name: self.name.clone(),
+                what: self.what.clone(),
+                source: if own { &figure.source } else { &self.source }.clone(),
+                ..figure.clone()
+            };
+            of.judged(found.map_err(|e| e.to_string()))
         };
         self.figures.iter().enumerate().map(judge).collect()
-    }
-
-    fn result(
-        &self,
-        figure: &ReferenceFigure,
-        found: std::result::Result<f64, String>,
-    ) -> CaseResult {
-        let (found, problem) = match found {
-            Ok(found) => (Some(found), None),
-            Err(problem) => (None, Some(problem)),
-        };
-        let deviation = found.map(|found| found - figure.expected);
-        let usual = || "half of the last digit given".to_owned();
-        CaseResult {
-            name: self.name.clone(),
-            what: self.what.clone(),
-            quantity: figure.quantity.clone(),
-            unit: figure.unit.clone(),
-            expected: figure.expected,
-            decimals: figure.decimals,
-            found,
-            deviation,
-            tolerance: figure.allowed(),
-            reason: figure.reason.clone().unwrap_or_else(usual),
-            passed: deviation.is_some_and(|d| d.abs() <= figure.allowed()),
-            source: figure.source.as_ref().unwrap_or(&self.source).clone(),
-            headline: figure.headline,
-            problem,
-        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::flutter::{
     FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
     find_onset, pk_onset, quasi_pk_mode, sanity_lines, static_part,
 };
-use crate::reference::{CaseResult, Citation, ReferenceCase, ReferenceFigure};
+use crate::reference::{CaseResult, Citation};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -21,44 +21,41 @@ impl UserCase {
     /// Computes every figure. A computation that fails is a result that has not passed.
     pub(crate) fn run(&self) -> Vec<CaseResult> {
         let loaded = LoadedCase::new(self).map_err(|e| e.to_string());
-        let case = ReferenceCase {
-            name: self.name.clone(),
-            what: self.what.clone(),
-            source: Citation::Stated(String::new()),
-            figures: self.figures.iter().map(UserFigure::stated).collect(),
-        };
-        let judge = |(figure, wanted): (&ReferenceFigure, &UserFigure)| {
+        let judge = |figure: &UserFigure| {
             let found = loaded.as_ref().map_err(Clone::clone);
-            let found = found.and_then(|loaded| loaded.figure(wanted).map_err(|e| e.to_string()));
-            case.result(figure, found)
+            let found = found.and_then(|loaded| loaded.figure(figure).map_err(|e| e.to_string()));
+            self.stated(figure).judged(found)
         };
-        case.figures.iter().zip(&self.figures).map(judge).collect()
+        self.figures.iter().map(judge).collect()
     }
-}
 
-impl UserFigure {
-    /// What is expected, as the files of this crate state it.
-    fn stated(&self) -> ReferenceFigure {
-        let (name, unit) = self.quantity.words();
+    fn stated(&self, figure: &UserFigure) -> CaseResult {
+        let (name, unit) = figure.quantity.words();
         let mut quantity = name.to_owned();
-        if let (Some(dof), Some(speed)) = (self.dof, self.speed_m_s) {
+        if let (Some(dof), Some(speed)) = (figure.dof, figure.speed_m_s) {
             quantity = format!("{} at {speed} m/s: {name}", dof.name());
-        } else if let Some(route) = self.route {
+        } else if let Some(route) = figure.route {
             quantity = format!("{name} ({})", route.name());
         }
         // as many digits as the tolerance makes sense of, and those of what was expected
-        let meant = (-self.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
-        let written = self.expected.to_string();
+        let meant = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
+        let written = figure.expected.to_string();
         let written = written.split_once('.').map_or(0, |(_, part)| part.len());
-        ReferenceFigure {
+        CaseResult {
+            name: self.name.clone(),
+            what: self.what.clone(),
             quantity,
             unit: unit.into(),
-            expected: self.expected,
+            expected: figure.expected,
             decimals: meant.max(written.min(12)),
-            within: Some(self.tolerance),
-            reason: Some(self.reason.clone()),
-            source: Some(Citation::Stated(self.source.clone())),
+            found: None,
+            deviation: None,
+            tolerance: figure.tolerance,
+            reason: figure.reason.clone(),
+            passed: false,
+            source: Citation::Stated(figure.source.clone()),
             headline: true,
+            problem: None,
         }
     }
 }
