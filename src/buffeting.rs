@@ -20,7 +20,7 @@ mod time;
 pub use crate::aerodynamics::GustComponent;
 pub use admittance::Admittance;
 pub use coherence::Coherence;
-pub(crate) use covariance::ModalCovariance;
+pub(crate) use covariance::rms_of;
 pub(crate) use frequency::FrequencyDomain;
 pub(crate) use periodic::span_ensemble;
 pub use periodic::{SpanEnsemble, SpanPlan, SpanRecord, span_record};

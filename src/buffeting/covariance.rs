@@ -12,24 +12,19 @@ const GAUSS: f64 = 0.577_350_269_189_625_8;
 /// Intervals that are summed together.
 const TOGETHER: usize = 32;
 
-/// Covariances of the mass-normalised modal coordinates and of those of dampers, of their rates and of their accelerations.
-#[derive(Debug, Clone)]
-pub(crate) struct ModalCovariance {
-    orders: [DMatrix<f64>; 3],
-}
-
-impl ModalCovariance {
+impl FrequencyDomain<'_> {
+    /// Covariances of the mass-normalised modal coordinates and of those of dampers, of their rates and of their accelerations:
     /// `∫ ω²ʲ Re S_η df`, by two points of Gauss between the frequencies that show every resonance (within 0.1 % of the adaptive
     /// integral of single nodes).
     ///
     /// # Errors
     /// Those of the spectra.
-    pub(crate) fn new(domain: &FrequencyDomain<'_>) -> Result<Self> {
-        let count = domain.problem.structure.dofs.len();
+    pub(crate) fn modal_covariances(&self) -> Result<[DMatrix<f64>; 3]> {
+        let count = self.problem.structure.dofs.len();
         let unit = DMatrix::<Complex<f64>>::identity(count, count);
         let zero =
             || -> [DMatrix<f64>; 3] { std::array::from_fn(|_| DMatrix::zeros(count, count)) };
-        let frequencies = domain.resolved_hz();
+        let frequencies = self.resolved_hz();
         let intervals: Vec<&[f64]> = frequencies.windows(2).collect();
         let chunks: Vec<_> = intervals.chunks(TOGETHER).collect();
         let sums = threads::each(&chunks, true, |some| {
@@ -37,7 +32,7 @@ impl ModalCovariance {
             for ends in *some {
                 let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
                 for f in [middle - GAUSS * half, middle + GAUSS * half] {
-                    let spectrum = spectrum(domain, f, &unit)?;
+                    let spectrum = spectrum(self, f, &unit)?;
                     let square = (TAU * f).powi(2);
                     for (sum, factor) in sums.iter_mut().zip([1.0, square, square * square]) {
                         *sum += &spectrum * (half * factor);
@@ -53,21 +48,20 @@ impl ModalCovariance {
                 *total += sum;
             }
         }
-        Ok(Self { orders })
+        Ok(orders)
     }
+}
 
-    /// Root mean square of `Σ row_m η_m`, of its rate and of its acceleration.
-    pub(crate) fn rms(&self, row: &[f64]) -> [f64; 3] {
-        let of = |c: &DMatrix<f64>| -> f64 {
-            let columns = c.column_iter().zip(row);
-            let sum = columns.map(|(column, b)| {
-                let each = column.iter().zip(row);
-                b * each.map(|(c, a)| a * c).sum::<f64>()
-            });
-            sum.sum::<f64>().max(0.0).sqrt()
-        };
-        [0, 1, 2].map(|i| of(&self.orders[i]))
-    }
+/// Root mean square of `Σ row_m η_m`, of its rate and of its acceleration, by the covariances of the coordinates.
+pub(crate) fn rms_of(covariances: &[DMatrix<f64>; 3], row: &[f64]) -> [f64; 3] {
+    covariances.each_ref().map(|covariance| {
+        let columns = covariance.column_iter().zip(row);
+        let sum = columns.map(|(column, b)| {
+            let each = column.iter().zip(row);
+            b * each.map(|(c, a)| a * c).sum::<f64>()
+        });
+        sum.sum::<f64>().max(0.0).sqrt()
+    })
 }
 
 /// Real part of the one-sided spectra of the modal coordinates: with `w_n` the answer of all modes to a gust at node `n`,

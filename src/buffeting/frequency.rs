@@ -4,7 +4,7 @@ use super::coherence::coherent_power;
 use super::problem::BuffetingProblem;
 use super::quadrature::integrate;
 use super::response::{BuffetingResponse, SpanResponse, SpectrumCurve, by_node, part};
-use super::stability::{FEW, Turning, turning};
+use super::stability::{FEW, turning};
 use crate::aerodynamics::GustComponent;
 use crate::error::{Error, Result};
 use crate::flutter::{impedance, solve_complex};
@@ -153,7 +153,10 @@ impl BuffetingProblem<'_> {
 pub(crate) struct FrequencyDomain<'a> {
     pub(super) problem: &'a BuffetingProblem<'a>,
     pub(super) speed_m_s: f64,
-    turned: Turning,
+    /// Motions that grow.
+    pub(crate) growing: usize,
+    /// Frequencies of resonance, Hz, and half of the half-power width of each, negative where the motion grows.
+    resonances_hz: Vec<(f64, f64)>,
 }
 
 impl<'a> FrequencyDomain<'a> {
@@ -163,7 +166,7 @@ impl<'a> FrequencyDomain<'a> {
     /// Those of [`Self::turned`]; [`Error::Unstable`] when the structure is unstable at this speed.
     pub(crate) fn new(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
         let domain = Self::turned(problem, speed_m_s)?;
-        match domain.growing() {
+        match domain.growing {
             0 => Ok(domain),
             growing => Err(problem.unstable(growing, &domain.growth(), speed_m_s)),
         }
@@ -174,16 +177,13 @@ impl<'a> FrequencyDomain<'a> {
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at a `K`; [`Error::Numerical`] at an onset itself.
     pub(crate) fn turned(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
+        let (growing, resonances_hz) = turning(&problem.structure, problem.model(), speed_m_s)?;
         Ok(Self {
             problem,
             speed_m_s,
-            turned: turning(&problem.structure, problem.model(), speed_m_s)?,
+            growing,
+            resonances_hz,
         })
-    }
-
-    /// Motions that grow.
-    pub(crate) fn growing(&self) -> usize {
-        self.turned.growing
     }
 
     /// Root mean squares of a section, the variances integrated over all frequencies to 1e-8. `tested` is the range of reduced frequencies
@@ -338,7 +338,7 @@ impl<'a> FrequencyDomain<'a> {
 
     /// Resonances, Hz, and half of the half-power width of each.
     fn resonances_below(&self, last_hz: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let all = self.turned.resonances_hz.iter().copied();
+        let all = self.resonances_hz.iter().copied();
         all.filter(move |(hertz, _)| *hertz < last_hz)
     }
 
@@ -351,7 +351,7 @@ impl<'a> FrequencyDomain<'a> {
 
     /// Where motions grow, in words, and whether tables know of it.
     fn growth(&self) -> String {
-        let growing = self.turned.resonances_hz.iter().filter(|r| r.1 < 0.0);
+        let growing = self.resonances_hz.iter().filter(|r| r.1 < 0.0);
         let known = self.problem.model().known_range();
         let one = |(hertz, _): &(f64, f64)| {
             let k = ReducedFrequency::from_hertz(

@@ -30,19 +30,11 @@ const MAX_HALVINGS: usize = 48;
 /// Distance from a whole number that the count may have.
 const WHOLE: f64 = 0.2;
 
-/// What the turning of the determinant over all frequencies tells.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Turning {
-    /// Roots with positive real part.
-    pub growing: usize,
-    /// Frequencies of resonance, Hz, rising, and half of the half-power width of each, Hz: negative where the motion grows.
-    pub resonances_hz: Vec<(f64, f64)>,
-}
-
 /// A frequency, Hz, and the determinant over its size there.
 type PhaseAt = (f64, Complex<f64>);
 
-/// The turning of the determinant at a wind speed.
+/// What the turning of the determinant over all frequencies tells at a wind speed: how many roots have a positive real part, and the
+/// frequencies of resonance, Hz, rising, with half of the half-power width of each, Hz, negative where the motion grows.
 ///
 /// # Errors
 /// [`Error::Input`] for a speed that is not positive; [`Error::Numerical`] at an onset itself, where the impedance is
@@ -51,7 +43,7 @@ pub(crate) fn turning(
     structure: &Structure,
     model: &dyn Transfer,
     speed_m_s: f64,
-) -> Result<Turning> {
+) -> Result<(usize, Vec<(f64, f64)>)> {
     positive("wind speed", speed_m_s)?;
     let at = |f: f64| -> Result<PhaseAt> {
         Ok((f, phase(impedance(structure, model, speed_m_s, TAU * f)?)))
@@ -76,10 +68,7 @@ pub(crate) fn turning(
             "stability at {speed_m_s} m/s: the impedance turns by {turned:.3} rad, no whole number of half turns"
         )));
     }
-    Ok(Turning {
-        growing: count.round().max(0.0) as usize,
-        resonances_hz: resonances(&passed),
-    })
+    Ok((count.round().max(0.0) as usize, resonances(&passed)))
 }
 
 /// Frequencies of the first pass, rising.
@@ -188,7 +177,7 @@ mod tests {
 
     fn count(model: &dyn Transfer, speed: f64) -> usize {
         let structure = SectionModel::iabse_1_1a().structure().unwrap();
-        turning(&structure, model, speed).unwrap().growing
+        turning(&structure, model, speed).unwrap().0
     }
 
     /// Onset 77.48 m/s, divergence 90.466 m/s, both computed independently.
@@ -221,11 +210,11 @@ mod tests {
             assert_eq!(count(&jones, speed), unstable, "{speed}");
         }
         let structure = SectionModel::iabse_1_1a().structure().unwrap();
-        let found = turning(&structure, &jones, 20.0).unwrap();
+        let (_, resonances_hz) = turning(&structure, &jones, 20.0).unwrap();
         let roots = section.at(20.0).unwrap().eigenvalues().unwrap();
         for root in roots.iter().filter(|z| z.im > 0.0) {
             let near = |(hertz, half): &(f64, f64)| (hertz - root.im / TAU).abs() < 0.6 * half;
-            assert!(found.resonances_hz.iter().any(near), "{root}");
+            assert!(resonances_hz.iter().any(near), "{root}");
         }
     }
 }

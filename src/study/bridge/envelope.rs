@@ -3,11 +3,12 @@
 use super::BridgeStudy;
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
-use crate::buffeting::{FrequencyDomain, ModalCovariance, peak_factor};
+use crate::buffeting::{FrequencyDomain, peak_factor, rms_of};
 use crate::error::{Error, Result};
 use crate::files::bridge::read_section_forces;
 use crate::flutter::static_deflection;
 use crate::units::ReducedFrequency;
+use nalgebra::DMatrix;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -51,14 +52,14 @@ pub(super) fn envelope(
     duration_s: f64,
     forces: Option<&Path>,
 ) -> Result<SpanEnvelope> {
-    let covariance = ModalCovariance::new(domain)?;
+    let covariances = domain.modal_covariances()?;
     let bridge = study.by_table.as_ref().unwrap_or(&study.by_model);
     let nodes: Vec<usize> = (0..bridge.nodes.len()).collect();
     let shapes = bridge.shapes_at(&nodes);
     let moved = |n: &usize| -> [[f64; 3]; 3] {
         std::array::from_fn(|i| {
             let row: Vec<f64> = shapes.row(3 * n + i).iter().copied().collect();
-            covariance.rms(&row)
+            rms_of(&covariances, &row)
         })
     };
     let rms: Vec<[[f64; 3]; 3]> = nodes.iter().map(moved).collect();
@@ -78,7 +79,7 @@ pub(super) fn envelope(
             Some(path) => section_forces(
                 &study.file.directory.join(path),
                 bridge,
-                &covariance,
+                &covariances,
                 duration_s,
             )?,
             None => Vec::new(),
@@ -97,7 +98,7 @@ fn peak(rms: [f64; 3], duration_s: f64) -> f64 {
 fn section_forces(
     path: &Path,
     bridge: &Bridge,
-    covariance: &ModalCovariance,
+    covariances: &[DMatrix<f64>; 3],
     duration_s: f64,
 ) -> Result<Vec<SectionForceResponse>> {
     let forces = read_section_forces(path)?;
@@ -111,7 +112,7 @@ fn section_forces(
                 })?;
                 Ok(stated[i] / m.generalised_mass.sqrt())
             });
-            let rms = covariance.rms(&row.collect::<Result<Vec<f64>>>()?);
+            let rms = rms_of(covariances, &row.collect::<Result<Vec<f64>>>()?);
             all.push(SectionForceResponse {
                 element: of.element.clone(),
                 force: force.clone(),

@@ -314,7 +314,7 @@ impl<'a> Setting<'a> {
             Error::Numerical(why) => Error::Unstable(why),
             other => other,
         })?;
-        match domain.growing() {
+        match domain.growing {
             0 => domain.section_response(self.tested),
             unstable => Err(Error::Unstable(format!(
                 "the section is unstable ({unstable} growing roots): no stationary response"
