@@ -23,7 +23,7 @@ mod wind;
 pub use deck::Deck;
 pub use defaults::demo_study_text;
 pub(crate) use defaults::{new_study_text, thesis_study_text};
-pub(crate) use evidence::{OwnModel, saved_evidence, section_evidence};
+pub(crate) use evidence::{saved_evidence, section_evidence};
 pub use failures::StageFailure;
 pub(crate) use failures::{attempt, is_of_a_file};
 pub(crate) use intervals::{

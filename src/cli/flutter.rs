@@ -8,11 +8,11 @@ use super::{headline, result_files, routes, select, stages, text};
 use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, OwnModel, RouteTable, StageFailure, Study, attempt,
-    route_table, saved_moved_onset, saved_uncertainty, section_evidence, state_route_intervals,
+    Deck, FlutterStudy, KnownUncertainty, RouteTable, StageFailure, Study, attempt, route_table,
+    saved_moved_onset, saved_uncertainty, section_evidence, state_route_intervals,
 };
 use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
+use crate::verdict::{Evidence, Verdict};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -89,15 +89,12 @@ fn verdict(
         let (section, search) = (&study.section, study.speeds().search());
         saved_moved_onset(model, &[folder.to_owned()], section, &search, &with)
     })?;
-    let own = OwnModel {
-        model: own,
-        uncertainty: place.and_then(|i| known.get(i)),
-        moved,
-    };
     let failed = [failed, &results.failed].concat();
-    Ok(Verdict::judge(&section_evidence(
-        study, deck, results, &own, &failed,
-    )))
+    let known = place.and_then(|i| known.get(i));
+    Ok(Verdict::judge(&Evidence {
+        constraints: moved,
+        ..section_evidence(study, deck, results, own, known, &failed)
+    }))
 }
 
 /// Every route in one table, with cards and a figure.

@@ -15,10 +15,10 @@ use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
 use crate::plausibility::sentences;
 use crate::study::{
-    Deck, FlutterStudy, OwnModel, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
-    attempt, interval_of, section_evidence, stepped_onset, study_findings,
+    Deck, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport, attempt,
+    interval_of, section_evidence, stepped_onset, study_findings,
 };
-use crate::verdict::Verdict;
+use crate::verdict::{Evidence, Verdict};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -210,13 +210,12 @@ impl StudyStages<'_> {
 
     /// What everything found so far amounts to.
     fn verdict(&self, own: Option<&TrainedWithReport>, results: &FlutterStudy) -> Verdict {
-        let own = OwnModel {
-            model: own.map(|t| &t.model),
-            uncertainty: own.map(|t| &t.uncertainty),
-            moved: own.and_then(|t| t.report.constraints.as_ref()?.onset),
-        };
         let (study, deck) = (&self.study, &self.deck);
-        Verdict::judge(&section_evidence(study, deck, results, &own, &self.failed))
+        let (model, known) = (own.map(|t| &t.model), own.map(|t| &t.uncertainty));
+        Verdict::judge(&Evidence {
+            constraints: own.and_then(|t| t.report.constraints.as_ref()?.onset),
+            ..section_evidence(study, deck, results, model, known, &self.failed)
+        })
     }
 
     /// Figures and curves of all models.

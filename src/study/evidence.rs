@@ -7,8 +7,8 @@ use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, Instability, MovedOnset, OnsetMethod, OnsetSearch, QuasiSteadyOnset,
-    StableRange, find_onset, judged_speeds, table_tested_from,
+    FlutterSearch, Instability, OnsetMethod, OnsetSearch, QuasiSteadyOnset, StableRange,
+    find_onset, judged_speeds, table_tested_from,
 };
 use crate::plausibility::{self, of_trained};
 use crate::section::{SectionModel, Structure};
@@ -23,37 +23,25 @@ use std::path::Path;
 /// Stages that draw and write, and the response to turbulence, without which the answer is the same.
 const DRAWING: [&str; 3] = ["figure", "curves", "buffeting"];
 
-/// The model of a study whose onset is the answer, with what is known of its fit.
-pub(crate) struct OwnModel<'a> {
-    /// The model; `None` where it was not trained.
-    pub model: Option<&'a TrainedModel>,
-    /// How far the data leave it open.
-    pub uncertainty: Option<&'a KnownUncertainty>,
-    /// What constraints of its fit did to the onset.
-    pub moved: Option<MovedOnset>,
-}
-
-/// Everything that the stages of a study have found on the section in the forces of its own model.
+/// Everything that the stages of a study have found on the section in the forces of its own model, whose onset is the answer and which the
+/// data leave open as far as `known`; `None` where it was not trained.
 pub(crate) fn section_evidence(
     study: &Study,
     deck: &Deck,
     results: &FlutterStudy,
-    own: &OwnModel<'_>,
+    own: Option<&TrainedModel>,
+    known: Option<&KnownUncertainty>,
     failed: &[StageFailure],
 ) -> Evidence {
-    let name = own.model.map(|m| m.name.as_str());
+    let name = own.map(|m| m.name.as_str());
     let mut implausible = [&deck.findings[..], &study_findings(study)[..]].concat();
-    let odd = own
-        .model
-        .map(|m| plausibility::of_model(&m.name, &m.model, m.tested_range, &deck.findings));
+    let odd =
+        own.map(|m| plausibility::of_model(&m.name, &m.model, m.tested_range, &deck.findings));
     implausible.extend(odd.into_iter().flatten());
+    let of_own = own.and_then(|m| of_model(study, results, m));
     let mut evidence = Evidence {
         required: study.flutter.required(),
-        flutter: own
-            .model
-            .into_iter()
-            .filter_map(|m| of_model(study, results, m))
-            .collect(),
+        flutter: of_own.into_iter().collect(),
         searched_to_m_s: Some(study.speeds().searched_to_m_s),
         growth: results
             .growth
@@ -61,8 +49,7 @@ pub(crate) fn section_evidence(
             .find(|g| Some(g.model.as_str()) == name)
             .map(|g| g.growth.clone()),
         failures: failures(study, failed, name),
-        constraints: own.moved,
-        test_speeds: own.uncertainty.and_then(one_test_speed),
+        test_speeds: known.and_then(one_test_speed),
         implausible,
         tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
         remarks: deck.notes.clone(),
