@@ -41,7 +41,6 @@ mod summary;
 mod text;
 mod text_table;
 mod thesis;
-mod thesis_page;
 mod train;
 mod tunnel;
 mod validate;

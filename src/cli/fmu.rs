@@ -1,13 +1,14 @@
 //! `aerodeck fmu`: exporting, checking and replaying FMUs.
 
-mod check;
 mod export;
 mod replay;
 
-use super::answer::Answer;
-use super::progress::Progress;
+use crate::cli::answer::Answer;
+use crate::cli::progress::Progress;
 use crate::error::Result;
-use std::path::PathBuf;
+use crate::fmu::importer::{CheckReport, Fmu};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 /// Export, check and replay FMUs
 #[derive(clap::Subcommand)]
@@ -44,7 +45,57 @@ pub(super) enum FmuCommand {
 pub(super) fn run(command: &FmuCommand, progress: &Progress) -> Result<Answer> {
     match command {
         FmuCommand::Export(args) => export::run(args, progress),
-        FmuCommand::Check { fmu, no_run } => check::run(fmu, *no_run, progress),
+        FmuCommand::Check { fmu, no_run } => check(fmu, *no_run, progress),
         FmuCommand::Replay { fmu } => replay::run(fmu, progress),
     }
+}
+
+/// Static checks and a run of any co-simulation FMU, FMI 2.0 or 3.0; none of the code in the archive with `no_run`.
+fn check(path: &Path, no_run: bool, progress: &Progress) -> Result<Answer> {
+    let fmu = Fmu::open(path)?;
+    let report = progress.during("checking the FMU", || match no_run {
+        true => fmu.check_without_running(),
+        false => fmu.check(),
+    });
+    let passed = report.passed();
+    Ok(Answer::new(text(&report), &report)?.passed_if(passed))
+}
+
+fn text(report: &CheckReport) -> String {
+    let mut text = format!(
+        "{}\n{} by {}, {} variables, {}\n",
+        report.file,
+        report.model_name,
+        report.generation_tool,
+        report.variables,
+        match report.platforms.join(", ") {
+            none if none.is_empty() => "no binaries".to_owned(),
+            platforms => format!("binaries for {platforms}"),
+        }
+    );
+    let _ = match &report.ran {
+        Some(binary) => writeln!(text, "its code was run in this process: {binary}"),
+        None => writeln!(text, "none of its code was run"),
+    };
+    for f in &report.findings {
+        let _ = writeln!(
+            text,
+            "  {}: {}: expected {}, found {}",
+            f.severity.name(),
+            f.place,
+            f.expected,
+            f.found
+        );
+    }
+    for t in &report.trials {
+        let verdict = if t.passed { "ok    " } else { "FAILED" };
+        let _ = writeln!(text, "  {verdict} {}: {}", t.name, t.detail);
+    }
+    let verdict = if report.passed() {
+        "passed"
+    } else {
+        "did not pass"
+    };
+    let _ = writeln!(text, "{verdict}");
+    text
 }

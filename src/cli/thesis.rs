@@ -1,14 +1,26 @@
-//! `aerodeck thesis`: the headline of the source document, repeated.
+//! `aerodeck thesis`: the headline of the source document, repeated, with a page of its figures and tables that can be computed, its
+//! numbers beside ours.
 
-use super::answer::Answer;
-use super::interrupt::Temporary;
-use super::output::{OutputDir, list};
-use super::progress::Progress;
-use super::thesis_page::thesis_page;
-use super::{headline, result_files, stages, text};
+use crate::aerodynamics::laguerre::discrete_memory;
+use crate::cli::answer::Answer;
+use crate::cli::compare::thesis_comparisons;
+use crate::cli::interrupt::Temporary;
+use crate::cli::laboratory::svg;
+use crate::cli::output::{OutputDir, list};
+use crate::cli::progress::Progress;
+use crate::cli::result_files::{FIGURE, RESPONSE, ROOTS};
+use crate::cli::select::parameter_maps;
+use crate::cli::{headline, result_files, stages, text};
 use crate::error::{Error, Result};
-use crate::report::rendered;
-use crate::study::{Deck, RecordSet, Study, thesis_study_text};
+use crate::identification::{Grid, GridAxis, TimeWeights};
+use crate::reference::{FirstOrderExample, OF_THE_DECKS, laguerre_functions};
+use crate::report::{
+    Figure, PageSection, SectionsPage, first_order_figures, laguerre_figures, rendered,
+};
+use crate::section::Dof;
+use crate::selection::metric_grid;
+use crate::study::{Deck, FlutterStudy, RecordSet, Study, thesis_study_text};
+use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -66,4 +78,280 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
         &serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results, "failed": failed }),
     )?;
     Ok(answer.passed_if(failed.is_empty()))
+}
+
+/// Decimals of the numbers printed in section 2.5: bounds of α by (2.36) and (2.37), the end of the third impulse response.
+const PRINTED_FIRST_ORDER: [&str; 3] = ["0.8283", "0.889", "0.0096"];
+
+/// The page; the figure of the onsets stands in `out` as `flutter.svg`.
+fn thesis_page(
+    results: &FlutterStudy,
+    printed_m_s: f64,
+    records: &[&dyn RecordSource],
+    out: &OutputDir,
+    progress: &Progress,
+) -> Result<SectionsPage> {
+    let mut sections = vec![
+        functions()?,
+        first_order(progress)?,
+        parameters(records, progress)?,
+    ];
+    sections.extend(thesis_comparisons(progress)?);
+    sections.push(onsets(results, printed_m_s, out));
+    sections.push(errata());
+    sections.push(not_computed());
+    let own = results
+        .onsets
+        .iter()
+        .find(|o| o.at.model != "interpolated table");
+    let own = own.map_or("no onset".to_owned(), |o| {
+        format!("{:.1} m/s", o.at.speed_m_s)
+    });
+    Ok(SectionsPage {
+        title: "The thesis, computed again".to_owned(),
+        subtitle:
+            "Investigation of Laguerre expansion basis for modelling of bridge aeroelastic forces"
+                .to_owned(),
+        answer: format!("Onset of the coupled section: printed {printed_m_s} m/s, here {own}"),
+        sections,
+        ..SectionsPage::default()
+    })
+}
+
+/// What each figure of the functions and of the first-order system shows.
+const CAPTIONS: [(&str, &str); 12] = [
+    ("2.1", "Laguerre functions of order 0 to 4, p = 0.2"),
+    (
+        "2.2",
+        "the function of second order for several decay rates p",
+    ),
+    (
+        "2.3",
+        "discrete Laguerre functions of order 0 to 4, α = 0.4",
+    ),
+    ("2.4", "the discrete function of second order for several α"),
+    (
+        "2.5",
+        "gain of the filters over the frequency, the same for every order",
+    ),
+    ("2.6", "training input of six frequencies"),
+    (
+        "2.7",
+        "output predicted at a frequency that was not trained",
+    ),
+    ("2.8", "transfer function of system and model"),
+    ("2.9", "impulse response of system and model"),
+    ("2.10", "transfer functions for several α"),
+    (
+        "2.11",
+        "transfer functions for several numbers of filters L",
+    ),
+    ("3.10", "the filters of the bridge decks, L = 3, α = 0.6"),
+];
+
+fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, String)> {
+    let one = |(number, figure): (&str, Figure)| {
+        let known = CAPTIONS.iter().find(|(n, _)| *n == number);
+        let caption = known.map_or("", |(_, text)| text);
+        (
+            format!("Figure {number}: {caption}"),
+            figure.svg().to_owned(),
+        )
+    };
+    figures.into_iter().map(one).collect()
+}
+
+fn functions() -> Result<PageSection> {
+    let (alpha, filters) = OF_THE_DECKS;
+    Ok(PageSection {
+        title: "2.3 and 3.4 Laguerre functions".to_owned(),
+        text: vec![format!(
+            "The filters of the decks stay below 0.01 from sample {} on; the thesis reads about 40 from its Figure 3.10.",
+            discrete_memory(alpha, filters)
+        )],
+        figures: captioned(laguerre_figures(&laguerre_functions()?)?),
+        ..PageSection::default()
+    })
+}
+
+/// Section 3.5.3: the metrics of the forces at the thesis's frequency over α and L.
+fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<PageSection> {
+    const FREQUENCY_HZ: f64 = 1.09;
+    const FILTERS: usize = 8;
+    let stage = progress.stage("parameters of the discrete model");
+    let alphas: Vec<f64> = (0..20).map(|i| 0.2 + 0.04 * f64::from(i)).collect();
+    let axis = GridAxis::Discrete(alphas.clone(), TimeWeights::None);
+    let grid = Grid::new(records, axis, FILTERS, &|_| {})?;
+    let mut figures = Vec::new();
+    for metrics in metric_grid(&grid, records, FREQUENCY_HZ)? {
+        let number = match metrics.motion {
+            Dof::Vertical => "3.18",
+            _ => "3.19",
+        };
+        let caption = format!(
+            "Figure {number}: metrics of the {} force over α and L, {} motion at {:.2} Hz",
+            metrics.force.name(),
+            metrics.motion.name(),
+            metrics.frequency_hz
+        );
+        let figure = parameter_maps(&alphas, FILTERS, &metrics)?;
+        figures.push((caption, figure.svg().to_owned()));
+    }
+    drop(stage);
+    Ok(PageSection {
+        title: "3.5.3 Parameters, on rebuilt records".to_owned(),
+        figures,
+        ..PageSection::default()
+    })
+}
+
+/// Figures that are not here, and why.
+fn not_computed() -> PageSection {
+    let rows = [
+        (
+            "1.1, 1.2, 3.6 to 3.9, 4.1",
+            "drawings of axes, models and methods; this program's are in its manual",
+        ),
+        ("3.1 to 3.5", "the bridge, the girder and the rig"),
+        (
+            "3.11",
+            "where the recordings are cut: the laboratory's recordings are not published, and rebuilt records state their segments in their header",
+        ),
+    ];
+    PageSection {
+        title: "Figures that are not computed".to_owned(),
+        header: "figure | why",
+        rows: rows.map(|(a, b)| vec![a.to_owned(), b.to_owned()]).to_vec(),
+        ..PageSection::default()
+    }
+}
+
+fn first_order(progress: &Progress) -> Result<PageSection> {
+    let stage = progress.stage("first-order example");
+    let results = FirstOrderExample::default().run()?;
+    let figures = first_order_figures(&results)?;
+    drop(stage);
+    let (lower, upper) = results.alpha_bounds;
+    let here = [
+        format!("{lower:.4}"),
+        format!("{upper:.4}"),
+        format!("{:.4}", results.last_value),
+    ];
+    let what = [
+        "lower bound of α, (2.36)",
+        "upper bound of α, (2.37)",
+        "third impulse response at the end of the memory",
+    ];
+    let rows = what.iter().zip(PRINTED_FIRST_ORDER).zip(here);
+    Ok(PageSection {
+        title: "2.5 A first-order system".to_owned(),
+        text: vec![format!(
+            "Predicted output off by {:.1} %, transfer function by at most {:.1} % in the trained band.",
+            100.0 * results.validation_error,
+            100.0 * results.model.worst_in_band
+        )],
+        header: "number | thesis | here",
+        rows: rows
+            .map(|((what, printed), here)| vec![(*what).to_owned(), printed.to_owned(), here])
+            .collect(),
+        figures: captioned(figures),
+    })
+}
+
+fn onsets(results: &FlutterStudy, printed_m_s: f64, out: &OutputDir) -> PageSection {
+    let row = |o: &crate::flutter::Onset| {
+        let trained = o.at.model != "interpolated table";
+        let printed = if trained {
+            format!("{printed_m_s}")
+        } else {
+            "–".to_owned()
+        };
+        vec![
+            format!("{} ({})", o.at.model, o.at.method.name()),
+            printed,
+            format!("{:.3}", o.at.speed_m_s),
+            format!("{:.4}", o.at.frequency_hz),
+        ]
+    };
+    let deviations = results.deviations.iter().map(|d| d.explain());
+    let figures = [
+        (
+            RESPONSE,
+            "Figure 4.2: the discrete Laguerre model, released below, at and above the onset",
+        ),
+        (
+            ROOTS,
+            "Figure 4.3: eigenvalues as the wind rises, discrete ones converted to continuous time",
+        ),
+        (
+            FIGURE,
+            "Figures 4.4 and 4.5: frequency and damping over wind speed",
+        ),
+    ];
+    PageSection {
+        title: "4 Onset of a section with two degrees of freedom".to_owned(),
+        text: deviations
+            .chain([
+                "Table 4.1's wind speeds are 17 to 40 m/s; the curves here begin at the lowest speed that can be judged. The thesis prints \
+                 no number of its Figures 4.2 to 4.5 but the onset."
+                    .to_owned(),
+            ])
+            .collect(),
+        header: "model | thesis, V m/s | here, V m/s | here, f Hz",
+        rows: results.onsets.iter().map(row).collect(),
+        figures: figures
+            .into_iter()
+            .filter_map(|(stem, caption)| Some((caption.to_owned(), svg(out, stem)?)))
+            .collect(),
+    }
+}
+
+/// Corrections of printed equations that change a number.
+fn errata() -> PageSection {
+    let rows = [
+        (
+            "(1.24)",
+            "H1* with a factor V̂²",
+            "H1* with a factor V̂: −1.0464 where the printed form gives −2.1975",
+        ),
+        (
+            "(1.29) to (1.34)",
+            "lag terms enter with a plus",
+            "with a minus: as printed all lag forces have the wrong sign",
+        ),
+        (
+            "(3.3), (3.4)",
+            "forces over ρLBV² and ρLB²V²",
+            "over half of it, as (1.17) and (B.3) have it",
+        ),
+        (
+            "(4.8a), (B.2a)",
+            "the force of a sample is held over the step",
+            "a delay of half a step, stated beside each onset",
+        ),
+        (
+            "(B.4)",
+            "lower right block without the output matrix of the motion",
+            "with it; as printed the units do not match",
+        ),
+        (
+            "(C.1)",
+            "2πf, and ½ρV²B for the moment",
+            "K = 2πfB/V, and ½ρV²B² for the moment",
+        ),
+        ("(C.2)", "V* = V/(ωB)", "V* = V/(fB)"),
+        (
+            "(C.3)",
+            "p1, p4 for sway and p5, p6 for heave",
+            "p1, p4 belong to heave and p5, p6 to sway",
+        ),
+    ];
+    PageSection {
+        title: "Errata that change a number".to_owned(),
+        header: "equation | printed | here",
+        rows: rows
+            .map(|(a, b, c)| [a, b, c].map(str::to_owned).to_vec())
+            .to_vec(),
+        ..PageSection::default()
+    }
 }

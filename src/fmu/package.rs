@@ -11,7 +11,6 @@ pub(in crate::fmu) mod label;
 mod reference_runs;
 mod runtime;
 mod terminals;
-mod variable_rows;
 
 pub use super::standard::FmiVersion;
 use reference_runs::{WASM_MANIFEST, wasm_manifest};

@@ -10,8 +10,6 @@ mod interval;
 mod parts;
 mod scaled_forces;
 mod scatter;
-mod system;
-mod untested;
 
 pub(crate) use answers::NAMED_SHARE;
 pub use answers::{

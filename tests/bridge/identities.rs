@@ -297,7 +297,7 @@ fn the_interval_is_that_of_the_section() {
         .unwrap()
         .as_ref()
         .unwrap();
-    let saved = study.sections[0].saved.as_ref().unwrap();
+    let saved = &study.sections[0].saved;
     let expected = known.interval(saved, &structure, &of_section).unwrap();
     let (
         OnsetInterval::Known {

@@ -1,7 +1,6 @@
 //! The page that documents the FMU of a bridge, in its archive.
 
-use super::documentation::{GUSTS_ARE_INPUTS, gust_words, sentences};
-use super::variable_rows::rows;
+use super::documentation::{GUSTS_ARE_INPUTS, gust_words, rows, sentences};
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Variable};

@@ -2,14 +2,14 @@
 
 use super::BridgeStudy;
 use super::answers::coupled;
-use crate::aerodynamics::RationalAdmittance;
+use crate::aerodynamics::{RationalAdmittance, Transfer as _};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::Admittance;
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::FieldTable;
 use crate::flutter::{
     BridgeMotion, FlutterSearch, OnsetInterval, OnsetSearch, divergence_with_forces,
-    unwanted_growth_below,
+    motion_at_onset, unwanted_growth_below,
 };
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
@@ -17,7 +17,7 @@ use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::onset_start::{OnsetStart, simulated_onset};
 use crate::fmu::package::{Export, GrowthPolicy};
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
-use crate::units::ReducedFrequencyRange;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
 /// Amplitude of the default release where the girder moves most, of half the width.
 const RELEASE: f64 = 0.01;
@@ -111,22 +111,13 @@ impl BridgeStudy {
     /// The model of the first section, under the name of the bridge.
     fn first_model(&self, first_m_s: f64) -> Result<TrainedModel> {
         let section = &self.sections[0];
-        let model = section
-            .saved
-            .clone()
-            .ok_or_else(|| Error::Numerical("FMU: the first section has no force model".into()))?;
-        let everywhere = || {
-            crate::units::ReducedFrequencyRange::between(
-                crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
-                crate::units::ReducedFrequency::from_full_width(f64::MAX),
-            )
-        };
+        let model = section.saved.clone();
+        let k = ReducedFrequency::from_full_width;
+        let everywhere = || ReducedFrequencyRange::between(k(f64::MIN_POSITIVE), k(f64::MAX));
         Ok(TrainedModel {
             schema_version: model.schema_version(),
             name: self.file.name.clone(),
-            section: self
-                .by_model
-                .equivalent_section(crate::aerodynamics::Transfer::dofs(&model))?,
+            section: self.by_model.equivalent_section(model.dofs())?,
             tested_range: section.tested.unwrap_or_else(everywhere),
             provenance: Provenance {
                 source: section.source.clone(),
@@ -148,9 +139,8 @@ impl BridgeStudy {
         gusts: Option<BridgeGusts>,
     ) -> Result<BridgeOptions> {
         let bridge = &self.by_model;
-        let motion = found
-            .critical()
-            .map(|at| crate::flutter::motion_at_onset(bridge, &bridge.forces(), at));
+        let critical = found.critical();
+        let motion = critical.map(|at| motion_at_onset(bridge, &bridge.forces(), at));
         let groups = bridge.groups.iter().zip(&self.section_of_group);
         let groups = groups.map(|(g, section)| GroupOptions {
             name: g.name.clone(),
@@ -159,8 +149,6 @@ impl BridgeStudy {
             nodes: g.nodes.clone(),
             forces: *section,
         });
-        let saved = self.sections.iter().map(|s| s.saved.clone());
-        let forces = saved.collect::<Option<Vec<_>>>();
         Ok(BridgeOptions {
             name: self.file.name.clone(),
             air_density_kg_m3: bridge.air_density_kg_m3,
@@ -169,8 +157,7 @@ impl BridgeStudy {
             dampers: bridge.dampers.clone(),
             structure_alone: false,
             groups: groups.collect(),
-            forces: forces
-                .ok_or_else(|| Error::Numerical("FMU: a section has no force model".into()))?,
+            forces: self.sections.iter().map(|s| s.saved.clone()).collect(),
             named,
             tested_range: self.tested_range(),
             section_ranges: self.section_ranges().collect(),

@@ -27,7 +27,7 @@ pub struct SectionForceModels {
     /// With a realisation.
     pub model: Arc<dyn Transfer>,
     /// What it is saved as.
-    pub saved: Option<Model>,
+    pub saved: Model,
     /// How the model was made, in words.
     pub method: String,
     /// Where the data come from.
@@ -196,7 +196,7 @@ impl SectionForceModels {
         Self {
             table: None,
             model,
-            saved: Some(saved),
+            saved,
             method: String::new(),
             source: String::new(),
             licence: String::new(),
