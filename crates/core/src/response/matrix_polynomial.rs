@@ -1,6 +1,6 @@
 //! A matrix that is a polynomial of one number: output equations of the wind speed, steps of a structure of their duration.
 
-use super::packed::Packed;
+use super::packed::{Packed, set_polynomial};
 use crate::state_space::StateEquation;
 use nalgebra::DMatrix;
 
@@ -60,8 +60,8 @@ impl MatrixPolynomial {
     #[inline]
     pub(super) fn at(&mut self, x: f64, terms: usize) -> &Packed {
         if x.to_bits() != self.at.to_bits() {
-            self.now
-                .set_polynomial(&self.powers[..terms.min(self.powers.len())], x);
+            let powers = &self.powers[..terms.min(self.powers.len())];
+            set_polynomial(&mut self.now, powers, x);
             self.at = x;
         }
         &self.now

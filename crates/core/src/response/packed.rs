@@ -50,38 +50,6 @@ impl Packed {
         }
     }
 
-    /// Becomes `Σ Wₖ xᵏ`, all of one shape.
-    #[inline(never)]
-    pub(super) fn set_polynomial(&mut self, powers: &[Self], x: f64) {
-        on_lanes(Horner(self, powers, x));
-    }
-
-    #[inline(always)]
-    fn horner(&mut self, powers: &[Self], x: f64) {
-        let (blocks, rest) = (&mut self.blocks, &mut self.rest);
-        let lists = [
-            blocks.as_flattened_mut().as_flattened_mut(),
-            rest.as_flattened_mut(),
-        ];
-        for (list, sums) in lists.into_iter().enumerate() {
-            let (fours, rest) = sums.as_chunks_mut::<{ 4 * LANES }>();
-            let behind = 4 * LANES * fours.len();
-            for (i, sums) in fours.iter_mut().enumerate() {
-                *sums = polynomial(
-                    powers
-                        .iter()
-                        .rev()
-                        .map(|w| w.numbers()[list].as_chunks().0[i]),
-                    x,
-                );
-            }
-            for (i, sums) in rest.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-                let behind = |w: &Self| w.numbers()[list][behind..].as_chunks().0[i];
-                *sums = polynomial(powers.iter().rev().map(behind), x);
-            }
-        }
-    }
-
     fn numbers(&self) -> [&[f64]; 2] {
         [
             self.blocks.as_flattened().as_flattened(),
@@ -93,6 +61,28 @@ impl Packed {
     #[inline(always)]
     pub(super) fn set<S: FourLanes>(&self, simd: S, v: &[f64], y: &mut [f64]) {
         product(simd, self, v, y, |sums| sums);
+    }
+}
+
+crate::vectorised! {
+    /// `sum` becomes `Σ Wₖ xᵏ`, all of one shape.
+    pub(super) fn set_polynomial<'a>(sum: &'a mut Packed, powers: &'a [Packed], x: f64) -> () {
+        let lists = [
+            sum.blocks.as_flattened_mut().as_flattened_mut(),
+            sum.rest.as_flattened_mut(),
+        ];
+        for (list, sums) in lists.into_iter().enumerate() {
+            let (fours, rest) = sums.as_chunks_mut::<{ 4 * LANES }>();
+            let behind = 4 * LANES * fours.len();
+            for (i, sums) in fours.iter_mut().enumerate() {
+                let of = |w: &Packed| w.numbers()[list].as_chunks().0[i];
+                *sums = polynomial(powers.iter().rev().map(of), x);
+            }
+            for (i, sums) in rest.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+                let of = |w: &Packed| w.numbers()[list][behind..].as_chunks().0[i];
+                *sums = polynomial(powers.iter().rev().map(of), x);
+            }
+        }
     }
 }
 
@@ -119,18 +109,6 @@ pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
 #[inline]
 pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
     on_lanes(Advance(Apply { w, v, y }))
-}
-
-/// A matrix, the powers of its polynomial, and where.
-struct Horner<'a>(&'a mut Packed, &'a [Packed], f64);
-
-impl OnLanes for Horner<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: FourLanes>(self, _: S) {
-        self.0.horner(self.1, self.2);
-    }
 }
 
 struct Apply<'a> {

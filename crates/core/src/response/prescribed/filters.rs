@@ -7,7 +7,7 @@ use super::course::{COEFFICIENTS, MotionCubic};
 use super::flow::StripFlow;
 use crate::aerodynamics::{DiscreteRealization, Realization};
 use crate::error::{Error, Result};
-use crate::response::lanes::{FourLanes, LANES, OnLanes, on_lanes};
+use crate::response::lanes::LANES;
 use crate::response::linked::Sparse;
 use nalgebra::DMatrix;
 
@@ -139,7 +139,7 @@ impl FilterSeries {
         if self.matrix.is_empty() {
             self.series(step, flows);
         } else {
-            on_lanes(Product(&self.matrix, &self.operand, &mut self.next));
+            set_product(&mut self.next, &self.matrix, &self.operand);
             self.operand[..self.filters].copy_from_slice(&self.next);
         }
         for (lane, filters) in group.filters.chunks_mut(self.filters.max(1)).enumerate() {
@@ -191,8 +191,7 @@ impl FilterSeries {
                     0.0
                 }
             });
-            let from = [start, part_s];
-            on_lanes(FilterTerms(self, from, x));
+            add_terms(self, [start, part_s], x);
         }
     }
 
@@ -285,18 +284,6 @@ fn grown(state: &[f64]) -> Result<()> {
     }
 }
 
-/// A part, compiled for each set of vectors a processor may have: a closure would not always be.
-struct FilterTerms<'a>(&'a mut FilterSeries, [Lanes; 2], Lanes);
-
-impl OnLanes for FilterTerms<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: FourLanes>(self, _: S) {
-        self.0.part(self.1, self.2);
-    }
-}
-
 /// Coefficients of the courses from `start` on, in powers of `length`.
 #[inline(always)]
 fn shift(courses: &[Lanes], dofs: usize, [start, length]: [Lanes; 2], shifted: &mut [Lanes]) {
@@ -324,15 +311,14 @@ fn shift(courses: &[Lanes], dofs: usize, [start, length]: [Lanes; 2], shifted: &
     }
 }
 
-/// A matrix on the numbers of four strips, and what becomes of them.
-struct Product<'a>(&'a [Lanes], &'a [Lanes], &'a mut [Lanes]);
+crate::vectorised! {
+    /// A part of a series: a closure would not always be compiled for each set of vectors.
+    fn add_terms<'a>(to: &'a mut FilterSeries, from: [Lanes; 2], x: Lanes) -> () {
+        to.part(from, x);
+    }
 
-impl OnLanes for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: FourLanes>(self, _: S) {
-        let Self(matrix, operand, sums) = self;
+    /// What becomes of the numbers of four strips by a matrix.
+    fn set_product<'a>(sums: &'a mut [Lanes], matrix: &'a [Lanes], operand: &'a [Lanes]) -> () {
         let rows = sums.len().max(1);
         sums.fill([0.0; LANES]);
         for (columns, numbers) in matrix.chunks(rows).zip(operand.chunks(LANES)) {
