@@ -149,18 +149,14 @@ pub(super) fn units(table: &VariableTable) -> Result<Vec<Element>> {
 
 fn unit_definition(unit: &SiUnit) -> Result<Element> {
     let mut base = Element::new("BaseUnit");
-    let b = unit.base;
-    for (name, exponent) in [("kg", b.kg), ("m", b.m), ("s", b.s), ("rad", b.rad)] {
+    for (name, exponent) in ["kg", "m", "s", "rad"].into_iter().zip(unit.base) {
         base = base.with_any(name, (exponent != 0).then_some(exponent));
     }
     let factor = (unit.factor != 1.0).then_some(unit.factor);
     let mut children = vec![base.with_any("factor", factor.map(number).transpose()?)];
-    for shown in unit.display {
-        children.push(
-            Element::new("DisplayUnit")
-                .with("name", shown.name)
-                .with("factor", number(shown.factor)?),
-        );
+    for (name, factor) in unit.display {
+        let shown = Element::new("DisplayUnit").with("name", name);
+        children.push(shown.with("factor", number(*factor)?));
     }
     Ok(Element::new("Unit")
         .with("name", unit.name)

@@ -64,19 +64,11 @@ pub fn read<T: for<'de> Deserialize<'de>>(
     // editors may leave a byte-order mark
     let text = text.trim_start_matches('\u{feff}');
     let mut source = serde_json::Deserializer::from_str(text);
-    let read = OfKind(kind, PhantomData).deserialize(&mut source)?;
+    let read = source.deserialize_map(OfKind(kind, PhantomData))?;
     source.end().map(|()| read)
 }
 
 struct OfKind<'a, T>(&'a str, PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> DeserializeSeed<'de> for OfKind<'_, T> {
-    type Value = T;
-
-    fn deserialize<D: Deserializer<'de>>(self, source: D) -> std::result::Result<T, D::Error> {
-        source.deserialize_map(self)
-    }
-}
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for OfKind<'_, T> {
     type Value = T;

@@ -263,18 +263,38 @@ impl SectionModel {
         })
     }
 
+    /// What is stated of the support of a degree of freedom: inertia (kg/m or kg·m²/m), frequency (Hz), stiffness (N/m² or N) and
+    /// damping ratio; `None` without one.
+    pub fn stated(&self, dof: Dof) -> Option<(f64, Option<f64>, Option<f64>, f64)> {
+        let translation = match dof {
+            Dof::Torsion => {
+                let s = &self.torsion;
+                let (inertia, stiffness) = (s.inertia_kg_m2_m, s.stiffness_n);
+                return Some((inertia, s.frequency_hz, stiffness, s.damping_ratio));
+            }
+            Dof::Vertical => Some(&self.vertical),
+            Dof::Lateral => self.lateral.as_ref(),
+        };
+        translation.map(|s| {
+            (
+                s.mass_kg_m,
+                s.frequency_hz,
+                s.stiffness_n_m2,
+                s.damping_ratio,
+            )
+        })
+    }
+
     /// The vertical, lateral and torsional support.
     pub fn supports(&self) -> Result<[Option<Suspension>; 3]> {
         positive("section.width_m", self.width_m)?;
         positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
-        let heave = translation_support("section.vertical", &self.vertical)?;
-        let sway = self.lateral.as_ref();
-        let sway = sway.map(|s| translation_support("section.lateral", s));
-        let twist = rotation_support("section.torsion", &self.torsion)?;
+        let (heave, sway) = (self.support(Dof::Vertical)?, self.support(Dof::Lateral));
+        let twist = self.support(Dof::Torsion)?;
         if let Some(a) = self.axis_offset_m {
             finite("section.axis_offset_m", a)?;
         }
-        if let Some(e) = self.mass_offset_m {
+        if let (Some(e), Some(heave), Some(twist)) = (self.mass_offset_m, heave, twist) {
             finite("section.mass_offset_m", e)?;
             // about the axis J = J_cg + m e²
             let radius = (twist.mass / heave.mass).sqrt();
@@ -285,30 +305,44 @@ impl SectionModel {
                 e,
             )?;
         }
-        Ok([Some(heave), sway.transpose()?, Some(twist)])
+        Ok([heave, sway?, twist])
     }
-}
 
-fn rotation_support(place: &str, s: &Rotation) -> Result<Suspension> {
-    support(
-        place,
-        ["inertia_kg_m2_m", "stiffness_n"],
-        s.inertia_kg_m2_m,
-        s.frequency_hz,
-        s.stiffness_n,
-        s.damping_ratio,
-    )
-}
-
-fn translation_support(place: &str, s: &Translation) -> Result<Suspension> {
-    support(
-        place,
-        ["mass_kg_m", "stiffness_n_m2"],
-        s.mass_kg_m,
-        s.frequency_hz,
-        s.stiffness_n_m2,
-        s.damping_ratio,
-    )
+    fn support(&self, dof: Dof) -> Result<Option<Suspension>> {
+        let Some((inertia, frequency_hz, stiffness, damping_ratio)) = self.stated(dof) else {
+            return Ok(None);
+        };
+        let [inertia_key, stiffness_key] = match dof {
+            Dof::Torsion => ["inertia_kg_m2_m", "stiffness_n"],
+            _ => ["mass_kg_m", "stiffness_n_m2"],
+        };
+        // put together only where something is wrong: this is called for every sample of a random section
+        let place = || Place::from("section").key(dof.name());
+        let at = |key: &str, checked: fn(&'static str, f64) -> Result<f64>, value: f64| {
+            checked("", value).map_err(|e| e.at(place().key(key)))
+        };
+        let inertia = at(inertia_key, positive, inertia)?;
+        let damping_ratio = at("damping_ratio", non_negative, damping_ratio)?;
+        let stiffness = match (frequency_hz, stiffness) {
+            (Some(f), None) => {
+                let omega = TAU * at("frequency_hz", positive, f)?;
+                inertia * omega * omega
+            }
+            (None, Some(k)) => at(stiffness_key, non_negative, k)?,
+            (given, _) => {
+                return Err(Error::input(
+                    place(),
+                    format!("either `frequency_hz` or `{stiffness_key}`"),
+                    if given.is_some() { "both" } else { "neither" },
+                ));
+            }
+        };
+        Ok(Some(Suspension {
+            mass: inertia,
+            damping: 2.0 * damping_ratio * (stiffness * inertia).sqrt(),
+            stiffness,
+        }))
+    }
 }
 
 /// One degree of freedom by itself, in the units of its row of the structure's matrices.
@@ -320,41 +354,6 @@ pub struct Suspension {
     pub damping: f64,
     /// N/m² or N.
     pub stiffness: f64,
-}
-
-fn support(
-    place: &str,
-    [inertia_key, stiffness_key]: [&str; 2],
-    inertia: f64,
-    frequency_hz: Option<f64>,
-    stiffness: Option<f64>,
-    damping_ratio: f64,
-) -> Result<Suspension> {
-    // the place is put together only where something is wrong: this is called for every sample of a random section
-    let at = |key: &str, checked: fn(&'static str, f64) -> Result<f64>, value: f64| {
-        checked("", value).map_err(|e| e.at(Place::from(place).key(key)))
-    };
-    let inertia = at(inertia_key, positive, inertia)?;
-    let damping_ratio = at("damping_ratio", non_negative, damping_ratio)?;
-    let stiffness = match (frequency_hz, stiffness) {
-        (Some(f), None) => {
-            let omega = TAU * at("frequency_hz", positive, f)?;
-            inertia * omega * omega
-        }
-        (None, Some(k)) => at(stiffness_key, non_negative, k)?,
-        (given, _) => {
-            return Err(Error::input(
-                place,
-                format!("either `frequency_hz` or `{stiffness_key}`"),
-                if given.is_some() { "both" } else { "neither" },
-            ));
-        }
-    };
-    Ok(Suspension {
-        mass: inertia,
-        damping: 2.0 * damping_ratio * (stiffness * inertia).sqrt(),
-        stiffness,
-    })
 }
 
 #[cfg(test)]

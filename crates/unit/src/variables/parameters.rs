@@ -51,31 +51,8 @@ impl SectionParameter {
     /// The value in a section, in the unit of the variable; a stiffness is turned into `f = √(K/m)/2π`. NaN for a
     /// degree of freedom that the section does not have.
     pub fn value_in(self, section: &SectionModel) -> f64 {
-        let support = |dof: Dof| match dof {
-            Dof::Torsion => {
-                let s = &section.torsion;
-                (
-                    s.inertia_kg_m2_m,
-                    s.frequency_hz,
-                    s.stiffness_n,
-                    s.damping_ratio,
-                )
-            }
-            _ => {
-                let s = match dof {
-                    Dof::Vertical => Some(&section.vertical),
-                    _ => section.lateral.as_ref(),
-                };
-                s.map_or((f64::NAN, None, None, f64::NAN), |s| {
-                    (
-                        s.mass_kg_m,
-                        s.frequency_hz,
-                        s.stiffness_n_m2,
-                        s.damping_ratio,
-                    )
-                })
-            }
-        };
+        let nothing = (f64::NAN, None, None, f64::NAN);
+        let support = |dof: Dof| section.stated(dof).unwrap_or(nothing);
         match self {
             Self::Width => section.width_m,
             Self::AirDensity => section.air_density_kg_m3,

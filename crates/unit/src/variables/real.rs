@@ -83,7 +83,7 @@ impl Variable {
     /// Shown in the first display unit of its unit, if there is one.
     pub(super) fn shown(mut self) -> Self {
         let display = self.unit.and_then(|u| u.display.first());
-        self.display_unit = display.map(|d| d.name);
+        self.display_unit = display.map(|(name, _)| *name);
         self
     }
 

@@ -47,7 +47,7 @@ fn names_are_unique_and_numbers_carry_units() {
             assert_eq!(v.unit.is_some(), real && !ratio, "{}", v.name);
             let shown = v
                 .display_unit
-                .map(|d| v.unit.unwrap().display.iter().any(|u| u.name == d));
+                .map(|d| v.unit.unwrap().display.iter().any(|u| u.0 == d));
             assert_ne!(shown, Some(false), "{}", v.name);
         }
         assert_eq!(table.find(Role::ExternalForce(Dof::Lateral)), None);
