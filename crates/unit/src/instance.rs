@@ -51,7 +51,7 @@ use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::VariableLayout;
-use memory::{Memory, RunTimes};
+use memory::Memory;
 use section_unit::SectionUnit;
 use trust::shown;
 use unit::Unit;
@@ -155,7 +155,7 @@ impl Instance {
                 "expected a finite start time and a stop time not before it, found start {start}, stop {stop}"
             )));
         }
-        self.memory.experiment = Some(RunTimes { start, stop });
+        self.memory.experiment = Some((start, stop));
         self.memory.time = start;
         Ok(())
     }
@@ -164,10 +164,7 @@ impl Instance {
     /// with a warning.
     pub fn enter_initialization(&mut self) {
         if self.memory.experiment.is_none() {
-            self.memory.experiment = Some(RunTimes {
-                start: 0.0,
-                stop: None,
-            });
+            self.memory.experiment = Some((0.0, None));
             self.memory.time = 0.0;
             self.notices.push(
                 "the experiment has not been set up: the run starts at 0 s and has no end".into(),

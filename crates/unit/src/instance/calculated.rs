@@ -11,7 +11,7 @@ pub(super) struct CalculatedNumbers {
     /// The variables, with their indices in the table.
     variables: Vec<(usize, &'static ComputedNumber)>,
     /// For the parameters as they are; `None` until they are asked for.
-    card: Option<OnsetCard>,
+    pub card: Option<OnsetCard>,
     /// Whether its warnings have been told, of these parameters and in this run.
     told: bool,
     /// The same of what the data leave open of what was exported, and that they leave another onset more or less open.
@@ -50,11 +50,6 @@ impl CalculatedNumbers {
         card.map(|card| card.numbers).unwrap_or_default()
     }
 
-    /// A parameter has changed.
-    pub(super) fn forget(&mut self) {
-        self.card = None;
-    }
-
     /// Another run begins: who reads its log has not read that of the last.
     pub(super) fn begin_run(&mut self) {
         (self.told, self.told_of_interval) = (false, [false; 2]);
@@ -66,10 +61,6 @@ impl CalculatedNumbers {
         if self.card.is_some() {
             self.write(memory);
         }
-    }
-
-    pub(super) fn have_been_searched(&self) -> bool {
-        self.card.is_some()
     }
 
     /// Enters the answer of a search.

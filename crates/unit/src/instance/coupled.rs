@@ -200,7 +200,7 @@ impl<S: CoupledKind> Unit for Coupled<S> {
             }
             Source::Release if changed => self.release_pending = true,
             Source::Limit if changed => {
-                self.calculated.forget();
+                self.calculated.card = None;
                 self.own.parameters_changed();
             }
             _ => {}
@@ -223,11 +223,10 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         self.inputs_stay = false;
     }
 
-    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool) {
+    fn replace(&mut self, new: &mut Memory, [same_system, same_limit]: [bool; 2]) {
         self.inputs_stay = false;
-        let same_system = same(Source::Section);
         self.stale |= !same_system;
-        let same = same_system && same(Source::Limit);
+        let same = same_system && same_limit;
         self.calculated.carry_over(new, same);
         self.release_pending = true;
     }
@@ -318,7 +317,7 @@ impl<S: CoupledKind> Coupled<S> {
     pub(super) fn parameters_changed(&mut self) {
         self.stale = true;
         self.inputs_stay = false;
-        self.calculated.forget();
+        self.calculated.card = None;
         self.own.parameters_changed();
         self.release_pending = true;
     }

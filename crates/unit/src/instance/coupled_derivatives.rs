@@ -49,7 +49,7 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
         if self.calculated.are_known() {
             return;
         }
-        if !self.calculated.have_been_searched() {
+        if self.calculated.card.is_none() {
             let card = S::found(self, resources, memory);
             self.calculated.enter(card, memory);
         }

@@ -292,7 +292,7 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn replace(&mut self, _: &mut Memory, _: &dyn Fn(Source) -> bool) {
+    fn replace(&mut self, _: &mut Memory, _: [bool; 2]) {
         self.steady_flow_pending = true;
     }
 

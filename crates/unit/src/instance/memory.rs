@@ -4,19 +4,12 @@ use crate::lifecycle::State;
 use crate::response::SectionState;
 use crate::variables::{StartValue, VariableTable};
 
-/// Times of a run, s.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RunTimes {
-    pub start: f64,
-    pub stop: Option<f64>,
-}
-
 /// A snapshot is a clone of this, a reset the clone of the first one.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Memory {
     pub state: State,
-    /// Set by the set-up of the experiment.
-    pub experiment: Option<RunTimes>,
+    /// Start and stop of the run, s, set by the set-up of the experiment.
+    pub experiment: Option<(f64, Option<f64>)>,
     /// Point of time of `system`, s.
     pub time: f64,
     /// One number per variable, as in [`starts`].

@@ -67,20 +67,11 @@ impl Instance {
     /// Whatever the parameters of both memories share stays computed.
     pub(super) fn replace_memory(&mut self, mut memory: Memory) {
         let (layout, old) = (&self.layout, &self.memory);
-        let same = |source: Source| {
-            let indices =
-                (0..old.values.len()).filter(|index| layout.access[*index].source == source);
-            let bits = |values: &[f64], index: usize| values[index].to_bits();
-            indices
-                .into_iter()
-                .all(|p| bits(&old.values, p) == bits(&memory.values, p))
-        };
-        let (section, limit) = (same(Source::Section), same(Source::Limit));
-        let same = |source: Source| match source {
-            Source::Section => section,
-            _ => limit,
-        };
-        self.unit.replace(&mut memory, &same);
+        let same = [Source::Section, Source::Limit].map(|source| {
+            let mut each = old.values.iter().zip(&memory.values).zip(&layout.access);
+            each.all(|((a, b), access)| access.source != source || a.to_bits() == b.to_bits())
+        });
+        self.unit.replace(&mut memory, same);
         self.memory = memory;
         self.outputs_current = false;
     }

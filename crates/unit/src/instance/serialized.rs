@@ -7,7 +7,7 @@
 //! digest of all bytes before, 16 bytes
 //! ```
 
-use super::memory::{Memory, RunTimes};
+use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::lifecycle::State;
 use uuid::Uuid;
@@ -51,10 +51,10 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
     bytes.push(memory.state as u8);
     let (set_up, stop) = match memory.experiment {
         None => (0, None),
-        Some(e) => (1 + 2 * u8::from(e.stop.is_some()), e.stop),
+        Some((_, stop)) => (1 + 2 * u8::from(stop.is_some()), stop),
     };
     bytes.push(set_up);
-    let start = memory.experiment.map_or(0.0, |e| e.start);
+    let start = memory.experiment.map_or(0.0, |(start, _)| start);
     let numbers = [start, stop.unwrap_or(0.0), memory.time]
         .into_iter()
         .chain(memory.values.iter().copied())
@@ -72,16 +72,16 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
     bytes
 }
 
-/// Reads a saved state that fits `like`, an instance of the same export. Bytes come from files: everything is checked
-/// but the limits of single variables.
-pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
-    let mut reader = Reader { bytes };
-    reader.demand("magic", MAGIC)?;
-    let version = u32::from_le_bytes(reader.take("version")?);
+/// What stands behind a header that is that of `like`, an instance of the same export.
+fn behind_header<'a>(bytes: &'a [u8], guid: &Uuid, like: &Memory) -> Result<&'a [u8]> {
+    let rest = bytes.strip_prefix(MAGIC);
+    let mut rest =
+        rest.ok_or_else(|| refused("magic", String::from_utf8_lossy(MAGIC), "other bytes"))?;
+    let version = u32::from_le_bytes(take(&mut rest, "version")?);
     if version != VERSION {
         return Err(refused("version", VERSION.to_string(), version.to_string()));
     }
-    let found = Uuid::from_bytes(reader.take("identity")?);
+    let found = Uuid::from_bytes(take(&mut rest, "identity")?);
     if found != *guid {
         return Err(refused("identity", guid.to_string(), found.to_string()));
     }
@@ -89,50 +89,52 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
         .into_iter()
         .zip(counts(like))
     {
-        let found = u32::from_le_bytes(reader.take(place)?);
+        let found = u32::from_le_bytes(take(&mut rest, place)?);
         if found as usize != count {
             return Err(refused(place, count.to_string(), found.to_string()));
         }
     }
-    let [state] = reader.take("state")?;
+    Ok(rest)
+}
+
+/// Reads a saved state that fits `like`, an instance of the same export. Bytes come from files: everything is checked
+/// but the limits of single variables.
+pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
+    let mut rest = behind_header(bytes, guid, like)?;
+    let [state] = take(&mut rest, "state")?;
     let state = State::from_code(state)
         .ok_or_else(|| refused("state", "the code of a state", state.to_string()))?;
-    let [set_up] = reader.take("experiment")?;
-    let [start, stop, time] = [reader.number()?, reader.number()?, reader.number()?];
+    let [set_up] = take(&mut rest, "experiment")?;
+    let [start, stop, time] = [number(&mut rest)?, number(&mut rest)?, number(&mut rest)?];
     let memory = Memory {
         state,
-        experiment: experiment(set_up, start, stop)?,
+        experiment: match set_up {
+            0 => None,
+            1 => Some((start, None)),
+            3 => Some((start, Some(stop))),
+            other => return Err(refused("experiment", "0, 1 or 3", other.to_string())),
+        },
         time,
-        values: reader.numbers(like.values.len())?,
-        input_rates: reader.numbers(like.input_rates.len())?,
+        values: numbers(&mut rest, like.values.len())?,
+        input_rates: numbers(&mut rest, like.input_rates.len())?,
         system: crate::response::SectionState {
-            values: reader.numbers(like.system.values.len())?,
-            gusts: reader.numbers(like.system.gusts.len())?,
-            phase: reader.number()?,
-            last_wind_m_s: Some(reader.number()?).filter(|wind| *wind >= 0.0),
+            values: numbers(&mut rest, like.system.values.len())?,
+            gusts: numbers(&mut rest, like.system.gusts.len())?,
+            phase: number(&mut rest)?,
+            last_wind_m_s: Some(number(&mut rest)?).filter(|wind| *wind >= 0.0),
         },
     };
     if !(0.0..1.0).contains(&memory.system.phase) {
         let found = memory.system.phase.to_string();
         return Err(refused("phase", "a number in [0, 1)", found));
     }
-    let expected = digest(&bytes[..bytes.len() - reader.bytes.len()], guid);
-    if reader.take("digest")? != expected {
+    let expected = digest(&bytes[..bytes.len() - rest.len()], guid);
+    if take(&mut rest, "digest")? != expected {
         return Err(refused("digest", "that of the bytes before", "another"));
     }
-    reader.demand("end", &[])?;
-    Ok(memory)
-}
-
-fn experiment(code: u8, start: f64, stop: f64) -> Result<Option<RunTimes>> {
-    match code {
-        0 => Ok(None),
-        1 => Ok(Some(RunTimes { start, stop: None })),
-        3 => Ok(Some(RunTimes {
-            start,
-            stop: Some(stop),
-        })),
-        other => Err(refused("experiment", "0, 1 or 3", other.to_string())),
+    match rest.len() {
+        0 => Ok(memory),
+        more => Err(refused("end", "no more bytes", format!("{more} more"))),
     }
 }
 
@@ -140,53 +142,25 @@ fn refused(place: &str, expected: impl Into<String>, found: impl Into<String>) -
     Error::input(format!("serialised state: {place}"), expected, found)
 }
 
-struct Reader<'a> {
-    bytes: &'a [u8],
+/// Takes the first bytes of what is left.
+fn take<const N: usize>(rest: &mut &[u8], place: &str) -> Result<[u8; N]> {
+    let Some((head, behind)) = rest.split_first_chunk::<N>() else {
+        let found = format!("only {} more", rest.len());
+        return Err(refused(place, format!("{N} more bytes"), found));
+    };
+    *rest = behind;
+    Ok(*head)
 }
 
-impl Reader<'_> {
-    fn take<const N: usize>(&mut self, place: &str) -> Result<[u8; N]> {
-        let Some((head, rest)) = self.bytes.split_first_chunk::<N>() else {
-            let found = format!("only {} more", self.bytes.len());
-            return Err(refused(place, format!("{N} more bytes"), found));
-        };
-        self.bytes = rest;
-        Ok(*head)
+fn number(rest: &mut &[u8]) -> Result<f64> {
+    let number = f64::from_le_bytes(take(rest, "numbers")?);
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err(refused("numbers", "finite numbers", number.to_string()))
     }
+}
 
-    /// The given bytes; no bytes stand for the end.
-    fn demand(&mut self, place: &str, expected: &[u8]) -> Result<()> {
-        if expected.is_empty() {
-            return if self.bytes.is_empty() {
-                Ok(())
-            } else {
-                let found = format!("{} more", self.bytes.len());
-                Err(refused(place, "no more bytes", found))
-            };
-        }
-        match self.bytes.strip_prefix(expected) {
-            Some(rest) => {
-                self.bytes = rest;
-                Ok(())
-            }
-            None => Err(refused(
-                place,
-                String::from_utf8_lossy(expected),
-                "other bytes",
-            )),
-        }
-    }
-
-    fn number(&mut self) -> Result<f64> {
-        let number = f64::from_le_bytes(self.take("numbers")?);
-        if number.is_finite() {
-            Ok(number)
-        } else {
-            Err(refused("numbers", "finite numbers", number.to_string()))
-        }
-    }
-
-    fn numbers(&mut self, count: usize) -> Result<Vec<f64>> {
-        (0..count).map(|_| self.number()).collect()
-    }
+fn numbers(rest: &mut &[u8], count: usize) -> Result<Vec<f64>> {
+    (0..count).map(|_| number(rest)).collect()
 }

@@ -1,7 +1,6 @@
 //! Communication steps.
 
 use super::Instance;
-use super::memory::RunTimes;
 use super::trust::shown;
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
@@ -24,7 +23,7 @@ impl Instance {
     #[inline]
     pub fn do_step(&mut self, point: f64, step: f64) -> CallResult<()> {
         // most steps need no more, nor a closer look at a step that is positive and finite
-        let stop = self.memory.experiment.and_then(|e| e.stop);
+        let stop = self.memory.experiment.and_then(|(_, stop)| stop);
         if (point - self.memory.time).abs() <= CLOCK_TOLERANCE_OF_STEP * step
             && stop.is_none_or(|stop| point + step <= stop)
             && let Some(news) = self.unit.repeat(&mut self.memory, step)
@@ -73,11 +72,7 @@ impl Instance {
             return Err(elsewhere(point, time));
         }
         let end = point + step;
-        if let Some(RunTimes {
-            start,
-            stop: Some(stop),
-        }) = self.memory.experiment
-        {
+        if let Some((start, Some(stop))) = self.memory.experiment {
             // what rounding takes from this step, it takes from each of a sum of such steps
             let summed = (point - start) / step * (end - point - step).abs();
             if end > stop + tolerance + summed {

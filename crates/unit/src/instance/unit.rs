@@ -56,8 +56,9 @@ pub(super) trait Unit: Debug + Send {
     /// The initialisation begins.
     fn begin_initialization(&mut self) {}
 
-    /// Another memory takes the place of the old one: whatever both share stays computed.
-    fn replace(&mut self, new: &mut Memory, same: &dyn Fn(Source) -> bool);
+    /// Another memory takes the place of the old one: whatever both share stays computed. `same`: whether the parameters are the same,
+    /// and the limit of the search.
+    fn replace(&mut self, new: &mut Memory, same: [bool; 2]);
 
     /// What follows from the parameters and, while initialising, the state, made anew where they have changed: the only way
     /// to anything that is computed from them.
