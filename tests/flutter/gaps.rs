@@ -252,3 +252,34 @@ fn where_a_mode_leaves_the_tests_does_not_depend_on_the_search() {
         "{limits:?}"
     );
 }
+
+/// Where a mode stops oscillating does not depend on the speeds that were looked at, and its `K` may pass the end of the tests on the way.
+#[test]
+fn a_mode_is_judged_up_to_where_it_stops_oscillating() {
+    let mut section = SectionModel::table_4_1();
+    // soft: it turns ever more slowly up to its divergence
+    section.torsion.frequency_hz = Some(1.0);
+    let structure = section.structure().unwrap();
+    let coupled = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate());
+    let coupled = coupled.unwrap();
+    for lowest in [1e-6, 0.05] {
+        let range = ReducedFrequencyRange::between(k(lowest), k(100.0));
+        let judged = [37, 120, 411].map(|speeds| {
+            let search = OnsetSearch { speeds, ..SEARCH };
+            judged_speeds(&coupled, &search, Some(range)).unwrap().range
+        });
+        println!("{judged:?}");
+        let words = judged.each_ref().map(|range| range.not_judged.as_deref());
+        let why = if lowest > 1e-3 {
+            "the lowest tested"
+        } else {
+            "cannot be followed"
+        };
+        assert!(
+            words.iter().all(|w| w.is_some_and(|w| w.contains(why))),
+            "{words:?}"
+        );
+        let to = judged.map(|range| range.to_m_s);
+        assert!(to.iter().all(|v| (v - to[0]).abs() < 1e-3), "{to:?}");
+    }
+}

@@ -18,6 +18,8 @@ pub(super) const SEPARATION: f64 = 1e-9;
 /// Modes around another: those up to this part of its eigenvalue, and this many at least.
 const AROUND: f64 = 0.1;
 const NEAREST: usize = 4;
+/// Halvings between two speeds of a search for the last at which a mode oscillates: to a thousandth of what is written.
+const HALVINGS_TO_THE_LAST: usize = 16;
 /// Part of a wind speed that is no step.
 const NO_STEP: f64 = 1e-6;
 /// Growth up to this part of the eigenvalue is rounding.
@@ -255,21 +257,37 @@ impl<F: Follower> OnsetWatch<'_, F> {
         };
         for before in &low.all {
             let branch = self.follower.name(before.branch);
-            match high.mode(before.branch) {
-                Some(after) => {
-                    let slowness =
-                        |v: f64, mode: &Mode| 1.0 / self.follower.k(v, mode).full_width();
-                    let refined = |limit: f64| {
-                        let beyond = |v: f64, mode: &Mode| slowness(v, mode) - limit;
-                        let passage = self.zero(low, before, high, after, beyond);
-                        passage.ok().map(|(speed, _)| speed)
-                    };
-                    let (before, after) = (k(low, before), k(high, after));
-                    found.reach.look(range, &branch, before, after, refined);
-                }
-                None => found.reach.exits.push((low.speed, branch, Exit::Lost)),
+            let lost = high.mode(before.branch).is_none();
+            let last = lost.then(|| self.last_seen(low, high.speed, before.branch));
+            let high = last.as_ref().unwrap_or(high);
+            if let Some(after) = high.mode(before.branch) {
+                let slowness = |v: f64, mode: &Mode| 1.0 / self.follower.k(v, mode).full_width();
+                let refined = |limit: f64| {
+                    let beyond = |v: f64, mode: &Mode| slowness(v, mode) - limit;
+                    let passage = self.zero(low, before, high, after, beyond);
+                    passage.ok().map(|(speed, _)| speed)
+                };
+                let (before, after) = (k(low, before), k(high, after));
+                found.reach.look(range, &branch, before, after, refined);
+            }
+            if lost {
+                found.reach.exits.push((high.speed, branch, Exit::Lost));
             }
         }
+    }
+
+    /// The modes at the highest speed below `lost` at which a branch is among them.
+    fn last_seen(&self, low: &Modes, mut lost: f64, branch: usize) -> Modes {
+        let mut seen = low.clone();
+        for _ in 0..HALVINGS_TO_THE_LAST {
+            let speed = 0.5 * (seen.speed + lost);
+            let there = self.follower.advance(&seen, speed).ok();
+            match there.filter(|modes| modes.mode(branch).is_some()) {
+                Some(modes) => seen = modes,
+                None => lost = speed,
+            }
+        }
+        seen
     }
 
     fn motion(&self, speed: f64, mode: &Mode) -> CriticalPoint {
