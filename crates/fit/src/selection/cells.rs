@@ -148,9 +148,13 @@ pub struct Recommendation {
     pub onsets_within_m_s: Option<[f64; 2]>,
 }
 
+/// Part of the onset of the best model by which a simpler one may miss it: what a model is for is its onset, and errors of forces
+/// that scatter as much allowed onsets 14 % too high.
+const SAME_ONSET: f64 = 0.01;
+
 /// The fewest filters whose error on data left out is within one standard error of the least (the rule of Breiman,
-/// Friedman, Olshen & Stone, *Classification and Regression Trees*, 1984, section 3.4.3), among the cells without a
-/// reason against them; for that number of filters the best value.
+/// Friedman, Olshen & Stone, *Classification and Regression Trees*, 1984, section 3.4.3) and that keep the onset of the best model,
+/// among the cells without a reason against them; for that number of filters the best value.
 fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
     let may_be_used = |c: &&Cell| c.rejected.is_empty() && c.cross_validation.is_some();
     let usable = selection.cells.iter().filter(may_be_used);
@@ -166,7 +170,12 @@ fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
     let limit = best.score() * best.score() + scatter.unwrap_or_default();
     let within: Vec<&Cell> = usable.filter(|c| c.score() * c.score() <= limit).collect();
     let fewest = |a: &&Cell, b: &&Cell| a.filters.cmp(&b.filters).then(by_score(a, b));
-    let chosen = within.iter().copied().min_by(fewest).unwrap_or(best);
+    let keeps_onset = |cell: &&Cell| match (cell.onset_m_s, best.onset_m_s) {
+        (Some(own), Some(of_best)) => (own / of_best - 1.0).abs() <= SAME_ONSET,
+        (own, of_best) => own.is_none() == of_best.is_none(),
+    };
+    let alike = within.iter().copied().filter(keeps_onset);
+    let chosen = alike.min_by(fewest).unwrap_or(best);
     let (low, high) = extremes(within.iter().filter_map(|c| c.onset_m_s));
     let mut places = selection.cells.iter();
     let recommended = Recommendation {
@@ -217,9 +226,10 @@ fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
     } else {
         format!(
             "{own}: the fewest filters whose error on data left out, {error}, is within one standard error of the least ({} with \
-             {})",
+             {}) and that keep its onset to {}",
             percent(best.score()),
-            name(best, symbol)
+            name(best, symbol),
+            percent(SAME_ONSET)
         )
     };
     if let Some(onset) = chosen.onset_m_s {
@@ -271,4 +281,46 @@ fn name(cell: &Cell, symbol: &str) -> String {
 
 fn percent(x: f64) -> String {
     format!("{:.2} %", 100.0 * x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A simpler model that predicts as well is taken where it flutters at the same speed.
+    #[test]
+    fn a_simpler_model_keeps_the_onset() {
+        let cell = |filters, score, onset_m_s| Cell {
+            filters,
+            value: 0.5,
+            cross_validation: Some(CrossValidation {
+                score,
+                standard_error_of_square: 0.1,
+                across_speeds: None,
+                across_frequencies: None,
+            }),
+            onset_m_s,
+            ..Cell::default()
+        };
+        let chosen = |simple: Option<f64>, best: Option<f64>| {
+            let cells = vec![cell(1, 0.3, simple), cell(2, 0.2, best)];
+            let selection = Selection {
+                symbol: "p".into(),
+                values: vec![0.5],
+                filters_max: 2,
+                cells,
+                free: Vec::new(),
+                unpredicted: Vec::new(),
+                recommended: None,
+                reason: String::new(),
+            };
+            recommend(&selection).0.unwrap().filters
+        };
+        assert_eq!(chosen(Some(37.3), Some(37.0)), 1);
+        assert_eq!(chosen(Some(37.7), Some(37.0)), 2);
+        assert_eq!(chosen(Some(36.2), Some(37.0)), 2);
+        assert_eq!(chosen(None, None), 1);
+        assert_eq!(chosen(None, Some(37.0)), 2);
+        assert_eq!(chosen(Some(37.0), None), 2);
+    }
 }

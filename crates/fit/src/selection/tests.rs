@@ -81,8 +81,9 @@ fn the_over_fit_of_ln21_5500_is_refused() {
     assert!((36.0..39.0).contains(&onset), "{onset}");
 }
 
-/// The drag of LN21-5800 by sway at one speed says nothing of that at others. Left in, it decides for one filter, 36.6 m/s; what is
-/// predicted decides as with two motions, whose recommendation flutters at 35.1 m/s.
+/// The drag of LN21-5800 by sway at one speed says nothing of that at others. Left in, it decides for one filter, 36.6 m/s; without it
+/// two filters predict best, 35.2 m/s. With two motions three do, 33.8 m/s, where the table flutters at 33.0: two are as good, but at
+/// 35.1 m/s.
 #[test]
 fn a_force_that_nobody_predicts_does_not_decide() {
     let deck = embedded::deck("LN21-5800").unwrap();
@@ -107,14 +108,17 @@ fn a_force_that_nobody_predicts_does_not_decide() {
     assert!(drag.starts_with("the lateral force by lateral motion") && drag.ends_with("speeds"));
     assert!(three.reason.contains(drag), "{}", three.reason);
     let [two, three] = [two, three].map(|s| s.recommended.unwrap());
-    assert_eq!((two.filters, three.filters), (2, 2));
+    assert_eq!((two.filters, three.filters), (3, 2));
     let [low, high] = three.onsets_within_m_s.unwrap();
     let onset = three.onset_m_s.unwrap();
     assert!(
         low <= onset && onset <= high && high - low < 2.5,
         "{low} {onset} {high}"
     );
-    assert!((onset - two.onset_m_s.unwrap()).abs() < 0.5, "{onset}");
+    assert!((onset - 35.2).abs() < 0.5, "{onset}");
+    let of_table = 33.0;
+    let of_two = two.onset_m_s.unwrap();
+    assert!((of_two - of_table).abs() < 0.03 * of_table, "{of_two}");
 }
 
 /// Thesis filters: eight with α = 0.6 on the flat plate leave no stable speed, and the discrete grid refuses them.
