@@ -5,7 +5,6 @@
 
 use super::basis::{Basis, assemble};
 use super::discrete::discrete_pass;
-use super::dissipative::Strictness;
 use super::form::{Form, number_of_filters};
 use super::joint::JointFit;
 use super::least_squares::Factor;
@@ -181,15 +180,9 @@ impl Grid {
         if !requirements.any() {
             return Ok(None);
         }
-        let entries = self.dofs.len() * self.dofs.len();
         let form = with_filters(&fit.form, filters);
         let basis = Basis::orthonormal(&form, &vec![poles[value]; filters])?;
-        let systems = ForceSystems {
-            counts: vec![self.leading(filters); entries],
-            systems: vec![Rc::clone(systems)],
-        };
-        let bases = vec![basis; entries];
-        let held = systems.held(&bases, &requirements, Strictness::Sampled)?;
+        let held = ForceSystems::held_alike(systems, basis, &requirements)?;
         Ok(Some(held).filter(|(joint, _)| joint.constrained.is_some()))
     }
 

@@ -4,7 +4,7 @@ use super::continuous::{RecordFit, padded};
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::{FitRequirements, Strictness};
+use crate::identification::dissipative::FitRequirements;
 use crate::identification::form::Form;
 use crate::identification::form::PoleSearch;
 use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
@@ -180,12 +180,7 @@ impl PoleGroup {
             .all(|f| f.undetermined(f.columns()).is_none());
         if let Some(requirements) = self.constrained.as_ref().filter(|_| known) {
             let basis = Basis::orthonormal(&self.form, &self.form.expand(poles))?;
-            let systems = ForceSystems {
-                counts: vec![columns; self.members.len()],
-                systems: vec![Rc::clone(system)],
-            };
-            let bases = vec![basis; self.members.len()];
-            let (_, objective) = systems.held(&bases, requirements, Strictness::Sampled)?;
+            let (_, objective) = ForceSystems::held_alike(system, basis, requirements)?;
             return Ok(objective);
         }
         let Some((i, j)) = self.entry else {

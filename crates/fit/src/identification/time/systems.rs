@@ -150,6 +150,21 @@ impl ForceSystems {
         Some(reduced(systems.alone(i, j)?, &columns))
     }
 
+    /// All transfer functions in the columns of one basis, fitted to one system and held where the search of poles asks; as
+    /// [`Self::held`].
+    pub(crate) fn held_alike(
+        system: &Rc<Systems>,
+        basis: Basis,
+        requirements: &FitRequirements,
+    ) -> Result<(JointFit, f64)> {
+        let entries = system.order.inputs * system.order.inputs;
+        let forces = Self {
+            counts: vec![basis.len(); entries],
+            systems: vec![Rc::clone(system)],
+        };
+        forces.held(&vec![basis; entries], requirements, Strictness::Sampled)
+    }
+
     /// All transfer functions in the columns of `bases`, row by row, held together by what is asked of them, and the objective of
     /// that fit. As in the search of poles, the weighted residuals of every transfer function that has rows of its own count
     /// relative to its weighted data, else those of every force, constant included.
