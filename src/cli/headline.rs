@@ -3,6 +3,7 @@
 use super::common::speed_or;
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetMethod};
+use crate::signal::extremes;
 use crate::study::{FlutterStudy, SteppedOnset};
 use crate::verdict::{Doubt, Severity, Verdict};
 use std::fmt::Write as _;
@@ -56,11 +57,7 @@ pub(super) fn comparisons(
 ) -> Vec<String> {
     let mut lines = Vec::new();
     let speeds = results.onsets.iter().filter(|o| o.at.model != name);
-    let (low, high) = speeds
-        .map(|o| o.at.speed_m_s)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(v), high.max(v))
-        });
+    let (low, high) = extremes(speeds.map(|o| o.at.speed_m_s));
     if low <= high {
         lines.push(format!(
             "Other models and routes: {low:.2} to {high:.2} m/s."

@@ -1,8 +1,6 @@
 //! Sketch of the axes: heave up (this program, PoliMi) beside heave down (classical, Küssner/Starossek).
 
-use super::figure::Figure;
-use super::geometry::Px;
-use super::scene::Scene;
+use super::scene::{Figure, Px, Scene};
 use super::style::{BLACK, COLOURS, GREY, Ink};
 use crate::aerodynamics::derivatives::notation::Axes;
 

@@ -66,7 +66,7 @@ impl Axis {
 }
 
 /// Lowest and highest of `values`.
-fn ends(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+pub(super) fn ends(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let nothing = (f64::INFINITY, f64::NEG_INFINITY);
     let wider = |(low, high): (f64, f64), v: f64| (low.min(v), high.max(v));
     values.into_iter().fold(nothing, wider)

@@ -2,10 +2,10 @@
 
 use super::axis::Axis;
 use super::drawing::{Drawing, titled};
-use super::figure::Figure;
 use super::flutter_figures::root_locus;
 use super::legend::Entry;
 use super::panel::Panel;
+use super::scene::Figure;
 use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash, outcome_colour};
 use crate::bridge::Bridge;
 use crate::error::Result;

@@ -2,10 +2,9 @@
 
 use super::axis::Axis;
 use super::drawing::{Drawing, titled};
-use super::figure::Figure;
-use super::legend::{Entry, entries};
+use super::legend::{Entry, PlottedSeries, entries, labels_of};
 use super::panel::Panel;
-use super::series::{PlottedSeries, labels_of};
+use super::scene::Figure;
 use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
 

@@ -1,11 +1,10 @@
 //! Panels in a grid with a title above and a legend below, put together into one figure.
 
-use super::figure::Figure;
+use super::axis::ends;
 use super::font::text_width;
-use super::geometry::{Area, Px};
 use super::legend::{Entry, LegendLayout, lay_out, shortened};
 use super::panel::{LABEL_SIZE, Panel, ROOM_BELOW};
-use super::scene::Scene;
+use super::scene::{Area, Figure, Px, Scene};
 use super::style::BLACK;
 use crate::error::{Error, Result};
 
@@ -111,14 +110,9 @@ impl Drawing {
         let own = |p: &Panel| p.x.tight && p.x.range.is_none() && p.x.within.is_none();
         if self.columns == 1 && panels.iter().all(own) {
             let points = self.panels.iter().flat_map(|p| &p.series);
-            let ends = points.flat_map(|s| &s.points).map(|p| p.0);
-            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
-            if low < high {
-                panels
-                    .iter_mut()
-                    .for_each(|p| p.x.range = Some((low, high)));
+            let range = ends(points.flat_map(|s| &s.points).map(|p| p.0));
+            if range.0 < range.1 {
+                panels.iter_mut().for_each(|p| p.x.range = Some(range));
             }
         }
         panels

@@ -2,10 +2,9 @@
 
 use super::axis::{Axis, significant};
 use super::drawing::Drawing;
-use super::figure::Figure;
-use super::legend::Entry;
+use super::legend::{Entry, distinct, index_of};
 use super::panel::{Note, Panel};
-use super::series::{distinct, index_of};
+use super::scene::Figure;
 use super::style::{
     BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale,
 };

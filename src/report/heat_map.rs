@@ -1,9 +1,8 @@
 //! A number over a grid of two parameters, as cells of colour.
 
-use super::figure::Figure;
-use super::geometry::{Area, Px};
+use super::axis::ends;
 use super::legend::shortened;
-use super::scene::Scene;
+use super::scene::{Area, Figure, Px, Scene};
 use super::style::{BLACK, GREY, Ink};
 use crate::error::{Error, Result, ensure};
 
@@ -113,8 +112,7 @@ impl HeatMap {
             .filter_map(|(_, v)| v.filter(|x| x.is_finite()))
             .collect();
         let values = if chosen.is_empty() { values } else { chosen };
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = ends(values);
         ensure(
             low <= high,
             format!("heat map {}", self.title),

@@ -1,7 +1,7 @@
 //! Where the labels of points go, so that they cover neither each other nor the curves.
 
 use super::font::text_width;
-use super::geometry::{Area, Px};
+use super::scene::{Area, Px};
 
 /// Places for one label after the other.
 #[derive(Debug)]

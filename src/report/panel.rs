@@ -2,10 +2,9 @@
 
 use super::axis::{Axis, Scale};
 use super::font::text_width;
-use super::geometry::{Area, Px};
 use super::labels::Labels;
-use super::scene::Scene;
-use super::series::{PlottedSeries, index_of};
+use super::legend::{PlottedSeries, index_of};
+use super::scene::{Area, Px, Scene};
 use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY};
 use crate::error::{Error, Result, ensure};
 

@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::drawing::Drawing;
-use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Panel, Series};
+use super::scene::Figure;
 use super::style::{BLACK, Ink, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;

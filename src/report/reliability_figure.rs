@@ -2,9 +2,9 @@
 
 use super::axis::{Axis, significant};
 use super::drawing::Drawing;
-use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
+use super::scene::Figure;
 use super::style::{BLACK, Ink, Shape, colour};
 use crate::error::{Error, Result};
 use crate::uncertainty::monte_carlo::MonteCarloResult;

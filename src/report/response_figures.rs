@@ -2,10 +2,9 @@
 
 use super::axis::Axis;
 use super::drawing::{Drawing, titled};
-use super::figure::Figure;
-use super::legend::entries;
+use super::legend::{PlottedSeries, entries, labels_of};
 use super::panel::Panel;
-use super::series::{PlottedSeries, labels_of};
+use super::scene::Figure;
 use super::style::{COLOURS, Ink, Shape, colour, dash};
 use crate::error::Result;
 

@@ -2,10 +2,10 @@
 
 use super::axis::Axis;
 use super::drawing::Drawing;
-use super::figure::Figure;
 use super::legend::Entry;
 use super::page_head::required_colour;
 use super::panel::Panel;
+use super::scene::Figure;
 use super::study_page::{PageCurve, StudyPage};
 use super::style::{BLACK, COLOURS, Ink, PALE_GREY, dash};
 use crate::error::Result;

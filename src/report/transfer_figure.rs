@@ -2,10 +2,9 @@
 
 use super::axis::Axis;
 use super::drawing::{Drawing, titled};
-use super::figure::Figure;
-use super::legend::{Entry, entries};
+use super::legend::{Entry, distinct, entries, index_of};
 use super::panel::Panel;
-use super::series::{distinct, index_of};
+use super::scene::Figure;
 use super::style::{BLACK, GREY, Ink, Shape};
 use crate::comparison::forces::PerModel;
 use crate::error::Result;

@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::drawing::Drawing;
-use super::figure::Figure;
 use super::legend::{Entry, entries};
 use super::panel::Panel;
+use super::scene::Figure;
 use super::style::{BLACK, Ink, Shape};
 use crate::aeroelastic::EquilibriumPath;
 use crate::buffeting::SpectrumCurve;

@@ -13,6 +13,7 @@ use crate::flutter::{AssumedAtRest, FlutterSearch, OnsetInterval, determinant_on
 use crate::identification::sample_model;
 use crate::plausibility::{Finding, WIDEST_MODEL_M, of_table};
 use crate::section::{Dof, Structure};
+use crate::signal::extremes;
 use crate::study::Study;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::Record;
@@ -342,14 +343,14 @@ impl Deck {
             search.ok()?.onset().map(|o| o.at.speed_m_s)
         };
         let onsets = Interpolation::ALL.map(|by| (by, onset(by)));
-        let speeds = || onsets.iter().filter_map(|(_, speed)| *speed);
+        let (low_m_s, high_m_s) = extremes(onsets.iter().filter_map(|(_, speed)| *speed));
         let words = onsets.map(|(by, speed)| {
             let speed = speed.map_or("none within the table".to_owned(), |v| format!("{v:.3}"));
             format!("{} {speed}", by.title())
         });
         OnsetInterval::Spread {
-            low_m_s: speeds().fold(f64::INFINITY, f64::min),
-            high_m_s: speeds().fold(f64::NEG_INFINITY, f64::max),
+            low_m_s,
+            high_m_s,
             of: format!("spread between interpolations: {}", words.join(", ")),
         }
     }

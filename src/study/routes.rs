@@ -5,9 +5,10 @@
 //! structure, and handbook formulas. Two routes on one force model must agree to rounding; between force models the
 //! table shows what the choice of the model does.
 
+mod limit;
 mod steady;
 
-pub use steady::low_frequency_limit;
+pub use limit::low_frequency_limit;
 
 use super::{Deck, Study};
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Transfer};
@@ -21,8 +22,8 @@ use crate::flutter::{
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use limit::{limit_onset, steady_flat_plate};
 use serde::Serialize;
-use steady::{limit_onset, steady_flat_plate};
 
 /// Reduced frequencies from still air to nearly steady flow.
 const WIDE: (f64, f64) = (0.02, 10.0);
