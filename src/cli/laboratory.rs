@@ -117,7 +117,22 @@ fn line(run: &RunReport) -> String {
     };
     let inertia = run.still_air.as_ref().map_or_else(
         || "no inertia seen".to_owned(),
-        |s| format!("inertia {:.4} {unit}", s.inertia),
+        |s| {
+            let centre = s.centre_of_mass_m.zip(s.centre_of_mass_over_width);
+            let way = if run.dof == Dof::Vertical {
+                "downwind of"
+            } else {
+                "above"
+            };
+            let centre = centre.map_or_else(String::new, |(m, part)| {
+                format!(
+                    " at {:.1} mm ({:.1} % of the width) {way} the axis",
+                    1e3 * m,
+                    100.0 * part
+                )
+            });
+            format!("inertia {:.4} {unit}{centre}", s.inertia)
+        },
     );
     let still_air = run.alignment.as_ref().map_or_else(
         || "no still air".to_owned(),

@@ -22,6 +22,7 @@ pub mod coherent;
 pub mod drift;
 pub mod lag;
 pub mod low_pass;
+mod mass_matrix;
 mod options;
 mod prepare;
 mod report;
@@ -87,6 +88,7 @@ pub fn process(
         judged.extend(prepare::judge_still_air(dof, &campaign.rig, &mut of_dof));
     }
     all_or_errors(judged)?;
+    mass_matrix::judge(&campaign.rig, &mut prepared);
     let stated = options.dofs.clone();
     let dofs = stated.unwrap_or_else(|| dofs_of(campaign, &prepared));
     let (lag_s, lag_standard_error_s) = prepare::common_lag(&mut prepared, options);

@@ -10,7 +10,7 @@
 //! ones: `v_global = axes · v_local`. The sign of a channel is that of the force **on the cell by the model**, so
 //! that inertia of an accelerating model of mass m shows as −m ẍ.
 
-use crate::error::{Result, ensure, positive};
+use crate::error::{Result, ensure, finite_numbers, positive};
 use crate::section::Dof;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -46,6 +46,9 @@ pub struct Rig {
     /// Its moment of inertia about the centre of rotation, kg·m², likewise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_inertia_kg_m2: Option<f64>,
+    /// Place of its centre of mass from the axis of rotation, global axes at rest, m, likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub centre_of_mass_m: Option<[f64; 3]>,
     /// The cells that carry the model.
     pub cells: Vec<LoadCell>,
 }
@@ -64,6 +67,11 @@ impl Rig {
         ] {
             stated.map_or(Ok(0.0), |x| positive(key, x))?;
         }
+        finite_numbers(
+            "rig.centre_of_mass_m",
+            &self.centre_of_mass_m.unwrap_or_default(),
+            3,
+        )?;
         ensure(
             !self.cells.is_empty(),
             "rig.cells",

@@ -222,6 +222,7 @@ impl Campaign {
                     model_width_m: positive("section.width_m", width)?,
                     model_mass_kg: None,
                     model_inertia_kg_m2: None,
+                    centre_of_mass_m: None,
                     cells: vec![SectionForces::cell()],
                 })
             }

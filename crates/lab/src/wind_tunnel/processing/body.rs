@@ -21,7 +21,7 @@ const WHAT_IS_WRONG: &str = "a load-cell channel is missing, taken twice, or in 
 /// `1/(2r)` with `r = B/20`, times B.
 const LEVER_OF_ROTATION: f64 = 10.0;
 /// A sign is certain when the figure is this many standard errors from zero.
-const CERTAIN: f64 = 5.0;
+pub(super) const CERTAIN: f64 = 5.0;
 
 /// Inertia of the model and lag of the force channels, from one still-air recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,6 +40,12 @@ pub struct StillAirInertia {
     pub stiffness: Option<f64>,
     /// Damping c in still air: N·s/m, N·m·s/rad; `None` likewise, since one frequency does not tell it from the lag.
     pub damping: Option<f64>,
+    /// Place of the centre of mass from the axis, m: downwind of it in heave, above it in sway; `None` in rotation.
+    #[serde(default)]
+    pub centre_of_mass_m: Option<f64>,
+    /// The same over the width of the model.
+    #[serde(default)]
+    pub centre_of_mass_over_width: Option<f64>,
 }
 
 impl StillAirInertia {

@@ -17,10 +17,11 @@ use nalgebra::{Complex, Matrix2, Vector2};
 use std::f64::consts::TAU;
 
 /// `F/X` at one frequency with the variance of either part.
-struct Ratio {
-    omega: f64,
-    value: Complex<f64>,
-    variance: f64,
+#[derive(Clone)]
+pub(super) struct Ratio {
+    pub omega: f64,
+    pub value: Complex<f64>,
+    pub variance: f64,
 }
 
 /// Inertia of a cell up to this part of that of the model is rounding, which has no scatter to be judged by …
@@ -34,7 +35,9 @@ const ONE_FREQUENCY: f64 = 0.02;
 /// one in the direction of the motion.
 pub(super) struct Ratios {
     run: String,
-    total: [Vec<Ratio>; 3],
+    pub total: [Vec<Ratio>; 3],
+    /// The motions over the driven one; empty where not recorded.
+    pub motion: [Vec<Ratio>; 3],
     cells: Vec<Vec<Ratio>>,
 }
 
@@ -55,6 +58,10 @@ impl Ratios {
         let at_rest = vec![0.0; still.sample_count()];
         let cells = super::cells::to_global(still, rig, &at_rest);
         let of = |force: &[f64]| ratios(motion, force, still.sampling_hz, segments);
+        let besides = |d: usize| match &still.motion[d] {
+            none if none.is_empty() => Ok(Vec::new()),
+            moves => of(moves),
+        };
         let [lift, drag, moment] = sum_about_centre(&cells, rig, &at_rest);
         let places = rig.cells.iter().zip(&cells);
         let cells =
@@ -62,6 +69,7 @@ impl Ratios {
         Ok(Self {
             run: run.to_owned(),
             total: [of(&lift)?, of(&drag)?, of(&moment)?],
+            motion: [besides(0)?, besides(1)?, besides(2)?],
             cells: cells.collect::<Result<_>>()?,
         })
     }
@@ -195,7 +203,7 @@ fn ratios(
 
 /// The inertia of each of the `runs` of one motion in the force of `dof`. Runs of less than three frequencies do not tell stiffness
 /// and damping by themselves: they take those of all runs together.
-fn solve_together(dof: Dof, runs: &[&[Ratio]]) -> Vec<Option<StillAirInertia>> {
+pub(super) fn solve_together(dof: Dof, runs: &[&[Ratio]]) -> Vec<Option<StillAirInertia>> {
     let all = solve(dof, runs.iter().copied().flatten(), None);
     let tells = |run: &[Ratio]| distinct(run.iter()) > 2;
     let sharing = runs.iter().filter(|run| !tells(run)).count() as f64;
@@ -259,6 +267,8 @@ fn solve<'a>(
         inertia_standard_error: inertia_variance.sqrt(),
         stiffness: if both { Some(real[1]) } else { stiffness },
         damping: if both { Some(found) } else { damping },
+        centre_of_mass_m: None,
+        centre_of_mass_over_width: None,
     })
 }
 

@@ -34,7 +34,7 @@ pub(super) struct PreparedRun<'a> {
     /// In samples of the recording in still air; empty without one.
     pub still_segments: Vec<HarmonicSegment>,
     /// Forces over the motion in still air.
-    ratios: Option<Ratios>,
+    pub ratios: Option<Ratios>,
     /// What they say, with those of the other runs of the motion.
     pub still_air: Option<StillAirInertia>,
 }

@@ -211,6 +211,7 @@ impl VirtualCampaignPlan {
         Rig {
             model_mass_kg: stated(body.mass_kg_m),
             model_inertia_kg_m2: stated(about_rotation),
+            centre_of_mass_m: (body.mass_kg_m > 0.0).then_some(body.centre_of_gravity_m),
             ..self.support.rig(width_m)
         }
     }
@@ -288,6 +289,7 @@ impl Support {
             model_width_m: width_m,
             model_mass_kg: None,
             model_inertia_kg_m2: None,
+            centre_of_mass_m: None,
             cells: self.cells.clone(),
         }
     }

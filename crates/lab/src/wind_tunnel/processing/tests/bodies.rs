@@ -342,3 +342,59 @@ fn without_still_air_the_forces_are_those_of_the_wind() {
     let processed = done(&raw, &ProcessingOptions::default());
     assert_eq!(processed.records[0].header.dofs, [Dof::Vertical]);
 }
+
+/// Cells stated 4 cm off gave moments, and by these an onset, that are wrong by a fifth; a sensor of rotation that feels heave likewise.
+#[test]
+fn still_air_shows_the_centre_of_mass_and_each_motion() {
+    let doubts = |raw: &RawCampaign| done(raw, &ProcessingOptions::default()).report.doubts();
+    let mut raw = made().raw;
+    assert_eq!(doubts(&raw), [""; 0]);
+    let mut off = raw.clone();
+    off.rig
+        .cells
+        .iter_mut()
+        .for_each(|c| c.position_m[0] += 0.04);
+    let said = doubts(&off);
+    assert!(
+        said.len() == 1
+            && said[0].contains("vertical-8.00: still air shows the centre of mass 44.0 mm (8.8 % of the width) downwind of the axis")
+            && said[0].contains("rotation shows it 4.0 mm downwind of it: `position_m`"),
+        "{said:?}"
+    );
+    // the runs of heave alone: what is stated tells, or that nothing is
+    off.runs.truncate(1);
+    assert!(doubts(&off)[0].contains("`rig.centre_of_mass_m` states 4.0 mm"));
+    off.rig.centre_of_mass_m = None;
+    assert!(doubts(&off)[0].contains("does not state it"));
+    off.rig.centre_of_mass_m = Some([0.044, -0.01, 0.0]);
+    assert_eq!(doubts(&off), [""; 0]);
+    // by 13 % of the heave over the width
+    let feel = |raw: &mut RawCampaign, run: usize, motion: usize, driven: usize, part: f64| {
+        let run = &mut raw.runs[run];
+        for r in [&mut run.in_wind, run.still_air.as_mut().unwrap()] {
+            let own = r.motion[driven].clone();
+            r.motion[motion]
+                .iter_mut()
+                .zip(own)
+                .for_each(|(x, y)| *x += part * y);
+        }
+    };
+    let mut heave = raw.clone();
+    feel(&mut heave, 0, 2, 0, -0.26);
+    let said = doubts(&heave);
+    assert!(
+        said.len() == 1
+            && said[0].contains(
+                "vertical-8.00: the torsion channel tells of 13 % of the vertical motion"
+            ),
+        "{said:?}"
+    );
+    feel(&mut raw, 1, 0, 2, 0.08);
+    let said = doubts(&raw);
+    assert!(
+        said.len() == 1
+            && said[0]
+                .contains("torsion-8.00: the vertical channel tells of 16 % of the torsion motion"),
+        "{said:?}"
+    );
+}

@@ -1,0 +1,190 @@
+//! The mass matrix that still air shows, which of a body is symmetric.
+//!
+//! A centre of mass `x` downwind of the axis and `y` above it shows `-m x` in the moment of heave and in the lift of rotation, `m y` in
+//! the moment of sway and in the drag of rotation. Cells or an axis that are not where the rig states them change the moments alone. A
+//! motion besides the driven one adds its own inertia; a sensor that says one where there is none adds nothing.
+
+use super::body::{CERTAIN, StillAirInertia};
+use super::index;
+use super::lag::{Ratio, Ratios, solve_together};
+use super::prepare::PreparedRun;
+use crate::section::Dof;
+use crate::wind_tunnel::Rig;
+use nalgebra::Complex;
+
+/// Centres of mass are one up to this part of the width …
+const SAME_CENTRE: f64 = 0.01;
+/// … and up to this one on the axis, where nothing is stated: the moment of lift at it moves an onset by some 7 %.
+const ON_THE_AXIS: f64 = 0.03;
+/// A motion besides the driven one is asked for its inertia from this part on, both over the width …
+const CONSIDERABLE: f64 = 0.05;
+/// … of which this part may be missing.
+const MISSING: f64 = 0.3;
+
+/// Inertia of the motion of one run in the force of another.
+struct Coupling {
+    /// Its place among the runs.
+    run: usize,
+    /// Without that of the other motion.
+    found: StillAirInertia,
+    /// That of the other motion, were it there.
+    of_other: f64,
+    /// Greatest part of the other motion in the driven one.
+    part: f64,
+}
+
+/// Enters where still air shows the centre of mass, and doubts what no body shows.
+pub(super) fn judge(rig: &Rig, runs: &mut [PreparedRun<'_>]) {
+    for dof in [Dof::Vertical, Dof::Lateral] {
+        let translation = couplings(rig, runs, dof, Dof::Torsion);
+        let rotation = couplings(rig, runs, Dof::Torsion, dof);
+        let sides = [(&translation, &rotation), (&rotation, &translation)];
+        let unseen = |(own, across): (&Vec<Coupling>, &Vec<Coupling>)| {
+            let reference = surest(across)?;
+            own.iter()
+                .find_map(|c| Some((c.run, c.unseen(runs, reference)?)))
+        };
+        let unseen: Vec<_> = sides.into_iter().filter_map(unseen).collect();
+        let seen = |c: &&Coupling| unseen.iter().all(|(run, _)| *run != c.run);
+        let mut off_axis = None;
+        for c in translation.iter().filter(seen) {
+            let of_rotation = surest(&rotation).filter(seen);
+            off_axis = off_axis.or(c.enter_centre(rig, runs, of_rotation));
+        }
+        for (run, doubt) in unseen.into_iter().chain(off_axis) {
+            runs[run].doubts.push(doubt);
+        }
+    }
+}
+
+/// The one in which the other motion weighs least.
+fn surest(all: &[Coupling]) -> Option<&Coupling> {
+    all.iter().min_by(|a, b| a.part.total_cmp(&b.part))
+}
+
+/// Inertia of the runs of `dof` in the force of `other`.
+fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<Coupling> {
+    let told = |p: &&PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| !s.hides_weight());
+    let body = runs.iter().filter(told).find(|p| p.dof == other);
+    let body = body.and_then(|p| p.still_air.as_ref());
+    let of_dof = runs
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| p.dof == dof && told(p));
+    let (at, ratios): (Vec<usize>, Vec<&Ratios>) = of_dof
+        .filter_map(|(at, p)| Some((at, p.ratios.as_ref()?)))
+        .unzip();
+    let forces = || ratios.iter().map(|r| &r.total[index(other)][..]);
+    let left: Vec<Vec<Ratio>> = ratios.iter().map(|r| without(r, other, body)).collect();
+    let all = solve_together(other, &forces().collect::<Vec<_>>());
+    let left = solve_together(other, &left.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let width = rig.model_width_m;
+    let scale = other.motion_scale(width) / dof.motion_scale(width);
+    let found = at.into_iter().zip(ratios).zip(all.into_iter().zip(left));
+    let coupling = |((run, ratios), (all, found)): (
+        (usize, &Ratios),
+        (Option<StillAirInertia>, Option<StillAirInertia>),
+    )| {
+        let (all, found) = (all?, found?);
+        let moves = ratios.motion[index(other)].iter();
+        Some(Coupling {
+            run,
+            of_other: all.inertia - found.inertia,
+            found,
+            part: moves.map(|r| scale * r.value.norm()).fold(0.0, f64::max),
+        })
+    };
+    found.filter_map(coupling).collect()
+}
+
+/// The force of `other` over the driven motion without that of the `body` that moves so.
+fn without(run: &Ratios, other: Dof, body: Option<&StillAirInertia>) -> Vec<Ratio> {
+    let force = &run.total[index(other)];
+    let moves = &run.motion[index(other)];
+    let Some(body) = body.filter(|_| moves.len() == force.len()) else {
+        return force.clone();
+    };
+    let left = force.iter().zip(moves).map(|(force, moves)| {
+        let of_body = Complex::new(
+            body.inertia * force.omega.powi(2) - body.stiffness.unwrap_or(0.0),
+            -body.damping.unwrap_or(0.0) * force.omega,
+        );
+        Ratio {
+            omega: force.omega,
+            value: force.value - of_body * moves.value,
+            variance: force.variance + of_body.norm_sqr() * moves.variance,
+        }
+    });
+    left.collect()
+}
+
+impl Coupling {
+    /// The doubt that another motion of which its channel tells is none, against the `across` of the other runs.
+    fn unseen(&self, runs: &[PreparedRun<'_>], across: &Self) -> Option<String> {
+        let off = self.found.inertia - across.found.inertia;
+        let missing = off.abs() - self.error(across);
+        (self.part > CONSIDERABLE && missing > MISSING * self.of_other.abs()).then(|| {
+            let (own, other) = (runs[self.run].dof.name(), self.found.dof.name());
+            format!(
+                "the {other} channel tells of {:.0} % of the {own} motion, both over the width, whose inertia in the {other} force, \
+                 {:.4} kg·m, still air does not show ({:.4} ± {:.4} kg·m): a sensor that feels the {own} motion?",
+                100.0 * self.part,
+                self.of_other,
+                off + self.of_other,
+                self.found.inertia_standard_error
+            )
+        })
+    }
+
+    /// Certain difference of two, kg·m.
+    fn error(&self, other: &Self) -> f64 {
+        let error = |c: &Self| c.found.inertia_standard_error;
+        CERTAIN * error(self).hypot(error(other))
+    }
+
+    /// Enters the place of the centre of mass in the run and returns the doubt of it.
+    fn enter_centre(
+        &self,
+        rig: &Rig,
+        runs: &mut [PreparedRun<'_>],
+        rotation: Option<&Self>,
+    ) -> Option<(usize, String)> {
+        let body = runs[self.run].still_air.as_mut()?;
+        let (axis, sign, place) = match body.dof {
+            Dof::Vertical => (0, -1.0, "downwind of"),
+            _ => (1, 1.0, "above"),
+        };
+        let metres = |c: &Self| sign * c.found.inertia / body.inertia;
+        let (found, width) = (metres(self), rig.model_width_m);
+        let turning = rotation.map(metres);
+        (body.centre_of_mass_m, body.centre_of_mass_over_width) =
+            (Some(found), Some(found / width));
+        let off = |from: f64, part: f64, c: &Self| {
+            (found - from).abs() > part * width + self.error(c) / body.inertia.abs()
+        };
+        let why = if let (Some(turning), Some(c)) = (turning, rotation)
+            && off(turning, SAME_CENTRE, c)
+        {
+            let turning = 1e3 * turning;
+            format!(
+                "rotation shows it {turning:.1} mm {place} it: `position_m` of the cells is not that from the axis"
+            )
+        } else {
+            match rig.centre_of_mass_m.map(|p| p[axis]) {
+                Some(stated) if off(stated, SAME_CENTRE, self) => {
+                    let stated = 1e3 * stated;
+                    format!("`rig.centre_of_mass_m` states {stated:.1} mm")
+                }
+                None if off(0.0, ON_THE_AXIS, self) => {
+                    "`rig.centre_of_mass_m` does not state it: is `position_m` of the cells that from the axis?".to_owned()
+                }
+                _ => return None,
+            }
+        };
+        let (mm, part, name) = (1e3 * found, 100.0 * found / width, body.dof.name());
+        let doubt = format!(
+            "still air shows the centre of mass {mm:.1} mm ({part:.1} % of the width) {place} the axis in {name} motion, {why}"
+        );
+        Some((self.run, doubt))
+    }
+}
