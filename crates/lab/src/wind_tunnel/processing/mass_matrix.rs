@@ -39,12 +39,12 @@ pub(super) fn judge(rig: &Rig, runs: &mut [PreparedRun<'_>]) {
         let translation = couplings(rig, runs, dof, Dof::Torsion);
         let rotation = couplings(rig, runs, Dof::Torsion, dof);
         let sides = [(&translation, &rotation), (&rotation, &translation)];
-        let unseen = |(own, across): (&Vec<Coupling>, &Vec<Coupling>)| {
-            let reference = surest(across)?;
-            own.iter()
-                .find_map(|c| Some((c.run, c.unseen(runs, reference)?)))
-        };
-        let unseen: Vec<_> = sides.into_iter().filter_map(unseen).collect();
+        let mut unseen = Vec::new();
+        for (own, across) in sides {
+            let reference = surest(across);
+            let doubt = |c: &Coupling| Some((c.run, c.unseen(runs, reference?)?));
+            unseen.extend(own.iter().filter_map(doubt));
+        }
         let seen = |c: &&Coupling| unseen.iter().all(|(run, _)| *run != c.run);
         let mut off_axis = None;
         for c in translation.iter().filter(seen) {
