@@ -171,6 +171,16 @@ impl<'a> RunInProgress<'a> {
         let area = self.report.dimensionless.pressure_pa * self.rig.model_length_m;
         let width = self.rig.model_width_m;
         let coefficient = |d: usize| static_wind[d] / (area * Dof::THREE[d].force_scale(width));
+        let drag = index(Dof::Lateral);
+        // the cells may drift from one recording to the other as within one
+        let drift = self.report.cell_drift.iter();
+        let drift = drift.map(|c| c.range[..3].iter().fold(0.0, |m: f64, x| m.max(*x)));
+        if -static_wind[drag] > drift.sum() {
+            self.report.doubts.push(format!(
+                "the wind pushes the model upwind, drag coefficient {:.3}: positive sway and drag are downwind",
+                coefficient(drag)
+            ));
+        }
         self.report.means = RemovedMeans {
             in_wind,
             still_air,

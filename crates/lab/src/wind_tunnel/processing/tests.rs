@@ -103,6 +103,18 @@ fn still_air_that_moves_otherwise_is_a_doubt() {
     }
 }
 
+/// Sway and drag both measured upwind agree with each other, and with no wind.
+#[test]
+fn drag_upwind_is_a_doubt() {
+    let mut plan = short(VirtualCampaignPlan::realistic());
+    plan.static_wind.drag *= -1.0;
+    let doubts = done(&campaign(&plan).raw, &ProcessingOptions::default())
+        .report
+        .doubts();
+    let upwind = |d: &&String| d.contains("pushes the model upwind, drag coefficient -0.08");
+    assert_eq!(doubts.iter().filter(upwind).count(), 2, "{doubts:?}");
+}
+
 #[test]
 fn lag_offset_drift_and_spike_are_found() {
     let plan = short(VirtualCampaignPlan::realistic());
