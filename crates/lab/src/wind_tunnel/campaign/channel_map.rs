@@ -6,6 +6,7 @@ use super::section_forces::SectionForces;
 use crate::error::{Error, Result, ensure};
 use crate::files::lab::{Channel, ChannelSet};
 use crate::section::Dof;
+use crate::signal::median;
 use crate::wind_tunnel::{CELL_CHANNELS, Rig};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -197,10 +198,15 @@ pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
     match uneven {
         None if step.is_finite() => Ok(1.0 / step),
         uneven => {
-            let i = uneven.unwrap_or(1);
+            // a pause makes the mean step one that no sample has
+            let steps: Vec<f64> = time_s.windows(2).map(|t| t[1] - t[0]).collect();
+            let usual = median(&steps);
+            let is_off = |s: &f64| !((s / usual - 1.0).abs() <= 0.25);
+            let first = steps.iter().position(is_off).map(|i| i + 1);
+            let i = first.or(uneven).unwrap_or(1);
             Err(Error::input(
                 format!("{place}, sample {i}"),
-                format!("{step:.6} s after the sample before, as on average"),
+                format!("{usual:.6} s after the sample before, as most"),
                 format!("{:.6} s", time_s[i] - time_s[i - 1]),
             ))
         }
