@@ -271,6 +271,11 @@ impl Campaign {
                 let expected = "a recording of its own for every run";
                 return Err(Error::input(format!("run[{i}].in_wind"), expected, found));
             }
+            if run.still_air.as_ref() == Some(&run.in_wind) {
+                let found = format!("{}, that in wind", run.in_wind);
+                let expected = format!("a recording of its own in still air (run `{}`)", run.name);
+                return Err(Error::input(format!("run[{i}].still_air"), expected, found));
+            }
             run.validate(&format!("run[{i}]"), &map, self.air)?;
         }
         Ok(())

@@ -254,6 +254,11 @@ fn a_wrong_campaign_file_is_refused_by_line() {
         refused.contains("run[1].in_wind: expected a recording of its own for every run, found a.csv, that of run `two`"),
         "{refused}"
     );
+    let itself = complaint(&small().replace("b.csv", "a.csv"), &a, &b);
+    assert!(
+        itself.contains("run[0].still_air: expected a recording of its own in still air (run `one`), found a.csv, that in wind"),
+        "{itself}"
+    );
     // the same samples under another name
     let folder = tempfile::tempdir().unwrap();
     let copied = renamed.replacen("in_wind = \"a.csv\"", "in_wind = \"c.csv\"", 1);
@@ -359,7 +364,7 @@ fn recordings_that_do_not_fit_are_refused_by_run_and_sample() {
 fn channels_of_unequal_length_and_uneven_time_are_refused() {
     let folder = lab("v5_plain.mat").parent().unwrap().to_path_buf();
     let text = small()
-        .replace("a.csv", "v5_plain.mat")
+        .replace("a.csv", "v5_compressed.mat")
         .replace("b.csv", "v5_plain.mat")
         .replace("\"y\"", "\"row\"");
     let said = Campaign::from_toml(&text, folder)
