@@ -4,10 +4,10 @@
 //!
 //! A file is a row of segments, each with metadata (objects with their properties and the layout of their samples) and
 //! samples: as many blocks of that layout as fit. What a segment does not state is as in the one before. Not read:
-//! DAQmx raw data, strings, time stamps, and channels whose samples still have to be scaled.
+//! DAQmx raw data, texts, time stamps, complex numbers, and channels whose samples still have to be scaled.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use super::tdms_bytes::{Bytes, STRING, TIME_STAMP, property, sample, size_of};
+use super::tdms_bytes::{Bytes, STRING, no_number, property, sample, size_of};
 use crate::error::{Error, Result, ensure};
 use std::collections::{BTreeMap, HashMap};
 
@@ -42,6 +42,8 @@ pub(super) fn parse(data: &[u8], group: Option<&str>) -> Result<ChannelSet> {
 struct SampleLayout {
     kind: u32,
     count: usize,
+    /// Bytes of all of them.
+    size: usize,
 }
 
 #[derive(Debug, Default)]
@@ -51,6 +53,8 @@ struct Object {
     is_active: bool,
     properties: BTreeMap<String, Attribute>,
     layout: Option<SampleLayout>,
+    /// Why it is left out, if any of its samples are no numbers.
+    no_number: Option<&'static str>,
     samples: Vec<f64>,
 }
 
@@ -127,17 +131,17 @@ impl TdmsFile {
             let has_samples = match bytes.u32()? {
                 NO_SAMPLES => false,
                 AS_BEFORE => true,
-                length => {
+                _ => {
                     let kind = bytes.u32()?;
                     let _dimension = bytes.u32()?;
                     let count = usize::try_from(bytes.u64()?).unwrap_or(usize::MAX);
-                    ensure(
-                        kind != STRING,
-                        format_args!("{at}, {}", object.path),
-                        "samples that are numbers",
-                        format_args!("texts (index of {length} bytes)"),
-                    )?;
-                    object.layout = Some(SampleLayout { kind, count });
+                    let size = match kind {
+                        // of unequal length: the index has the whole
+                        STRING => usize::try_from(bytes.u64()?).unwrap_or(usize::MAX),
+                        _ => count.saturating_mul(size_of(kind, &object.path)?),
+                    };
+                    object.no_number = object.no_number.or(no_number(kind));
+                    object.layout = Some(SampleLayout { kind, count, size });
                     true
                 }
             };
@@ -204,9 +208,12 @@ impl TdmsFile {
         let blocks = self.count_blocks(&layouts, raw, bytes.at)?;
         let rows = layouts[0].1.count;
         ensure(
-            !is_interleaved || layouts.iter().all(|(_, l)| l.count == rows),
+            !is_interleaved
+                || layouts
+                    .iter()
+                    .all(|(_, l)| l.count == rows && l.kind != STRING),
             format_args!("byte {}", bytes.at),
-            "interleaved channels of one length",
+            "interleaved channels of numbers, of one length",
             "others",
         )?;
         // row by row, or channel by channel
@@ -217,6 +224,10 @@ impl TdmsFile {
         };
         for _ in 0..blocks * rows {
             for (place, layout) in &layouts {
+                if no_number(layout.kind).is_some() {
+                    bytes.take(layout.size / if is_interleaved { rows } else { 1 })?;
+                    continue;
+                }
                 let samples = &mut self.objects[*place].samples;
                 for _ in 0..layout.count.min(each) {
                     samples.push(sample(bytes, layout.kind)?);
@@ -234,13 +245,10 @@ impl TdmsFile {
         at: usize,
     ) -> Result<usize> {
         let (mut block, mut samples) = (0_usize, 0_usize);
-        for (place, layout) in layouts {
-            let each = size_of(layout.kind, &self.objects[*place].path)?;
-            let size = layout.count.checked_mul(each);
-            block = size
-                .and_then(|s| block.checked_add(s))
-                .unwrap_or(usize::MAX);
-            samples = samples.saturating_add(layout.count);
+        for (_, layout) in layouts {
+            block = block.saturating_add(layout.size);
+            // texts without number bound the blocks as well
+            samples = samples.saturating_add(layout.count.max(usize::from(layout.size > 0)));
         }
         let place = format_args!("byte {at}");
         ensure(
@@ -334,8 +342,8 @@ fn push_channel(set: &mut ChannelSet, name: &str, object: Object, is_raw: bool) 
     let unit = unit.map(str::to_owned);
     if is_raw {
         set.leave_out(name, "counts that still have to be scaled");
-    } else if object.layout.is_some_and(|l| l.kind == TIME_STAMP) {
-        set.leave_out(name, "time stamps");
+    } else if let Some(why) = object.no_number {
+        set.leave_out(name, why);
     } else if object.samples.is_empty() {
         set.leave_out(name, "empty");
     } else {

@@ -5,8 +5,10 @@ use crate::error::{Error, Result};
 
 /// Type codes.
 pub(super) const STRING: u32 = 0x20;
+const COMPLEX_SINGLE: u32 = 0x0008_000c;
+const COMPLEX_DOUBLE: u32 = 0x0010_000d;
 const BOOLEAN: u32 = 0x21;
-pub(super) const TIME_STAMP: u32 = 0x44;
+const TIME_STAMP: u32 = 0x44;
 
 /// A place in the bytes of a file.
 #[derive(Debug, Clone)]
@@ -61,14 +63,24 @@ impl<'a> Bytes<'a> {
     }
 }
 
+/// Why samples of a kind are left out; `None` for numbers.
+pub(super) fn no_number(kind: u32) -> Option<&'static str> {
+    match kind {
+        STRING => Some("text"),
+        TIME_STAMP => Some("time stamps"),
+        COMPLEX_SINGLE | COMPLEX_DOUBLE => Some("complex numbers"),
+        _ => None,
+    }
+}
+
 /// Bytes per sample.
 pub(super) fn size_of(kind: u32, path: &str) -> Result<usize> {
     match kind {
         1 | 5 | BOOLEAN => Ok(1),
         2 | 6 => Ok(2),
         3 | 7 | 9 | 0x19 => Ok(4),
-        4 | 8 | 10 | 0x1a => Ok(8),
-        TIME_STAMP => Ok(16),
+        4 | 8 | 10 | 0x1a | COMPLEX_SINGLE => Ok(8),
+        TIME_STAMP | COMPLEX_DOUBLE => Ok(16),
         other => Err(Error::input(
             path,
             "samples that are numbers",
@@ -89,10 +101,6 @@ pub(super) fn sample(bytes: &mut Bytes<'_>, kind: u32) -> Result<f64> {
         7 => u32::from_le_bytes(bytes.little()?).into(),
         8 => u64::from_le_bytes(bytes.little()?) as f64,
         9 | 0x19 => f32::from_le_bytes(bytes.little()?).into(),
-        TIME_STAMP => {
-            bytes.take(16)?;
-            f64::NAN
-        }
         // every other kind was refused before
         _ => f64::from_le_bytes(bytes.little()?),
     })
@@ -102,12 +110,11 @@ pub(super) fn sample(bytes: &mut Bytes<'_>, kind: u32) -> Result<f64> {
 pub(super) fn property(bytes: &mut Bytes<'_>) -> Result<Option<Attribute>> {
     match bytes.u32()? {
         STRING => Ok(Some(Attribute::Text(bytes.text()?))),
-        TIME_STAMP => {
-            bytes.take(16)?;
-            Ok(None)
-        }
         kind => {
-            size_of(kind, &format!("byte {}, property", bytes.at))?;
+            let size = size_of(kind, &format!("byte {}, property", bytes.at))?;
+            if no_number(kind).is_some() {
+                return bytes.take(size).map(|_| None);
+            }
             Ok(Some(Attribute::Number(sample(bytes, kind)?)))
         }
     }

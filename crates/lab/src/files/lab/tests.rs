@@ -3,6 +3,7 @@
 //! The files are written by `tests/data/lab/make_lab_files.py`.
 
 mod bounds;
+mod left_out;
 
 use super::channels::Attribute;
 use super::*;
