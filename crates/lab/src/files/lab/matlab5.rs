@@ -13,6 +13,8 @@ use std::ops::Range;
 
 /// What `matrw` looks for.
 const HEADER: &[u8] = b"MATLAB 5.0 MAT-file, ";
+/// Why a variable is left out that `matrw` cannot read.
+const UNREADABLE: &str = "corrupt, or of a kind that is not known";
 /// Type of a compressed element.
 const COMPRESSED: u32 = 15;
 /// Type of a variable, and two of its classes.
@@ -262,8 +264,13 @@ fn channels(file: &[MatlabVariable], group: Option<&str>) -> Result<ChannelSet> 
     for variable in file {
         match &variable.value {
             Some(value) => readable.push((&variable.name, value)),
-            None => set.leave_out(&variable.name, "corrupt, or of a kind that is not known"),
+            None => set.leave_out(&variable.name, UNREADABLE),
         }
+    }
+    let of_group = |v: &&MatlabVariable| v.value.is_none() && Some(&v.name[..]) == group;
+    if let Some(lost) = file.iter().find(of_group) {
+        let found = format!("`{}` ({UNREADABLE})", lost.name);
+        return Err(Error::input("group", "a struct that can be read", found));
     }
     check_count("", readable.iter().map(|(_, v)| count(v)).sum())?;
     let Some(group) = group else {
@@ -323,6 +330,7 @@ fn push(set: &mut ChannelSet, name: &str, variable: &MatVariable) {
             Err(text) => {
                 let text = Attribute::Text(text);
                 set.attributes.insert(name.to_owned(), text);
+                set.leave_out(name, "text");
             }
         },
         MatVariable::Structure(inner) => {
