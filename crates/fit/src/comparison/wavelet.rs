@@ -38,7 +38,8 @@ pub fn wavelet(
 ///
 /// At each sample the moduli of each signal are divided by their own maximum over the frequencies inside the cone;
 /// `M_wf = exp(−mean_t ‖F₁ − F₂‖₂/‖F₁‖₂)`, the mean over the samples with any frequency inside the cone.
-/// Samples at which the reference has no content at all are left out of the mean.
+/// Samples at which the reference has no content are left out of the mean: what is left there of the Fourier transforms, some 1e-16 of
+/// the largest modulus, is no content, and none of a measured signal is below 1e-10 of it.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for unusable parameters, a record too short for the cone, or a zero reference.
@@ -53,13 +54,15 @@ pub fn wavelet_normalised(
         |_, cell, [first, second]| *cell = [cell[0].max(first), cell[1].max(second)],
         |a, b| [a[0].max(b[0]), a[1].max(b[1])],
     );
+    let floor: [f64; 2] =
+        std::array::from_fn(|k| ROUNDING * largest.iter().fold(0.0, |m: f64, l| m.max(l[k])));
     let sums = columns(
         &plan,
         pair,
         |sample, cell, [first, second]| {
             let [first_largest, second_largest] = largest[sample];
-            let first = normalised(first, first_largest);
-            let second = normalised(second, second_largest);
+            let first = normalised(first, first_largest, floor[0]);
+            let second = normalised(second, second_largest, floor[1]);
             cell[0] += (first - second) * (first - second);
             cell[1] += first * first;
         },
@@ -81,8 +84,11 @@ pub fn wavelet_normalised(
     })
 }
 
-fn normalised(modulus: f64, largest: f64) -> f64 {
-    if largest > 0.0 {
+/// Of the largest modulus of a signal, what may be rounding.
+const ROUNDING: f64 = 1e-10;
+
+fn normalised(modulus: f64, largest: f64, floor: f64) -> f64 {
+    if largest > floor {
         modulus / largest
     } else {
         0.0
@@ -140,7 +146,7 @@ fn columns(
 mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
     fn parameters() -> WaveletParameters {
         WaveletParameters {
@@ -214,6 +220,18 @@ mod tests {
         let (x1, x2) = (harmonic(1.0, 2.0, 0.0), harmonic(1.0, 2.8, 0.0));
         let pair = SignalPair::new(&x1, &x2, 0.01).unwrap();
         assert!(wavelet_normalised(&pair, &parameters()).unwrap().value < 0.4);
+    }
+
+    /// Both rest for more than the wavelets are long: the rounding there is no content.
+    #[test]
+    fn rests_are_left_out() {
+        let x: Vec<f64> = (0..6000)
+            .map(|k| f64::from((2000..4000).contains(&k)) * (0.04 * PI * f64::from(k)).sin())
+            .collect();
+        let other: Vec<f64> = x.iter().map(|x| 1.000_000_1 * x).collect();
+        let pair = SignalPair::new(&x, &other, 0.01).unwrap();
+        let shape = wavelet_normalised(&pair, &parameters()).unwrap();
+        assert_abs_diff_eq!(shape.value, 1.0, epsilon = 1e-5);
     }
 
     #[test]
