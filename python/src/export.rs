@@ -101,7 +101,11 @@ pub fn export_fmu(
             let (bounds, verdict) = detached(py, || bounds(&trained, model))?;
             (bounds, Some(verdict))
         }
-        Some(_) => (None, None),
+        Some(_) => {
+            let model = model.get();
+            let judged = detached(py, || bounds(&trained, model));
+            (None, judged.ok().map(|(_, verdict)| verdict))
+        }
     };
     let export = Export {
         force,

@@ -56,8 +56,10 @@ pub fn turbulence_field(
     problem.check_record(speed_m_s, step_s, samples)?;
     let fourier = Fourier::new(samples);
     let gusts = GustComponent::BOTH.map(|component| {
-        let rows = problem.coefficients(component, speed_m_s, step_s, samples, seed);
-        threads::each(&rows, true, |row| in_time(&fourier, row.iter().copied()))
+        let mut rows = problem.coefficients(component, speed_m_s, step_s, samples, seed);
+        threads::in_parts(&mut rows, 1, |_, row| {
+            in_time(&fourier, std::mem::take(&mut row[0]))
+        })
     });
     Ok(TurbulenceField {
         step_s,
@@ -67,9 +69,7 @@ pub fn turbulence_field(
 }
 
 /// The real signal of which the numbers of the positive frequencies are twice the Fourier coefficients.
-fn in_time(fourier: &Fourier, positive: impl Iterator<Item = Complex<f64>>) -> Vec<f64> {
-    let mut spectrum = Vec::with_capacity(fourier.length());
-    spectrum.extend(positive);
+fn in_time(fourier: &Fourier, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
     spectrum.resize(fourier.length(), Complex::default());
     fourier.sums(spectrum)
 }
@@ -77,7 +77,7 @@ fn in_time(fourier: &Fourier, positive: impl Iterator<Item = Complex<f64>>) -> V
 /// The same of real and imaginary parts one after the other.
 pub(super) fn parts_in_time(fourier: &Fourier, parts: &[f64]) -> Vec<f64> {
     let pairs = parts.chunks_exact(2);
-    in_time(fourier, pairs.map(|z| Complex::new(z[0], z[1])))
+    in_time(fourier, pairs.map(|z| Complex::new(z[0], z[1])).collect())
 }
 
 impl BuffetingProblem<'_> {

@@ -112,6 +112,13 @@ pub fn package(
         let place = "real variables only";
         return Err(Error::input(place, "FMI 2.0", "FMI 3.0"));
     }
+    let of_section = export.force.is_some() || export.gusts.is_some() || export.bounds.is_some();
+    let mixed = match export.bridge {
+        Some(_) => of_section,
+        None => export.turbulence.is_some(),
+    };
+    let expected = "a bridge with its turbulence, or a section or forces with gusts and interval";
+    ensure(!mixed, "FMU", expected, "both")?;
     let further = export.force.iter().flat_map(|force| &force.further);
     for model in std::iter::once(model).chain(further.map(|f| &f.model)) {
         growth::check(model, export.growing)?;

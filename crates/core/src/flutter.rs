@@ -55,7 +55,7 @@ pub use mode_words::the_mode;
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, ModeRatio, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
-pub use present_modes::{LeastDamping, smallest_damping};
+pub use present_modes::{LeastDamping, slowest_motion, smallest_damping};
 pub use quasi_steady::quasi_steady_modes;
 pub use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
 pub use sanity::{SanityLines, sanity_lines};

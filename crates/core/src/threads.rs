@@ -2,8 +2,8 @@
 
 #[cfg(not(target_family = "wasm"))]
 use rayon::prelude::*;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 static ALONE: AtomicBool = AtomicBool::new(false);
 
@@ -26,15 +26,11 @@ pub fn numbered<U: Send>(count: usize, worth: bool, find: impl Fn(usize) -> U + 
     let found: Vec<Mutex<Option<U>>> = (0..count).map(|_| Mutex::new(None)).collect();
     share(count, &|number| {
         let value = find(number);
-        // nobody else asks for this place
-        if let Ok(mut place) = found[number].lock() {
-            *place = Some(value);
-        }
+        *found[number].lock().unwrap_or_else(PoisonError::into_inner) = Some(value);
     });
-    let found = found
-        .into_iter()
-        .filter_map(|place| place.into_inner().ok());
-    found.flatten().collect()
+    let found = found.into_iter().map(Mutex::into_inner);
+    let found = found.filter_map(|value| value.unwrap_or_else(PoisonError::into_inner));
+    found.collect()
 }
 
 /// What `find` makes of each `part` of the places, with the number of the part, in their order; on all threads.
@@ -44,11 +40,10 @@ pub fn in_parts<V: Send, U: Send>(
     find: impl Fn(usize, &mut [V]) -> U + Sync,
 ) -> Vec<U> {
     let parts: Vec<_> = places.chunks_mut(part).map(Mutex::new).collect();
-    let found = numbered(parts.len(), true, |number| {
-        let mut places = parts[number].lock().ok()?;
-        Some(find(number, &mut places))
-    });
-    found.into_iter().flatten().collect()
+    numbered(parts.len(), true, |number| {
+        let place = parts[number].lock();
+        find(number, &mut place.unwrap_or_else(PoisonError::into_inner))
+    })
 }
 
 /// Compiled once, whatever is worked on.

@@ -4,7 +4,7 @@ mod bridge;
 
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::answer::Answer;
-use crate::cli::common::{in_input, spelt};
+use crate::cli::common::{in_input, spelt, warn};
 use crate::cli::progress::Progress;
 use crate::cli::text;
 use crate::cli::{headline, stages};
@@ -17,6 +17,7 @@ use crate::fmu::package::{
     Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, growth_of, package, write_archive,
 };
 use crate::fmu::variables::Listing;
+use crate::plausibility::{of_model, sentences};
 use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
@@ -219,20 +220,29 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         ExportKind::Force | ExportKind::Structure => "deck_force.fmu",
     };
     let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
-    let evidence = saved_evidence(&args.model, &model, &model.section, &search)?;
-    let verdict = Verdict::judge(&evidence);
+    let evidence = saved_evidence(&args.model, &model, &model.section, &search);
+    let evidence = match args.kind {
+        ExportKind::Section => Some(evidence?),
+        // forces are forces, whatever the section does
+        ExportKind::Force | ExportKind::Structure => evidence.ok(),
+    };
+    let verdict = evidence.as_ref().map(Verdict::judge);
+    let findings = match verdict {
+        // has them among its doubts
+        Some(_) => Vec::new(),
+        None => of_model(&model.name, &model.model, model.tested_range, &[]),
+    };
+    warn(&args.model, &sentences(&findings));
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
-        bounds: (args.kind == ExportKind::Section)
-            .then(|| {
-                let onset = evidence.flutter.first()?.search.onset()?;
-                OnsetBounds::from_interval(&onset.interval)
-            })
-            .flatten(),
-        verdict: Some(verdict.clone()),
+        bounds: evidence.as_ref().and_then(|e| {
+            let onset = e.flutter.first()?.search.onset()?;
+            OnsetBounds::from_interval(&onset.interval).filter(|_| args.kind == ExportKind::Section)
+        }),
+        verdict: verdict.clone(),
         ..args.described(GrowthPolicy::allowing(args.allow_unstable).into())?
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
@@ -243,7 +253,8 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let growth = growth_of(&model)?;
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform.to_string()).collect();
-    let mut text = headline::text(&model.name, &verdict, &[]);
+    let headline = verdict.iter().map(|v| headline::text(&model.name, v, &[]));
+    let mut text: String = headline.collect();
     let _ = writeln!(
         text,
         "wrote {}: {}{}, {}, for {}",
@@ -258,14 +269,17 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         platforms.join(", ")
     );
     text.push_str(&text::growth(&model.name, &growth));
+    if strips.is_some() {
+        text.push_str("the verdict is on the section that the model states, not on a structure that takes its forces\n");
+    }
     if let Some(axis) = model.section.axis_offset_m.filter(|_| strips.is_some()) {
         let _ = writeln!(
             text,
-            "motion and forces are those of the reference point: a structure that turns about the axis of this section, {axis} m downwind of it, gives y + a·θ and takes M + a·F_y (docs/coupling.md)"
+            "motion and forces are those of the reference point: a structure that turns about the axis of this section, a = {axis} m from there, positive downwind, gives y + a·θ and takes M + a·F_y (docs/coupling.md)"
         );
     }
     Answer::new(
         text,
-        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict }),
+        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict, "findings": findings }),
     )
 }

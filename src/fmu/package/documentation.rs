@@ -58,7 +58,9 @@ pub(super) fn documentation(
         models: resources.models().collect(),
         judged: match (&resources.force, verdict) {
             (None, _) => "Stability of the section as exported",
-            (Some(_), Some(_)) => "Stability of the structure behind the forces",
+            (Some(_), Some(_)) => {
+                "Stability of the structure that was judged with these forces, not of one that takes them"
+            }
             (Some(_), None) => "What looks wrong in the forces",
         },
         stability: match (&resources.force, verdict) {

@@ -53,6 +53,15 @@ impl ModalBridge {
 }
 
 impl BridgeUnit {
+    /// `K` of flutter in a wind of 1 m/s, as far as its frequency is known.
+    fn flutter_k_at_one(&self) -> Option<f64> {
+        let onset = self.calculated.onset();
+        let start = self.own.start.map(|start| start.frequency_hz);
+        let hertz = start.or(onset.found.then_some(onset.frequency_hz.value))?;
+        let width = self.built.own.bridge.width_m();
+        Some(ReducedFrequency::from_hertz(hertz, width, 1.0).full_width())
+    }
+
     /// The bridge of an export.
     ///
     /// # Errors
@@ -232,12 +241,16 @@ impl CoupledKind for ModalBridge {
     /// At the frequency of flutter, as far as it is known: the modes of a bridge have too many of their own.
     #[inline]
     fn tested_winds(unit: &BridgeUnit) -> Option<[f64; 2]> {
-        let onset = unit.calculated.onset();
-        let start = unit.own.start.map(|start| start.frequency_hz);
-        let hertz = start.or(onset.found.then_some(onset.frequency_hz.value))?;
-        let (range, width) = (unit.own.tested?, unit.built.own.bridge.width_m());
-        let at_one = ReducedFrequency::from_hertz(hertz, width, 1.0).full_width();
+        let (range, at_one) = (unit.own.tested?, unit.flutter_k_at_one()?);
         Some([range.max, range.min].map(|k| at_one / k.full_width()))
+    }
+
+    #[inline]
+    fn untested_gap(unit: &BridgeUnit, memory: &Memory) -> Option<[f64; 2]> {
+        let (range, at_one) = (unit.own.tested?, unit.flutter_k_at_one()?);
+        let wind = unit.indices.wind_speed(memory);
+        let gap = range.gap_at(ReducedFrequency::from_full_width(at_one / wind))?;
+        gap.unknown().map(|(from, to)| [at_one / to, at_one / from])
     }
 
     fn wind_is_tested(

@@ -262,8 +262,9 @@ impl<S: CoupledKind> Unit for Coupled<S> {
             self.gap_met = true;
             let wind = shown(self.indices.wind_speed(memory));
             notices.push(format!(
-                "wind_speed = {wind} m/s is in a gap between tests, {from:.3} to {to:.3} m/s for a motion at its frequency in \
-                 still air: the forces are interpolated over it"
+                "wind_speed = {wind} m/s is in a gap between the speeds at which {}, {from:.3} to {to:.3} m/s: the forces are \
+                 interpolated over it",
+                S::TESTED_AT
             ));
         }
         S::watch(self, resources, memory, notices);

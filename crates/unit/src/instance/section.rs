@@ -5,8 +5,8 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::flutter::{
     FastMotion, FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
-    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, stands_at_samples,
-    unwanted_growth,
+    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, slowest_motion,
+    stands_at_samples, unwanted_growth,
 };
 use crate::onset_start::simulated_onset;
 use crate::section::{Dof, SectionModel, Structure};
@@ -127,6 +127,29 @@ fn plain_without_samples(
 
 /// Part of a `K` by which what was followed up to an end of the tests may lie below it.
 const AT_THE_END: f64 = 1e-6;
+
+/// How a motion of `section` leaves the tests before the wind has a speed, m/s; `None` where none does.
+fn left_tests(
+    section: &CoupledSection,
+    tested: ReducedFrequencyRange,
+    speed_m_s: f64,
+) -> Option<String> {
+    let lowest = match slowest_motion(section, speed_m_s) {
+        Ok(Some(lowest)) => lowest.full_width(),
+        Ok(None) => return Some("stops oscillating".into()),
+        Err(why) => return Some(format!("cannot be followed ({why})")),
+    };
+    // it comes down from still air: of the ends above it, the highest is the first
+    let ends = tested
+        .lower_ends()
+        .map(|(end, gap)| (end.full_width(), gap));
+    let passed = ends.filter(|(end, _)| lowest < end * (1.0 - AT_THE_END));
+    let (end, gap) = passed.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(match gap {
+        Some(gap) => format!("comes to lie {}", gap.explain()),
+        None => format!("falls below K {end:.3}, the lowest tested"),
+    })
+}
 
 /// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
 const SEARCHED_STATES: usize = 100;
@@ -258,18 +281,13 @@ impl OnsetCard {
         if !self.numbers.stable_below {
             return;
         }
-        let (speed, width) = (self.numbers.speed_m_s.value, section.structure().width_m);
-        let ends = tested.lower_ends().map(|(end, _)| end.full_width());
-        let end = ends.fold(0.0, f64::max);
-        let lowest = end * (1.0 - AT_THE_END) * speed / width;
-        let all = section.at(speed).and_then(|section| section.eigenvalues());
-        let inside = all.map(|all| all.iter().filter(|z| z.im >= lowest).count());
-        if inside.is_ok_and(|count| count >= section.structure().dofs.len()) {
+        let speed = self.numbers.speed_m_s.value;
+        let Some(why) = left_tests(section, tested, speed) else {
             return;
-        }
+        };
         self.numbers.stable_below = false;
         self.warnings.push(format!(
-            "below {speed:.3} m/s a motion falls below K {end:.3}, where these data say nothing of it"
+            "before the wind reaches {speed:.3} m/s a motion {why}: these data say nothing of it there"
         ));
     }
 

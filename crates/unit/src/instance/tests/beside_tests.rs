@@ -48,13 +48,37 @@ fn a_gap_between_tests_is_no_test() {
     assert_eq!(flags(&mut unit, names), [true, true, false]);
     let notices = unit.take_notices().join("\n");
     assert!(
-        notices.contains("these data say nothing of it"),
+        notices.contains("a motion comes to lie in a gap between the tested K 0.100 and 0.270"),
         "{notices}"
     );
     unit.set_reals(&[wind], &[35.0]).unwrap();
     unit.exit_initialization().unwrap();
     let notices = unit.take_notices().join("\n");
-    assert!(notices.contains("is in a gap between tests"), "{notices}");
+    assert!(
+        notices.contains("is in a gap between the speeds"),
+        "{notices}"
+    );
+}
+
+/// Filters oscillate too, and are no motions: whatever the model, a heave that leaves the tests before the onset is told.
+#[test]
+fn a_motion_that_leaves_the_tests_is_not_stable() {
+    for kind in ["rational", "continuous_laguerre"] {
+        let told = [2.0, 0.7, 0.3].map(|hertz| {
+            let mut unit = instance(Exported::Section(kind), false).unwrap();
+            unit.enter_initialization();
+            let frequency = index(&unit, "heave_frequency");
+            unit.set_reals(&[frequency], &[hertz]).unwrap();
+            let [stable] = flags(&mut unit, ["stable_below_onset"]);
+            let notices = unit.take_notices().join("\n");
+            assert!(
+                stable || notices.contains("these data say nothing of it"),
+                "{kind} {hertz}: {notices}"
+            );
+            stable
+        });
+        assert_eq!(told, [true, false, false], "{kind}");
+    }
 }
 
 /// Another run has another log: what must be known of the onset stands in each, once.
