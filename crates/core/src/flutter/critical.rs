@@ -219,8 +219,15 @@ impl Unknowns {
         let y = -(&q * of.b.transpose() + &w * of.a.transpose());
         let product = &of.b * &w;
         let right = product.transpose() - product;
-        let below = pairs(f).map(|place| right[place]);
-        let solved = filters.solve(&DVector::from_iterator(f * f.saturating_sub(1) / 2, below))?;
+        let below: Vec<f64> = pairs(f).map(|place| right[place]).collect();
+        // factors of no rows solve nothing
+        let solved = match below.is_empty() {
+            true => below,
+            false => filters
+                .solve(&DVector::from_vec(below))?
+                .as_slice()
+                .to_vec(),
+        };
         let mut z = DMatrix::zeros(f, f);
         for ((i, j), value) in pairs(f).zip(solved.iter()) {
             z[(i, j)] = *value;
