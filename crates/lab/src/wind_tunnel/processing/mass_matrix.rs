@@ -22,7 +22,7 @@ const CONSIDERABLE: f64 = 0.05;
 const MISSING: f64 = 0.3;
 
 /// Inertia of the motion of one run in the force of another.
-struct Coupling {
+struct InertialCoupling {
     /// Its place among the runs.
     run: usize,
     /// Without that of the other motion.
@@ -42,10 +42,10 @@ pub(super) fn judge(rig: &Rig, runs: &mut [PreparedRun<'_>]) {
         let mut unseen = Vec::new();
         for (own, across) in sides {
             let reference = surest(across);
-            let doubt = |c: &Coupling| Some((c.run, c.unseen(runs, reference?)?));
+            let doubt = |c: &InertialCoupling| Some((c.run, c.unseen(runs, reference?)?));
             unseen.extend(own.iter().filter_map(doubt));
         }
-        let seen = |c: &&Coupling| unseen.iter().all(|(run, _)| *run != c.run);
+        let seen = |c: &&InertialCoupling| unseen.iter().all(|(run, _)| *run != c.run);
         let mut off_axis = None;
         for c in translation.iter().filter(seen) {
             let of_rotation = surest(&rotation).filter(seen);
@@ -58,12 +58,12 @@ pub(super) fn judge(rig: &Rig, runs: &mut [PreparedRun<'_>]) {
 }
 
 /// The one in which the other motion weighs least.
-fn surest(all: &[Coupling]) -> Option<&Coupling> {
+fn surest(all: &[InertialCoupling]) -> Option<&InertialCoupling> {
     all.iter().min_by(|a, b| a.part.total_cmp(&b.part))
 }
 
 /// Inertia of the runs of `dof` in the force of `other`.
-fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<Coupling> {
+fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<InertialCoupling> {
     let told = |p: &&PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| !s.hides_weight());
     let body = runs.iter().filter(told).find(|p| p.dof == other);
     let body = body.and_then(|p| p.still_air.as_ref());
@@ -87,7 +87,7 @@ fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<C
     )| {
         let (all, found) = (all?, found?);
         let moves = ratios.motion[index(other)].iter();
-        Some(Coupling {
+        Some(InertialCoupling {
             run,
             of_other: all.inertia - found.inertia,
             found,
@@ -118,7 +118,7 @@ fn without(run: &Ratios, other: Dof, body: Option<&StillAirInertia>) -> Vec<Rati
     left.collect()
 }
 
-impl Coupling {
+impl InertialCoupling {
     /// The doubt that another motion of which its channel tells is none, against the `across` of the other runs.
     fn unseen(&self, runs: &[PreparedRun<'_>], across: &Self) -> Option<String> {
         let off = self.found.inertia - across.found.inertia;
