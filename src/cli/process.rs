@@ -113,8 +113,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
                 tabled = true;
                 notes.extend(sentences(&odd));
                 let (base, section) = (base.as_ref(), section.as_ref());
-                let dofs = &found.dofs;
-                let text = processed_study_text(&raw, base, section, TABLE, &names, dofs)?;
+                let text = processed_study_text(&raw, base, section, TABLE, &names, found)?;
                 let named = base.is_some() || section.is_some();
                 notes.extend(write_study(&text, args.force, named, &mut out)?);
             }

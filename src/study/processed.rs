@@ -5,6 +5,7 @@ use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result};
 use crate::files::toml_lines;
+use crate::identification::derivatives::IdentifiedDerivatives;
 use crate::section::{Dof, STANDARD_AIR_DENSITY_KG_M3, SectionModel};
 use crate::wind_tunnel::RawCampaign;
 use serde::Deserialize;
@@ -22,15 +23,11 @@ pub(crate) fn processed_study_text(
     section: Option<&SectionModel>,
     table: &str,
     records: &[PathBuf],
-    dofs: &[Dof],
+    found: &IdentifiedDerivatives,
 ) -> Result<String> {
     let mut study = match base {
         Some(study) => study.clone(),
-        None => Study {
-            // the range follows the section
-            flutter: FlutterBlock::default(),
-            ..Study::from_toml(super::demo_study_text(), PathBuf::new())?
-        },
+        None => default_study(found)?,
     };
     study.name.clone_from(&raw.section);
     study.deck = DeckSource {
@@ -56,9 +53,37 @@ pub(crate) fn processed_study_text(
     let marked = if known {
         String::new()
     } else {
-        marked_place(raw, dofs)
+        marked_place(raw, &found.dofs)
     };
     Ok(format!("{HEAD}{text}{marked}"))
+}
+
+/// The default models; those of one mean speed at the first at which every motion was tested, and none where there is no such speed.
+fn default_study(found: &IdentifiedDerivatives) -> Result<Study> {
+    let mut study = Study::from_toml(super::demo_study_text(), PathBuf::new())?;
+    // the range follows the section
+    study.flutter = FlutterBlock::default();
+    let groups = found.speed_groups();
+    let is_whole = |group: &Vec<f64>| {
+        found.dofs.iter().all(|dof| {
+            let mut of_motion = found
+                .estimates
+                .iter()
+                .filter(|e| e.derivative.motion() == *dof);
+            of_motion.any(|e| group.contains(&e.mean_speed_m_s))
+        })
+    };
+    let first = groups.iter().position(is_whole);
+    study
+        .models
+        .retain(|m| m.speed_groups.is_none() || first.is_some());
+    for model in &mut study.models {
+        model.speed_groups = model
+            .speed_groups
+            .as_ref()
+            .and(first.map(|group| vec![group + 1]));
+    }
+    Ok(study)
 }
 
 /// The place of the section, to be filled in. It stands last, since whatever follows it would belong to it.

@@ -303,6 +303,51 @@ fn three_speeds_close_together_are_processed() {
     assert!(at.join("results/derivatives.csv").is_file());
 }
 
+/// The model of one speed is fitted at the first at which every motion was tested, and there is none where there is no such speed.
+#[test]
+fn a_speed_that_lacks_a_motion_is_not_that_of_a_model() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let plan = "[tunnel]\nfrequencies_hz = [0.5, 1.0]\nspeeds_m_s = [6.0, 8.0]\nstill_s = 2.0\nsegment_s = 14.0\nramp_s = 2.0\n";
+    fs::write(at.join("plan.toml"), plan).unwrap();
+    let made = "campaign virtual jones --plan plan.toml --out raw";
+    succeeds(at, &made.split(' ').collect::<Vec<_>>());
+    let file = at.join("raw/campaign.toml");
+    for (lost, groups) in [
+        ("Jones-torsion-6", Some("speed_groups = [2]")),
+        ("Jones-vertical-8", None),
+    ] {
+        let text = fs::read_to_string(&file).unwrap();
+        let runs: Vec<&str> = text.split("[[run]]").collect();
+        let kept: Vec<&str> = runs
+            .iter()
+            .copied()
+            .filter(|run| !run.contains(lost))
+            .collect();
+        assert_eq!(kept.len(), runs.len() - 1, "{text}");
+        fs::write(&file, kept.join("[[run]]")).unwrap();
+        succeeds(
+            at,
+            &[
+                "process",
+                "raw/campaign.toml",
+                "--out",
+                "r",
+                "--no-figures",
+                "--force",
+            ],
+        );
+        let study = fs::read_to_string(at.join("r/study.toml")).unwrap();
+        match groups {
+            Some(groups) => assert!(study.contains(groups), "{study}"),
+            None => assert!(
+                !study.contains("speed_groups") && study.contains("Laguerre"),
+                "{study}"
+            ),
+        }
+    }
+}
+
 /// What recordings say against the campaign file leaves nothing to be judged, by the table and by the workbook.
 #[test]
 fn a_contradiction_of_the_measurements_reaches_the_verdict() {

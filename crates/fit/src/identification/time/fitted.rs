@@ -46,13 +46,14 @@ impl<'a> FittedSystems<'a> {
             if let Some(column) = factor.undetermined(factor.columns()) {
                 let holds = |j: &usize| systems.places(i, *j).contains(&column);
                 let silent = (0..dofs.len()).find(holds);
+                let found = "none that determines its coefficients (is a run of it missing among these speeds?)";
                 return Err(Error::input(
                     "records",
                     format!(
                         "a {} motion rich enough for {filters}",
                         silent.map_or("", |j| dofs[j].name())
                     ),
-                    "none that determines its coefficients",
+                    found,
                 ));
             }
             Ok(factor.solve(factor.columns())?.as_slice().to_vec())
