@@ -1,6 +1,6 @@
 //! The comparisons on the embedded decks from the command line.
 
-use crate::command::{listing, refused, succeeds};
+use crate::command::{aerodeck, flowing, listing, refused, succeeds};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -152,6 +152,18 @@ fn signals_of_a_file_are_compared_by_all_metrics() {
         folder.path(),
         &arguments("forecast"),
         &["the channels measured, predicted, other"],
+    );
+    // a part of a period: the farther away, the larger its correlation
+    let x = |k: i32, late: f64| (0.5 + 0.004 * (f64::from(k) - late)).sin();
+    let rows = (0..200).map(|k| format!("{},{}\n", x(k, 0.0), x(k, 40.0)));
+    let part = format!("measured,predicted\n{}", rows.collect::<String>());
+    std::fs::write(folder.path().join("p.csv"), part).unwrap();
+    let mut of_part = arguments("predicted");
+    of_part[3] = "p.csv";
+    let said = flowing(&aerodeck(folder.path(), &of_part[1..]).1);
+    assert!(
+        said.contains("none: record: expected a correlation that is largest at some lag"),
+        "{said}"
     );
     let text = std::fs::read_to_string(folder.path().join("f.csv")).unwrap();
     let twice = text.replacen("other", "predicted", 1);

@@ -164,10 +164,19 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
         seed: args.seed,
         ..BicoherenceParameters::default()
     };
+    let phase = phase(pair, &delay).and_then(|found| {
+        ensure(
+            !found.details.is_at_end_of_search,
+            "record",
+            "a correlation that is largest at some lag (more than a period)",
+            "one that still grows a sixteenth of the record away",
+        )
+        .map(|()| found)
+    });
     let warping = magnitude_warped(pair, None);
     let density = probability_density(pair, true);
     Ok(vec![
-        Line::new("M_phi", "mean delay", phase(pair, &delay))?,
+        Line::new("M_phi", "mean delay", phase)?,
         Line::new("M_p", "largest absolute value", peak(pair))?,
         Line::new("M_rms", "mean power", rms(pair))?,
         Line::new("M_muw", "sample by sample difference", magnitude(pair))?,

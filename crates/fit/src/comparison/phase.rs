@@ -65,6 +65,8 @@ pub struct PhaseDetails {
     pub lag_s: f64,
     /// `c(n)/√(Σ X₁² Σ X₂²)` at the whole lag; negative if the signals were matched in antiphase.
     pub correlation: f64,
+    /// Whether the correlation still grows at the end of the search, a sixteenth of the record from the whole lag: then the lag is none.
+    pub is_at_end_of_search: bool,
 }
 
 /// Phase metric `M_φ = exp(−|τ|/T_c)`, τ the lag at which the **absolute** full cross-correlation is largest.
@@ -96,10 +98,11 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
         if divisor > 0.0 { value / divisor } else { 0.0 }
     };
     let reach = (correlation.sample_count() / 16) as isize;
-    let lag = match parameters.lag {
-        LagEstimate::WholeSample => whole as f64,
-        LagEstimate::Parabolic => parabolic(&divided, climb(&divided, whole, reach)),
-        LagEstimate::BandLimited => band_limited(&divided, climb(&divided, whole, reach)),
+    let (top, ends) = climb(&divided, whole, reach);
+    let (lag, is_at_end_of_search) = match parameters.lag {
+        LagEstimate::WholeSample => (whole as f64, false),
+        LagEstimate::Parabolic => (parabolic(&divided, top), ends),
+        LagEstimate::BandLimited => (band_limited(&divided, top), ends),
     };
     let lag_s = lag * pair.time_step_s();
     Ok(Metric {
@@ -108,13 +111,14 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
             whole_lag_samples: whole,
             lag_s,
             correlation: correlation.at(whole) / first / second,
+            is_at_end_of_search,
         },
     })
 }
 
 /// Whole lag at the local maximum of a correlation next to `start`, at most a sixteenth of the record (`reach`) away: the division favours
-/// lags at which hardly anything overlaps.
-fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> isize {
+/// lags at which hardly anything overlaps. And whether it would be farther away.
+fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> (isize, bool) {
     let magnitude = |lag: isize| correlation(lag).abs();
     let mut lag = start;
     loop {
@@ -123,8 +127,9 @@ fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> isiz
         } else {
             lag - 1
         };
-        if (next - start).abs() > reach || magnitude(next) <= magnitude(lag) {
-            return lag;
+        let falls = magnitude(next) <= magnitude(lag);
+        if falls || (next - start).abs() > reach {
+            return (lag, !falls);
         }
         lag = next;
     }
@@ -268,6 +273,20 @@ mod tests {
         assert_eq!(metric.details.whole_lag_samples, 0);
         assert_abs_diff_eq!(metric.details.correlation, -1.0, epsilon = 1e-12);
         assert_eq!(metric.value, 1.0);
+    }
+
+    #[test]
+    fn a_part_of_a_period_has_no_lag() {
+        let of = |shift: f64| -> Vec<f64> {
+            let x = |k: i32| (0.5 + 0.004 * (f64::from(k) - shift)).sin();
+            (0..200).map(x).collect()
+        };
+        let (x1, x2) = (of(0.0), of(40.0));
+        let pair = SignalPair::new(&x1, &x2, STEP_S).unwrap();
+        let found = phase(&pair, &PhaseParameters::default()).unwrap();
+        assert!(found.details.is_at_end_of_search, "{found:?}");
+        let whole = lag_of(0.3, LagEstimate::BandLimited, true);
+        assert!(!whole.details.is_at_end_of_search);
     }
 
     #[test]
