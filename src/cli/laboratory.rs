@@ -127,8 +127,9 @@ fn line(run: &RunReport) -> String {
             let centre = centre.map_or_else(String::new, |(m, part)| {
                 format!(
                     " at {:.1} mm ({:.1} % of the width) {way} the axis",
-                    1e3 * m,
-                    100.0 * part
+                    // no zero with a sign
+                    (1e4 * m).round() / 10.0 + 0.0,
+                    (1e3 * part).round() / 10.0 + 0.0
                 )
             });
             format!("inertia {:.4} {unit}{centre}", s.inertia)
