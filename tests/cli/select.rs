@@ -1,6 +1,6 @@
 //! The model that `select` recommends goes into a study, written by the command or chosen by `study` itself.
 
-use crate::command::{aerodeck, onset_of, succeeds};
+use crate::command::{aerodeck, flowing, onset_of, succeeds};
 use aerodeck::study::{Study, demo_study_text};
 use serde_json::Value;
 use std::fs;
@@ -55,6 +55,28 @@ fn a_written_study_trains_the_recommended_model_first() {
         fs::read_to_string(at.join("selected.toml")).unwrap(),
         edited
     );
+}
+
+/// One filter has its onset on LN21-5800 a tenth above that of the table.
+#[test]
+fn the_onset_of_the_table_is_beside_that_of_the_model() {
+    let folder = TempDir::new().unwrap();
+    let own = demo_study_text();
+    let other = own.replace("source = \"LN21-5200\"", "source = \"LN21-5800\"");
+    for (text, doubtful) in [(own, false), (&other, true)] {
+        fs::write(folder.path().join("study.toml"), text).unwrap();
+        let one = ["select", "study.toml", "--filters", "1", "--no-figures"];
+        let said = flowing(&succeeds(folder.path(), &one));
+        assert!(
+            said.contains("The table by itself has its onset at"),
+            "{said}"
+        );
+        assert_eq!(
+            said.contains("the recommendation is doubtful"),
+            doubtful,
+            "{said}"
+        );
+    }
 }
 
 #[test]
