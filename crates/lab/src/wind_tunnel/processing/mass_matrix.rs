@@ -57,6 +57,11 @@ pub(super) fn judge(rig: &Rig, runs: &mut [PreparedRun<'_>]) {
     }
 }
 
+/// In tenths, without a sign of zero.
+fn millimetres(metres: f64) -> f64 {
+    (1e4 * metres).round() / 10.0 + 0.0
+}
+
 /// The one in which the other motion weighs least.
 fn surest(all: &[InertialCoupling]) -> Option<&InertialCoupling> {
     all.iter().min_by(|a, b| a.part.total_cmp(&b.part))
@@ -165,14 +170,14 @@ impl InertialCoupling {
         let why = if let (Some(turning), Some(c)) = (turning, rotation)
             && off(turning, SAME_CENTRE, c)
         {
-            let turning = 1e3 * turning;
+            let turning = millimetres(turning);
             format!(
                 "rotation shows it {turning:.1} mm {place} it: `position_m` of the cells is not that from the axis"
             )
         } else {
             match rig.centre_of_mass_m.map(|p| p[axis]) {
                 Some(stated) if off(stated, SAME_CENTRE, self) => {
-                    let stated = 1e3 * stated;
+                    let stated = millimetres(stated);
                     format!("`rig.centre_of_mass_m` states {stated:.1} mm")
                 }
                 None if off(0.0, ON_THE_AXIS, self) => {
@@ -181,7 +186,7 @@ impl InertialCoupling {
                 _ => return None,
             }
         };
-        let (mm, part, name) = (1e3 * found, 100.0 * found / width, body.dof.name());
+        let (mm, part, name) = (millimetres(found), 100.0 * found / width, body.dof.name());
         let doubt = format!(
             "still air shows the centre of mass {mm:.1} mm ({part:.1} % of the width) {place} the axis in {name} motion, {why}"
         );
