@@ -85,21 +85,20 @@ fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<I
     let left = solve_together(other, &left.iter().map(Vec::as_slice).collect::<Vec<_>>());
     let width = rig.model_width_m;
     let scale = other.motion_scale(width) / dof.motion_scale(width);
-    let found = at.into_iter().zip(ratios).zip(all.into_iter().zip(left));
-    let coupling = |((run, ratios), (all, found)): (
-        (usize, &Ratios),
-        (Option<StillAirInertia>, Option<StillAirInertia>),
-    )| {
-        let (all, found) = (all?, found?);
+    let mut couplings = Vec::new();
+    for (((run, ratios), all), found) in at.into_iter().zip(ratios).zip(all).zip(left) {
+        let (Some(all), Some(found)) = (all, found) else {
+            continue;
+        };
         let moves = ratios.motion[index(other)].iter();
-        Some(InertialCoupling {
+        couplings.push(InertialCoupling {
             run,
             of_other: all.inertia - found.inertia,
             found,
             part: moves.map(|r| scale * r.value.norm()).fold(0.0, f64::max),
-        })
-    };
-    found.filter_map(coupling).collect()
+        });
+    }
+    couplings
 }
 
 /// The force of `other` over the driven motion without that of the `body` that moves so.
