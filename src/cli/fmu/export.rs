@@ -224,7 +224,14 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let evidence = match args.kind {
         ExportKind::Section => Some(evidence?),
         // forces are forces, whatever the section does
-        ExportKind::Force | ExportKind::Structure => evidence.ok(),
+        ExportKind::Force | ExportKind::Structure => evidence
+            .map_err(|why| {
+                warn(
+                    &args.model,
+                    &[format!("the section of the model is not judged: {why}")],
+                )
+            })
+            .ok(),
     };
     let verdict = evidence.as_ref().map(Verdict::judge);
     let findings = match verdict {
@@ -269,7 +276,7 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         platforms.join(", ")
     );
     text.push_str(&text::growth(&model.name, &growth));
-    if strips.is_some() {
+    if strips.is_some() && verdict.is_some() {
         text.push_str("the verdict is on the section that the model states, not on a structure that takes its forces\n");
     }
     if let Some(axis) = model.section.axis_offset_m.filter(|_| strips.is_some()) {

@@ -144,21 +144,22 @@ pub fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
     Ok(least(&section.at(wind)?.eigenvalues()?))
 }
 
-/// Wind speeds on the way of [`slowest_motion`].
-const ON_THE_WAY: usize = 16;
-
-/// The lowest reduced frequency that a motion of `section` has while the wind rises from still air to `wind`, m/s, each followed by
-/// itself: filters oscillate too and are no motions. `None` where one stops oscillating.
+/// The lowest reduced frequency that a motion of `section` has at so many winds from still air to `wind`, m/s, each followed by itself:
+/// filters oscillate too and are no motions. `None` where one stops oscillating.
 ///
 /// # Errors
 /// [`crate::Error::NotDistinct`] and [`crate::Error::Numerical`] where they cannot be told apart or computed.
-pub fn slowest_motion(section: &CoupledSection, wind: f64) -> Result<Option<ReducedFrequency>> {
+pub fn slowest_motion(
+    section: &CoupledSection,
+    wind: f64,
+    winds: usize,
+) -> Result<Option<ReducedFrequency>> {
     let tracker = Tracker::new(section);
     let mut modes = tracker.start()?;
     let (from, structure) = (modes.speed, section.structure());
     let mut lowest: Option<ReducedFrequency> = None;
-    for i in 1..=ON_THE_WAY {
-        let part = i as f64 / ON_THE_WAY as f64;
+    for i in 1..=winds {
+        let part = i as f64 / winds as f64;
         modes = tracker.advance(&modes, from + part * (wind - from))?;
         if modes.all.len() < structure.dofs.len() {
             return Ok(None);

@@ -226,10 +226,13 @@ fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
     } else {
         format!(
             "{own}: the fewest filters whose error on data left out, {error}, is within one standard error of the least ({} with \
-             {}) and that keep its onset to {}",
+             {}) and {}",
             percent(best.score()),
             name(best, symbol),
-            percent(SAME_ONSET)
+            match best.onset_m_s {
+                Some(_) => format!("whose onset is that of the best to {}", percent(SAME_ONSET)),
+                None => "which have no onset either".to_owned(),
+            }
         )
     };
     if let Some(onset) = chosen.onset_m_s {

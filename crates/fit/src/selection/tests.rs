@@ -82,8 +82,8 @@ fn the_over_fit_of_ln21_5500_is_refused() {
 }
 
 /// The drag of LN21-5800 by sway at one speed says nothing of that at others. Left in, it decides for one filter, 36.6 m/s; without it
-/// two filters predict best, 35.2 m/s. With two motions three do, 33.8 m/s, where the table flutters at 33.0: two are as good, but at
-/// 35.1 m/s.
+/// two filters predict best, 34.7 m/s. With two motions three do, 33.8 m/s, where the table flutters at 33.0; the fewest filters that are
+/// as good flutter at 35.1 m/s.
 #[test]
 fn a_force_that_nobody_predicts_does_not_decide() {
     let deck = embedded::deck("LN21-5800").unwrap();
@@ -115,10 +115,9 @@ fn a_force_that_nobody_predicts_does_not_decide() {
         low <= onset && onset <= high && high - low < 2.5,
         "{low} {onset} {high}"
     );
-    assert!((onset - 35.2).abs() < 0.5, "{onset}");
-    let of_table = 33.0;
+    assert!((onset - 34.7).abs() < 0.1, "{onset}");
     let of_two = two.onset_m_s.unwrap();
-    assert!((of_two - of_table).abs() < 0.03 * of_table, "{of_two}");
+    assert!((of_two - 33.8).abs() < 0.1, "{of_two}");
 }
 
 /// Thesis filters: eight with α = 0.6 on the flat plate leave no stable speed, and the discrete grid refuses them.

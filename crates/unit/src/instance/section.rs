@@ -128,27 +128,44 @@ fn plain_without_samples(
 /// Part of a `K` by which what was followed up to an end of the tests may lie below it.
 const AT_THE_END: f64 = 1e-6;
 
+/// Over the highest end of the tests, a `K` above which no motion was below it on the way, and the winds looked at otherwise.
+const FAR: f64 = 1.5;
+const ON_THE_WAY: usize = 16;
+
 /// How a motion of `section` leaves the tests before the wind has a speed, m/s; `None` where none does.
 fn left_tests(
     section: &CoupledSection,
     tested: ReducedFrequencyRange,
     speed_m_s: f64,
 ) -> Option<String> {
-    let lowest = match slowest_motion(section, speed_m_s) {
+    let ends = || {
+        tested
+            .lower_ends()
+            .map(|(end, gap)| (end.full_width(), gap))
+    };
+    let highest = ends().map(|end| end.0).fold(0.0, f64::max);
+    let at_the_end = slowest_motion(section, speed_m_s, 1);
+    if at_the_end.is_ok_and(|k| k.is_some_and(|k| k.full_width() > FAR * highest)) {
+        return None;
+    }
+    // a motion may be slower on the way
+    let lowest = match slowest_motion(section, speed_m_s, ON_THE_WAY) {
         Ok(Some(lowest)) => lowest.full_width(),
-        Ok(None) => return Some("stops oscillating".into()),
-        Err(why) => return Some(format!("cannot be followed ({why})")),
+        Ok(None) => {
+            return Some("a motion stops oscillating, of which these data say nothing".into());
+        }
+        Err(why) => return Some(format!("modes cannot be followed ({why})")),
     };
     // it comes down from still air: of the ends above it, the highest is the first
-    let ends = tested
-        .lower_ends()
-        .map(|(end, gap)| (end.full_width(), gap));
-    let passed = ends.filter(|(end, _)| lowest < end * (1.0 - AT_THE_END));
+    let passed = ends().filter(|(end, _)| lowest < end * (1.0 - AT_THE_END));
     let (end, gap) = passed.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(match gap {
+    let leaves = match gap {
         Some(gap) => format!("comes to lie {}", gap.explain()),
         None => format!("falls below K {end:.3}, the lowest tested"),
-    })
+    };
+    Some(format!(
+        "a motion {leaves}: these data say nothing of it there"
+    ))
 }
 
 /// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
@@ -286,9 +303,8 @@ impl OnsetCard {
             return;
         };
         self.numbers.stable_below = false;
-        self.warnings.push(format!(
-            "before the wind reaches {speed:.3} m/s a motion {why}: these data say nothing of it there"
-        ));
+        self.warnings
+            .push(format!("before the wind reaches {speed:.3} m/s {why}"));
     }
 
     /// The card of parameters that give no section at all.

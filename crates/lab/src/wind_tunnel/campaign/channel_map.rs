@@ -201,6 +201,8 @@ pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
             // a pause makes the mean step one that no sample has
             let steps: Vec<f64> = time_s.windows(2).map(|t| t[1] - t[0]).collect();
             let usual = median(&steps);
+            // rounded stamps may mostly be equal
+            let usual = if usual > 0.0 { usual } else { step };
             let is_off = |s: &f64| s.is_nan() || (s / usual - 1.0).abs() > 0.25;
             let first = steps.iter().position(is_off).map(|i| i + 1);
             let i = first.or(uneven).unwrap_or(1);

@@ -18,8 +18,8 @@ const SAME_CENTRE: f64 = 0.01;
 const ON_THE_AXIS: f64 = 0.03;
 /// A motion besides the driven one is asked for its inertia from this part on, both over the width …
 const CONSIDERABLE: f64 = 0.05;
-/// … of which this part may be missing.
-const MISSING: f64 = 0.3;
+/// … and is none where this part of it is missing, less or more: what a centre of mass that is a little off adds is none of its size.
+const MISSING: [f64; 2] = [0.6, 1.4];
 
 /// Inertia of the motion of one run in the force of another.
 struct InertialCoupling {
@@ -76,8 +76,10 @@ fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<I
         .iter()
         .enumerate()
         .filter(|(_, p)| p.dof == dof && told(p));
+    // a force that nobody measures is zero
+    let measured = |r: &&Ratios| r.total[index(other)].iter().any(|r| r.value.norm() > 0.0);
     let (at, ratios): (Vec<usize>, Vec<&Ratios>) = of_dof
-        .filter_map(|(at, p)| Some((at, p.ratios.as_ref()?)))
+        .filter_map(|(at, p)| Some((at, p.ratios.as_ref().filter(measured)?)))
         .unzip();
     let forces = || ratios.iter().map(|r| &r.total[index(other)][..]);
     let left: Vec<Vec<Ratio>> = ratios.iter().map(|r| without(r, other, body)).collect();
@@ -113,6 +115,7 @@ fn without(run: &Ratios, other: Dof, body: Option<&StillAirInertia>) -> Vec<Rati
             body.inertia * force.omega.powi(2) - body.stiffness.unwrap_or(0.0),
             -body.damping.unwrap_or(0.0) * force.omega,
         );
+        let of_body = of_body * Complex::from_polar(1.0, -force.omega * body.lag_s);
         Ratio {
             omega: force.omega,
             value: force.value - of_body * moves.value,
@@ -126,8 +129,12 @@ impl InertialCoupling {
     /// The doubt that another motion of which its channel tells is none, against the `across` of the other runs.
     fn unseen(&self, runs: &[PreparedRun<'_>], across: &Self) -> Option<String> {
         let off = self.found.inertia - across.found.inertia;
-        let missing = off.abs() - self.error(across);
-        (self.part > CONSIDERABLE && missing > MISSING * self.of_other.abs()).then(|| {
+        let error = self.error(across) / self.of_other.abs();
+        // what is not there was taken off
+        let missing = -off / self.of_other;
+        let [least, most] = MISSING;
+        let is_missing = (least + error..=most).contains(&missing);
+        (self.part > CONSIDERABLE && is_missing).then(|| {
             let (own, other) = (runs[self.run].dof.name(), self.found.dof.name());
             format!(
                 "the {other} channel tells of {:.0} % of the {own} motion, both over the width, whose inertia in the {other} force, \
@@ -153,7 +160,10 @@ impl InertialCoupling {
         runs: &mut [PreparedRun<'_>],
         rotation: Option<&Self>,
     ) -> Option<(usize, String)> {
-        let body = runs[self.run].still_air.as_mut()?;
+        let body = runs[self.run]
+            .still_air
+            .as_mut()
+            .filter(|b| b.is_certain())?;
         let (axis, sign, place) = match body.dof {
             Dof::Vertical => (0, -1.0, "downwind of"),
             _ => (1, 1.0, "above"),
@@ -179,7 +189,8 @@ impl InertialCoupling {
                     let stated = millimetres(stated);
                     format!("`rig.centre_of_mass_m` states {stated:.1} mm")
                 }
-                None if off(0.0, ON_THE_AXIS, self) => {
+                // cells that are elsewhere change the moments alone: where rotation shows the same, they are not
+                None if turning.is_none() && off(0.0, ON_THE_AXIS, self) => {
                     "`rig.centre_of_mass_m` does not state it: is `position_m` of the cells that from the axis?".to_owned()
                 }
                 _ => return None,

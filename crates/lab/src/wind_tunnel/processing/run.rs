@@ -15,6 +15,9 @@ use crate::signal::{ButterworthLowPass, delayed, extremes, root_mean_square};
 use crate::wind_tunnel::{RawCampaign, RawRecording, Record, Rig};
 use std::ops::Range;
 
+/// Drag coefficient below which a drag upwind is no sign: thrust of a moving plate, rounding, a shift of the zero.
+const LEAST_DRAG: f64 = 0.005;
+
 /// Force on the whole model after a stage, for figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StageSignals {
@@ -175,7 +178,7 @@ impl<'a> RunInProgress<'a> {
         // the cells may drift from one recording to the other as within one
         let drift = self.report.cell_drift.iter();
         let drift = drift.map(|c| c.range[..3].iter().fold(0.0, |m: f64, x| m.max(*x)));
-        if -static_wind[drag] > drift.sum() {
+        if -static_wind[drag] > drift.sum() && coefficient(drag) < -LEAST_DRAG {
             self.report.doubts.push(format!(
                 "the wind pushes the model upwind, drag coefficient {:.3}: positive sway and drag are downwind",
                 coefficient(drag)
