@@ -93,12 +93,16 @@ fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<I
             continue;
         };
         let moves = ratios.motion[index(other)].iter();
-        couplings.push(InertialCoupling {
-            run,
-            of_other: all.inertia - found.inertia,
-            found,
-            part: moves.map(|r| scale * r.value.norm()).fold(0.0, f64::max),
-        });
+        let part = moves.map(|r| scale * r.value.norm()).fold(0.0, f64::max);
+        // of motions that are driven at once none is told from the other
+        if body.is_some() || part <= CONSIDERABLE {
+            couplings.push(InertialCoupling {
+                run,
+                of_other: all.inertia - found.inertia,
+                found,
+                part,
+            });
+        }
     }
     couplings
 }

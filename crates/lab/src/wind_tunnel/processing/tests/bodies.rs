@@ -389,6 +389,11 @@ fn still_air_shows_the_centre_of_mass_and_each_motion() {
             ),
         "{said:?}"
     );
+    // without a run of rotation nothing tells what such a motion adds to the moment
+    heave.runs.truncate(1);
+    let alone = done(&heave, &ProcessingOptions::default()).report;
+    let body = alone.runs[0].still_air.as_ref().unwrap();
+    assert!(body.centre_of_mass_m.is_none() && alone.doubts().is_empty());
     feel(&mut raw, 1, 0, 2, 0.08);
     let said = doubts(&raw);
     assert!(
