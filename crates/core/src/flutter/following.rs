@@ -18,8 +18,6 @@ pub(super) const SEPARATION: f64 = 1e-9;
 /// Modes around another: those up to this part of its eigenvalue, and this many at least.
 const AROUND: f64 = 0.1;
 const NEAREST: usize = 4;
-/// Halvings between two speeds of a search for the last at which a mode oscillates: to a thousandth of what is written.
-const HALVINGS_TO_THE_LAST: usize = 16;
 /// Part of a wind speed that is no step.
 const NO_STEP: f64 = 1e-6;
 /// Growth up to this part of the eigenvalue is rounding.
@@ -158,6 +156,11 @@ pub(super) trait Follower {
 
     /// The modes at `speed`, by as many intermediate speeds as continuity needs.
     fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
+        self.advance_with(from, speed, None)
+    }
+
+    /// The same, but no further than a branch is among them.
+    fn advance_with(&self, from: &Modes, speed: f64, branch: Option<usize>) -> Result<Modes> {
         let mut at = from.clone();
         let (mut step, mut halvings) = (speed - at.speed, 0);
         while at.speed != speed {
@@ -178,6 +181,9 @@ pub(super) trait Follower {
                 }
                 Err(after) => {
                     let left = self.without_lost(&at, after)?;
+                    if branch.is_some_and(|branch| left.mode(branch).is_none()) {
+                        return Ok(at);
+                    }
                     if left.speed == at.speed {
                         (step, halvings) = (speed - at.speed, 0);
                     }
@@ -250,16 +256,23 @@ impl<F: Follower> OnsetWatch<'_, F> {
     }
 
     /// Adds the ends of what can be judged that modes pass between two speeds.
-    fn look(&self, low: &Modes, high: &Modes, found: &mut Findings) {
+    fn look(&self, low: &Modes, all_high: &Modes, found: &mut Findings) {
         let Some(range) = self.judged else { return };
         let k = |modes: &Modes, mode: &Mode| {
             ValueAt::new(modes.speed, self.follower.k(modes.speed, mode))
         };
         for before in &low.all {
             let branch = self.follower.name(before.branch);
-            let lost = high.mode(before.branch).is_none();
-            let last = lost.then(|| self.last_seen(low, high.speed, before.branch));
-            let high = last.as_ref().unwrap_or(high);
+            let lost = all_high.mode(before.branch).is_none();
+            let last;
+            let high = if lost {
+                let follower = self.follower;
+                let reached = follower.advance_with(low, all_high.speed, Some(before.branch));
+                last = reached.unwrap_or_else(|_| low.clone());
+                &last
+            } else {
+                all_high
+            };
             if let Some(after) = high.mode(before.branch) {
                 let slowness = |v: f64, mode: &Mode| 1.0 / self.follower.k(v, mode).full_width();
                 let refined = |limit: f64| {
@@ -274,20 +287,6 @@ impl<F: Follower> OnsetWatch<'_, F> {
                 found.reach.exits.push((high.speed, branch, Exit::Lost));
             }
         }
-    }
-
-    /// The modes at the highest speed below `lost` at which a branch is among them.
-    fn last_seen(&self, low: &Modes, mut lost: f64, branch: usize) -> Modes {
-        let mut seen = low.clone();
-        for _ in 0..HALVINGS_TO_THE_LAST {
-            let speed = 0.5 * (seen.speed + lost);
-            let there = self.follower.advance(&seen, speed).ok();
-            match there.filter(|modes| modes.mode(branch).is_some()) {
-                Some(modes) => seen = modes,
-                None => lost = speed,
-            }
-        }
-        seen
     }
 
     fn motion(&self, speed: f64, mode: &Mode) -> CriticalPoint {
