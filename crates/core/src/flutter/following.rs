@@ -266,8 +266,8 @@ impl<F: Follower> OnsetWatch<'_, F> {
             let lost = all_high.mode(before.branch).is_none();
             let last;
             let high = if lost {
-                let follower = self.follower;
-                let reached = follower.advance_with(low, all_high.speed, Some(before.branch));
+                let (follower, end) = (self.follower, all_high.speed);
+                let reached = follower.advance_with(low, end, Some(before.branch));
                 last = reached.unwrap_or_else(|_| low.clone());
                 &last
             } else {
