@@ -258,7 +258,9 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         if self.beside_tests(memory) != self.wind_was {
             self.watch_wind(memory, notices);
         }
-        if let Some([from, to]) = S::untested_gap(self, memory).filter(|_| !self.gap_met) {
+        if !self.gap_met
+            && let Some([from, to]) = S::untested_gap(self, memory)
+        {
             self.gap_met = true;
             let wind = shown(self.indices.wind_speed(memory));
             notices.push(format!(
