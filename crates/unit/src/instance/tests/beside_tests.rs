@@ -60,7 +60,7 @@ fn a_gap_between_tests_is_no_test() {
     );
 }
 
-/// Filters oscillate too, and are no motions: whatever the model, a heave that leaves the tests before the onset is told.
+/// Filters oscillate too, and are no motions: a heave that leaves the tests before the onset is told.
 #[test]
 fn a_motion_that_leaves_the_tests_is_not_stable() {
     for kind in ["rational", "continuous_laguerre"] {
