@@ -242,23 +242,31 @@ impl RangePassages {
         })
     }
 
+    /// That at which a mode leaves the tests first, below a speed.
+    fn first_exit(&self, below_m_s: f64) -> Option<&(f64, String, Exit)> {
+        let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        first.filter(|(speed, ..)| *speed < below_m_s)
+    }
+
+    /// The same in words.
+    pub(super) fn end(&self, below_m_s: f64) -> Option<String> {
+        let (speed, branch, exit) = self.first_exit(below_m_s)?;
+        let (mode, exit) = (the_mode(branch), exit.explain());
+        Some(format!(
+            "{mode} can be judged up to {speed:.3} m/s, {exit}; above that these data say nothing"
+        ))
+    }
+
     /// Of the speeds that were looked at those at which every mode was judged.
     pub(super) fn judged(&self, looked_at: StableRange) -> StableRange {
         let highest = looked_at.to_m_s;
         let last = self.last_entry().filter(|_| !self.damped_before);
-        let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        let first = first.filter(|(speed, ..)| *speed < highest);
+        let first = self.first_exit(highest);
         let from = last.map(|(speed, branch)| {
             let mode = the_mode(branch);
             format!("{mode} can be judged from {speed:.3} m/s on")
         });
-        let to = first.map(|(speed, branch, exit)| {
-            let mode = the_mode(branch);
-            format!(
-                "{mode} can be judged up to {speed:.3} m/s, {}; above that these data say nothing",
-                exit.explain()
-            )
-        });
+        let to = self.end(highest);
         let why: Vec<String> = from.into_iter().chain(to).collect();
         looked_at.and(StableRange {
             from_m_s: last.map_or(0.0, |l| l.0),

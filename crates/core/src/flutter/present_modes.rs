@@ -18,7 +18,6 @@ use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::state_space::{damping_ratio, write_eigenvalues};
-use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -142,36 +141,6 @@ impl Solved {
 /// As [`CoupledSection::at`], and where the eigenvalues are not found.
 pub fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
     Ok(least(&section.at(wind)?.eigenvalues()?))
-}
-
-/// The lowest reduced frequency that a motion of `section` has at so many winds from still air to `wind`, m/s, each followed by itself:
-/// filters oscillate too and are no motions. `None` where one stops oscillating.
-///
-/// # Errors
-/// [`crate::Error::NotDistinct`] and [`crate::Error::Numerical`] where they cannot be told apart or computed.
-pub fn slowest_motion(
-    section: &CoupledSection,
-    wind: f64,
-    winds: usize,
-) -> Result<Option<ReducedFrequency>> {
-    let tracker = Tracker::new(section);
-    let mut modes = tracker.start()?;
-    let (from, structure) = (modes.speed, section.structure());
-    let mut lowest: Option<ReducedFrequency> = None;
-    for i in 1..=winds {
-        let part = i as f64 / winds as f64;
-        modes = tracker.advance(&modes, from + part * (wind - from))?;
-        if modes.all.len() < structure.dofs.len() {
-            return Ok(None);
-        }
-        let all = modes.all.iter().map(|mode| mode.lambda.im);
-        let k = all.map(|w| ReducedFrequency::from_circular(w, structure.width_m, modes.speed));
-        lowest = lowest
-            .into_iter()
-            .chain(k)
-            .min_by(|a, b| a.full_width().total_cmp(&b.full_width()));
-    }
-    Ok(lowest)
 }
 
 fn least(eigenvalues: &[Complex<f64>]) -> f64 {

@@ -151,6 +151,9 @@ impl MovedOnset {
     }
 }
 
+/// Part of a speed by which it may lie below that of the end of the tests which it was followed to.
+const AT_THE_END: f64 = 1e-6;
+
 /// The speeds at which every mode of `section` is inside what was tested, as [`find_onset`] judges them, whether anything
 /// grows or not.
 ///
@@ -168,6 +171,25 @@ pub fn judged_speeds(
         tested_from: found.reach.tested_from(tested),
         range: found.reach.judged(found.looked_at),
     })
+}
+
+/// Which mode of `section` leaves what was `tested` first below the highest speed of a search, and where, in words; `None` where none
+/// does.
+///
+/// # Errors
+/// As [`find_onset`].
+pub fn left_tests(
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: ReducedFrequencyRange,
+) -> Result<Option<String>> {
+    let scan = Scan::new("", section, Some(tested));
+    let (mut found, ended) = followed("", &scan, search, |found| !found.reach.exits.is_empty())?;
+    if ended.is_some() {
+        scan.bound(&mut found, true, &search.speeds_m_s()?)?;
+    }
+    // an onset at the very end of the tests has not left them
+    Ok(found.reach.end(search.speed_max_m_s * (1.0 - AT_THE_END)))
 }
 
 /// The critical speed alone, m/s, by the modes that are followed, without all eigenvalues: for one of many sections of which another

@@ -4,7 +4,8 @@ use crate::error::{Error, Place, PlaceStep, Result, has_control_characters};
 use crate::files::text::read_text;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
-use toml::de::{DeArray, DeTable};
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
 
 fn line_of(text: &str, offset: usize) -> usize {
     1 + text.as_bytes()[..offset.min(text.len())]
@@ -29,9 +30,7 @@ pub fn parse<T: DeserializeOwned>(
     text: &str,
     check: impl FnOnce(&mut T) -> Result<()>,
 ) -> Result<T> {
-    let mut value = toml::from_str(text)
-        .map_err(|e| other_kind(what, text).unwrap_or_else(|| syntax_error(what, text, &e)))?;
-    without_control_characters(text)?;
+    let mut value = read_value(what, text).map_err(|e| other_kind(what, text).unwrap_or(e))?;
     check(&mut value).map_err(|e| with_line(text, e))?;
     Ok(value)
 }
@@ -56,47 +55,6 @@ pub fn only_blocks(text: &str) -> Result<()> {
             let expected = format!("a block [{key}]");
             Err(with_line(text, Error::input(key, expected, "a list")))
         }
-    }
-}
-
-/// Refuses texts with control characters: they end up in names of files, descriptions of FMUs and on terminals. Lines that are
-/// broken, and tabs, are texts.
-fn without_control_characters(text: &str) -> Result<()> {
-    // such a character stands there itself or is written as an escape
-    if !text.contains('\\') && !has_control_characters(text) {
-        return Ok(());
-    }
-    let root: toml::Table = toml::from_str(text)
-        .map_err(|e| Error::input("", "a file in TOML", e.message().to_owned()))?;
-    match refused_text(&toml::Value::Table(root)) {
-        None => Ok(()),
-        Some(path) => Err(with_line(
-            text,
-            Error::input(
-                path.as_str(),
-                "a text without control characters",
-                "one with them",
-            ),
-        )),
-    }
-}
-
-/// Key of the first text with such a character.
-fn refused_text(value: &toml::Value) -> Option<String> {
-    let below = |key: &str, rest: String| match rest.starts_with('[') || rest.is_empty() {
-        true => format!("{key}{rest}"),
-        false => format!("{key}.{rest}"),
-    };
-    match value {
-        toml::Value::String(text) => has_control_characters(text).then(String::new),
-        toml::Value::Array(all) => all
-            .iter()
-            .enumerate()
-            .find_map(|(i, v)| Some(below(&format!("[{i}]"), refused_text(v)?))),
-        toml::Value::Table(all) => all
-            .iter()
-            .find_map(|(key, v)| Some(below(key, refused_text(v)?))),
-        _ => None,
     }
 }
 
@@ -128,21 +86,126 @@ fn not_but(what: &str, root: &toml::Table) -> Option<Error> {
     Some(Error::input("", what, found))
 }
 
-/// A reading error of the TOML library as one of ours.
-fn syntax_error(what: &str, text: &str, error: &toml::de::Error) -> Error {
-    let (place, found) = match error.span() {
-        Some(span) => {
-            let line = line_of(text, span.start);
+fn read_value<T: DeserializeOwned>(what: &str, text: &str) -> Result<T> {
+    let document = DeTable::parse(text)
+        .map_err(|e| refused(what, text, e.span().map(|span| span.start), e.message()))?;
+    let mut json = LinesOfJson::default();
+    json.table(document.get_ref(), document.span().start)
+        .map_err(|e| with_line(text, e))?;
+    serde_json::from_str(&json.text).map_err(|e| {
+        let said = e.to_string();
+        let message = said.rsplit_once(" at line ").map_or(&*said, |(m, _)| m);
+        let offset = json.offsets.get(e.line().saturating_sub(1)).copied();
+        refused(what, text, offset, message)
+    })
+}
+
+/// A value as JSON, in which each value begins a line: whatever is read from files of both kinds is compiled for one deserialiser, not
+/// for the three of the TOML library besides.
+struct LinesOfJson {
+    text: String,
+    /// What a line was read from begins here in the file.
+    offsets: Vec<usize>,
+    /// Of the value that is written.
+    path: Vec<PlaceStep>,
+}
+
+impl Default for LinesOfJson {
+    fn default() -> Self {
+        Self {
+            text: String::new(),
+            offsets: vec![0],
+            path: Vec::new(),
+        }
+    }
+}
+
+impl LinesOfJson {
+    fn new_line(&mut self, offset: usize) {
+        self.text.push('\n');
+        self.offsets.push(offset);
+    }
+
+    fn table(&mut self, table: &DeTable<'_>, offset: usize) -> Result<()> {
+        self.text.push('{');
+        for (i, (key, value)) in table.iter().enumerate() {
+            self.text.push_str(if i == 0 { "" } else { "," });
+            self.new_line(key.span().start);
+            self.quoted(key.get_ref());
+            self.text.push(':');
+            self.value(PlaceStep::Key(key.get_ref().to_string()), value)?;
+        }
+        // what is missing is missing where the table begins
+        self.new_line(offset);
+        self.text.push('}');
+        Ok(())
+    }
+
+    fn array(&mut self, items: &DeArray<'_>, offset: usize) -> Result<()> {
+        self.text.push('[');
+        for (i, item) in items.iter().enumerate() {
+            self.text.push_str(if i == 0 { "" } else { "," });
+            self.new_line(item.span().start);
+            self.value(PlaceStep::Index(i), item)?;
+        }
+        self.new_line(offset);
+        self.text.push(']');
+        Ok(())
+    }
+
+    fn value(&mut self, step: PlaceStep, value: &Spanned<DeValue<'_>>) -> Result<()> {
+        self.path.push(step);
+        let offset = value.span().start;
+        match value.get_ref() {
+            // they end up in names of files, descriptions of FMUs and on terminals
+            DeValue::String(text) if has_control_characters(text) => {
+                return Err(self.refused("a text without control characters", "one with them"));
+            }
+            DeValue::Float(number) if number.as_str().contains(['i', 'n']) => {
+                return Err(self.refused("a finite number", number.as_str()));
+            }
+            DeValue::String(text) => self.quoted(text),
+            DeValue::Integer(number) => {
+                match i64::from_str_radix(number.as_str(), number.radix()) {
+                    Ok(number) => self.text.push_str(&number.to_string()),
+                    Err(_) => return Err(self.refused("an integer of 64 bits", number.as_str())),
+                }
+            }
+            DeValue::Float(number) => self.text.push_str(number.as_str().trim_start_matches('+')),
+            DeValue::Boolean(is_so) => self.text.push_str(&is_so.to_string()),
+            DeValue::Datetime(time) => self.quoted(&time.to_string()),
+            DeValue::Array(items) => self.array(items, offset)?,
+            DeValue::Table(table) => self.table(table, offset)?,
+        }
+        // what looks one character ahead stays on the line
+        self.text.push(' ');
+        self.path.pop();
+        Ok(())
+    }
+
+    fn refused(&self, expected: &str, found: &str) -> Error {
+        let parts = self.path.clone();
+        Error::input(Place { line: None, parts }, expected, found)
+    }
+
+    fn quoted(&mut self, text: &str) {
+        self.text
+            .push_str(&serde_json::Value::from(text).to_string());
+    }
+}
+
+/// What was expected at an offset of `text`, and what stands there.
+fn refused(what: &str, text: &str, offset: Option<usize>, message: &str) -> Error {
+    let (place, found) = match offset {
+        Some(offset) => {
+            let line = line_of(text, offset);
             let stood = text.lines().nth(line - 1).unwrap_or("").trim();
             (Place::line(line), format!("`{stood}`"))
         }
         None => (Place::default(), "something else".to_owned()),
     };
-    Error::input(
-        place,
-        format!("{what} ({})", error.message().replace('\n', " ")),
-        found,
-    )
+    let expected = format!("{what} ({})", message.replace('\n', " "));
+    Error::input(place, expected, found)
 }
 
 /// The same error with the line of the key it names in front.
@@ -220,6 +283,71 @@ mod tests {
                 read(&text).unwrap_err().to_string(),
                 "line 3, export.authors[1]: expected a text without control characters, found one with them"
             );
+        }
+    }
+
+    /// Of values, of what is missing in a table, and in lists over several lines.
+    #[test]
+    fn a_mistake_is_told_with_its_line() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct File {
+            b: Vec<Item>,
+            #[serde(default)]
+            c: Vec<f64>,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Item {
+            x: f64,
+        }
+        let read = |text: &str| parse::<File>("a file", text, |_| Ok(()));
+        let good = "c = [1, 0x2,\n  +3.5,\n  1_0e-1]\n[[b]]\nx = 1\n[[b]]\nx = -2.5\n";
+        let file = read(good).unwrap();
+        assert_eq!(
+            (&file.c[..], file.b[1].x),
+            (&[1.0, 2.0, 3.5, 1.0][..], -2.5)
+        );
+        for (from, to, said) in [
+            (
+                "+3.5",
+                "\"3\"",
+                "line 2: expected a file (invalid type: string \"3\", expected f64), found `\"3\",`",
+            ),
+            (
+                "1_0e-1",
+                "inf",
+                "line 3, c[3]: expected a finite number, found inf",
+            ),
+            (
+                "0x2",
+                "99999999999999999999",
+                "line 1, c[1]: expected an integer of 64 bits, found 99999999999999999999",
+            ),
+            (
+                "x = -2.5",
+                "",
+                "line 6: expected a file (missing field `x`), found `[[b]]`",
+            ),
+            (
+                "x = -2.5",
+                "y = 1",
+                "line 7: expected a file (unknown field `y`, expected `x`), found `y = 1`",
+            ),
+            (
+                "x = -2.5",
+                "x = [1]",
+                "line 7: expected a file (invalid type: sequence, expected f64), found `x = [1]`",
+            ),
+            (
+                "x = -2.5",
+                "x = 1979-05-27",
+                "line 7: expected a file (invalid type: string \"1979-05-27\", expected f64), found `x = 1979-05-27`",
+            ),
+            ("x = 1\n", "x = \n", "line 5: expected a file ("),
+        ] {
+            let message = read(&good.replacen(from, to, 1)).unwrap_err().to_string();
+            assert!(message.starts_with(said), "{message}\n{said}");
         }
     }
 

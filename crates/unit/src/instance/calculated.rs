@@ -115,8 +115,6 @@ fn is_as_exported(table: &VariableTable, values: &[f64]) -> bool {
     let starts = starts(table);
     let mut each = table.variables().iter().zip(starts.iter().zip(values));
     each.all(|(variable, (start, value))| {
-        start.to_bits() == value.to_bits()
-            || variable.role == Role::TurbulenceFactor
-            || Source::from_role(variable.role) != Source::Section
+        start.to_bits() == value.to_bits() || Source::from_role(variable.role) != Source::Section
     })
 }

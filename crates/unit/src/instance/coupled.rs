@@ -87,9 +87,7 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     fn tested_winds(unit: &Coupled<Self>) -> Option<[f64; 2]>;
 
     /// Between which winds, m/s, around the present one a motion is far from every test, although slower and faster ones were tested.
-    fn untested_gap(_unit: &Coupled<Self>, _memory: &Memory) -> Option<[f64; 2]> {
-        None
-    }
+    fn untested_gap(unit: &Coupled<Self>, memory: &Memory) -> Option<[f64; 2]>;
 
     fn wind_is_tested(
         unit: &mut Coupled<Self>,
@@ -198,6 +196,7 @@ impl<S: CoupledKind> Unit for Coupled<S> {
                 let before = before.unwrap_or_default();
                 self.states_set |= S::keep_motion(self, memory, index, before);
             }
+            Source::Turbulence => self.inputs_stay &= !changed,
             Source::Release if changed => self.release_pending = true,
             Source::Limit if changed => {
                 self.calculated.card = None;

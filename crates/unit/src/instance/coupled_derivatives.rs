@@ -99,7 +99,7 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
     ) -> CallResult<Vec<f64>> {
         let role = resources.table.variables()[known].role;
         let instant = match (Source::from_role(role), role) {
-            (Source::Section, _) => {
+            (Source::Section | Source::Turbulence, _) => {
                 let step = parameter_step(memory.values[known]);
                 return central_difference(resources, memory, known, step, |other| {
                     let found = |unit: &mut Self| unit.unknowns(resources, other, unknowns);

@@ -116,7 +116,11 @@ impl Instance {
         let initializing = self.memory.state == State::Initialization;
         match access.source {
             Source::Input => Ok(index),
-            Source::Section | Source::Release | Source::Limit if initializing => Ok(index),
+            Source::Section | Source::Turbulence | Source::Release | Source::Limit
+                if initializing =>
+            {
+                Ok(index)
+            }
             Source::Response | Source::State if !initializing && self.is_seen_state(index) => {
                 Ok(index)
             }

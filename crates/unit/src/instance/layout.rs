@@ -37,6 +37,8 @@ pub(super) enum Source {
     Input,
     /// Stored; a property of the section or of a strip.
     Section,
+    /// Stored; what turbulence of the archive is multiplied by, on which no property follows.
+    Turbulence,
     /// Stored; displacement or rate at release.
     Release,
     /// Stored; upper end of the onset search.
@@ -69,8 +71,8 @@ impl Source {
             | Role::Prediction
             | Role::MotionDerivatives
             | Role::ModeParameter(..)
-            | Role::DamperParameter(_)
-            | Role::TurbulenceFactor => Self::Section,
+            | Role::DamperParameter(_) => Self::Section,
+            Role::TurbulenceFactor => Self::Turbulence,
             Role::InitialDisplacement(_) | Role::InitialRate(_) | Role::InitialMode(_) => {
                 Self::Release
             }

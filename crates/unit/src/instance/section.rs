@@ -5,7 +5,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
 use crate::flutter::{
     FastMotion, FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
-    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, slowest_motion,
+    UnwantedGrowth, at_samples, damps_fast_motion, divergence_with_forces, left_tests,
     stands_at_samples, unwanted_growth,
 };
 use crate::onset_start::simulated_onset;
@@ -125,48 +125,8 @@ fn plain_without_samples(
     }
 }
 
-/// Part of a `K` by which what was followed up to an end of the tests may lie below it.
-const AT_THE_END: f64 = 1e-6;
-
-/// Over the highest end of the tests, a `K` above which no motion was below it on the way, and the winds looked at otherwise.
-const FAR: f64 = 1.5;
+/// Winds at which motions are looked at on the way to an onset.
 const ON_THE_WAY: usize = 16;
-
-/// How a motion of `section` leaves the tests before the wind has a speed, m/s; `None` where none does.
-fn left_tests(
-    section: &CoupledSection,
-    tested: ReducedFrequencyRange,
-    speed_m_s: f64,
-) -> Option<String> {
-    let ends = || {
-        tested
-            .lower_ends()
-            .map(|(end, gap)| (end.full_width(), gap))
-    };
-    let highest = ends().map(|end| end.0).fold(0.0, f64::max);
-    let at_the_end = slowest_motion(section, speed_m_s, 1);
-    if at_the_end.is_ok_and(|k| k.is_some_and(|k| k.full_width() > FAR * highest)) {
-        return None;
-    }
-    // a motion may be slower on the way
-    let lowest = match slowest_motion(section, speed_m_s, ON_THE_WAY) {
-        Ok(Some(lowest)) => lowest.full_width(),
-        Ok(None) => {
-            return Some("a motion stops oscillating, of which these data say nothing".into());
-        }
-        Err(why) => return Some(format!("modes cannot be followed ({why})")),
-    };
-    // it comes down from still air: of the ends above it, the highest is the first
-    let passed = ends().filter(|(end, _)| lowest < end * (1.0 - AT_THE_END));
-    let (end, gap) = passed.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let leaves = match gap {
-        Some(gap) => format!("comes to lie {}", gap.explain()),
-        None => format!("falls below K {end:.3}, the lowest tested"),
-    };
-    Some(format!(
-        "a motion {leaves}: these data say nothing of it there"
-    ))
-}
 
 /// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
 const SEARCHED_STATES: usize = 100;
@@ -294,17 +254,22 @@ impl OnsetCard {
 
     /// Nor is what data say nothing of: below the onset a motion comes to lie below every test, or in a gap between them, or
     /// does not oscillate any more.
-    fn look_beside_tests(&mut self, section: &CoupledSection, tested: ReducedFrequencyRange) {
+    pub(super) fn look_beside_tests(
+        &mut self,
+        section: &CoupledSection,
+        tested: ReducedFrequencyRange,
+    ) {
+        let search = OnsetSearch {
+            speed_max_m_s: self.numbers.speed_m_s.value,
+            speeds: ON_THE_WAY,
+        };
         if !self.numbers.stable_below {
             return;
         }
-        let speed = self.numbers.speed_m_s.value;
-        let Some(why) = left_tests(section, tested, speed) else {
-            return;
-        };
-        self.numbers.stable_below = false;
-        self.warnings
-            .push(format!("before the wind reaches {speed:.3} m/s {why}"));
+        let left = left_tests(section, &search, tested);
+        let left = left.unwrap_or_else(|why| Some(format!("modes cannot be followed: {why}")));
+        self.numbers.stable_below = left.is_none();
+        self.warnings.extend(left);
     }
 
     /// The card of parameters that give no section at all.

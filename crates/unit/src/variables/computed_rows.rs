@@ -79,7 +79,7 @@ pub(super) const SEARCHED: &[ComputedNumber] = &[
     ),
     searched(
         "stable_below_onset",
-        "Whether nothing grows below onset_speed: false where the section diverges below it, where the model \
+        "Whether nothing grows below onset_speed: false where the structure diverges below it, where the model \
          feeds energy into motions outside the tested range, where a motion leaves that range before, or where that is not known",
         Flag(|p| p.onset.stable_below),
     ),
@@ -103,7 +103,8 @@ pub(super) const OF_THE_PRESENT: &[ComputedNumber] = &[
     .of_quantity("DampingRatio", None),
     output(
         "wind_in_tested_range",
-        "Whether every motion, at its frequency in still air, lies in the tested range and in no gap of it at the present wind speed",
+        "Whether every motion of a section, at its frequency in still air, or that of a bridge's onset, at its own, lies in the \
+         tested range and in no gap of it at the present wind speed",
         &[Known::TestedWind],
         Flag(|p| p.wind_is_tested),
     ),

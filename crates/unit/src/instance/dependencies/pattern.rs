@@ -112,9 +112,9 @@ impl<S: CoupledKind> Pattern<S> {
 
 /// A start value that hides nothing: inputs are off, parameters on.
 fn generic(variable: &Variable, start: f64) -> f64 {
-    match (Source::from_role(variable.role), variable.role) {
-        (Source::Input, _) | (_, Role::TurbulenceFactor) => 0.0,
-        (Source::Section, _) if start == 0.0 => IN_PLACE_OF_ZERO,
+    match Source::from_role(variable.role) {
+        Source::Input | Source::Turbulence => 0.0,
+        Source::Section if start == 0.0 => IN_PLACE_OF_ZERO,
         _ => start,
     }
 }

@@ -10,8 +10,10 @@ fn parameters(instance: &Instance, state: State) -> Vec<(u32, f64)> {
     let all = instance.table().variables().iter().enumerate();
     let free = all.filter(|(index, v)| {
         let source = instance.layout.access[*index].source;
-        matches!(source, Source::Section | Source::Release | Source::Limit)
-            && instance.layout.access[*index].data_type == DataType::Real
+        matches!(
+            source,
+            Source::Section | Source::Turbulence | Source::Release | Source::Limit
+        ) && instance.layout.access[*index].data_type == DataType::Real
             && settable_in(v.causality, v.variability).contains(state)
     });
     free.map(|(index, v)| {
@@ -30,7 +32,12 @@ fn computed(instance: &Instance, state: State) -> Vec<u32> {
         let access = &instance.layout.access[*index];
         let stored = matches!(
             access.source,
-            Source::Input | Source::Section | Source::Release | Source::Limit | Source::Constant
+            Source::Input
+                | Source::Section
+                | Source::Turbulence
+                | Source::Release
+                | Source::Limit
+                | Source::Constant
         );
         !stored && gettable_in(v.causality, v.variability).contains(state)
     });

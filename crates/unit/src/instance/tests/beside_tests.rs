@@ -48,7 +48,7 @@ fn a_gap_between_tests_is_no_test() {
     assert_eq!(flags(&mut unit, names), [true, true, false]);
     let notices = unit.take_notices().join("\n");
     assert!(
-        notices.contains("a motion comes to lie in a gap between the tested K 0.100 and 0.270"),
+        notices.contains("where its K comes to lie in a gap between the tested K 0.100 and 0.270"),
         "{notices}"
     );
     unit.set_reals(&[wind], &[35.0]).unwrap();

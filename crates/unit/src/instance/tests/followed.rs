@@ -8,6 +8,7 @@ use crate::instance::memory::starts;
 use crate::instance::section::OnsetCard;
 use crate::onset_start::OnsetStart;
 use crate::resources::Resources;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
 const LIMIT: f64 = 100.0;
 
@@ -50,6 +51,28 @@ fn what_is_followed_is_what_a_search_finds() {
                 (found / expected - 1.0).abs() < 1e-8,
                 "{changed:?}: {found}, {expected}"
             );
+        }
+    }
+}
+
+/// Whether searched or followed: below the onset another motion leaves tests that end just below that of the onset.
+#[test]
+fn a_motion_that_leaves_the_tests_is_not_stable() {
+    let resources = resources(Exported::Bridge);
+    let (_, known) = searched(&built(&resources, &[]));
+    let mut now = built(&resources, &[("air_density", 1.3)]);
+    let onset = known.followed(&mut now, LIMIT).unwrap();
+    let width = now.own.bridge.width_m();
+    let k = ReducedFrequency::from_hertz(onset.frequency_hz(), width, onset.speed_m_s);
+    for (lowest, stable) in [(0.1, true), (0.99, false)] {
+        let end = |part| ReducedFrequency::from_full_width(part * k.full_width());
+        let tested = Some(ReducedFrequencyRange::between(end(lowest), end(100.0)));
+        let (card, _) = OnsetCard::of_bridge(&now, tested, None, LIMIT);
+        let followed = OnsetCard::of_followed(&now, tested, None, LIMIT, &onset).unwrap();
+        for card in [card, followed] {
+            assert_eq!(card.numbers.stable_below, stable, "{lowest}: {card:?}");
+            let told = card.warnings.join("\n").contains("the lowest tested");
+            assert_eq!(told, !stable, "{lowest}: {card:?}");
         }
     }
 }
