@@ -162,7 +162,8 @@ impl LinesOfJson {
                 return Err(self.refused("a text without control characters", "one with them"));
             }
             DeValue::Float(number) if number.as_str().contains(['i', 'n']) => {
-                return Err(self.refused("a finite number", number.as_str()));
+                let number: f64 = number.as_str().parse().unwrap_or(f64::NAN);
+                return Err(self.refused("a finite number", &number.to_string()));
             }
             DeValue::String(text) => self.quoted(text),
             DeValue::Integer(number) => {
