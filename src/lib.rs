@@ -66,7 +66,6 @@
     )
 )]
 
-pub mod buffeting;
 #[allow(clippy::print_stdout, clippy::print_stderr)]
 pub mod cli;
 pub mod fmu;
@@ -78,6 +77,7 @@ pub mod study;
 #[cfg(test)]
 mod tests;
 
+pub use aerodeck_buffeting::buffeting;
 pub use aerodeck_fit::{comparison, identification, numbered, selection, uncertainty};
 pub use aerodeck_lab::{files, signal, wind_tunnel};
 pub use aerodeck_live as live;

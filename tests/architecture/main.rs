@@ -18,6 +18,7 @@ const LONG_FILES: &[(&str, &str)] = &[];
 /// Where the rooms are: in the root package and in the crates that it is built on.
 const SOURCES: &[&str] = &[
     "src",
+    "crates/buffeting/src",
     "crates/core/src",
     "crates/fit/src",
     "crates/fmu-host/src",

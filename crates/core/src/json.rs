@@ -31,16 +31,15 @@ pub fn format(kind: &str) -> String {
 /// # Errors
 /// [`Error::Numerical`] for a value that is no object or cannot be written as JSON.
 pub fn write(kind: &str, value: &impl Serialize) -> Result<String> {
-    #[derive(Serialize)]
-    struct WithFormat<'a, T> {
-        format: String,
-        #[serde(flatten)]
-        value: &'a T,
-    }
-    let format = format(kind);
-    let text = serde_json::to_string_pretty(&WithFormat { format, value });
-    text.map(|text| text + "\n")
-        .map_err(|e| Error::Numerical(e.to_string()))
+    let text = serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
+    let Some(rest) = text.strip_prefix('{') else {
+        return Err(Error::Numerical(format!("no object of JSON: {text}")));
+    };
+    let comma = if rest == "}" { "\n" } else { "," };
+    Ok(format!(
+        "{{\n  \"{KEY}\": \"{}\"{comma}{rest}\n",
+        format(kind)
+    ))
 }
 
 /// Reads an object of a kind, also after a byte-order mark; one that does not say what it is is taken for it.

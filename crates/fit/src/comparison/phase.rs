@@ -13,8 +13,6 @@ use std::f64::consts::PI;
 pub enum LagEstimate {
     /// Whole samples, as in the published toolbox: at 200 Hz one sample is 3.6° of 2 Hz.
     WholeSample,
-    /// Vertex of the parabola through the largest value and its neighbours.
-    Parabolic,
     /// Maximum of the band-limited (sinc) interpolation of the correlation; exact for band-limited signals.
     BandLimited,
 }
@@ -97,12 +95,13 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
         let value = correlation.at(lag);
         if divisor > 0.0 { value / divisor } else { 0.0 }
     };
-    let reach = (correlation.sample_count() / 16) as isize;
-    let (top, ends) = climb(&divided, whole, reach);
     let (lag, is_at_end_of_search) = match parameters.lag {
         LagEstimate::WholeSample => (whole as f64, false),
-        LagEstimate::Parabolic => (parabolic(&divided, top), ends),
-        LagEstimate::BandLimited => (band_limited(&divided, top), ends),
+        LagEstimate::BandLimited => {
+            let reach = (correlation.sample_count() / 16) as isize;
+            let (top, ends) = climb(&divided, whole, reach);
+            (band_limited(&divided, top), ends)
+        }
     };
     let lag_s = lag * pair.time_step_s();
     Ok(Metric {
@@ -132,17 +131,6 @@ fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> (isi
             return (lag, !falls);
         }
         lag = next;
-    }
-}
-
-/// Vertex of the parabola through the magnitudes around `top`.
-fn parabolic(correlation: &dyn Fn(isize) -> f64, top: isize) -> f64 {
-    let [before, here, after] = [-1, 0, 1].map(|k| correlation(top + k).abs());
-    let (slope, curvature) = (0.5 * (after - before), after - 2.0 * here + before);
-    if curvature < 0.0 {
-        top as f64 - (slope / curvature).clamp(-1.0, 1.0)
-    } else {
-        top as f64
     }
 }
 
@@ -256,15 +244,6 @@ mod tests {
         assert_eq!(metric.details.lag_s, 3.0 * STEP_S);
         // 0.015 s at 2 Hz is 10.8°: exp(−10.8/5) = 0.115.
         assert_abs_diff_eq!(metric.value, 0.1153, epsilon = 1e-4);
-    }
-
-    #[test]
-    fn parabola_is_close_to_the_band_limited_lag() {
-        let phi = TAU * 2.0 * STEP_S * 1.7;
-        let coarse = lag_of(phi, LagEstimate::Parabolic, true).details.lag_s;
-        let fine = lag_of(phi, LagEstimate::BandLimited, true).details.lag_s;
-        // A parabola through a cosine of 100 samples per period errs by about (2π/100)²/24 of a sample.
-        assert_abs_diff_eq!(coarse, fine, epsilon = 2e-4 * STEP_S);
     }
 
     #[test]

@@ -88,105 +88,100 @@ fn not_but(what: &str, root: &toml::Table) -> Option<Error> {
 
 fn read_value<T: DeserializeOwned>(what: &str, text: &str) -> Result<T> {
     let document = DeTable::parse(text)
-        .map_err(|e| refused(what, text, e.span().map(|span| span.start), e.message()))?;
+        .map_err(|e| refused(what, text, e.span().unwrap_or_default().start, e.message()))?;
     let mut json = LinesOfJson::default();
     json.table(document.get_ref(), document.span().start)
         .map_err(|e| with_line(text, e))?;
     serde_json::from_str(&json.text).map_err(|e| {
         let said = e.to_string();
         let message = said.rsplit_once(" at line ").map_or(&*said, |(m, _)| m);
-        let offset = json.offsets.get(e.line().saturating_sub(1)).copied();
-        refused(what, text, offset, message)
+        let offset = json.offsets.get(e.line().wrapping_sub(2)).copied();
+        refused(what, text, offset.unwrap_or_default(), message)
     })
 }
 
 /// A value as JSON, in which each value begins a line: whatever is read from files of both kinds is compiled for one deserialiser, not
 /// for the three of the TOML library besides.
+#[derive(Default)]
 struct LinesOfJson {
     text: String,
-    /// What a line was read from begins here in the file.
+    /// What a line after the first was read from begins here in the file.
     offsets: Vec<usize>,
     /// Of the value that is written.
     path: Vec<PlaceStep>,
 }
 
-impl Default for LinesOfJson {
-    fn default() -> Self {
-        Self {
-            text: String::new(),
-            offsets: vec![0],
-            path: Vec::new(),
-        }
-    }
-}
-
 impl LinesOfJson {
-    fn new_line(&mut self, offset: usize) {
-        self.text.push('\n');
-        self.offsets.push(offset);
-    }
-
     fn table(&mut self, table: &DeTable<'_>, offset: usize) -> Result<()> {
-        self.text.push('{');
-        for (i, (key, value)) in table.iter().enumerate() {
-            self.text.push_str(if i == 0 { "" } else { "," });
-            self.new_line(key.span().start);
-            self.quoted(key.get_ref());
-            self.text.push(':');
-            self.value(PlaceStep::Key(key.get_ref().to_string()), value)?;
+        let step = |key: &str| PlaceStep::Key(key.to_owned());
+        let items = table.iter();
+        let items = items.map(|(key, value)| (step(key.get_ref()), key.span().start, value));
+        self.block(['{', '}'], offset, items)
+    }
+
+    fn block<'a>(
+        &mut self,
+        brackets: [char; 2],
+        offset: usize,
+        items: impl Iterator<Item = (PlaceStep, usize, &'a Spanned<DeValue<'a>>)>,
+    ) -> Result<()> {
+        self.text.push(brackets[0]);
+        for (i, (step, start, value)) in items.enumerate() {
+            self.text.push_str(if i == 0 { "\n" } else { ",\n" });
+            self.offsets.push(start);
+            if let PlaceStep::Key(name) = &step {
+                self.quoted(name);
+                self.text.push(':');
+            }
+            self.path.push(step);
+            self.value(value)?;
+            self.path.pop();
         }
-        // what is missing is missing where the table begins
-        self.new_line(offset);
-        self.text.push('}');
+        // what is missing is missing where the block begins
+        self.offsets.push(offset);
+        self.text.extend(['\n', brackets[1]]);
         Ok(())
     }
 
-    fn array(&mut self, items: &DeArray<'_>, offset: usize) -> Result<()> {
-        self.text.push('[');
-        for (i, item) in items.iter().enumerate() {
-            self.text.push_str(if i == 0 { "" } else { "," });
-            self.new_line(item.span().start);
-            self.value(PlaceStep::Index(i), item)?;
-        }
-        self.new_line(offset);
-        self.text.push(']');
-        Ok(())
-    }
-
-    fn value(&mut self, step: PlaceStep, value: &Spanned<DeValue<'_>>) -> Result<()> {
-        self.path.push(step);
+    fn value(&mut self, value: &Spanned<DeValue<'_>>) -> Result<()> {
         let offset = value.span().start;
+        let refused = |expected, found: &str| {
+            let place = Place {
+                line: None,
+                parts: self.path.clone(),
+            };
+            Err(Error::input(place, expected, found))
+        };
         match value.get_ref() {
             // they end up in names of files, descriptions of FMUs and on terminals
             DeValue::String(text) if has_control_characters(text) => {
-                return Err(self.refused("a text without control characters", "one with them"));
-            }
-            DeValue::Float(number) if number.as_str().contains(['i', 'n']) => {
-                let number: f64 = number.as_str().parse().unwrap_or(f64::NAN);
-                return Err(self.refused("a finite number", &number.to_string()));
+                return refused("a text without control characters", "one with them");
             }
             DeValue::String(text) => self.quoted(text),
             DeValue::Integer(number) => {
-                match i64::from_str_radix(number.as_str(), number.radix()) {
-                    Ok(number) => self.text.push_str(&number.to_string()),
-                    Err(_) => return Err(self.refused("an integer of 64 bits", number.as_str())),
-                }
+                let Ok(value) = i64::from_str_radix(number.as_str(), number.radix()) else {
+                    return refused("an integer of 64 bits", number.as_str());
+                };
+                self.text.push_str(&value.to_string());
             }
-            DeValue::Float(number) => self.text.push_str(number.as_str().trim_start_matches('+')),
+            DeValue::Float(number) => match number.as_str().parse::<f64>() {
+                Ok(value) if !value.is_finite() => {
+                    return refused("a finite number", &value.to_string());
+                }
+                _ => self.text.push_str(number.as_str().trim_start_matches('+')),
+            },
             DeValue::Boolean(is_so) => self.text.push_str(&is_so.to_string()),
             DeValue::Datetime(time) => self.quoted(&time.to_string()),
-            DeValue::Array(items) => self.array(items, offset)?,
+            DeValue::Array(items) => {
+                let items = items.iter().enumerate();
+                let items = items.map(|(i, item)| (PlaceStep::Index(i), item.span().start, item));
+                self.block(['[', ']'], offset, items)?;
+            }
             DeValue::Table(table) => self.table(table, offset)?,
         }
         // what looks one character ahead stays on the line
         self.text.push(' ');
-        self.path.pop();
         Ok(())
-    }
-
-    fn refused(&self, expected: &str, found: &str) -> Error {
-        let parts = self.path.clone();
-        Error::input(Place { line: None, parts }, expected, found)
     }
 
     fn quoted(&mut self, text: &str) {
@@ -196,17 +191,11 @@ impl LinesOfJson {
 }
 
 /// What was expected at an offset of `text`, and what stands there.
-fn refused(what: &str, text: &str, offset: Option<usize>, message: &str) -> Error {
-    let (place, found) = match offset {
-        Some(offset) => {
-            let line = line_of(text, offset);
-            let stood = text.lines().nth(line - 1).unwrap_or("").trim();
-            (Place::line(line), format!("`{stood}`"))
-        }
-        None => (Place::default(), "something else".to_owned()),
-    };
+fn refused(what: &str, text: &str, offset: usize, message: &str) -> Error {
+    let line = line_of(text, offset);
+    let stood = text.lines().nth(line - 1).unwrap_or("").trim();
     let expected = format!("{what} ({})", message.replace('\n', " "));
-    Error::input(place, expected, found)
+    Error::input(Place::line(line), expected, format!("`{stood}`"))
 }
 
 /// The same error with the line of the key it names in front.

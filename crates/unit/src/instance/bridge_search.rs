@@ -32,18 +32,6 @@ impl OnsetCard {
         Self::with_divergence(structure, &built.own.bridge.forces(), limit)
     }
 
-    fn judge_bridge(
-        &mut self,
-        built: &BuiltBridge,
-        tested: Option<ReducedFrequencyRange>,
-        slow_wind: Option<&str>,
-    ) {
-        self.judge(slow_wind);
-        if let Some(tested) = tested {
-            self.look_beside_tests(built.stepper.section(), tested);
-        }
-    }
-
     /// With an onset up to `limit`, m/s, that was followed from one nearby; `None` outside the tested range, where a search has more
     /// to say.
     pub(super) fn of_followed(
@@ -61,7 +49,8 @@ impl OnsetCard {
         let mut card = Self::of_divergence(built, limit).ok()?;
         card.set_onset(speed, hertz, ReducedVelocity::from(k), tested.is_some());
         card.numbers.stable_below = true;
-        card.judge_bridge(built, tested, slow_wind);
+        card.judge(slow_wind);
+        card.look_beside_tests(built.stepper.section(), tested);
         Some(card)
     }
 
@@ -93,7 +82,8 @@ impl OnsetCard {
             }
             Err(why) => card.onset_unknown(&why),
         }
-        card.judge_bridge(built, tested, slow_wind);
+        card.judge(slow_wind);
+        card.look_beside_tests(built.stepper.section(), tested);
         (card, searched)
     }
 }

@@ -116,11 +116,8 @@ impl Instance {
         let initializing = self.memory.state == State::Initialization;
         match access.source {
             Source::Input => Ok(index),
-            Source::Section | Source::Turbulence | Source::Release | Source::Limit
-                if initializing =>
-            {
-                Ok(index)
-            }
+            Source::Section | Source::Turbulence if initializing => Ok(index),
+            Source::Release | Source::Limit if initializing => Ok(index),
             Source::Response | Source::State if !initializing && self.is_seen_state(index) => {
                 Ok(index)
             }

@@ -180,7 +180,7 @@ impl OnsetCard {
         };
         card.search_onset(model, section, limit, plain);
         card.judge(slow_wind);
-        card.look_beside_tests(section, model.tested_range);
+        card.look_beside_tests(section, Some(model.tested_range));
         card
     }
 
@@ -257,17 +257,17 @@ impl OnsetCard {
     pub(super) fn look_beside_tests(
         &mut self,
         section: &CoupledSection,
-        tested: ReducedFrequencyRange,
+        tested: Option<ReducedFrequencyRange>,
     ) {
+        let Some(tested) = tested.filter(|_| self.numbers.stable_below) else {
+            return;
+        };
         let search = OnsetSearch {
             speed_max_m_s: self.numbers.speed_m_s.value,
             speeds: ON_THE_WAY,
         };
-        if !self.numbers.stable_below {
-            return;
-        }
-        let left = left_tests(section, &search, tested);
-        let left = left.unwrap_or_else(|why| Some(format!("modes cannot be followed: {why}")));
+        let left = left_tests(section, &search, tested)
+            .unwrap_or_else(|why| Some(format!("modes cannot be followed: {why}")));
         self.numbers.stable_below = left.is_none();
         self.warnings.extend(left);
     }

@@ -54,7 +54,7 @@ pub struct Turbulence {
 
 impl Turbulence {
     /// One component, if it is there.
-    pub(crate) fn component(&self, component: GustComponent) -> Option<&Gust> {
+    pub fn component(&self, component: GustComponent) -> Option<&Gust> {
         match component {
             GustComponent::Along => self.along.as_ref(),
             GustComponent::Vertical => self.vertical.as_ref(),
@@ -65,7 +65,7 @@ impl Turbulence {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key below `place`; for no component at all.
-    pub(crate) fn validate(&self, place: &str) -> Result<()> {
+    pub fn validate(&self, place: &str) -> Result<()> {
         let parts = [("along", &self.along), ("vertical", &self.vertical)];
         ensure(
             parts.iter().any(|(_, gust)| gust.is_some()),
@@ -128,7 +128,7 @@ impl<'a> BuffetingProblem<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for parts of other degrees of freedom and turbulence that cannot be.
-    pub(crate) fn of_section(
+    pub fn of_section(
         structure: &Structure,
         model: &'a dyn Transfer,
         theory: Option<&LinearQuasiSteady>,
@@ -240,7 +240,7 @@ impl<'a> BuffetingProblem<'a> {
     }
 
     /// Names of some nodes.
-    pub(crate) fn names_of(&self, nodes: &[usize]) -> Vec<String> {
+    pub fn names_of(&self, nodes: &[usize]) -> Vec<String> {
         nodes.iter().map(|n| self.nodes[*n].name.clone()).collect()
     }
 
@@ -268,7 +268,7 @@ impl<'a> BuffetingProblem<'a> {
     }
 
     /// The self-excited forces.
-    pub(crate) fn model(&self) -> &dyn Transfer {
+    pub fn model(&self) -> &dyn Transfer {
         match &self.forces {
             SelfExcited::Section(model) => *model,
             SelfExcited::Modal(forces) => forces,

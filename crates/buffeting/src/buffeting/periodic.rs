@@ -63,7 +63,7 @@ impl Default for SpanPlan {
 
 impl SpanPlan {
     /// Time in which peaks are expected, s: the stated length of a record, or else 600 s.
-    pub(crate) fn peak_s(&self) -> f64 {
+    pub fn peak_s(&self) -> f64 {
         self.duration_s.unwrap_or(PEAK_S)
     }
 
@@ -76,11 +76,7 @@ impl SpanPlan {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the eigenvalues of the bridge cannot be computed.
-    pub(crate) fn record_samples(
-        &self,
-        problem: &BuffetingProblem<'_>,
-        speed_m_s: f64,
-    ) -> Result<usize> {
+    pub fn record_samples(&self, problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
         let slowest = match self.duration_s {
             Some(_) => f64::INFINITY,
             None => match problem.coupled(speed_m_s) {
@@ -193,7 +189,7 @@ pub fn span_record(
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
 /// at this speed.
-pub(crate) fn span_ensemble(
+pub fn span_ensemble(
     problem: &BuffetingProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,

@@ -122,7 +122,7 @@ impl SpectrumShape {
 
 impl GustSpectrum {
     /// Checks scales and constants.
-    pub(crate) fn validate(&self, place: &str) -> Result<()> {
+    pub fn validate(&self, place: &str) -> Result<()> {
         positive(format!("{place}.length_m"), self.length_m)?;
         positive(format!("{place}.intensity"), self.intensity)?;
         ensure(
@@ -135,12 +135,7 @@ impl GustSpectrum {
     }
 
     /// `S(f)`, one-sided, m²/s² per Hz.
-    pub(crate) fn density(
-        &self,
-        component: GustComponent,
-        frequency_hz: f64,
-        speed_m_s: f64,
-    ) -> f64 {
+    pub fn density(&self, component: GustComponent, frequency_hz: f64, speed_m_s: f64) -> f64 {
         let time = self.length_m / speed_m_s;
         let sigma = self.intensity * speed_m_s;
         sigma * sigma * time * self.shape.formula(component).density(frequency_hz * time)

@@ -19,7 +19,7 @@ impl FrequencyDomain<'_> {
     ///
     /// # Errors
     /// Those of the spectra.
-    pub(crate) fn modal_covariances(&self) -> Result<[DMatrix<f64>; 3]> {
+    pub fn modal_covariances(&self) -> Result<[DMatrix<f64>; 3]> {
         let count = self.problem.structure.dofs.len();
         let unit = DMatrix::<Complex<f64>>::identity(count, count);
         let zero =
@@ -53,7 +53,7 @@ impl FrequencyDomain<'_> {
 }
 
 /// Root mean square of `Σ row_m η_m`, of its rate and of its acceleration, by the covariances of the coordinates.
-pub(crate) fn rms_of(covariances: &[DMatrix<f64>; 3], row: &[f64]) -> [f64; 3] {
+pub fn rms_of(covariances: &[DMatrix<f64>; 3], row: &[f64]) -> [f64; 3] {
     covariances.each_ref().map(|covariance| {
         let columns = covariance.column_iter().zip(row);
         let sum = columns.map(|(column, b)| {

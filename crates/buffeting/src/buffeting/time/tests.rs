@@ -7,10 +7,10 @@ use crate::buffeting::{
     Admittance, FrequencyDomain, Gust, GustSpectrum, SpectrumShape, Turbulence, turbulence_field,
 };
 use crate::error::Error;
-use crate::files::coefficients::embedded;
 use crate::flutter::impedance;
 use crate::section::{SectionModel, Structure, Translation};
 use crate::signal::Fourier;
+use aerodeck_lab::files::coefficients::embedded;
 use nalgebra::{Complex, DVector};
 use std::f64::consts::{PI, TAU};
 

@@ -24,7 +24,7 @@ const DECAY_TIMES_BY_DEFAULT: f64 = 40.0;
 /// How many records, how long, how fine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct TimePlan {
+pub struct TimePlan {
     /// Number of records, at least 2: their scatter gives the standard error.
     pub records: usize,
     /// Seed of the first record; the others follow.
@@ -49,7 +49,7 @@ impl Default for TimePlan {
 }
 
 /// Refuses a plan that no structure could take; `place` is its key.
-pub(crate) fn check_plan(
+pub fn check_plan(
     place: &str,
     records: usize,
     duration_s: Option<f64>,
@@ -135,7 +135,7 @@ struct TimeGrid {
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than their warm-up;
 /// [`Error::Unstable`] when the section is unstable at this speed.
-pub(crate) fn time_ensemble(
+pub fn time_ensemble(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     plan: &TimePlan,

@@ -40,7 +40,7 @@ pub struct SpanResponse {
 
 impl SpanResponse {
     /// Expected greatest departure from the mean in `duration_s`, over the root mean square (Davenport 1964).
-    pub(crate) fn peak_factors(&self, duration_s: f64) -> Vec<[f64; 3]> {
+    pub fn peak_factors(&self, duration_s: f64) -> Vec<[f64; 3]> {
         let each = self.crossing_frequency_hz.iter();
         each.map(|f| f.map(|hertz| peak_factor(hertz, duration_s)))
             .collect()
@@ -50,7 +50,7 @@ impl SpanResponse {
 /// Expected greatest departure from the mean in `duration_s` of what crosses it upwards `hertz` times a second, over the root mean
 /// square (Davenport 1964); 0 of what does not move. Records of less than four thirds of a crossing have the least value of the formula,
 /// which would rise again.
-pub(crate) fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
+pub fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
     const EULER: f64 = 0.577_215_664_901_532_9;
     if hertz == 0.0 {
         return 0.0;
@@ -60,7 +60,7 @@ pub(crate) fn peak_factor(hertz: f64, duration_s: f64) -> f64 {
 }
 
 /// A part of a variance, or a rate over a displacement, which is `otherwise` where nothing moves.
-pub(crate) fn part(of: f64, whole: f64, otherwise: f64) -> f64 {
+pub fn part(of: f64, whole: f64, otherwise: f64) -> f64 {
     if whole > 0.0 { of / whole } else { otherwise }
 }
 

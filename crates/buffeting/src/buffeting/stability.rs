@@ -39,7 +39,7 @@ type PhaseAt = (f64, Complex<f64>);
 /// # Errors
 /// [`Error::Input`] for a speed that is not positive; [`Error::Numerical`] at an onset itself, where the impedance is
 /// singular.
-pub(crate) fn turning(
+pub(super) fn turning(
     structure: &Structure,
     model: &dyn Transfer,
     speed_m_s: f64,

@@ -62,7 +62,7 @@ impl Admittance {
     }
 
     /// Checks the decay factor.
-    pub(crate) fn validate(&self, place: &str) -> Result<()> {
+    pub fn validate(&self, place: &str) -> Result<()> {
         if let Self::Davenport { decay } = self {
             positive(format!("{place}.decay"), *decay)?;
         }
@@ -70,7 +70,7 @@ impl Admittance {
     }
 
     /// The factor at a reduced frequency; 1 at zero.
-    pub(crate) fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
+    pub fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
         let k = frequency.semi_chord();
         match self {
             Self::None {} => Complex::new(1.0, 0.0),

@@ -74,7 +74,7 @@ impl BuffetingProblem<'_> {
     }
 
     /// Spectra of the displacements of `nodes` over frequencies, Hz.
-    pub(crate) fn spectra_over(
+    pub fn spectra_over(
         &self,
         frequency_hz: Vec<f64>,
         speed_m_s: f64,
@@ -150,11 +150,11 @@ impl BuffetingProblem<'_> {
 
 /// A structure in turbulence at one mean wind speed. Its self-excited forces are asked for at frequencies alone, so that tables serve as
 /// well as models.
-pub(crate) struct FrequencyDomain<'a> {
+pub struct FrequencyDomain<'a> {
     pub(super) problem: &'a BuffetingProblem<'a>,
     pub(super) speed_m_s: f64,
     /// Motions that grow.
-    pub(crate) growing: usize,
+    pub growing: usize,
     /// Frequencies of resonance, Hz, and half of the half-power width of each, negative where the motion grows.
     resonances_hz: Vec<(f64, f64)>,
 }
@@ -164,7 +164,7 @@ impl<'a> FrequencyDomain<'a> {
     ///
     /// # Errors
     /// Those of [`Self::turned`]; [`Error::Unstable`] when the structure is unstable at this speed.
-    pub(crate) fn new(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
+    pub fn new(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
         let domain = Self::turned(problem, speed_m_s)?;
         match domain.growing {
             0 => Ok(domain),
@@ -176,7 +176,7 @@ impl<'a> FrequencyDomain<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at a `K`; [`Error::Numerical`] at an onset itself.
-    pub(crate) fn turned(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
+    pub fn turned(problem: &'a BuffetingProblem<'a>, speed_m_s: f64) -> Result<Self> {
         let (growing, resonances_hz) = turning(&problem.structure, problem.model(), speed_m_s)?;
         Ok(Self {
             problem,
@@ -191,7 +191,7 @@ impl<'a> FrequencyDomain<'a> {
     ///
     /// # Errors
     /// Those of [`Self::response`].
-    pub(crate) fn section_response(
+    pub fn section_response(
         &self,
         tested: Option<ReducedFrequencyRange>,
     ) -> Result<BuffetingResponse> {
@@ -252,7 +252,7 @@ impl<'a> FrequencyDomain<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at a `K`; [`Error::Numerical`] when the integral does not settle.
-    pub(crate) fn response(
+    pub fn response(
         &self,
         nodes: &[usize],
         tested: Option<ReducedFrequencyRange>,
@@ -310,7 +310,7 @@ impl<'a> FrequencyDomain<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at a `K`.
-    pub(crate) fn spectra(&self, nodes: &[usize]) -> Result<SpectrumCurve> {
+    pub fn spectra(&self, nodes: &[usize]) -> Result<SpectrumCurve> {
         let frequencies = self.resolved_hz();
         self.problem
             .spectra_over(frequencies, self.speed_m_s, nodes)
