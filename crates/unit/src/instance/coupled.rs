@@ -263,7 +263,7 @@ impl<S: CoupledKind> Unit for Coupled<S> {
             self.gap_met = true;
             let wind = shown(self.indices.wind_speed(memory));
             notices.push(format!(
-                "wind_speed = {wind} m/s is in a gap between the speeds at which {}, {from:.3} to {to:.3} m/s: the forces are \
+                "wind_speed = {wind} m/s is in a gap, {from:.3} to {to:.3} m/s, between the speeds at which {}: the forces are \
                  interpolated over it",
                 S::TESTED_AT
             ));

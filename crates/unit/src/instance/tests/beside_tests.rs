@@ -55,7 +55,7 @@ fn a_gap_between_tests_is_no_test() {
     unit.exit_initialization().unwrap();
     let notices = unit.take_notices().join("\n");
     assert!(
-        notices.contains("is in a gap between the speeds"),
+        notices.contains("m/s is in a gap, ") && notices.contains(", between the speeds at which"),
         "{notices}"
     );
 }
