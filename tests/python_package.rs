@@ -120,6 +120,15 @@ fn source_distribution(interpreter: &Path, root: &Path, folder: &Path) {
     }
     for part in [
         "src",
+        "crates/buffeting/src",
+        "crates/core/src",
+        "crates/fit/src",
+        "crates/fmu-host/src",
+        "crates/judgement/src",
+        "crates/lab/src",
+        "crates/live/src",
+        "crates/runtime/src",
+        "crates/unit/src",
         "templates",
         "data",
         "fmu_build",
@@ -131,6 +140,7 @@ fn source_distribution(interpreter: &Path, root: &Path, folder: &Path) {
     every_file_of(&root.join("python/aerodeck"), &unpacked.join("aerodeck"));
 }
 
+/// All but tests, which are not packed with the inner crates.
 fn every_file_of(folder: &Path, packed: &Path) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -138,10 +148,14 @@ fn every_file_of(folder: &Path, packed: &Path) {
             path.file_name().unwrap(),
             packed.join(path.file_name().unwrap()),
         );
+        if ["__pycache__", "tests", "tests.rs"]
+            .iter()
+            .any(|left_out| name == *left_out)
+        {
+            continue;
+        }
         if path.is_dir() {
-            if name != "__pycache__" {
-                every_file_of(&path, &there);
-            }
+            every_file_of(&path, &there);
         } else {
             assert!(there.exists(), "{} is not in the sources", path.display());
         }

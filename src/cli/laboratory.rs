@@ -110,27 +110,18 @@ pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
 fn line(run: &RunReport) -> String {
     let at = crate::wind_tunnel::processing::index(run.dof);
     let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
-    let unit = if run.dof == Dof::Torsion {
-        "kg·m²"
-    } else {
-        "kg"
+    let (unit, way) = match run.dof {
+        Dof::Torsion => ("kg·m²", ""),
+        Dof::Vertical => ("kg", "downwind of"),
+        Dof::Lateral => ("kg", "above"),
     };
     let inertia = run.still_air.as_ref().map_or_else(
         || "no inertia seen".to_owned(),
         |s| {
-            let centre = s.centre_of_mass_m.zip(s.centre_of_mass_over_width);
-            let way = if run.dof == Dof::Vertical {
-                "downwind of"
-            } else {
-                "above"
-            };
-            let centre = centre.map_or_else(String::new, |(m, part)| {
-                format!(
-                    " at {:.1} mm ({:.1} % of the width) {way} the axis",
-                    // no zero with a sign
-                    (1e4 * m).round() / 10.0 + 0.0,
-                    (1e3 * part).round() / 10.0 + 0.0
-                )
+            let centre = s.centre_of_mass_m.map_or_else(String::new, |m| {
+                // no zero with a sign
+                let mm = (1e4 * m).round() / 10.0 + 0.0;
+                format!(" at {mm:.1} mm {way} the axis")
             });
             format!("inertia {:.4} {unit}{centre}", s.inertia)
         },

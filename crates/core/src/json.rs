@@ -32,9 +32,8 @@ pub fn format(kind: &str) -> String {
 /// [`Error::Numerical`] for a value that is no object or cannot be written as JSON.
 pub fn write(kind: &str, value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
-    let Some(rest) = text.strip_prefix('{') else {
-        return Err(Error::Numerical(format!("no object of JSON: {text}")));
-    };
+    let rest = text.strip_prefix('{');
+    let rest = rest.ok_or_else(|| Error::Numerical(format!("{kind}: no object of JSON")))?;
     let comma = if rest == "}" { "\n" } else { "," };
     Ok(format!(
         "{{\n  \"{KEY}\": \"{}\"{comma}{rest}\n",

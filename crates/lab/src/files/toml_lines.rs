@@ -94,9 +94,15 @@ fn read_value<T: DeserializeOwned>(what: &str, text: &str) -> Result<T> {
         .map_err(|e| with_line(text, e))?;
     serde_json::from_str(&json.text).map_err(|e| {
         let said = e.to_string();
-        let message = said.rsplit_once(" at line ").map_or(&*said, |(m, _)| m);
-        let offset = json.offsets.get(e.line().wrapping_sub(2)).copied();
-        refused(what, text, offset.unwrap_or_default(), message)
+        let message = match said.rsplit_once(" at line ").map_or(&*said, |(m, _)| m) {
+            "expected value" => "expected a word or a table",
+            "trailing characters" => "more items than belong here",
+            other => other,
+        };
+        let missing = message.starts_with("missing") || message.starts_with("invalid length");
+        let offsets = json.offsets.get(e.line().wrapping_sub(2)).copied();
+        let offset = offsets.unwrap_or_default()[usize::from(missing)];
+        refused(what, text, offset, message)
     })
 }
 
@@ -105,8 +111,9 @@ fn read_value<T: DeserializeOwned>(what: &str, text: &str) -> Result<T> {
 #[derive(Default)]
 struct LinesOfJson {
     text: String,
-    /// What a line after the first was read from begins here in the file.
-    offsets: Vec<usize>,
+    /// What a line after the first was read from begins here in the file; of one that ends a block, the last item, of which it may be
+    /// said there, and the block.
+    offsets: Vec<[usize; 2]>,
     /// Of the value that is written.
     path: Vec<PlaceStep>,
 }
@@ -126,9 +133,11 @@ impl LinesOfJson {
         items: impl Iterator<Item = (PlaceStep, usize, &'a Spanned<DeValue<'a>>)>,
     ) -> Result<()> {
         self.text.push(brackets[0]);
+        let mut last = offset;
         for (i, (step, start, value)) in items.enumerate() {
             self.text.push_str(if i == 0 { "\n" } else { ",\n" });
-            self.offsets.push(start);
+            self.offsets.push([start; 2]);
+            last = start;
             if let PlaceStep::Key(name) = &step {
                 self.quoted(name);
                 self.text.push(':');
@@ -137,8 +146,7 @@ impl LinesOfJson {
             self.value(value)?;
             self.path.pop();
         }
-        // what is missing is missing where the block begins
-        self.offsets.push(offset);
+        self.offsets.push([last, offset]);
         self.text.extend(['\n', brackets[1]]);
         Ok(())
     }
@@ -146,11 +154,8 @@ impl LinesOfJson {
     fn value(&mut self, value: &Spanned<DeValue<'_>>) -> Result<()> {
         let offset = value.span().start;
         let refused = |expected, found: &str| {
-            let place = Place {
-                line: None,
-                parts: self.path.clone(),
-            };
-            Err(Error::input(place, expected, found))
+            let (line, parts) = (None, self.path.clone());
+            Err(Error::input(Place { line, parts }, expected, found))
         };
         match value.get_ref() {
             // they end up in names of files, descriptions of FMUs and on terminals
@@ -159,10 +164,10 @@ impl LinesOfJson {
             }
             DeValue::String(text) => self.quoted(text),
             DeValue::Integer(number) => {
-                let Ok(value) = i64::from_str_radix(number.as_str(), number.radix()) else {
-                    return refused("an integer of 64 bits", number.as_str());
-                };
-                self.text.push_str(&value.to_string());
+                match i128::from_str_radix(number.as_str(), number.radix()) {
+                    Ok(value) => self.text.push_str(&value.to_string()),
+                    Err(_) => return refused("an integer of 64 bits", &number.to_string()),
+                }
             }
             DeValue::Float(number) => match number.as_str().parse::<f64>() {
                 Ok(value) if !value.is_finite() => {
@@ -171,7 +176,9 @@ impl LinesOfJson {
                 _ => self.text.push_str(number.as_str().trim_start_matches('+')),
             },
             DeValue::Boolean(is_so) => self.text.push_str(&is_so.to_string()),
-            DeValue::Datetime(time) => self.quoted(&time.to_string()),
+            DeValue::Datetime(time) => {
+                return refused("a text in quotes, or no date", &time.to_string());
+            }
             DeValue::Array(items) => {
                 let items = items.iter().enumerate();
                 let items = items.map(|(i, item)| (PlaceStep::Index(i), item.span().start, item));
@@ -240,116 +247,4 @@ fn line_of_key(text: &str, place: &[PlaceStep]) -> Option<usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_of_another_kind_is_named_with_its_command() {
-        let read = |what: &str, text: &str| {
-            let read = parse::<std::collections::BTreeMap<String, i32>>(what, text, |_| Ok(()));
-            read.unwrap_err().to_string()
-        };
-        let text = "schema = 1\n[modes]\n";
-        assert_eq!(
-            read("a study file", text),
-            "expected a study file, found a bridge file, which `aerodeck bridge flutter` takes"
-        );
-        // a mistake in what it is, and what has no command of its own
-        for (what, text) in [
-            ("a study file", "deck = {}\n[modes]\n"),
-            ("a case file", text),
-        ] {
-            assert!(read(what, text).contains("line"), "{what}");
-        }
-    }
-
-    #[test]
-    fn names_with_control_characters_are_refused_with_line_and_key() {
-        let read = |text: &str| parse::<toml::Table>("a file", text, |_| Ok(())).map(drop);
-        assert!(read("name = \"a\\tb\"\n[x]\ntext = \"a\\nb\"").is_ok());
-        for escape in ["\\u001b", "\\u0000", "\\u007f", "\\b"] {
-            let text = format!("a = 1\n[export]\nauthors = [\"b\", \"{escape}[2J\"]\n");
-            assert_eq!(
-                read(&text).unwrap_err().to_string(),
-                "line 3, export.authors[1]: expected a text without control characters, found one with them"
-            );
-        }
-    }
-
-    /// Of values, of what is missing in a table, and in lists over several lines.
-    #[test]
-    fn a_mistake_is_told_with_its_line() {
-        #[derive(Debug, serde::Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct File {
-            b: Vec<Item>,
-            #[serde(default)]
-            c: Vec<f64>,
-        }
-        #[derive(Debug, serde::Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Item {
-            x: f64,
-        }
-        let read = |text: &str| parse::<File>("a file", text, |_| Ok(()));
-        let good = "c = [1, 0x2,\n  +3.5,\n  1_0e-1]\n[[b]]\nx = 1\n[[b]]\nx = -2.5\n";
-        let file = read(good).unwrap();
-        assert_eq!(
-            (&file.c[..], file.b[1].x),
-            (&[1.0, 2.0, 3.5, 1.0][..], -2.5)
-        );
-        for (from, to, said) in [
-            (
-                "+3.5",
-                "\"3\"",
-                "line 2: expected a file (invalid type: string \"3\", expected f64), found `\"3\",`",
-            ),
-            (
-                "1_0e-1",
-                "inf",
-                "line 3, c[3]: expected a finite number, found inf",
-            ),
-            (
-                "0x2",
-                "99999999999999999999",
-                "line 1, c[1]: expected an integer of 64 bits, found 99999999999999999999",
-            ),
-            (
-                "x = -2.5",
-                "",
-                "line 6: expected a file (missing field `x`), found `[[b]]`",
-            ),
-            (
-                "x = -2.5",
-                "y = 1",
-                "line 7: expected a file (unknown field `y`, expected `x`), found `y = 1`",
-            ),
-            (
-                "x = -2.5",
-                "x = [1]",
-                "line 7: expected a file (invalid type: sequence, expected f64), found `x = [1]`",
-            ),
-            (
-                "x = -2.5",
-                "x = 1979-05-27",
-                "line 7: expected a file (invalid type: string \"1979-05-27\", expected f64), found `x = 1979-05-27`",
-            ),
-            ("x = 1\n", "x = \n", "line 5: expected a file ("),
-        ] {
-            let message = read(&good.replacen(from, to, 1)).unwrap_err().to_string();
-            assert!(message.starts_with(said), "{message}\n{said}");
-        }
-    }
-
-    #[test]
-    fn a_list_is_no_block() {
-        assert!(only_blocks("a = 1\n[b]\nc = [1]\n[[d]]\ne = 2\n").is_ok());
-        for list in ["[45.0]", "[]"] {
-            let said = only_blocks(&format!("a = 1\nflutter = {list}\n")).unwrap_err();
-            assert_eq!(
-                said.to_string(),
-                "line 2, flutter: expected a block [flutter], found a list"
-            );
-        }
-    }
-}
+mod tests;

@@ -186,17 +186,18 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     ) -> bool {
         let changed = before.is_some();
         match source {
-            Source::Input => {
+            Source::Input | Source::Turbulence => {
                 self.inputs_stay &= !changed;
                 let initializing = memory.state == State::Initialization;
-                self.release_pending |= initializing && self.indices.gusts().contains(&index);
+                // lags stand where the gusts are
+                let blows = source == Source::Turbulence || self.indices.gusts().contains(&index);
+                self.release_pending |= initializing && blows;
             }
             Source::Section if changed => {
                 self.parameters_changed();
                 let before = before.unwrap_or_default();
                 self.states_set |= S::keep_motion(self, memory, index, before);
             }
-            Source::Turbulence => self.inputs_stay &= !changed,
             Source::Release if changed => self.release_pending = true,
             Source::Limit if changed => {
                 self.calculated.card = None;

@@ -43,9 +43,6 @@ pub struct StillAirInertia {
     /// Place of the centre of mass from the axis, m: downwind of it in heave, above it in sway; `None` in rotation.
     #[serde(default)]
     pub centre_of_mass_m: Option<f64>,
-    /// The same over the width of the model.
-    #[serde(default)]
-    pub centre_of_mass_over_width: Option<f64>,
 }
 
 impl StillAirInertia {

@@ -268,7 +268,6 @@ fn solve<'a>(
         stiffness: if both { Some(real[1]) } else { stiffness },
         damping: if both { Some(found) } else { damping },
         centre_of_mass_m: None,
-        centre_of_mass_over_width: None,
     })
 }
 

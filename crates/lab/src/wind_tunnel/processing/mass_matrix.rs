@@ -175,8 +175,7 @@ impl InertialCoupling {
         let metres = |c: &Self| sign * c.found.inertia / body.inertia;
         let (found, width) = (metres(self), rig.model_width_m);
         let turning = rotation.map(metres);
-        (body.centre_of_mass_m, body.centre_of_mass_over_width) =
-            (Some(found), Some(found / width));
+        body.centre_of_mass_m = Some(found);
         let off = |from: f64, part: f64, c: &Self| {
             (found - from).abs() > part * width + self.error(c) / body.inertia.abs()
         };

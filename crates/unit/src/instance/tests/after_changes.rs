@@ -1,6 +1,6 @@
 //! Whatever is read first after a parameter was set is that of the parameter.
 
-use super::{Exported, KINDS, index, instance, start};
+use super::{Exported, KINDS, driven, index, instance, start};
 use crate::instance::layout::{DataType, Source};
 use crate::instance::{Instance, Snapshot};
 use crate::lifecycle::{State, gettable_in, settable_in};
@@ -59,8 +59,8 @@ fn read_from(instance: &mut Instance, indices: &[u32], first: usize) -> Vec<u64>
 }
 
 /// A unit with a parameter set before anything else, in this state.
-fn fresh(kind: Exported, integrated: bool, index: u32, value: f64) -> Instance {
-    let mut unit = instance(kind, integrated).unwrap();
+fn fresh(made: &dyn Fn() -> Instance, index: u32, value: f64) -> Instance {
+    let mut unit = made();
     unit.set_reals(&[index], &[value]).unwrap();
     unit
 }
@@ -73,6 +73,12 @@ enum ChangedBy {
 }
 
 fn judge(kind: Exported, integrated: bool, state: State) {
+    judge_made(kind, integrated, state, &|| {
+        instance(kind, integrated).unwrap()
+    });
+}
+
+fn judge_made(kind: Exported, integrated: bool, state: State, made: &dyn Fn() -> Instance) {
     let begin = |unit: &mut Instance| match state {
         State::Initialization => unit.enter_initialization(),
         _ => {
@@ -82,7 +88,7 @@ fn judge(kind: Exported, integrated: bool, state: State) {
             }
         }
     };
-    let mut unit = instance(kind, integrated).unwrap();
+    let mut unit = made();
     begin(&mut unit);
     let indices = computed(&unit, state);
     let before = unit.snapshot();
@@ -95,7 +101,7 @@ fn judge(kind: Exported, integrated: bool, state: State) {
         unit.restore(&before).unwrap();
         unit.set_reals(&[parameter.0], &[parameter.1]).unwrap();
         let changed = unit.snapshot();
-        let mut other = fresh(kind, integrated, parameter.0, parameter.1);
+        let mut other = fresh(made, parameter.0, parameter.1);
         begin(&mut other);
         let expected = shown(&mut other, &changed);
         for first in 0..indices.len() {
@@ -127,6 +133,15 @@ fn judge(kind: Exported, integrated: bool, state: State) {
 fn what_is_read_while_initialising_is_that_of_the_parameters() {
     for kind in KINDS {
         judge(kind, false, State::Initialization);
+    }
+}
+
+/// In gusts that act through lags, of an archive that has turbulence.
+#[test]
+fn what_is_read_in_turbulence_is_that_of_the_parameters() {
+    for state in [State::Initialization, State::StepComplete] {
+        let kind = Exported::Bridge;
+        judge_made(kind, false, state, &|| driven(kind, true));
     }
 }
 
