@@ -5,7 +5,7 @@ use aerodeck::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterSearch, LinearForces, Onset, OnsetSearch, OnsetSweep, SweepOutcome, determinant_onset,
-    find_onset, judged_speeds, pk_onset,
+    find_onset, judged_speeds, left_tests, pk_onset,
 };
 use aerodeck::identification::{Fitted, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel, Structure};
@@ -245,7 +245,6 @@ fn where_a_mode_leaves_the_tests_does_not_depend_on_the_search() {
             .range
             .to_m_s
     });
-    println!("{limits:?}");
     assert!(limits[0] < 15.0);
     assert!(
         limits.iter().all(|v| (v / limits[0] - 1.0).abs() < 1e-9),
@@ -268,7 +267,6 @@ fn a_mode_is_judged_up_to_where_it_stops_oscillating() {
             let search = OnsetSearch { speeds, ..SEARCH };
             judged_speeds(&coupled, &search, Some(range)).unwrap().range
         });
-        println!("{judged:?}");
         let words = judged.each_ref().map(|range| range.not_judged.as_deref());
         let why = if lowest > 1e-3 {
             "the lowest tested"
@@ -282,4 +280,39 @@ fn a_mode_is_judged_up_to_where_it_stops_oscillating() {
         let to = judged.map(|range| range.to_m_s);
         assert!(to.iter().all(|v| (v - to[0]).abs() < 1e-3), "{to:?}");
     }
+}
+
+/// An FMU looks at four winds on the way to an onset, a search at two hundred.
+#[test]
+fn four_winds_on_the_way_see_what_a_search_sees() {
+    let plate = RationalModel::jones_flat_plate();
+    let whole = ReducedFrequencyRange::between(k(0.1), k(6.0));
+    let parts =
+        [(0.02, 0.05), (0.12, 6.0)].map(|(a, b)| ReducedFrequencyRange::between(k(a), k(b)));
+    let with_gap = ReducedFrequencyRange::covering(parts).unwrap();
+    let mut told = [0; 2];
+    for (tenths, ratio) in (2..=24).flat_map(|f| [0.003, 0.08].map(|ratio| (f, ratio))) {
+        let mut section = SectionModel::table_4_1();
+        section.vertical.frequency_hz = Some(0.1 * f64::from(tenths));
+        section.vertical.damping_ratio = ratio;
+        let coupled = CoupledSection::with_model(&section.structure().unwrap(), &plate).unwrap();
+        let found = find_onset("plate", &coupled, &SEARCH, None).unwrap();
+        let speed_max_m_s = found.critical_speed_m_s().unwrap_or(SEARCH.speed_max_m_s);
+        let up_to = |speeds| OnsetSearch {
+            speed_max_m_s,
+            speeds,
+        };
+        for tested in [whole, with_gap] {
+            let few = left_tests(&coupled, &up_to(4), tested).unwrap();
+            let many = judged_speeds(&coupled, &up_to(200), Some(tested)).unwrap();
+            let leaves = many.range.to_m_s < speed_max_m_s * (1.0 - 1e-6);
+            assert_eq!(
+                few.is_some(),
+                leaves,
+                "{tenths}, {ratio}: {few:?}, {many:?}"
+            );
+            told[usize::from(leaves)] += 1;
+        }
+    }
+    assert!(told.iter().all(|times| *times > 10), "{told:?}");
 }

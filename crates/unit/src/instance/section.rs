@@ -125,8 +125,8 @@ fn plain_without_samples(
     }
 }
 
-/// Winds at which motions are looked at on the way to an onset.
-const ON_THE_WAY: usize = 16;
+/// Winds at which motions are looked at on the way to an onset: as it rises `K` falls, but where modes veer.
+const ON_THE_WAY: usize = 4;
 
 /// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
 const SEARCHED_STATES: usize = 100;
