@@ -36,14 +36,8 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
     let mut out = OutputDir::new(aside.path())?;
     let records = RecordSet::in_memory(stages::tunnel(&study, &deck, &mut out, progress)?);
     let mut failed = Vec::new();
-    let trained = stages::train(
-        &study,
-        &deck,
-        Some(&records),
-        &mut out,
-        &mut failed,
-        progress,
-    )?;
+    let all = Some(&records);
+    let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
     let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {

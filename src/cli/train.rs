@@ -29,14 +29,8 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
             None => out.outdated(select::saved_model()),
         }
     }
-    let trained = stages::train(
-        &study,
-        &deck,
-        Some(&records),
-        &mut out,
-        &mut failed,
-        progress,
-    )?;
+    let all = Some(&records);
+    let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
     text.push_str(&text::deck_warnings(&deck));
     let mut growths = Vec::new();

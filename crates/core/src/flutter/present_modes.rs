@@ -93,12 +93,22 @@ impl LeastDamping {
         prepared.map_or_else(|| smallest_damping(section, wind), Ok)
     }
 
+    /// Circular frequency of the slowest of the modes at the last wind, rad/s; `None` where modes are not followed.
+    pub fn slowest_rad_s(&self) -> Option<f64> {
+        let all = self.last()?.all.iter();
+        all.map(|mode| mode.lambda.im).reduce(f64::min)
+    }
+
+    fn last(&self) -> Option<&Modes> {
+        match self {
+            Self::Followed(modes) => modes.last.as_ref(),
+            Self::Solved(_) => None,
+        }
+    }
+
     /// The mode of least damping at the last wind, from which its onset can be followed; `None` where modes are not followed.
     pub fn least(&self) -> Option<NearbyOnset> {
-        let Self::Followed(modes) = self else {
-            return None;
-        };
-        let last = modes.last.as_ref()?;
+        let last = self.last()?;
         let damping = |mode: &&Mode| damping_ratio(mode.lambda);
         let least = last
             .all

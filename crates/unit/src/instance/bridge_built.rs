@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::flutter::NearbyOnset;
 use crate::resources::Resources;
 use crate::response::{Inputs, SectionState, Stepper};
+use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
 /// Pieces of a field of turbulence at most in one step.
@@ -77,7 +78,15 @@ impl BuiltBridge {
 
     /// The mode that has it where it was asked for last; `None` where modes are not followed.
     pub(super) fn least_damped(&self) -> Option<NearbyOnset> {
-        self.damping.least()
+        self.damping.modes()?.least()
+    }
+
+    /// The lowest reduced frequency of all modes at a wind speed, m/s; `None` where modes are not followed.
+    pub(super) fn slowest_at(&mut self, wind: f64) -> Option<ReducedFrequency> {
+        self.damping_at(wind).ok()?;
+        let omega = self.damping.modes()?.slowest_rad_s()?;
+        let width = self.own.bridge.width_m();
+        Some(ReducedFrequency::from_circular(omega, width, wind))
     }
 }
 

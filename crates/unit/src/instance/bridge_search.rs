@@ -35,7 +35,7 @@ impl OnsetCard {
     /// With an onset up to `limit`, m/s, that was followed from one nearby; `None` outside the tested range, where a search has more
     /// to say.
     pub(super) fn of_followed(
-        built: &BuiltBridge,
+        built: &mut BuiltBridge,
         tested: Option<ReducedFrequencyRange>,
         slow_wind: Option<&str>,
         limit: f64,
@@ -50,7 +50,12 @@ impl OnsetCard {
         card.set_onset(speed, hertz, ReducedVelocity::from(k), tested.is_some());
         card.numbers.stable_below = true;
         card.judge(slow_wind);
-        card.look_beside_tests(built.stepper.section(), tested);
+        // what still lies above every end of the tests has passed none
+        let slowest = built.slowest_at(speed);
+        let left = |k| tested.is_some_and(|t| t.lower_ends().any(|(end, _)| k < end));
+        if slowest.is_none_or(left) {
+            card.look_beside_tests(built.stepper.section(), tested);
+        }
         Some(card)
     }
 

@@ -2,7 +2,7 @@
 
 use super::trust::shown;
 use crate::error::{Error, Result};
-use crate::flutter::{LeastDamping, NearbyOnset, aliased_below, smallest_damping};
+use crate::flutter::{LeastDamping, aliased_below, smallest_damping};
 use crate::response::{Inputs, Stepper};
 use crate::state_space::{damping_ratio, write_eigenvalues};
 use nalgebra::{Complex, DMatrix};
@@ -53,10 +53,10 @@ impl PresentDamping {
         Ok(ratio)
     }
 
-    /// The mode that had it last, see [`LeastDamping::least`].
-    pub(super) fn least(&self) -> Option<NearbyOnset> {
+    /// What is known of the modes at the last wind.
+    pub(super) fn modes(&self) -> Option<&LeastDamping> {
         match &self.way {
-            Some(Way::Continuous(least)) => least.least(),
+            Some(Way::Continuous(modes)) => Some(modes),
             _ => None,
         }
     }

@@ -68,7 +68,7 @@ fn a_motion_that_leaves_the_tests_is_not_stable() {
         let end = |part| ReducedFrequency::from_full_width(part * k.full_width());
         let tested = Some(ReducedFrequencyRange::between(end(lowest), end(100.0)));
         let (card, _) = OnsetCard::of_bridge(&now, tested, None, LIMIT);
-        let followed = OnsetCard::of_followed(&now, tested, None, LIMIT, &onset).unwrap();
+        let followed = OnsetCard::of_followed(&mut now, tested, None, LIMIT, &onset).unwrap();
         for card in [card, followed] {
             assert_eq!(card.numbers.stable_below, stable, "{lowest}: {card:?}");
             let told = card.warnings.join("\n").contains("the lowest tested");
