@@ -130,7 +130,7 @@ fn the_house_does_not_grow() {
     let core = found.lines["crates/core/src"];
     let table = [
         ("code lines", found.line_count(), 87_725),
-        ("code lines of the core", core, 15_219),
+        ("code lines of the core", core, 15_224),
         ("types", found.type_count(), 910),
         ("names of several types", found.names_used_twice(), 0),
         (
