@@ -120,15 +120,6 @@ fn source_distribution(interpreter: &Path, root: &Path, folder: &Path) {
     }
     for part in [
         "src",
-        "crates/buffeting/src",
-        "crates/core/src",
-        "crates/fit/src",
-        "crates/fmu-host/src",
-        "crates/judgement/src",
-        "crates/lab/src",
-        "crates/live/src",
-        "crates/runtime/src",
-        "crates/unit/src",
         "templates",
         "data",
         "fmu_build",
@@ -136,6 +127,14 @@ fn source_distribution(interpreter: &Path, root: &Path, folder: &Path) {
         "docs/schema",
     ] {
         every_file_of(&root.join(part), &unpacked.join(part));
+    }
+    for inner in fs::read_dir(root.join("crates")).unwrap() {
+        let name = inner.unwrap().file_name();
+        // no part of an ordinary build
+        if name != "component" {
+            let sources = Path::new("crates").join(name).join("src");
+            every_file_of(&root.join(&sources), &unpacked.join(&sources));
+        }
     }
     every_file_of(&root.join("python/aerodeck"), &unpacked.join("aerodeck"));
 }
