@@ -38,7 +38,7 @@ impl Coherence {
     /// Checks both decays.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::Error::Input) naming the key below `place`.
+    /// [`Error::Input`](crate::error::Error::Input) naming the key below `place`.
     pub fn validate(&self, place: &str) -> Result<()> {
         for (key, value) in [("along", self.along), ("vertical", self.vertical)] {
             let expected = "a decay of the coherence in (0, ∞)";

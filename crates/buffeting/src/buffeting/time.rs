@@ -133,8 +133,8 @@ struct TimeGrid {
 /// `progress` gets how many of all records are done.
 ///
 /// # Errors
-/// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than their warm-up;
-/// [`Error::Unstable`] when the section is unstable at this speed.
+/// [`Error::Input`](crate::error::Error::Input) for a plan that cannot be, a model without realisation, and records shorter than their warm-up;
+/// [`Error::Unstable`](crate::error::Error::Unstable) when the section is unstable at this speed.
 pub fn time_ensemble(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
