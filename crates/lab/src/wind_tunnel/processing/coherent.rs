@@ -59,27 +59,18 @@ impl Regressors {
         }
     }
 
-    fn chebyshev(&self, k: usize) -> Vec<f64> {
-        let t = 2.0 * k as f64 / (self.count.max(2) - 1) as f64 - 1.0;
-        let mut values = vec![1.0, t];
-        for j in 2..=self.degree {
-            values.push(2.0 * t * values[j - 1] - values[j - 2]);
-        }
-        values.truncate(self.degree + 1);
-        values
-    }
-
     /// Least squares over the samples that are no `outliers`.
     pub(crate) fn fit(&self, force: &[f64], outliers: &[bool]) -> Result<Parts> {
         let smooth = self.degree + 1;
         let unknowns = smooth + 2 * self.stretches.len();
         let mut gram = DMatrix::<f64>::zeros(unknowns, unknowns);
         let mut moments = DVector::<f64>::zeros(unknowns);
-        let mut entries: Vec<(usize, f64)> = Vec::new();
+        let mut entries: Vec<(usize, f64)> = Vec::with_capacity(unknowns);
         for k in (0..self.count).filter(|k| !outliers[*k]) {
             self.row(k, &mut entries);
-            for (i, a) in &entries {
-                for (j, b) in &entries {
+            for (n, (i, a)) in entries.iter().enumerate() {
+                // the lower triangle, which is all that the factorisation reads
+                for (j, b) in &entries[..=n] {
                     gram[(*i, *j)] += a * b;
                 }
                 moments[*i] += a * force[k];
@@ -115,7 +106,12 @@ impl Regressors {
 
     fn row(&self, k: usize, entries: &mut Vec<(usize, f64)>) {
         entries.clear();
-        entries.extend(self.chebyshev(k).into_iter().enumerate());
+        let t = 2.0 * k as f64 / (self.count.max(2) - 1) as f64 - 1.0;
+        let (mut chebyshev, mut next) = (1.0, t);
+        for j in 0..=self.degree {
+            entries.push((j, chebyshev));
+            (chebyshev, next) = (next, 2.0 * t * next - chebyshev);
+        }
         for (s, range) in self.stretches.iter().enumerate() {
             if range.contains(&k) {
                 let at = self.degree + 1 + 2 * s;
