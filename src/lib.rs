@@ -79,8 +79,9 @@ mod tests;
 
 pub use aerodeck_buffeting::buffeting;
 pub use aerodeck_fit::{comparison, identification, numbered, selection, uncertainty};
-pub use aerodeck_lab::{files, signal, wind_tunnel};
+pub use aerodeck_lab::{files, wind_tunnel};
 pub use aerodeck_live as live;
+pub use aerodeck_signal::signal;
 
 pub use aerodeck_core::{
     Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, json, response, section,

@@ -27,6 +27,7 @@ const SOURCES: &[&str] = &[
     "crates/component/src",
     "crates/live/src",
     "crates/runtime/src",
+    "crates/signal/src",
     "crates/unit/src",
 ];
 

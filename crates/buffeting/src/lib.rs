@@ -5,6 +5,6 @@ use aerodeck_core::{
     aerodynamics, aeroelastic, bridge, error, flutter, response, section, state_space, units,
 };
 use aerodeck_fit::numbered;
-use aerodeck_lab::signal;
+use aerodeck_signal::signal;
 
 pub mod buffeting;

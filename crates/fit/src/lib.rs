@@ -6,7 +6,8 @@ use aerodeck_core::{
     aerodynamics, aeroelastic, error, flutter, json, section, state_space, trained_model, units,
 };
 use aerodeck_judgement::{plausibility, verdict};
-use aerodeck_lab::{files, signal, wind_tunnel};
+use aerodeck_lab::{files, wind_tunnel};
+use aerodeck_signal::signal;
 use error::Error;
 
 pub mod comparison;

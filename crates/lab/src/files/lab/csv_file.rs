@@ -5,7 +5,7 @@
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use crate::error::{Error, Place, Result, counted, ensure};
+use crate::error::{Error, Place, Result, counted};
 use crate::files::text::refuse_utf16;
 use std::borrow::Cow;
 
@@ -118,7 +118,12 @@ fn separator(text: &[u8]) -> u8 {
 
 /// A number, NaN where nothing stands; `None` for text.
 fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
-    let text = std::str::from_utf8(cell).ok()?.trim();
+    let text = std::str::from_utf8(cell).ok()?;
+    // nearly all cells hold a number and nothing else
+    if let Ok(number) = text.parse() {
+        return Some(number);
+    }
+    let text = text.trim();
     if text.is_empty() {
         return Some(f64::NAN);
     }
@@ -171,8 +176,8 @@ impl ChannelTable {
 
     fn take(&mut self, row: &csv::ByteRecord, line: usize) -> Result<()> {
         // a separator at the end of every line gives an empty cell more
-        let surplus = row.iter().skip(self.names.len());
-        if row.len() < self.names.len() || surplus.into_iter().any(|c| !c.trim_ascii().is_empty()) {
+        let mut surplus = self.names.len()..row.len();
+        if row.len() < self.names.len() || surplus.any(|c| !row[c].trim_ascii().is_empty()) {
             return Err(Error::input(
                 Place::line(line),
                 format!("{} as in the header", counted(self.names.len(), "column")),
@@ -182,40 +187,27 @@ impl ChannelTable {
         if self.rows == 0 && self.take_units(row) {
             return Ok(());
         }
-        for (c, cell) in row.iter().take(self.names.len()).enumerate() {
-            let Some(column) = &mut self.columns[c] else {
+        let place = |c: usize| Place::line(line).column(&self.names[c]);
+        for (c, (column, cell)) in self.columns.iter_mut().zip(row).enumerate() {
+            let Some(samples) = column else {
                 continue;
             };
             match number(cell, self.decimal_comma) {
                 Some(x) => {
-                    column.push(x);
-                    self.one_mark(cell, line, c)?;
+                    samples.push(x);
+                    if self.decimal_comma {
+                        one_mark(&mut self.mark, cell, || place(c))?;
+                    }
                 }
-                None if self.rows == 0 => self.columns[c] = None,
+                None if self.rows == 0 => *column = None,
                 None => {
                     let found = format!("`{}`", String::from_utf8_lossy(cell));
-                    let place = Place::line(line).column(&self.names[c]);
-                    return Err(Error::input(place, "a number", found));
+                    return Err(Error::input(place(c), "a number", found));
                 }
             }
         }
         self.rows += 1;
         check_count(Place::line(line), (self.rows * self.names.len()) as u64)
-    }
-
-    /// Refuses a number with a point beside others with a comma, and the other way round: it may be a thousand.
-    fn one_mark(&mut self, cell: &[u8], line: usize, column: usize) -> Result<()> {
-        let is_mark = |byte: &&u8| matches!(byte, b',' | b'.');
-        let Some(mark) = cell.iter().find(is_mark).filter(|_| self.decimal_comma) else {
-            return Ok(());
-        };
-        let first = *self.mark.get_or_insert(*mark);
-        ensure(
-            first == *mark,
-            Place::line(line).column(&self.names[column]),
-            format_args!("decimals behind `{}` as above", char::from(first)),
-            format_args!("`{}`", String::from_utf8_lossy(cell)),
-        )
     }
 
     /// Takes a row without any number as units.
@@ -245,6 +237,20 @@ impl ChannelTable {
             }
         }
     }
+}
+
+/// Refuses a number with a point beside others with a comma, and the other way round: it may be a thousand.
+fn one_mark(first: &mut Option<u8>, cell: &[u8], place: impl FnOnce() -> Place) -> Result<()> {
+    let Some(mark) = cell.iter().find(|byte| matches!(byte, b',' | b'.')) else {
+        return Ok(());
+    };
+    let first = *first.get_or_insert(*mark);
+    if first == *mark {
+        return Ok(());
+    }
+    let expected = format!("decimals behind `{}` as above", char::from(first));
+    let found = format!("`{}`", String::from_utf8_lossy(cell));
+    Err(Error::input(place(), expected, found))
 }
 
 /// `y [mm]` and `y (mm)` are the channel `y` in mm.

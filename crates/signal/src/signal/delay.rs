@@ -16,7 +16,7 @@ const REFINEMENTS: usize = 3;
 
 /// Delay of `compared` against `reference`, samples, and the same by the parabola alone; the shorter signal is continued by zeros, so both should begin and end near zero.
 /// `None` when a signal is zero throughout, or nowhere like the other.
-pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Option<(f64, f64)> {
+pub fn delay(reference: &[f64], compared: &[f64]) -> Option<(f64, f64)> {
     let count = reference.len().max(compared.len());
     let padded = |x: &[f64]| {
         let mut x = x.to_vec();

@@ -47,7 +47,7 @@ pub(crate) fn value_at(signal: &[f64], at: f64) -> f64 {
 }
 
 /// `y[k] = x(k − delay)`: the signal later by `delay` samples, which may be a fraction and negative.
-pub(crate) fn delayed(signal: &[f64], delay: f64) -> Vec<f64> {
+pub fn delayed(signal: &[f64], delay: f64) -> Vec<f64> {
     if delay == 0.0 {
         return signal.to_vec();
     }

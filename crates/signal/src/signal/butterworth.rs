@@ -70,7 +70,7 @@ impl ButterworthLowPass {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) for an order that is not 1 to 12, frequencies that are not positive, and a cut-off that is not
     /// below half the sampling frequency.
-    pub(crate) fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
+    pub fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
         positive("sampling_hz", sampling_hz)?;
         positive("low-pass cutoff_hz", cutoff_hz)?;
         ensure(
@@ -107,7 +107,7 @@ impl ButterworthLowPass {
     }
 
     /// Amplitude that a harmonic keeps at one passage.
-    pub(crate) fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
+    pub fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
         let z = Complex::from_polar(1.0, -2.0 * PI * frequency_hz / sampling_hz);
         let of_one = |s: &SecondOrderSection| {
             let above = z * (z * s.b[2] + s.b[1]) + s.b[0];
@@ -118,7 +118,7 @@ impl ButterworthLowPass {
     }
 
     /// Samples that a signal must exceed to be filtered.
-    pub(crate) fn padding(&self) -> usize {
+    pub fn padding(&self) -> usize {
         3 * (self.order + 1)
     }
 
@@ -131,7 +131,7 @@ impl ButterworthLowPass {
     ///
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) for a signal not longer than [`Self::padding`].
-    pub(crate) fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
+    pub fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
         let (n, pad) = (signal.len(), self.padding());
         ensure(
             n > pad,

@@ -13,19 +13,13 @@ mod samples;
 
 pub use butterworth::ButterworthLowPass;
 pub use correlation::CrossCorrelation;
-pub(crate) use delay::delay;
+pub use delay::delay;
 pub use fourier::Fourier;
-pub use harmonics::Plateau;
-pub use harmonics::plateau;
-pub use harmonics::{HarmonicFit, fit_harmonics, fit_sine, refine_frequency};
-pub(crate) use resample::delayed;
-pub use resample::resampled;
+pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
+pub use resample::{delayed, resampled};
 pub use rustfft::num_complex::Complex64;
-pub use samples::mean_and_deviation;
-pub use samples::random_stream;
-pub(crate) use samples::root_mean_square;
 pub use samples::{
     check_clipping, check_finite, clipped_stretches, extremes, largest_about_mean,
-    largest_magnitude, mean, robust_deviation,
+    largest_magnitude, mean, mean_and_deviation, median, random_stream, rate, robust_deviation,
+    root_mean_square,
 };
-pub use samples::{median, rate};

@@ -53,7 +53,7 @@ impl CrossCorrelation {
     }
 
     /// Whole lag at which `c` itself is largest, the first of equal ones.
-    pub(crate) fn largest(&self) -> isize {
+    pub fn largest(&self) -> isize {
         self.largest_by(|c| c)
     }
 

@@ -33,7 +33,7 @@ pub fn largest_magnitude(values: &[f64]) -> f64 {
 }
 
 /// Root mean square; zero for none.
-pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
+pub fn root_mean_square(values: &[f64]) -> f64 {
     let squares: f64 = values.iter().map(|v| v * v).sum();
     (squares / values.len().max(1) as f64).sqrt()
 }
