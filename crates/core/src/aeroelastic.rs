@@ -168,12 +168,14 @@ impl CoupledSection {
     ///
     /// # Errors
     /// [`Error::Input`] for a speed that is negative, not finite, or zero with the discrete model.
-    pub fn at(&self, speed_m_s: f64) -> Result<CoupledSystem> {
+    pub fn at(&self, wind_speed_m_s: f64) -> Result<CoupledSystem> {
         let system = match &self.aerodynamics {
-            Realization::Continuous(_) => CoupledSystem::Continuous(self.equation_at(speed_m_s)?.a),
+            Realization::Continuous(_) => {
+                CoupledSystem::Continuous(self.equation_at(wind_speed_m_s)?.a)
+            }
             Realization::Discrete(d) => {
-                positive("wind speed", speed_m_s)?;
-                self.sampled_at(d, speed_m_s)?
+                positive("wind speed", wind_speed_m_s)?;
+                self.sampled_at(d, wind_speed_m_s)?
             }
         };
         if system.state_matrix().iter().all(|x| x.is_finite()) {
@@ -188,19 +190,19 @@ impl CoupledSection {
     ///
     /// # Errors
     /// [`Error::Input`] for a speed that is negative or not finite, [`Error::Numerical`] for a sampled model.
-    pub fn equation_at(&self, speed: f64) -> Result<StateEquation> {
-        non_negative("wind speed", speed)?;
+    pub fn equation_at(&self, wind_speed_m_s: f64) -> Result<StateEquation> {
+        non_negative("wind speed", wind_speed_m_s)?;
         let Realization::Continuous(aero) = &self.aerodynamics else {
             return Err(Error::Numerical("step: the model is sampled".into()));
         };
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
-        let rate = speed / s.width_m;
+        let rate = wind_speed_m_s / s.width_m;
         let half_rho = 0.5 * s.air_density_kg_m3;
-        let q = half_rho * speed * speed;
+        let q = half_rho * wind_speed_m_s * wind_speed_m_s;
         let stiffness = s.scaled(&aero.e0) * q - &s.stiffness;
-        let damping = s.scaled(&aero.e1) * (half_rho * speed * s.width_m) - &s.damping;
-        let force_of_filters = self.force_of_filters(&aero.c, speed);
+        let damping = s.scaled(&aero.e1) * (half_rho * wind_speed_m_s * s.width_m) - &s.damping;
+        let force_of_filters = self.force_of_filters(&aero.c, wind_speed_m_s);
         let mut a = DMatrix::zeros(2 * n + filters, 2 * n + filters);
         a.view_mut((0, n), (n, n)).fill_with_identity();
         // [K, R, C] acting on the state; the accelerations are its product with the inverse mass
@@ -225,13 +227,13 @@ impl CoupledSection {
         Ok(StateEquation { a, b })
     }
 
-    fn sampled_at(&self, aero: &DiscreteRealization, speed: f64) -> Result<CoupledSystem> {
+    fn sampled_at(&self, aero: &DiscreteRealization, wind_speed_m_s: f64) -> Result<CoupledSystem> {
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
-        let step = aero.delta_s * s.width_m / speed;
+        let step = aero.delta_s * s.width_m / wind_speed_m_s;
         let alone = self.structure_alone();
         let held = c2d(&alone.a, &alone.b, step)?;
-        let force = self.force_of_filters(&aero.c, speed);
+        let force = self.force_of_filters(&aero.c, wind_speed_m_s);
         let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
             if j < n {
                 aero.b[(l, j)] * s.dofs[j].motion_scale(s.width_m)
@@ -273,9 +275,9 @@ impl CoupledSection {
     }
 
     /// `½ρV² diag(B, B, B²) C`, n×N.
-    pub fn force_of_filters(&self, c: &DMatrix<f64>, speed: f64) -> DMatrix<f64> {
+    pub fn force_of_filters(&self, c: &DMatrix<f64>, wind_speed_m_s: f64) -> DMatrix<f64> {
         let s = &self.structure;
-        let q = 0.5 * s.air_density_kg_m3 * speed * speed;
+        let q = 0.5 * s.air_density_kg_m3 * wind_speed_m_s * wind_speed_m_s;
         DMatrix::from_fn(c.nrows(), c.ncols(), |i, l| {
             q * s.dofs[i].force_scale(s.width_m) * c[(i, l)]
         })

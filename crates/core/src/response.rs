@@ -35,7 +35,7 @@ use matrix_polynomial::MatrixPolynomial;
 use nalgebra::{DMatrix, DVector};
 use packed::{advanced, flush_subnormals};
 use sampling::Sampling;
-use series::{Drive, PowerSeries};
+use series::{Drive, PowerSeries, overgrown};
 use step_cache::{StepCache, active_columns, load};
 
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
@@ -213,21 +213,32 @@ impl Stepper {
         let gusts = self.gusts_act(state, inputs);
         let same_wind = state.last_wind_m_s.is_none_or(|last| last == wind);
         let steady = wind_rate == 0.0 && self.next.len() <= STATES_OF_A_MATRIX;
-        if steady && same_wind && !gusts {
-            self.advance_by_matrix(state, inputs, step_s)?;
-        } else {
-            let fastest = wind + wind_rate.abs() * step_s;
-            let parts = self.series.parts(fastest, step_s, gusts);
-            let in_gusts = gusts && steady && same_wind && parts > 1.0 && parts <= MAX_SUBSTEPS;
-            match &self.series.gusts {
-                Some(of) if in_gusts && of.on_section => {
-                    self.advance_in_gusts(state, inputs, step_s)
-                }
-                _ if !gusts && steady && (parts.is_nan() || parts > PARTS_OF_A_MATRIX) => {
-                    self.advance_by_matrix(state, inputs, step_s)
-                }
-                _ => self.advance_by_series(state, inputs, step_s, parts, gusts),
-            }?;
+        let series = &self.series;
+        let parts = series.parts(wind + wind_rate.abs() * step_s, step_s, gusts);
+        let too_many = parts.is_nan() || parts > MAX_SUBSTEPS;
+        let is_worth_a_matrix = same_wind || parts.is_nan() || parts > PARTS_OF_A_MATRIX;
+        match &self.series.gusts {
+            _ if steady && !gusts && is_worth_a_matrix => {
+                self.advance_by_matrix(state, inputs, step_s)?;
+            }
+            Some(of) if of.on_section && steady && same_wind && parts > 1.0 && !too_many => {
+                self.advance_in_gusts(state, inputs, step_s)?;
+            }
+            _ if too_many => return Err(too_long(step_s, parts)),
+            _ => {
+                let drive = Drive {
+                    inputs,
+                    after: 0.0,
+                    wind,
+                    force: [&inputs.force, &inputs.force_rate, &[]],
+                };
+                let lagging = gusts.then_some(state.gusts.as_mut_slice());
+                let values = &mut state.values;
+                self.series
+                    .advance(values, lagging, &drive, step_s, parts)?;
+                flush_subnormals(values);
+                flush_subnormals(&mut state.gusts);
+            }
         }
         state.last_wind_m_s = Some(wind);
         Ok(())
@@ -314,35 +325,6 @@ impl Stepper {
         state.gusts.copy_from_slice(lagging);
         Ok(())
     }
-
-    /// A step by a series of so many parts, with or without gusts.
-    fn advance_by_series(
-        &mut self,
-        state: &mut SectionState,
-        inputs: &Inputs,
-        step: f64,
-        parts: f64,
-        gusts: bool,
-    ) -> Result<()> {
-        if parts.is_nan() || parts > MAX_SUBSTEPS {
-            return Err(too_long(step, parts));
-        }
-        let drive = Drive {
-            wind: inputs.wind_speed_m_s,
-            wind_rate: inputs.wind_speed_rate_m_s2,
-            force: [&inputs.force, &inputs.force_rate, &[]],
-            inputs,
-            after: 0.0,
-        };
-        let lagging = gusts.then_some(state.gusts.as_mut_slice());
-        let values = &mut state.values;
-        if !self.series.advance(values, lagging, &drive, step, parts) {
-            return Err(overgrown());
-        }
-        flush_subnormals(values);
-        flush_subnormals(&mut state.gusts);
-        Ok(())
-    }
 }
 
 fn too_long(step: f64, parts: f64) -> Error {
@@ -351,8 +333,4 @@ fn too_long(step: f64, parts: f64) -> Error {
         format!("a step of at most {MAX_SUBSTEPS} sub-steps"),
         format!("{step} s, {parts:.1e} sub-steps"),
     )
-}
-
-fn overgrown() -> Error {
-    Error::Numerical("step: the motion has overflowed".into())
 }

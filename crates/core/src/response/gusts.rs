@@ -136,8 +136,8 @@ impl Gusts {
     ///
     /// # Errors
     /// As [`CoupledSection::at`].
-    pub(super) fn system(&self, section: &CoupledSection, wind_m_s: f64) -> Result<StateEquation> {
-        let alone = section.equation_at(wind_m_s)?;
+    pub(super) fn system(&self, section: &CoupledSection, wind: f64) -> Result<StateEquation> {
+        let alone = section.equation_at(wind)?;
         let (states, n) = alone.b.shape();
         let (all, lags) = (states + self.states(), self.states());
         let mut a = DMatrix::zeros(all, all);
@@ -147,7 +147,7 @@ impl Gusts {
         let (mut force, mut rates) = (vec![0.0; n], vec![0.0; lags]);
         for i in 0..lags + self.channels {
             let mut unit = vec![0.0; lags + self.channels];
-            unit[i] = wind_m_s;
+            unit[i] = wind;
             let (lagging, gust) = unit.split_at(lags);
             self.force_per_wind(gust, lagging, &mut force);
             self.rates_per_wind(gust, lagging, &mut rates);

@@ -87,10 +87,10 @@ impl Linked {
     #[inline(always)]
     pub(super) fn set<S: FourLanes>(&self, simd: S, v: &[f64], y: &mut [f64]) {
         match self {
-            Self::Few(matrix) => matrix.set(simd, v, y),
+            Self::Few(matrix) => matrix.set(simd, v, y, |x| x),
             Self::Many(full, linked) => {
                 let (first, rest) = y.split_at_mut(full.rows);
-                full.set(simd, v, first);
+                full.set(simd, v, first, |x| x);
                 rest.fill(0.0);
                 linked.add(|j| v[j], rest);
             }

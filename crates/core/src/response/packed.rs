@@ -57,10 +57,32 @@ impl Packed {
         ]
     }
 
-    /// [`apply`] within what already runs on vectors.
+    /// [`apply`] within what already runs on vectors, each group of rows through `finish`.
     #[inline(always)]
-    pub(super) fn set<S: FourLanes>(&self, simd: S, v: &[f64], y: &mut [f64]) {
-        product(simd, self, v, y, |sums| sums);
+    pub(super) fn set<S: FourLanes>(
+        &self,
+        simd: S,
+        v: &[f64],
+        y: &mut [f64],
+        mut finish: impl FnMut(f64x4) -> f64x4,
+    ) {
+        let (mut blocks, mut y) = (self.blocks.as_slice(), &mut y[..self.rows]);
+        while y.len() > 2 * LANES {
+            let (own, others) = blocks.split_at(self.columns);
+            let groups = if v.len() > FEW_COLUMNS {
+                one_by_one(simd, &own[..v.len()], v)
+            } else {
+                sums(simd, &own[..v.len()], v)
+            };
+            (blocks, y) = (others, write(y, groups, &mut finish));
+        }
+        if y.len() > LANES {
+            let columns = &self.rest.as_chunks::<2>().0[..v.len()];
+            write(y, sums(simd, columns, v), &mut finish);
+        } else if !y.is_empty() {
+            let columns = &self.rest.as_chunks::<1>().0[..v.len()];
+            write(y, sums(simd, columns, v), &mut finish);
+        }
     }
 }
 
@@ -124,7 +146,7 @@ impl OnLanes for Apply<'_> {
 
     #[inline(always)]
     fn run<S: FourLanes>(self, simd: S) {
-        self.w.set(simd, self.v, self.y);
+        self.w.set(simd, self.v, self.y, |x| x);
     }
 }
 
@@ -136,40 +158,12 @@ impl OnLanes for Advance<'_> {
         let Apply { w, v, y } = self.0;
         let (zero, least) = (simd.splat_f64s(0.0), simd.splat_f64s(DIED_OUT));
         let mut spoilt = zero;
-        product(simd, w, v, y, |x| {
+        w.set(simd, v, y, |x| {
             spoilt = simd.add_f64s(spoilt, simd.mul_f64s(zero, x));
             let died_out = simd.less_than_f64s(simd.abs_f64s(x), least);
             simd.select_f64s(died_out, zero, x)
         });
         pulp::cast::<_, [f64; LANES]>(spoilt) == [0.0; LANES]
-    }
-}
-
-/// `y = W v`, each group of rows through `finish`.
-#[inline(always)]
-fn product<S: FourLanes>(
-    simd: S,
-    w: &Packed,
-    v: &[f64],
-    y: &mut [f64],
-    mut finish: impl FnMut(f64x4) -> f64x4,
-) {
-    let (mut blocks, mut y) = (w.blocks.as_slice(), &mut y[..w.rows]);
-    while y.len() > 2 * LANES {
-        let (own, others) = blocks.split_at(w.columns);
-        let groups = if v.len() > FEW_COLUMNS {
-            one_by_one(simd, &own[..v.len()], v)
-        } else {
-            sums(simd, &own[..v.len()], v)
-        };
-        (blocks, y) = (others, write(y, groups, &mut finish));
-    }
-    if y.len() > LANES {
-        let columns = &w.rest.as_chunks::<2>().0[..v.len()];
-        write(y, sums(simd, columns, v), &mut finish);
-    } else if !y.is_empty() {
-        let columns = &w.rest.as_chunks::<1>().0[..v.len()];
-        write(y, sums(simd, columns, v), &mut finish);
     }
 }
 

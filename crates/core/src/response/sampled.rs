@@ -4,10 +4,10 @@
 use super::matrix_polynomial::{MatrixPolynomial, terms_of_exponential};
 use super::packed::{Packed, apply, flush_subnormals};
 use super::sampling::{Sampling, wind_after};
-use super::series::Drive;
+use super::series::{Drive, overgrown};
 use super::step_cache::{active_columns, load};
 use super::values::{Inputs, SectionState};
-use super::{MAX_SUBSTEPS, PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, overgrown, too_long};
+use super::{MAX_SUBSTEPS, PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, too_long};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::state_space::{StateEquation, step_matrix};
@@ -165,24 +165,17 @@ impl Stepper {
             return Ok(());
         }
         let (wind, force) = self.sampling()?.drive(&state.values, inputs, time);
-        let drive = Drive {
-            wind,
-            wind_rate: inputs.wind_speed_rate_m_s2,
-            force: [&force[0], &force[1], &force[2]],
-            inputs,
-            after: time,
-        };
         let gusts = self.gusts_act(state, inputs);
-        let fastest = drive.wind.max(wind_after(inputs, time + piece));
+        let fastest = wind.max(wind_after(inputs, time + piece));
         let parts = self.series.parts(fastest, piece, gusts);
         let motion = &mut state.values[..2 * inputs.force.len()];
         let long = parts > PARTS_OF_A_MATRIX;
-        if drive.wind_rate == 0.0 && !gusts && (long || parts == 1.0) {
+        if inputs.wind_speed_rate_m_s2 == 0.0 && !gusts && (long || parts == 1.0) {
             let n = inputs.force.len();
             let operand = &mut self.operand[..4 * n];
             operand[..2 * n].copy_from_slice(motion);
-            operand[2 * n..3 * n].copy_from_slice(&drive.force[0][..n]);
-            operand[3 * n..].copy_from_slice(&drive.force[1][..n]);
+            operand[2 * n..3 * n].copy_from_slice(&force[0][..n]);
+            operand[3 * n..].copy_from_slice(&force[1][..n]);
             let step = if long {
                 let StateEquation { a, b } = self.section.structure_alone();
                 self.steps
@@ -195,11 +188,14 @@ impl Stepper {
             apply(step, operand, motion);
             return Ok(());
         }
+        let drive = Drive {
+            inputs,
+            after: time,
+            wind,
+            force: [&force[0], &force[1], &force[2]],
+        };
         let lagging = gusts.then_some(state.gusts.as_mut_slice());
-        if !self.series.advance(motion, lagging, &drive, piece, parts) {
-            return Err(overgrown());
-        }
-        Ok(())
+        self.series.advance(motion, lagging, &drive, piece, parts)
     }
 }
 
@@ -240,20 +236,20 @@ fn not_sampled() -> Error {
     Error::Numerical("step: the model is not sampled".into())
 }
 
-/// Time in which the wind covers `distance`, starting at `speed` with the acceleration `rate`; infinite if never.
-fn time_to_cover(distance: f64, speed: f64, rate: f64) -> f64 {
+/// Time in which the wind covers `distance`, starting at `wind` with the acceleration `rate`; infinite if never.
+fn time_to_cover(distance: f64, wind: f64, rate: f64) -> f64 {
     if rate == 0.0 {
-        return if speed > 0.0 {
-            distance / speed
+        return if wind > 0.0 {
+            distance / wind
         } else {
             f64::INFINITY
         };
     }
-    let discriminant = speed * speed + 2.0 * rate * distance;
+    let discriminant = wind * wind + 2.0 * rate * distance;
     if discriminant < 0.0 {
         return f64::INFINITY;
     }
-    let sum = speed + discriminant.sqrt();
+    let sum = wind + discriminant.sqrt();
     if sum > 0.0 {
         2.0 * distance / sum
     } else {

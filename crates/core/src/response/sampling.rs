@@ -48,10 +48,10 @@ impl Sampling {
     }
 
     /// Force of the filters at a wind speed, per unit length.
-    pub(super) fn force(&self, values: &[f64], speed: f64) -> [f64; MAX_DOFS] {
+    pub(super) fn force(&self, values: &[f64], wind: f64) -> [f64; MAX_DOFS] {
         let mut force = [0.0; MAX_DOFS];
         apply(&self.force, &values[2 * self.dofs..], &mut force);
-        force.map(|f| f * (speed * speed))
+        force.map(|f| f * (wind * wind))
     }
 
     /// `S(k+1) = A S(k) + B r(k+1)`.

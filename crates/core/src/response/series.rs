@@ -21,6 +21,7 @@ use super::linked::Linked;
 use super::packed::{Packed, largest_of};
 use super::values::Inputs;
 use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
 use matrices::matrices;
 use nalgebra::DMatrix;
 
@@ -34,16 +35,14 @@ const MAX_TERMS: usize = 60;
 /// Wind and external forces over a step, polynomials of the time since its start.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drive<'a> {
-    /// Wind speed, m/s.
-    pub wind: f64,
-    /// Its rate, m/s².
-    pub wind_rate: f64,
-    /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
-    pub force: [&'a [f64]; 3],
-    /// Where the gusts stand.
+    /// Gusts, and how fast the wind changes.
     pub inputs: &'a Inputs,
     /// Time of the start after that of `inputs`, s.
     pub after: f64,
+    /// Wind speed then, m/s.
+    pub wind: f64,
+    /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
+    pub force: [&'a [f64]; 3],
 }
 
 /// Largest row sums of the scaled system, by the power of the wind speed that they go with.
@@ -156,17 +155,19 @@ impl PowerSeries {
 
     /// Parts into which a step is cut in winds up to `wind`, with or without gusts; not a number where the norm is none.
     pub(super) fn parts(&self, wind: f64, step: f64, gusts: bool) -> f64 {
-        let lags = if gusts {
-            step * wind * self.norms.lags
-        } else {
-            0.0
+        let lags = match gusts {
+            true => step * wind * self.norms.lags,
+            false => 0.0,
         };
         let parts = self.norm(wind, step).max(lags) / NORM_OF_PART;
         if parts > 1.0 { parts.ceil() } else { 1.0 }
     }
 
     /// Advances what moves by a step of so many parts: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through
-    /// the admittance, none where none act. Says whether the result is finite; the values are changed only then.
+    /// the admittance, none where none act.
+    ///
+    /// # Errors
+    /// A result that is not finite; everything is as it was.
     pub(super) fn advance(
         &mut self,
         values: &mut [f64],
@@ -174,27 +175,30 @@ impl PowerSeries {
         drive: &Drive<'_>,
         step: f64,
         parts: f64,
-    ) -> bool {
+    ) -> Result<()> {
         let (n, rate) = (self.dofs, self.rate);
         for i in 0..n {
             self.work.sum[i] = values[n + i] * (self.scale[i] / rate);
             self.work.sum[n + i] = values[i] * self.scale[i];
         }
         self.work.sum[2 * n..].copy_from_slice(&values[2 * n..]);
+        let lagging = gusts.as_deref().unwrap_or_default();
         self.work.gusts.clear();
-        let acting = gusts.as_deref();
-        self.work
-            .gusts
-            .extend_from_slice(acting.unwrap_or_default());
-        let acting = acting.is_some();
+        self.work.gusts.extend_from_slice(lagging);
+        let gusts_act = gusts.is_some();
         let tau = step / parts;
         for i in 0..parts as usize {
-            let start = i as f64 * tau;
-            on_lanes(SeriesTerms(self, drive, [start, tau], acting));
+            on_lanes(PartOfStep {
+                series: self,
+                drive,
+                start: i as f64 * tau,
+                tau,
+                gusts_act,
+            });
         }
         let sum = &self.work.sum;
         if !sum.iter().chain(&self.work.gusts).all(|x| x.is_finite()) {
-            return false;
+            return Err(overgrown());
         }
         if let Some(gusts) = gusts {
             gusts.copy_from_slice(&self.work.gusts);
@@ -204,31 +208,58 @@ impl PowerSeries {
             values[i] = sum[n + i] / self.scale[i];
         }
         values[2 * n..].copy_from_slice(&sum[2 * n..]);
-        true
+        Ok(())
     }
 
-    /// One part from the time `start` on.
+    /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
     #[inline(always)]
-    fn part<S: FourLanes>(
-        &mut self,
-        simd: S,
-        drive: &Drive<'_>,
-        [start, tau]: [f64; 2],
-        gusts: bool,
-    ) {
+    fn accelerations<S: FourLanes>(&mut self, simd: S, drive: &Drive<'_>, start: f64, tau: f64) {
+        let work = &mut self.work;
+        for (power, push) in work.push.iter_mut().enumerate() {
+            for (j, force) in work.force.iter_mut().enumerate() {
+                let [w0, w1, w2] = drive.force.map(|w| w.get(j).copied().unwrap_or(0.0));
+                *force = match power {
+                    0 => w0 + start * (w1 + start * w2),
+                    1 => tau * (w1 + 2.0 * start * w2),
+                    _ => tau * tau * w2,
+                };
+            }
+            self.force.set(simd, &work.force, push, |x| x);
+        }
+    }
+}
+
+/// A part of a step by so many terms of its series, compiled for each set of vectors a processor may have.
+struct PartOfStep<'a, 'b> {
+    series: &'a mut PowerSeries,
+    drive: &'a Drive<'b>,
+    /// Time since the start of the step, s.
+    start: f64,
+    /// How long it is, s.
+    tau: f64,
+    gusts_act: bool,
+}
+
+impl OnLanes for PartOfStep<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: FourLanes>(self, simd: S) {
+        let (series, drive, start, tau) = (self.series, self.drive, self.start, self.tau);
+        let wind_rate = drive.inputs.wind_speed_rate_m_s2;
         // rounding must not turn a wind that comes to rest into a negative one
-        let wind = (drive.wind + drive.wind_rate * start).max(0.0);
-        let change = drive.wind_rate * tau;
+        let wind = (drive.wind + wind_rate * start).max(0.0);
+        let change = wind_rate * tau;
         let part = SeriesPart {
             start: drive.after + start,
             tau,
             wind,
             change,
         };
-        self.accelerations(simd, drive, start, tau);
-        let norm = self.norm(wind + change.abs(), tau);
-        let (n, work) = (self.dofs, &mut self.work);
-        let mut gusts = self.gusts.as_mut().filter(|_| gusts);
+        series.accelerations(simd, drive, start, tau);
+        let norm = series.norm(wind + change.abs(), tau);
+        let (n, work) = (series.dofs, &mut series.work);
+        let mut gusts = series.gusts.as_mut().filter(|_| self.gusts_act);
         match &mut gusts {
             Some(gusts) => gusts.begin(&work.gusts),
             None => work.by_gusts.fill(0.0),
@@ -246,17 +277,17 @@ impl PowerSeries {
                 (s, s_before) = (s_before, s);
                 (g, g_before, g_first) = (g_first, g, g_before);
             }
-            self.structure.set(simd, &work.term[..2 * n], s);
-            self.aerodynamic.set(simd, &work.term[n..], g);
+            series.structure.set(simd, &work.term[..2 * n], s, |x| x);
+            series.aerodynamic.set(simd, &work.term[n..], g);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
                 let force = gusts.next(k, part, drive.inputs, &mut work.gusts);
-                self.force.set(simd, force, &mut work.by_gusts);
+                series.force.set(simd, force, &mut work.by_gusts, |x| x);
                 pushed = tau * largest_of(&work.by_gusts);
             }
             let push = [work.push.get(k).unwrap_or(&work.none), &work.by_gusts].map(Vec::as_slice);
             let (structure, aerodynamic) = ([&*s, s_before], [&*g, g_before, g_first]);
-            let scale = [self.rate, tau / (k + 1) as f64];
+            let scale = [series.rate, tau / (k + 1) as f64];
             next_term(&mut work.term, push, structure, aerodynamic, part, scale);
             for (sum, term) in work.sum.iter_mut().zip(&work.term) {
                 *sum += term;
@@ -273,36 +304,6 @@ impl PowerSeries {
                 break;
             }
         }
-    }
-
-    /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
-    #[inline(always)]
-    fn accelerations<S: FourLanes>(&mut self, simd: S, drive: &Drive<'_>, start: f64, tau: f64) {
-        let work = &mut self.work;
-        for (power, push) in work.push.iter_mut().enumerate() {
-            for (j, force) in work.force.iter_mut().enumerate() {
-                let [w0, w1, w2] = drive.force.map(|w| w.get(j).copied().unwrap_or(0.0));
-                *force = match power {
-                    0 => w0 + start * (w1 + start * w2),
-                    1 => tau * (w1 + 2.0 * start * w2),
-                    _ => tau * tau * w2,
-                };
-            }
-            self.force.set(simd, &work.force, push);
-        }
-    }
-}
-
-/// A part, compiled for each set of vectors a processor may have: a closure would not always be.
-struct SeriesTerms<'a, 'b>(&'a mut PowerSeries, &'a Drive<'b>, [f64; 2], bool);
-
-impl OnLanes for SeriesTerms<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: FourLanes>(self, simd: S) {
-        let Self(series, drive, from, gusts) = self;
-        series.part(simd, drive, from, gusts);
     }
 }
 
@@ -335,6 +336,10 @@ fn next_term(
     for ((x, g), g_before) in filters.iter_mut().zip(g).zip(g_before) {
         *x = now * g + before * g_before;
     }
+}
+
+pub(super) fn overgrown() -> Error {
+    Error::Numerical("step: the motion has overflowed".into())
 }
 
 /// The power of two below a positive number.

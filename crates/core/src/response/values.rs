@@ -5,13 +5,13 @@ use crate::error::{Error, Result, non_negative};
 /// A wind below zero by this part of the wind before it (of 1 m/s at least) is at rest: what rounding leaves of a ramp
 /// of some ten thousand steps.
 const REST: f64 = 1e-9;
-/// `speed_m_s`, or zero where rounding alone has taken a wind that comes to rest below zero; `before_m_s` is the wind
+/// `wind_speed_m_s`, or zero where rounding alone has taken a wind that comes to rest below zero; `before_m_s` is the wind
 /// it came from.
-pub fn wind_at_rest(speed_m_s: f64, before_m_s: f64) -> f64 {
-    if (-REST * before_m_s.max(1.0)..0.0).contains(&speed_m_s) {
+pub fn wind_at_rest(wind_speed_m_s: f64, before_m_s: f64) -> f64 {
+    if (-REST * before_m_s.max(1.0)..0.0).contains(&wind_speed_m_s) {
         0.0
     } else {
-        speed_m_s
+        wind_speed_m_s
     }
 }
 
