@@ -129,9 +129,9 @@ fn the_house_does_not_grow() {
     let (found, whole) = (figures(), of_every_file());
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 87_725),
-        ("code lines of the core", core, 15_224),
-        ("types", found.type_count(), 910),
+        ("code lines", found.line_count(), 87_691),
+        ("code lines of the core", core, 15_192),
+        ("types", found.type_count(), 909),
         ("names of several types", found.names_used_twice(), 0),
         (
             "functions with a tuple parameter",

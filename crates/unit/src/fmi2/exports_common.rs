@@ -2,7 +2,7 @@
 // the contract of all functions is that of the parent module
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
-use super::guard::{Component, array, behave_as_a_guest, exported, guarded, panic_text, shielded};
+use super::guard::{Component, array, behave_as_a_guest, exported, guarded, panic_text};
 use super::logger::{Category, Logger};
 use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
@@ -13,6 +13,7 @@ use crate::lifecycle::Call;
 use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
 use std::ffi::{CStr, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Platform of the C types.
 #[unsafe(no_mangle)]
@@ -66,7 +67,7 @@ pub(crate) fn made(
 ) -> Option<Box<Component>> {
     behave_as_a_guest();
     let logger = logger?; // without one there is no one to tell
-    let why = match shielded(instantiate) {
+    let why = match catch_unwind(AssertUnwindSafe(instantiate)) {
         Ok(Ok(instance)) => return Some(Box::new(Component::new(instance, logger))),
         Ok(Err(refusal)) => refusal.message,
         Err(panic) => format!("internal error ({})", panic_text(&*panic)),
@@ -155,7 +156,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     // SAFETY: not NULL, and by the contract of the interface made by fmi2Instantiate and not freed before
     let component = unsafe { Box::from_raw(c.cast::<Component>()) };
     // a panic while freeing leaves nothing to poison
-    drop(shielded(|| drop(component)));
+    drop(catch_unwind(AssertUnwindSafe(|| drop(component))));
 }
 
 /// Switches log categories on or off; no categories means all.

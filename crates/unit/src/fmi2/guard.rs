@@ -114,10 +114,10 @@ pub(crate) unsafe fn guarded(
     if component.poisoned {
         return poisoned(component, function);
     }
-    let outcome = shielded(|| {
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
         component.instance.admit(call)?;
         body(component)
-    });
+    }));
     match outcome {
         Ok(Ok(())) => {
             if !component.instance.notices.is_empty() {
@@ -170,7 +170,7 @@ pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &st
     fmi2Status::fmi2Error
 }
 
-/// The process is an importer's. Panics inside [`shielded`] are silent: they are reported through its logger, and collecting a backtrace
+/// The process is an importer's. Panics that are caught here are silent: they are reported through its logger, and collecting a backtrace
 /// would cost tens of megabytes. (Tests share their process with what panics on its own account.) The hook owns nothing and no thread is
 /// started, so that nothing is left when the library is unloaded.
 pub(crate) fn behave_as_a_guest() {
@@ -181,11 +181,6 @@ pub(crate) fn behave_as_a_guest() {
         }
         aerodeck_core::threads::stay_on_the_callers();
     });
-}
-
-/// Runs `body`; a panic in it is returned, not passed on.
-pub(crate) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
-    catch_unwind(AssertUnwindSafe(body))
 }
 
 /// An array of the importer; no elements may come with NULL.

@@ -246,9 +246,8 @@ impl CoupledKind for ModalBridge {
     }
 
     #[inline]
-    fn untested_gap(unit: &BridgeUnit, memory: &Memory) -> Option<[f64; 2]> {
+    fn untested_gap(unit: &BridgeUnit, wind: f64) -> Option<[f64; 2]> {
         let (range, at_one) = (unit.own.tested?, unit.flutter_k_at_one()?);
-        let wind = unit.indices.wind_speed(memory);
         let gap = range.gap_at(ReducedFrequency::from_full_width(at_one / wind))?;
         gap.unknown().map(|(from, to)| [at_one / to, at_one / from])
     }

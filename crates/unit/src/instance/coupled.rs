@@ -86,8 +86,8 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Wind speeds at which it was tested, m/s, without a search; `None` where there are none, or they are not known.
     fn tested_winds(unit: &Coupled<Self>) -> Option<[f64; 2]>;
 
-    /// Between which winds, m/s, around the present one a motion is far from every test, although slower and faster ones were tested.
-    fn untested_gap(unit: &Coupled<Self>, memory: &Memory) -> Option<[f64; 2]>;
+    /// Between which winds, m/s, around this one a motion is far from every test, although slower and faster ones were tested.
+    fn untested_gap(unit: &Coupled<Self>, wind: f64) -> Option<[f64; 2]>;
 
     fn wind_is_tested(
         unit: &mut Coupled<Self>,
@@ -95,8 +95,9 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
         memory: &mut Memory,
         _notices: &mut Vec<String>,
     ) -> bool {
-        let between = unit.beside_tests(memory) == Some(Ordering::Equal);
-        between && Self::untested_gap(unit, memory).is_none()
+        let wind = unit.indices.wind_speed(memory);
+        let between = unit.beside_tests(wind) == Some(Ordering::Equal);
+        between && Self::untested_gap(unit, wind).is_none()
     }
 
     /// Onset and divergence for the parameters that it has been built with, by a search.
@@ -188,10 +189,11 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         match source {
             Source::Input | Source::Turbulence => {
                 self.inputs_stay &= !changed;
-                let initializing = memory.state == State::Initialization;
-                // lags stand where the gusts are
-                let blows = source == Source::Turbulence || self.indices.gusts().contains(&index);
-                self.release_pending |= initializing && blows;
+                if memory.state == State::Initialization {
+                    // lags stand where the gusts are
+                    let is_gust = self.indices.gusts().contains(&index);
+                    self.release_pending |= source == Source::Turbulence || is_gust;
+                }
             }
             Source::Section if changed => {
                 self.parameters_changed();
@@ -255,17 +257,18 @@ impl<S: CoupledKind> Unit for Coupled<S> {
     }
 
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        if self.beside_tests(memory) != self.wind_was {
-            self.watch_wind(memory, notices);
+        let wind = self.indices.wind_speed(memory);
+        if self.beside_tests(wind) != self.wind_was {
+            self.watch_wind(wind, notices);
         }
         if !self.gap_met
-            && let Some([from, to]) = S::untested_gap(self, memory)
+            && let Some([from, to]) = S::untested_gap(self, wind)
         {
             self.gap_met = true;
-            let wind = shown(self.indices.wind_speed(memory));
             notices.push(format!(
-                "wind_speed = {wind} m/s is in a gap, {from:.3} to {to:.3} m/s, between the speeds at which {}: the forces are \
+                "wind_speed = {} m/s is in a gap, {from:.3} to {to:.3} m/s, between the speeds at which {}: the forces are \
                  interpolated over it",
+                shown(wind),
                 S::TESTED_AT
             ));
         }

@@ -45,8 +45,7 @@ pub(super) struct PresentSlopes<'a> {
 impl<S: CoupledKind> Coupled<S> {
     /// Whether the wind is below, in or above the tested range; `None` where that is not known.
     #[inline]
-    pub(super) fn beside_tests(&self, memory: &Memory) -> Option<Ordering> {
-        let wind = self.indices.wind_speed(memory);
+    pub(super) fn beside_tests(&self, wind: f64) -> Option<Ordering> {
         S::tested_winds(self).map(|[low, high]| match wind {
             _ if wind < low => Ordering::Less,
             _ if wind > high => Ordering::Greater,
@@ -56,8 +55,8 @@ impl<S: CoupledKind> Coupled<S> {
 
     /// Says, once, when the wind leaves the tested range, or comes to be above it; below it every ramp begins.
     #[cold]
-    pub(super) fn watch_wind(&mut self, memory: &Memory, notices: &mut Vec<String>) {
-        let now = self.beside_tests(memory);
+    pub(super) fn watch_wind(&mut self, wind: f64, notices: &mut Vec<String>) {
+        let now = self.beside_tests(wind);
         let outside = match now {
             Some(Ordering::Less) => self.wind_was == Some(Ordering::Equal),
             Some(Ordering::Greater) => true,
@@ -65,7 +64,7 @@ impl<S: CoupledKind> Coupled<S> {
         };
         if let Some([low, high]) = S::tested_winds(self).filter(|_| outside && !self.wind_left) {
             self.wind_left = true;
-            let wind = shown(self.indices.wind_speed(memory));
+            let wind = shown(wind);
             notices.push(format!(
                 "wind_speed = {wind} m/s is outside the speeds at which {}, {low:.3} to {high:.3} m/s: the forces are \
                  extrapolated",

@@ -176,8 +176,7 @@ impl CoupledKind for SuspendedSection {
     }
 
     #[inline]
-    fn untested_gap(unit: &SectionUnit, memory: &Memory) -> Option<[f64; 2]> {
-        let wind = unit.indices.wind_speed(memory);
+    fn untested_gap(unit: &SectionUnit, wind: f64) -> Option<[f64; 2]> {
         let mut gaps = unit.built.own.gaps.iter();
         gaps.find(|[from, to]| *from < wind && wind < *to).copied()
     }
