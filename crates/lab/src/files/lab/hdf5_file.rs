@@ -62,12 +62,13 @@ fn is_unknown(error: &hdf5_pure::Error) -> bool {
 /// Takes the soft links, which have no address, out of symbol tables, where `hdf5-pure` takes them for objects; their number.
 fn drop_soft_links(bytes: &mut [u8]) -> usize {
     let mut dropped = 0;
-    for at in 0..bytes.len().saturating_sub(8) {
-        if !bytes[at..].starts_with(b"SNOD\x01") {
+    let tables: Vec<usize> = memchr::memmem::find_iter(bytes, b"SNOD\x01").collect();
+    for at in tables {
+        let Some((head, rest)) = bytes[at..].split_first_chunk_mut::<8>() else {
             continue;
-        }
-        let count = u16::from_le_bytes([bytes[at + 6], bytes[at + 7]]);
-        let Some(table) = bytes.get_mut(at + 8..at + 8 + ENTRY * usize::from(count)) else {
+        };
+        let count = u16::from_le_bytes([head[6], head[7]]);
+        let Some(table) = rest.get_mut(..ENTRY * usize::from(count)) else {
             continue;
         };
         let mut kept = 0;
@@ -78,7 +79,7 @@ fn drop_soft_links(bytes: &mut [u8]) -> usize {
                 kept += 1;
             }
         }
-        bytes[at + 6..at + 8].copy_from_slice(&u16::to_le_bytes(kept));
+        head[6..].copy_from_slice(&u16::to_le_bytes(kept));
         dropped += usize::from(count - kept);
     }
     dropped

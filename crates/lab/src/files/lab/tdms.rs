@@ -7,7 +7,7 @@
 //! DAQmx raw data, texts, time stamps, complex numbers, and channels whose samples still have to be scaled.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use super::tdms_bytes::{Bytes, STRING, no_number, property, sample, size_of};
+use super::tdms_bytes::{Bytes, STRING, no_number, property, size_of, take_numbers};
 use crate::error::{Error, Result, ensure};
 use std::collections::{BTreeMap, HashMap};
 
@@ -229,9 +229,7 @@ impl TdmsFile {
                     continue;
                 }
                 let samples = &mut self.objects[*place].samples;
-                for _ in 0..layout.count.min(each) {
-                    samples.push(sample(bytes, layout.kind)?);
-                }
+                take_numbers(bytes, layout.kind, layout.count.min(each), samples)?;
             }
         }
         Ok(())

@@ -48,6 +48,23 @@ impl<'a> Bytes<'a> {
         Ok(bytes)
     }
 
+    /// Numbers of `N` bytes each.
+    fn numbers<const N: usize>(
+        &mut self,
+        count: usize,
+        to: &mut Vec<f64>,
+        number: impl Fn([u8; N]) -> f64,
+    ) -> Result<()> {
+        let (each, _) = self.take(count.saturating_mul(N))?.as_chunks::<N>();
+        to.extend(each.iter().copied().map(|mut bytes| {
+            if self.big_endian {
+                bytes.reverse();
+            }
+            number(bytes)
+        }));
+        Ok(())
+    }
+
     pub(crate) fn u32(&mut self) -> Result<u32> {
         Ok(u32::from_le_bytes(self.little()?))
     }
@@ -89,21 +106,26 @@ pub(super) fn size_of(kind: u32, path: &str) -> Result<usize> {
     }
 }
 
-/// One sample of a channel.
-pub(super) fn sample(bytes: &mut Bytes<'_>, kind: u32) -> Result<f64> {
-    Ok(match kind {
-        1 => i8::from_le_bytes(bytes.little()?).into(),
-        2 => i16::from_le_bytes(bytes.little()?).into(),
-        3 => i32::from_le_bytes(bytes.little()?).into(),
-        4 => i64::from_le_bytes(bytes.little()?) as f64,
-        5 | BOOLEAN => u8::from_le_bytes(bytes.little()?).into(),
-        6 => u16::from_le_bytes(bytes.little()?).into(),
-        7 => u32::from_le_bytes(bytes.little()?).into(),
-        8 => u64::from_le_bytes(bytes.little()?) as f64,
-        9 | 0x19 => f32::from_le_bytes(bytes.little()?).into(),
+/// Takes the next `count` samples of a kind as numbers.
+pub(super) fn take_numbers(
+    bytes: &mut Bytes<'_>,
+    kind: u32,
+    count: usize,
+    to: &mut Vec<f64>,
+) -> Result<()> {
+    match kind {
+        1 => bytes.numbers(count, to, |b| i8::from_le_bytes(b).into()),
+        2 => bytes.numbers(count, to, |b| i16::from_le_bytes(b).into()),
+        3 => bytes.numbers(count, to, |b| i32::from_le_bytes(b).into()),
+        4 => bytes.numbers(count, to, |b| i64::from_le_bytes(b) as f64),
+        5 | BOOLEAN => bytes.numbers(count, to, |b| u8::from_le_bytes(b).into()),
+        6 => bytes.numbers(count, to, |b| u16::from_le_bytes(b).into()),
+        7 => bytes.numbers(count, to, |b| u32::from_le_bytes(b).into()),
+        8 => bytes.numbers(count, to, |b| u64::from_le_bytes(b) as f64),
+        9 | 0x19 => bytes.numbers(count, to, |b| f32::from_le_bytes(b).into()),
         // every other kind was refused before
-        _ => f64::from_le_bytes(bytes.little()?),
-    })
+        _ => bytes.numbers(count, to, f64::from_le_bytes),
+    }
 }
 
 /// A property; `None` for one that is of no use here.
@@ -115,7 +137,9 @@ pub(super) fn property(bytes: &mut Bytes<'_>) -> Result<Option<Attribute>> {
             if no_number(kind).is_some() {
                 return bytes.take(size).map(|_| None);
             }
-            Ok(Some(Attribute::Number(sample(bytes, kind)?)))
+            let mut number = Vec::with_capacity(1);
+            take_numbers(bytes, kind, 1, &mut number)?;
+            Ok(number.pop().map(Attribute::Number))
         }
     }
 }
