@@ -1,5 +1,7 @@
 //! Vectors of four numbers: those of this processor, or four single ones.
 
+#[cfg(target_arch = "x86_64")]
+use pulp::NullaryFnOnce;
 use pulp::{Scalar256b, Simd, f64x4, m64x4};
 
 /// Numbers in a vector. Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
@@ -21,11 +23,7 @@ pub(super) trait OnLanes {
 pub(super) fn on_lanes<J: OnLanes>(job: J) -> J::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(vectors) = pulp::x86::V3::try_new() {
-        // the job is compiled for these vectors only where it stands in the closure itself
-        return vectors.vectorize(
-            #[inline(always)]
-            || job.run(vectors),
-        );
+        return vectors.vectorize(On(job, vectors));
     }
     on_plain_numbers(job)
 }
@@ -34,4 +32,17 @@ pub(super) fn on_lanes<J: OnLanes>(job: J) -> J::Output {
 #[inline(never)]
 pub(super) fn on_plain_numbers<J: OnLanes>(job: J) -> J::Output {
     job.run(Scalar256b)
+}
+
+#[cfg(target_arch = "x86_64")]
+struct On<J, S>(J, S);
+
+#[cfg(target_arch = "x86_64")]
+impl<J: OnLanes, S: FourLanes> NullaryFnOnce for On<J, S> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn call(self) -> J::Output {
+        self.0.run(self.1)
+    }
 }

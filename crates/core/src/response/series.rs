@@ -229,7 +229,7 @@ impl PowerSeries {
     }
 }
 
-/// A part of a step by so many terms of its series, compiled for each set of vectors a processor may have.
+/// A part of a step by so many terms of its series, compiled for each set of vectors a processor may have: a closure would not always be.
 struct PartOfStep<'a, 'b> {
     series: &'a mut PowerSeries,
     drive: &'a Drive<'b>,
