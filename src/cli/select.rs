@@ -115,7 +115,7 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let mut written = out.commit()?;
     let note = note.unwrap_or_default();
     let head = format!("{}\n{}\n{note}\n", study.name, deck.description());
-    let mut text = head + &text(&selection);
+    let mut text = head + &text(&selection, &metrics);
     if let Some(name) = &args.write {
         match recommended(&args.choice, &study, &selection) {
             Ok(block) => written.extend(write_study(args, &study, block, name)?),

@@ -77,14 +77,9 @@ impl Line {
         sees: &'static str,
         metric: Result<Metric<D>>,
     ) -> Result<Self> {
-        let (value, details, problem) = match metric {
-            Ok(metric) => {
-                let details = serde_json::to_value(&metric.details);
-                let details = details.map_err(|e| Error::Numerical(e.to_string()))?;
-                (Some(metric.value), details, None)
-            }
-            Err(error) => (None, serde_json::Value::Null, Some(error.to_string())),
-        };
+        let problem = metric.as_ref().err().map(ToString::to_string);
+        let (value, details) = metric.ok().map(|m| (m.value, m.details)).unzip();
+        let details = serde_json::to_value(details).map_err(|e| Error::Numerical(e.to_string()))?;
         Ok(Self {
             symbol,
             sees,
@@ -164,40 +159,24 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
         seed: args.seed,
         ..BicoherenceParameters::default()
     };
-    let phase = phase(pair, &delay).and_then(|found| {
-        ensure(
-            !found.details.is_at_end_of_search,
-            "record",
-            "a correlation that is largest at some lag (more than a period)",
-            "one that still grows a sixteenth of the record away",
-        )
-        .map(|()| found)
-    });
     let warping = magnitude_warped(pair, None);
+    let (levelled, normalised) = (wavelet(pair, &levels), wavelet_normalised(pair, &levels));
     let density = probability_density(pair, true);
+    let (steady, coupled) = (
+        stationarity(pair, &surrogates),
+        bicoherence(pair, &coupling),
+    );
     Ok(vec![
-        Line::new("M_phi", "mean delay", phase)?,
+        Line::new("M_phi", "mean delay", phase(pair, &delay))?,
         Line::new("M_p", "largest absolute value", peak(pair))?,
         Line::new("M_rms", "mean power", rms(pair))?,
         Line::new("M_muw", "sample by sample difference", magnitude(pair))?,
         Line::new("M_m", "the same after time warping", warping)?,
-        Line::new(
-            "M_w",
-            "amplitude over time and frequency",
-            wavelet(pair, &levels),
-        )?,
-        Line::new(
-            "M_wf",
-            "the same, each time normalised",
-            wavelet_normalised(pair, &levels),
-        )?,
+        Line::new("M_w", "amplitude over time and frequency", levelled)?,
+        Line::new("M_wf", "the same, each time normalised", normalised)?,
         Line::new("M_pdf", "distribution of values", density)?,
-        Line::new(
-            "M_s",
-            "non-stationary content",
-            stationarity(pair, &surrogates),
-        )?,
-        Line::new("M_b", "quadratic coupling", bicoherence(pair, &coupling))?,
+        Line::new("M_s", "non-stationary content", steady)?,
+        Line::new("M_b", "quadratic coupling", coupled)?,
     ])
 }
 

@@ -7,8 +7,8 @@ use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
 use crate::study::Study;
 use std::fmt::Write as _;
 
-/// The table of cells and the recommendation.
-pub(crate) fn text(selection: &Selection) -> String {
+/// The table of cells, the recommendation, and why metrics are missing.
+pub(crate) fn text(selection: &Selection, metrics: &[MetricGrid]) -> String {
     let mut text = format!(
         "{} cells: {} values of {}, L = 1 to {}\n\nBest fit of each number of filters, as a free search of {} finds it\n",
         selection.cells.len(),
@@ -23,6 +23,16 @@ pub(crate) fn text(selection: &Selection) -> String {
     if let Some(recommended) = &selection.recommended {
         let cell = &selection.cells[recommended.cell];
         text.push_str(&table(selection, std::iter::once(cell)));
+    }
+    for grid in metrics {
+        let mut problems = grid.cells.iter().flatten().flat_map(|m| &m.problem);
+        if let Some(problem) = problems.next() {
+            let (force, count) = (grid.force.name(), 1 + problems.count());
+            let _ = writeln!(
+                text,
+                "no M_phi of the {force} force in {count} cells: {problem}"
+            );
+        }
     }
     text
 }
@@ -80,7 +90,9 @@ pub(crate) fn figures(
         ..map(selection, title.to_owned(), values)
     });
     let maps = metrics.iter().flat_map(metric_values);
-    let metric_maps: Vec<HeatMap> = maps
+    // a force may have no lag in any cell
+    let drawn = maps.filter(|(_, values)| values.iter().any(Option::is_some));
+    let metric_maps: Vec<HeatMap> = drawn
         .map(|(title, values)| map(selection, title, values))
         .collect();
     let draw = |what: &str, maps: &[HeatMap], columns| {
@@ -93,16 +105,16 @@ pub(crate) fn figures(
 
 /// The three metrics of every cell, each with its title.
 fn metric_values(grid: &MetricGrid) -> [(String, Vec<Option<f64>>); 3] {
-    type Pick = fn(&CellMetrics) -> f64;
+    type Pick = fn(&CellMetrics) -> Option<f64>;
     let kinds: [(&str, Pick); 3] = [
         ("Phase", |m| m.phase),
-        ("Peak", |m| m.peak),
-        ("Warped magnitude", |m| m.magnitude_warped),
+        ("Peak", |m| Some(m.peak)),
+        ("Warped magnitude", |m| Some(m.magnitude_warped)),
     ];
     kinds.map(|(name, pick)| {
         let (force, hertz) = (grid.force.name(), grid.frequency_hz);
         let title = format!("{name} metric: {force} force and motion, {hertz:.2} Hz");
-        let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
+        let values = grid.cells.iter().map(|c| pick(c.as_ref()?)).collect();
         (title, values)
     })
 }

@@ -1,7 +1,7 @@
 //! Phase metric: the mean delay between two signals.
 
 use super::{Metric, SignalPair, zero_signal};
-use crate::error::{Result, positive};
+use crate::error::{Result, ensure, positive};
 use crate::signal::CrossCorrelation;
 use crate::state_space::golden_section;
 use serde::Serialize;
@@ -63,8 +63,6 @@ pub struct PhaseDetails {
     pub lag_s: f64,
     /// `c(n)/√(Σ X₁² Σ X₂²)` at the whole lag; negative if the signals were matched in antiphase.
     pub correlation: f64,
-    /// Whether the correlation still grows at the end of the search, a sixteenth of the record from the whole lag: then the lag is none.
-    pub is_at_end_of_search: bool,
 }
 
 /// Phase metric `M_φ = exp(−|τ|/T_c)`, τ the lag at which the **absolute** full cross-correlation is largest.
@@ -74,7 +72,8 @@ pub struct PhaseDetails {
 /// The whole lag is refined as [`PhaseParameters`] says.
 ///
 /// # Errors
-/// [`crate::Error::Input`] if a signal is zero throughout or `T_c` is not positive.
+/// [`crate::Error::Input`] if a signal is zero throughout, `T_c` is not positive, or the correlation still grows at the end of the search,
+/// a sixteenth of the record from the whole lag: then there is no lag.
 pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metric<PhaseDetails>> {
     let delay = positive("significant delay T_c, s", parameters.significant_delay_s)?;
     let energy = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -95,12 +94,11 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
         let value = correlation.at(lag);
         if divisor > 0.0 { value / divisor } else { 0.0 }
     };
-    let (lag, is_at_end_of_search) = match parameters.lag {
-        LagEstimate::WholeSample => (whole as f64, false),
+    let lag = match parameters.lag {
+        LagEstimate::WholeSample => whole as f64,
         LagEstimate::BandLimited => {
             let reach = (correlation.sample_count() / 16) as isize;
-            let (top, ends) = climb(&divided, whole, reach);
-            (band_limited(&divided, top), ends)
+            band_limited(&divided, climb(&divided, whole, reach)?)
         }
     };
     let lag_s = lag * pair.time_step_s();
@@ -110,14 +108,13 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
             whole_lag_samples: whole,
             lag_s,
             correlation: correlation.at(whole) / first / second,
-            is_at_end_of_search,
         },
     })
 }
 
 /// Whole lag at the local maximum of a correlation next to `start`, at most a sixteenth of the record (`reach`) away: the division favours
-/// lags at which hardly anything overlaps. And whether it would be farther away.
-fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> (isize, bool) {
+/// lags at which hardly anything overlaps. Refused where it would be farther away.
+fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> Result<isize> {
     let magnitude = |lag: isize| correlation(lag).abs();
     let mut lag = start;
     loop {
@@ -126,10 +123,15 @@ fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> (isi
         } else {
             lag - 1
         };
-        let falls = magnitude(next) <= magnitude(lag);
-        if falls || (next - start).abs() > reach {
-            return (lag, !falls);
+        if magnitude(next) <= magnitude(lag) {
+            return Ok(lag);
         }
+        ensure(
+            (next - start).abs() <= reach,
+            "record",
+            "a correlation that is largest at some lag (more than a period)",
+            "one that still grows a sixteenth of the record away",
+        )?;
         lag = next;
     }
 }
@@ -262,10 +264,8 @@ mod tests {
         };
         let (x1, x2) = (of(0.0), of(40.0));
         let pair = SignalPair::new(&x1, &x2, STEP_S).unwrap();
-        let found = phase(&pair, &PhaseParameters::default()).unwrap();
-        assert!(found.details.is_at_end_of_search, "{found:?}");
-        let whole = lag_of(0.3, LagEstimate::BandLimited, true);
-        assert!(!whole.details.is_at_end_of_search);
+        let refused = phase(&pair, &PhaseParameters::default()).unwrap_err();
+        assert!(refused.to_string().contains("still grows"), "{refused}");
     }
 
     #[test]

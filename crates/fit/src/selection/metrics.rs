@@ -24,10 +24,12 @@ const SIGNIFICANT_PHASE_DEG: f64 = 5.0;
 const WARPING_PERIODS: f64 = 0.25;
 
 /// Metrics of one cell.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellMetrics {
     /// Phase `M_φ`, sub-sample lag.
-    pub phase: f64,
+    pub phase: Option<f64>,
+    /// Why there is no `M_φ`.
+    pub problem: Option<String>,
     /// Peak `M_p`.
     pub peak: f64,
     /// Magnitude after warping `M_m`.
@@ -79,12 +81,8 @@ pub fn metric_grid(
             cells: cells.concat(),
         });
     }
-    ensure(
-        !grids.is_empty(),
-        "records",
-        "segments of harmonic motion",
-        "none",
-    )?;
+    let expected = "segments of harmonic motion";
+    ensure(!grids.is_empty(), "records", expected, "none")?;
     Ok(grids)
 }
 
@@ -172,9 +170,11 @@ impl SteadySegment {
             significant_delay_s: SIGNIFICANT_PHASE_DEG / 360.0 / self.frequency_hz,
             ..PhaseParameters::default()
         };
+        let phase = phase(&pair, &lag);
         let band = (WARPING_PERIODS / self.frequency_hz / self.step_s).ceil() as usize;
         Ok(CellMetrics {
-            phase: phase(&pair, &lag)?.value,
+            problem: phase.as_ref().err().map(ToString::to_string),
+            phase: phase.ok().map(|found| found.value),
             peak: peak(&pair)?.value,
             magnitude_warped: magnitude_warped(&pair, Some(band))?.value,
             magnitude: magnitude(&pair)?.value,

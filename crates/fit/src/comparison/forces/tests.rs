@@ -50,6 +50,23 @@ fn metrics_of_a_harmonic_follow_the_closed_forms() {
     );
 }
 
+/// A score of forces that have no lag would mean nothing: they are refused in the words of the metric.
+#[test]
+fn forces_without_a_lag_have_no_score() {
+    let at = |k: i32, late: f64| (0.5 + 0.004 * (f64::from(k) - late)).sin();
+    let [measured, predicted] =
+        [0.0, 40.0].map(|late| (0..200).map(|k| at(k, late)).collect::<Vec<_>>());
+    let refused = Scoring::default()
+        .metrics(&measured, &predicted, 200.0, 1.0)
+        .unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .ends_with("still grows a sixteenth of the record away"),
+        "{refused}"
+    );
+}
+
 /// The lag and the amplitude in time are the phase and the magnitude in frequency: two paths to the same number.
 #[test]
 fn time_and_frequency_domain_agree() {
