@@ -146,7 +146,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 /// One model and how it is fitted: exactly one of `records`, `table`, `discrete`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelBlock {
     /// Name in tables and figures.

@@ -9,7 +9,7 @@ use super::progress::Progress;
 use crate::error::{Error, Result, ensure};
 use crate::flutter::FlutterSearch;
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
-use crate::selection::{Selection, metric_grid, select};
+use crate::selection::{Recommendation, Selection, metric_grid, select};
 use crate::signal::extremes;
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
@@ -22,8 +22,6 @@ use text::{figures, text};
 const MOST_VALUES: usize = 2000;
 /// Frequency at which forces are compared, Hz.
 const FREQUENCY_HZ: f64 = 1.1;
-/// Part by which the onset of a model may differ from that of its table; three filters fitted to LN21-5800 keep to 2.2 %.
-const SAME_ONSET: f64 = 0.05;
 /// Name of the recommended model in a study.
 pub(crate) const SELECTED: &str = "selected";
 
@@ -102,9 +100,7 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         measured.select(study.deck.speed_groups.as_deref())?
     };
     let frequency_hz = compared_frequency_hz(args.frequency, &records)?;
-    let (grid, mut selection) = judge(&args.choice, &study, &records, progress)?;
-    let beside = beside_table(&study, &deck, &selection)?;
-    selection.reason.push_str(&beside.unwrap_or_default());
+    let (grid, selection) = judge(&args.choice, &study, &deck, &records, progress)?;
     let metrics = progress.during("comparing forces", || {
         metric_grid(&grid, &records, frequency_hz)
     })?;
@@ -131,28 +127,6 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     )
 }
 
-/// What the onset of the table of the deck says of that of the recommended model; nothing without both.
-fn beside_table(study: &Study, deck: &Deck, selection: &Selection) -> Result<Option<String>> {
-    let recommended = selection.recommended.as_ref().and_then(|r| r.onset_m_s);
-    let (Some(recommended), Some(_)) = (recommended, deck.table()) else {
-        return Ok(None);
-    };
-    let structure = study.section.structure()?;
-    // a table that has none by itself says nothing of models
-    let own = deck
-        .own_onset(&structure, study.speeds().searched_to_m_s)
-        .ok();
-    let own = own.as_ref().and_then(FlutterSearch::onset);
-    Ok(own.map(|onset| {
-        let own = onset.at.speed_m_s;
-        let doubt = match (recommended / own - 1.0).abs() <= SAME_ONSET {
-            true => "",
-            false => ", which this model contradicts: the recommendation is doubtful",
-        };
-        format!(" The table by itself has its onset at {own:.3} m/s{doubt}.")
-    }))
-}
-
 /// The frequency that was asked for, which is among those that were tested.
 fn compared_frequency_hz(asked: Option<f64>, records: &[&dyn RecordSource]) -> Result<f64> {
     let Some(asked) = asked else {
@@ -167,10 +141,11 @@ fn compared_frequency_hz(asked: Option<f64>, records: &[&dyn RecordSource]) -> R
     Ok(asked)
 }
 
-/// All cells of the grid, judged.
+/// All cells of the grid, judged, and the onset of the table of the deck beside that of the recommended model.
 fn judge(
     choice: &Choice,
     study: &Study,
+    deck: &Deck,
     records: &[&dyn RecordSource],
     progress: &Progress,
 ) -> Result<(Grid, Selection)> {
@@ -182,25 +157,32 @@ fn judge(
     })?;
     let (structure, search) = (study.section.structure()?, study.speeds().search());
     let total = grid.values().len();
-    let selection = progress.counting("judging the cells", |on_done| {
+    let mut selection = progress.counting("judging the cells", |on_done| {
         select(&grid, &structure, &search, &|done| {
             on_done(done, total);
         })
     })?;
+    let own = deck
+        .table()
+        .map(|_| deck.own_onset(&structure, search.speed_max_m_s));
+    if let Some(Ok(FlutterSearch::Onset(own))) = own {
+        selection.put_beside(own.at.speed_m_s);
+    }
     Ok((grid, selection))
 }
 
-/// The study with the recommended model in front, as `select = true` asks for; that key is done with.
+/// The study with the recommended model in front, as `select = true` asks for, and what speaks for it; that key is done with.
 pub(crate) fn with_selected(
     study: &Study,
+    deck: &Deck,
     records: &RecordSet,
     progress: &Progress,
-) -> Result<Study> {
+) -> Result<(Study, Option<Recommendation>)> {
     let chosen = records.select(study.deck.speed_groups.as_deref())?;
     let choice = Choice::default();
-    let (_, selection) = judge(&choice, study, &chosen, progress)?;
-    let block = recommended(&choice, study, &selection).map_err(Error::Numerical)?;
-    Ok(in_front(study, block))
+    let (_, selection) = judge(&choice, study, deck, &chosen, progress)?;
+    let block = recommended(&choice, study, &selection)?;
+    Ok((in_front(study, block), selection.recommended))
 }
 
 /// The study with the model that `train` has selected, where it asks for one, among those to be read.
@@ -219,10 +201,7 @@ pub(crate) fn saved_model() -> PathBuf {
 fn selected_block() -> ModelBlock {
     ModelBlock {
         name: SELECTED.to_owned(),
-        speed_groups: None,
-        records: None,
-        table: None,
-        discrete: None,
+        ..ModelBlock::default()
     }
 }
 
@@ -235,15 +214,9 @@ fn in_front(study: &Study, block: ModelBlock) -> Study {
 }
 
 /// The recommended model as a block of a study, or why there is none.
-fn recommended(
-    choice: &Choice,
-    study: &Study,
-    selection: &Selection,
-) -> std::result::Result<ModelBlock, String> {
-    let found = selection
-        .recommended
-        .as_ref()
-        .ok_or_else(|| selection.reason.clone())?;
+fn recommended(choice: &Choice, study: &Study, selection: &Selection) -> Result<ModelBlock> {
+    let none = || Error::Numerical(selection.reason.clone());
+    let found = selection.recommended.as_ref().ok_or_else(none)?;
     let mut block = selected_block();
     if choice.kind == ModelKind::Discrete {
         let given = study.models.iter().find_map(|m| m.discrete.clone());
@@ -283,43 +256,30 @@ fn write_study(
     name: &Path,
 ) -> Result<Vec<Written>> {
     let expected = "a name without a folder: paths in the study are read against its own";
-    ensure(
-        name.components().count() == 1,
-        "--write",
-        expected,
-        name.display(),
-    )?;
+    let alone = name.components().count() == 1;
+    ensure(alone, "--write", expected, name.display())?;
     let text =
         toml::to_string(&in_front(study, block)).map_err(|e| Error::Numerical(e.to_string()))?;
     let from = args.study.study.display();
     let mut out = OutputDir::new(&args.study.beside())?;
-    out.write(
-        name,
-        format!("# {from} with the model that `aerodeck select` recommends.\n{text}"),
-    )?;
+    let head = format!("# {from} with the model that `aerodeck select` recommends.\n");
+    out.write(name, head + &text)?;
     out.keep_edited(name, args.force)?;
     out.commit()
 }
 
 /// Values of the pole, logarithmic over the range of the pole searches; or of the decay factor.
 fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result<GridAxis> {
-    ensure(
-        (2..=MOST_VALUES).contains(&choice.values),
-        "--values",
-        format_args!("a number from 2 to {MOST_VALUES}"),
-        choice.values,
-    )?;
+    let expected = format_args!("a number from 2 to {MOST_VALUES}");
+    let several = (2..=MOST_VALUES).contains(&choice.values);
+    ensure(several, "--values", expected, choice.values)?;
     let last = choice.values as f64 - 1.0;
     if choice.kind == ModelKind::Discrete {
         let (low, high) = (choice.min.unwrap_or(0.2), choice.max.unwrap_or(0.98));
         let ordered = 0.0 < low && low < high && high < 1.0;
         let expected = "two decay factors between 0 and 1, the lower one first";
-        ensure(
-            ordered,
-            "--min, --max",
-            expected,
-            format_args!("{low} and {high}"),
-        )?;
+        let found = format_args!("{low} and {high}");
+        ensure(ordered, "--min, --max", expected, found)?;
         let given = study.models.iter().find_map(|m| m.discrete.as_ref());
         let weights = given.map_or(TimeWeights::None, |d| d.weights);
         let values = (0..choice.values).map(|i| low + (high - low) * i as f64 / last);
@@ -335,12 +295,10 @@ fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result
     let (low, high) = ks.fold((f64::INFINITY, 0.0_f64), |(a, b), k| (a.min(k), b.max(k)));
     let low = choice.min.unwrap_or(0.5 * low);
     let high = choice.max.unwrap_or(2.0 * high);
-    ensure(
-        low > 0.0 && high > low && high.is_finite(),
-        "--min, --max",
-        "two poles, the lower one first (needed for records without segments)",
-        format_args!("{low} and {high}"),
-    )?;
+    let ordered = low > 0.0 && high > low && high.is_finite();
+    let expected = "two poles, the lower one first (needed for records without segments)";
+    let found = format_args!("{low} and {high}");
+    ensure(ordered, "--min, --max", expected, found)?;
     let values = (0..choice.values).map(|i| low * (high / low).powf(i as f64 / last));
     Ok(GridAxis::Continuous(
         values.collect(),

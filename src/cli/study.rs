@@ -14,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
 use crate::plausibility::sentences;
+use crate::selection::Recommendation;
 use crate::study::{
     Deck, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport, attempt,
     interval_of, section_evidence, stepped_onset, study_findings,
@@ -76,7 +77,7 @@ pub(crate) fn run_chain(
         progress,
     };
     let records = chain.records()?;
-    chain.select(records.as_ref())?;
+    let selection = chain.select(records.as_ref())?;
     let trained = chain.train(records.as_ref())?;
     let failed = &mut chain.failed;
     let mut results = stages::flutter_of(&chain.study, &chain.deck, &trained, failed, progress)?;
@@ -91,6 +92,7 @@ pub(crate) fn run_chain(
     let summary = Summary {
         study_file,
         study_text,
+        selection,
         buffeting,
         ..chain.summary(trained, results, stepped)?
     };
@@ -125,14 +127,16 @@ impl StudyStages<'_> {
     }
 
     /// Adds the selected model to the study, where one is asked for.
-    fn select(&mut self, records: Option<&RecordSet>) -> Result<()> {
-        if let Some(records) = records.filter(|_| self.study.select) {
-            let selected = select::with_selected(&self.study, records, self.progress);
-            if let Some(study) = self.attempt("selection", selected)? {
-                self.study = study;
-            }
-        }
-        Ok(())
+    fn select(&mut self, records: Option<&RecordSet>) -> Result<Option<Recommendation>> {
+        let Some(records) = records.filter(|_| self.study.select) else {
+            return Ok(None);
+        };
+        let selected = select::with_selected(&self.study, &self.deck, records, self.progress);
+        let selected = self.attempt("selection", selected)?;
+        Ok(selected.and_then(|(study, recommended)| {
+            self.study = study;
+            recommended
+        }))
     }
 
     fn train(&mut self, records: Option<&RecordSet>) -> Result<Vec<TrainedWithReport>> {
@@ -308,6 +312,7 @@ impl StudyStages<'_> {
             fits: trained.into_iter().map(fit).collect(),
             stepped,
             buffeting: None,
+            selection: None,
             failed,
             files: Vec::new(),
         })

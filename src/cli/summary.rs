@@ -3,6 +3,7 @@
 use super::stages::FMU_FILE;
 use crate::identification::FitReport;
 use crate::plausibility::Finding;
+use crate::selection::Recommendation;
 use crate::study::{FlutterStudy, KnownUncertainty, SpeedRange, StageFailure, SteppedOnset};
 use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
@@ -27,6 +28,9 @@ pub(crate) struct Summary {
     pub sha1: BTreeMap<String, String>,
     /// The model that the verdict is about.
     pub model: String,
+    /// The one that the study has selected, where it does.
+    #[serde(default)]
+    pub selection: Option<Recommendation>,
     /// What it amounts to.
     pub verdict: Verdict,
     /// How models and routes compare.

@@ -9,6 +9,7 @@ use super::text_table::TextTable;
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
+use crate::selection::Recommendation;
 use crate::study::{
     Deck, Divergence, FlutterStudy, KnownUncertainty, StageFailure, Study, TrainedWithReport,
 };
@@ -31,6 +32,7 @@ pub(crate) fn chain(
     let _ = writeln!(text, "Deck      {}", deck.description());
     // nobody signs for what was taken for granted without having read it
     text.push_str(&deck_warnings(deck));
+    text.push_str(&selected(summary.selection.as_ref()));
     let rest = details(study, summary);
     if verbose {
         text.push_str(&rest);
@@ -72,6 +74,12 @@ pub(crate) fn chain(
         );
     }
     text + "\n" + &ending(written, &more, verbose)
+}
+
+/// What the table says of the onset of the model that was selected.
+pub(super) fn selected(recommended: Option<&Recommendation>) -> String {
+    let said = recommended.and_then(Recommendation::beside_table);
+    said.map_or(String::new(), |said| format!("Selected  {said}\n"))
 }
 
 /// Where the page stands, files that were left, and what else there is; with `verbose` all files.

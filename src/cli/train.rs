@@ -20,11 +20,11 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
         RecordSet::measured(&study)?
     };
     let mut out = OutputDir::new(&directory)?;
-    let mut failed = Vec::new();
+    let (mut failed, mut selection) = (Vec::new(), None);
     if study.select {
-        let selected = select::with_selected(&study, &records, progress);
+        let selected = select::with_selected(&study, &deck, &records, progress);
         match attempt(&mut failed, "selection", selected)? {
-            Some(selected) => study = selected,
+            Some(selected) => (study, selection) = selected,
             // that of an earlier run is not of these records
             None => out.outdated(select::saved_model()),
         }
@@ -33,6 +33,7 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
     let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
     text.push_str(&text::deck_warnings(&deck));
+    text.push_str(&text::selected(selection.as_ref()));
     let mut growths = Vec::new();
     for result in &trained {
         text.push_str(&text::fit_of(result));
@@ -58,7 +59,8 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
         })
         .collect();
     let value = serde_json::json!({
-        "trained": fits, "growth": growths, "failed": failed, "warnings": deck.warnings()
+        "trained": fits, "selection": selection, "growth": growths, "failed": failed,
+        "warnings": deck.warnings()
     });
     Ok(out.answer(text, value)?.passed_if(failed.is_empty()))
 }

@@ -67,8 +67,10 @@ fn the_onset_of_the_table_is_beside_that_of_the_model() {
         fs::write(folder.path().join("study.toml"), text).unwrap();
         let one = ["select", "study.toml", "--filters", "1", "--no-figures"];
         let said = flowing(&succeeds(folder.path(), &one));
+        let json = succeeds(folder.path(), &[&one[..], &["--json"]].concat());
+        let found: Value = serde_json::from_str(&json).unwrap();
         assert!(
-            said.contains("The table by itself has its onset at"),
+            said.contains(&beside(&found["selection"]["recommended"])),
             "{said}"
         );
         assert_eq!(
@@ -77,6 +79,19 @@ fn the_onset_of_the_table_is_beside_that_of_the_model() {
             "{said}"
         );
     }
+}
+
+/// The sentence on the onset of the table, made of the numbers beside it.
+fn beside(recommended: &Value) -> String {
+    let number = |name: &str| recommended[name].as_f64().unwrap();
+    let (own, table) = (number("onset_m_s"), number("table_onset_m_s"));
+    let percent = number("above_table_percent");
+    assert!((percent - 100.0 * (own / table - 1.0)).abs() < 1e-9);
+    let side = if percent < 0.0 { "below" } else { "above" };
+    let percent = percent.abs();
+    format!(
+        "The table by itself has its onset at {table:.3} m/s, the recommended model {percent:.1} % {side} it, at {own:.3} m/s"
+    )
 }
 
 #[test]
@@ -91,6 +106,8 @@ fn a_study_chooses_its_own_model() {
     let onset = onset_of(&summary, "selected", "eigenvalues");
     let speed = onset["speed_m_s"].as_f64().unwrap();
     assert!((36.0..37.7).contains(&speed), "{speed}");
+    let said = beside(&summary["selection"]);
+    assert!(flowing(&text).contains(&said), "{said}\n{text}");
     // the stages one by one give the same
     let at = folder.path();
     let stage = |name| {
@@ -109,7 +126,8 @@ fn a_study_chooses_its_own_model() {
         missing.contains("models/selected.json: expected a trained model"),
         "{missing}"
     );
-    succeeds(at, &stage("train"));
+    let trained: Value = serde_json::from_str(&succeeds(at, &stage("train"))).unwrap();
+    assert_eq!(beside(&trained["selection"]), said);
     let staged = self::onset(at, &stage("flutter"));
     // numbers of a file are read to the last digit or one beside it
     assert!((staged / speed - 1.0).abs() < 1e-9, "{staged} {speed}");

@@ -7,7 +7,7 @@ use crate::identification::Grid;
 use crate::numbered::numbered;
 use crate::section::{Dof, Structure};
 use crate::signal::extremes;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// One number of filters with one pole or decay factor.
@@ -132,7 +132,7 @@ fn in_words(left_out: &[BTreeSet<(usize, usize)>; 2], dofs: &[Dof]) -> Vec<Strin
 }
 
 /// The recommended model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recommendation {
     /// Place among the cells.
     pub cell: usize,
@@ -146,11 +146,47 @@ pub struct Recommendation {
     pub onset_m_s: Option<f64>,
     /// Least and greatest onset of the models within one standard error of the least error, m/s; `None` where none of them flutters.
     pub onsets_within_m_s: Option<[f64; 2]>,
+    /// Onset of the table of the deck by itself, m/s; `None` where not both have one.
+    pub table_onset_m_s: Option<f64>,
+    /// How far the onset of the model lies above it, percent.
+    pub above_table_percent: Option<f64>,
 }
 
 /// Part of the onset of the best model by which a simpler one may miss it: what a model is for is its onset, and errors of forces
 /// that scatter as much allowed onsets 14 % too high.
-const SAME_ONSET: f64 = 0.01;
+const KEPT_ONSET: f64 = 0.01;
+/// Percent by which the onset of a model may differ from that of its table; three filters fitted to LN21-5800 keep to 2.2 %.
+const LIKE_TABLE: f64 = 5.0;
+
+impl Selection {
+    /// Takes the onset of the table by itself, m/s, beside that of the recommended model; a table that has none says nothing of models.
+    pub fn put_beside(&mut self, table_m_s: f64) {
+        if let Some(found) = &mut self.recommended {
+            let percent = found.onset_m_s.map(|own| 100.0 * (own / table_m_s - 1.0));
+            (found.table_onset_m_s, found.above_table_percent) =
+                (percent.map(|_| table_m_s), percent);
+            self.reason
+                .extend(found.beside_table().map(|said| format!(" {said}")));
+        }
+    }
+}
+
+impl Recommendation {
+    /// What the onset of the table by itself says of that of the model.
+    pub fn beside_table(&self) -> Option<String> {
+        let (own, percent) = (self.table_onset_m_s?, self.above_table_percent?);
+        let doubt = match percent.abs() <= LIKE_TABLE {
+            true => "",
+            false => ": the recommendation is doubtful",
+        };
+        let side = if percent < 0.0 { "below" } else { "above" };
+        Some(format!(
+            "The table by itself has its onset at {own:.3} m/s, the recommended model {:.1} % {side} it, at {:.3} m/s{doubt}.",
+            percent.abs(),
+            self.onset_m_s?
+        ))
+    }
+}
 
 /// The fewest filters whose error on data left out is within one standard error of the least (the rule of Breiman,
 /// Friedman, Olshen & Stone, *Classification and Regression Trees*, 1984, section 3.4.3) and that keep the onset of the best model,
@@ -171,7 +207,7 @@ fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
     let within: Vec<&Cell> = usable.filter(|c| c.score() * c.score() <= limit).collect();
     let fewest = |a: &&Cell, b: &&Cell| a.filters.cmp(&b.filters).then(by_score(a, b));
     let keeps_onset = |cell: &&Cell| match (cell.onset_m_s, best.onset_m_s) {
-        (Some(own), Some(of_best)) => (own / of_best - 1.0).abs() <= SAME_ONSET,
+        (Some(own), Some(of_best)) => (own / of_best - 1.0).abs() <= KEPT_ONSET,
         (own, of_best) => own.is_none() == of_best.is_none(),
     };
     let alike = within.iter().copied().filter(keeps_onset);
@@ -185,6 +221,8 @@ fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
         score: chosen.score(),
         onset_m_s: chosen.onset_m_s,
         onsets_within_m_s: (low <= high).then_some([low, high]),
+        table_onset_m_s: None,
+        above_table_percent: None,
     };
     let mut reason = explain(selection, chosen, best);
     reason.push_str(&onsets_in_words(&within));
@@ -230,7 +268,7 @@ fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
             percent(best.score()),
             name(best, symbol),
             match best.onset_m_s {
-                Some(_) => format!("whose onset is that of the best to {}", percent(SAME_ONSET)),
+                Some(_) => format!("whose onset is that of the best to {}", percent(KEPT_ONSET)),
                 None => "which have no onset either".to_owned(),
             }
         )
