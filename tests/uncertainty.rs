@@ -204,6 +204,15 @@ fn a_known_bias_leaves_no_bare_interval() {
     );
     let text = known.explain().unwrap();
     assert!(text.contains("no 95 % interval"), "{text}");
+    let without = ModelUncertainty {
+        drawn_coefficients: None,
+        ..known
+    };
+    let text = without.explain().unwrap();
+    assert!(
+        text.ends_with("by drawn coefficients none (no draw has an onset)"),
+        "{text}"
+    );
 }
 
 /// Training, and flutter from the saved files alone, state the same intervals; the table shows the spread between interpolations.

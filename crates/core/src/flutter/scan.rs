@@ -132,14 +132,11 @@ impl<'a> Scan<'a> {
     /// What a scan from still air covers.
     pub(super) fn looked_at(&self, to_m_s: f64) -> Result<StableRange> {
         let lowest = lowest_speed(self.section)?;
-        ensure(
-            lowest < to_m_s,
-            "highest wind speed",
-            format_args!(
-                "more than {lowest:.3} m/s, below which the sampled model has too few samples per period"
-            ),
-            format_args!("{to_m_s} m/s"),
-        )?;
+        let expected = format_args!(
+            "more than {lowest:.3} m/s, below which the sampled model has too few samples per period"
+        );
+        let found = format_args!("{to_m_s} m/s");
+        ensure(lowest < to_m_s, "highest wind speed", expected, found)?;
         Ok(StableRange {
             from_m_s: lowest,
             to_m_s,
@@ -153,12 +150,8 @@ impl<'a> Scan<'a> {
     fn speeds(&self, from_m_s: f64, to_m_s: f64, coarse: bool) -> Result<Vec<f64>> {
         non_negative("lowest wind speed", from_m_s)?;
         positive("highest wind speed", to_m_s)?;
-        ensure(
-            from_m_s < to_m_s,
-            "highest wind speed",
-            format_args!("a number above the lowest, {from_m_s} m/s"),
-            to_m_s,
-        )?;
+        let expected = format_args!("a number above the lowest, {from_m_s} m/s");
+        ensure(from_m_s < to_m_s, "highest wind speed", expected, to_m_s)?;
         let (ratio, part) = if coarse { COARSE } else { FINE };
         let mut all = Vec::new();
         let mut speed = from_m_s.max(self.lowest(to_m_s)?);

@@ -4,6 +4,7 @@ use super::answer::{Findings, FlutterSearch, choose};
 use super::following::{Follower, OnsetWatch, growing, oscillates};
 use super::judged::{Exit, JudgedSpeeds, MovedOnset, damps_fast_motion};
 use super::scan::Scan;
+use super::still_air::lowest_speed;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure, positive};
@@ -173,8 +174,8 @@ pub fn judged_speeds(
     })
 }
 
-/// Which mode of `section` leaves what was `tested` first below the highest speed of a search, and where, in words; `None` where none
-/// does.
+/// Which mode of `section` leaves what was `tested` first below the highest speed of a search, its onset, and where, in words; `None` where
+/// none does. Of an onset below the lowest speed at which a sampled model can be judged this is said.
 ///
 /// # Errors
 /// As [`find_onset`].
@@ -183,6 +184,12 @@ pub fn left_tests(
     search: &OnsetSearch,
     tested: ReducedFrequencyRange,
 ) -> Result<Option<String>> {
+    let lowest = lowest_speed(section)?;
+    if search.speed_max_m_s <= lowest {
+        return Ok(Some(format!(
+            "the onset lies at or below {lowest:.3} m/s, the lowest wind speed at which the sampled model knows its forces"
+        )));
+    }
     let scan = Scan::new("", section, Some(tested));
     let (mut found, ended) = followed("", &scan, search, |found| !found.reach.exits.is_empty())?;
     if ended.is_some() {

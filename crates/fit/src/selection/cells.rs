@@ -269,7 +269,7 @@ fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
             name(best, symbol),
             match best.onset_m_s {
                 Some(_) => format!("whose onset is that of the best to {}", percent(KEPT_ONSET)),
-                None => "which have no onset either".to_owned(),
+                None => "that, like the best, have no onset".to_owned(),
             }
         )
     };
@@ -355,7 +355,12 @@ mod tests {
                 recommended: None,
                 reason: String::new(),
             };
-            recommend(&selection).0.unwrap().filters
+            let (recommended, reason) = recommend(&selection);
+            if simple.is_none() && best.is_none() {
+                let said = "20.00 % with L = 2, p = 0.500) and that, like the best, have no onset.";
+                assert!(reason.contains(said), "{reason}");
+            }
+            recommended.unwrap().filters
         };
         assert_eq!(chosen(Some(37.3), Some(37.0)), 1);
         assert_eq!(chosen(Some(37.7), Some(37.0)), 2);

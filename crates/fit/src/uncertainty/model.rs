@@ -248,11 +248,9 @@ impl ModelUncertainty {
         else {
             return stated.reason().map(|reason| format!("onset {reason}"));
         };
-        let other = |r: &Option<ResampledOnset>| {
-            r.as_ref().map_or_else(
-                || "–".to_owned(),
-                |r| format!("{:.3}", r.standard_deviation_m_s),
-            )
+        let other = |r: &Option<ResampledOnset>| match r {
+            Some(r) => format!("{:.3} m/s", r.standard_deviation_m_s),
+            None => "none (no draw has an onset)".to_owned(),
         };
         let interval = match self.coefficients.known_bias() {
             Some(bias) => format!("no 95 % interval, since {bias}"),
@@ -263,7 +261,7 @@ impl ModelUncertainty {
         };
         Some(format!(
             "onset {:.3} m/s, {interval}; standard error of the scatter by sensitivities \
-             {:.3}, by block bootstrap {}, by drawn coefficients {} m/s",
+             {:.3} m/s, by block bootstrap {}, by drawn coefficients {}",
             onset.speed_m_s,
             onset.standard_error_m_s,
             other(&self.block_bootstrap),

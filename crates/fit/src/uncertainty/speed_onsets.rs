@@ -18,7 +18,7 @@ const POINTS: usize = 16;
 const HALF: f64 = 0.5;
 
 /// Onsets that are nearer to each other than this part of one do not contradict each other, however little their blocks scatter.
-const SAME_ONSET: f64 = 1e-4;
+const AGREEING: f64 = 1e-4;
 
 /// Onset by the tests at one mean speed, with the poles of the fit to all of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -109,8 +109,7 @@ pub fn speed_onsets_by(
             reason,
         });
     }
-    let apart =
-        |a: &OnsetError, b: &OnsetError| (a.speed_m_s / b.speed_m_s - 1.0).abs() > SAME_ONSET;
+    let apart = |a: &OnsetError, b: &OnsetError| (a.speed_m_s / b.speed_m_s - 1.0).abs() > AGREEING;
     let pairs = alone
         .iter()
         .enumerate()

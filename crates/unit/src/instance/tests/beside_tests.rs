@@ -1,7 +1,9 @@
 //! What was not tested is not called tested or stable, and each run is told so.
 
 use super::{Exported, fixture, index, instance};
+use crate::aeroelastic::CoupledSection;
 use crate::instance::Instance;
+use crate::instance::section::OnsetCard;
 use crate::onset_bounds::OnsetBounds;
 use crate::resources::{OptionFiles, Resources};
 use crate::section::Dof;
@@ -79,6 +81,29 @@ fn a_motion_that_leaves_the_tests_is_not_stable() {
         });
         assert_eq!(told, [true, false, false], "{kind}");
     }
+}
+
+/// Below the lowest speed of a sampled model nothing is known of the way to an onset there.
+#[test]
+fn an_onset_below_the_lowest_speed_of_a_sampled_model_is_told() {
+    let json = fixture("discrete_laguerre");
+    let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
+    let structure = model.section.structure().unwrap();
+    let section = CoupledSection::with_model(&structure, &model.model).unwrap();
+    let mut card = OnsetCard::nothing_found(0.1, Vec::new());
+    card.numbers.stable_below = true;
+    card.look_beside_tests(&section, Some(model.tested_range));
+    assert!(!card.numbers.stable_below);
+    let [said] = &card.warnings[..] else {
+        panic!("{:?}", card.warnings);
+    };
+    assert!(
+        said.starts_with("the onset lies at or below ")
+            && said.ends_with(
+                "m/s, the lowest wind speed at which the sampled model knows its forces"
+            ),
+        "{said}"
+    );
 }
 
 /// Another run has another log: what must be known of the onset stands in each, once.
