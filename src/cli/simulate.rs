@@ -4,8 +4,9 @@ use super::answer::Answer;
 use super::common::{folder_of, motion_columns, warn};
 use super::output::{OutputDir, list};
 use super::{figures, stages};
-use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, counted, ensure, positive};
+use crate::aeroelastic::{CoupledSection, CoupledSystem};
+use crate::error::{Error, Result, counted, ensure, non_negative, positive};
+use crate::flutter::aliased_below;
 use crate::plausibility::{of_trained, sentences};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
@@ -60,10 +61,18 @@ struct ModeSummary {
 /// Growth of a real pole below this part of the fastest one is rounding.
 const STATIC_GROWTH: f64 = 1e-9;
 
-/// The modes that vibrate, and static divergence as one of frequency 0; the least damped first.
+/// Wind speed, m/s, that no double tells from still air beside any structure.
+const NO_WIND: f64 = 1e-100;
+
+/// The modes that vibrate, and static divergence as one of frequency 0; the least damped first. Without wind, and in one so slow that a
+/// sample of the forces lasts half a period, they are those of the structure alone.
 fn modes(model: &TrainedModel, speed: f64) -> Result<Vec<ModeSummary>> {
     let section = section_of(model)?;
-    let all = section.at(speed)?.damp()?;
+    let system = match speed <= aliased_below(&section).unwrap_or(0.0).max(NO_WIND) {
+        true => CoupledSystem::Continuous(section.structure_alone().a),
+        false => section.at(speed)?,
+    };
+    let all = system.damp()?;
     let fastest = all.iter().map(|m| m.natural_frequency).fold(0.0, f64::max);
     let counts =
         |pole: Complex<f64>| pole.im > 0.0 || pole.im == 0.0 && pole.re > STATIC_GROWTH * fastest;
@@ -89,8 +98,7 @@ fn verdict(model: &TrainedModel, speed: f64, modes: &[ModeSummary]) -> String {
     let Some(m) = modes.first() else {
         return "  no mode vibrates at this wind speed\n".to_owned();
     };
-    let growth = m.growth_rate_per_s;
-    let (hertz, percent) = (m.frequency_hz, 100.0 * m.damping_ratio);
+    let (growth, hertz, percent) = (m.growth_rate_per_s, m.frequency_hz, 100.0 * m.damping_ratio);
     let damped = format!(
         "least damped mode {hertz:.4} Hz, growth {growth:+.4} 1/s, damping ratio {percent:+.3} %"
     );
@@ -101,6 +109,9 @@ fn verdict(model: &TrainedModel, speed: f64, modes: &[ModeSummary]) -> String {
         (true, true) => format!("  the motion GROWS: {damped}\n"),
         (true, false) => format!("  the motion dies down: {damped}\n"),
     };
+    if speed == 0.0 {
+        return text + "  no wind: the structure alone\n";
+    }
     let tested = &model.tested_range;
     for mode in modes.iter().filter(|mode| !mode.in_tested_range) {
         let k = ReducedFrequency::from_hertz(mode.frequency_hz, model.section.width_m, speed);
@@ -133,12 +144,9 @@ impl SimulateArgs {
                 }
             });
         }
-        ensure(
-            stop / step <= MAX_STEPS,
-            "--step",
-            format_args!("at most {MAX_STEPS:.0e} steps"),
-            format_args!("{:.1e}", stop / step),
-        )?;
+        let (steps, expected) = (stop / step, format!("at most {MAX_STEPS:.0e} steps"));
+        let found = format_args!("{steps:.1e}");
+        ensure(steps <= MAX_STEPS, "--step", expected, found)?;
         Ok((stop, step))
     }
 }
@@ -147,7 +155,7 @@ impl SimulateArgs {
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let e = &model.experiment;
-    let speed = positive("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
+    let speed = non_negative("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
     let (stop, step) = args.stop_and_step(e)?;
     let findings = of_trained(&model.section, &model);
     warn(&args.model, &sentences(&findings));
@@ -167,13 +175,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
         time_history_figure(&title, &panels, "Time t (s)")
     })?;
     let written = out.commit()?;
+    let early = failed.iter().map(|why| format!("  ENDS EARLY: {why}\n"));
     let text = format!(
         "{title}: {} of {step} s\n{}{}{}",
         counted(rows.len() - 1, "step"),
-        failed
-            .iter()
-            .map(|why| format!("  ENDS EARLY: {why}\n"))
-            .collect::<String>(),
+        early.collect::<String>(),
         verdict(&model, speed, &modes),
         list(&written)
     );

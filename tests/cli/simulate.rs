@@ -41,6 +41,26 @@ fn a_simulation_says_whether_the_motion_grows() {
         let outside = said.contains("OUTSIDE the tested range, K = ωB/V 0.");
         assert_eq!(outside, !tested, "{said}");
     }
+    // without wind the structure moves by itself, whatever the model; less than none is refused
+    let sampled = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/models/discrete_laguerre.json"
+    );
+    fs::copy(sampled, at.join("sampled.json")).unwrap();
+    for speed in ["0", "1e-300", "1e-9"] {
+        for model in ["d/model.json", "sampled.json"] {
+            let (code, json, error) = run(model, &[speed, "--json"]);
+            assert_eq!(code, 0, "{error}");
+            let found: Value = serde_json::from_str(&json).unwrap();
+            let damping = found["modes"][0]["damping_ratio"].as_f64().unwrap();
+            assert!((damping - 0.003).abs() < 1e-4, "{model} {speed}: {json}");
+        }
+    }
+    let (_, said, _) = run("d/model.json", &["0"]);
+    assert!(said.contains("  no wind: the structure alone\n"), "{said}");
+    assert!(!said.contains("OUTSIDE"), "{said}");
+    let (code, _, error) = run("d/model.json", &["-1"]);
+    assert!(code == 2 && error.contains("-1"), "{error}");
     let (_, said, error) = run("wide.json", &["30", "--json"]);
     assert!(error.contains("section.width_m = 500: "), "{error}");
     let said: Value = serde_json::from_str(&said).unwrap();
