@@ -15,8 +15,9 @@ use super::output::{OutputDir, list};
 use super::result_files::{CURVES, DERIVATIVES, FIGURE, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::text::read_text;
+use crate::fmu::importer::Fmu;
 use crate::fmu::package::with_report;
 use crate::report::{PageFigure, StudyPage, rendered, sections_of, summary_figure};
 use crate::study::Study;
@@ -101,7 +102,7 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     let fmu = folder.join(FMU_FILE);
     if fmu.exists() {
         page.fmu = FMU_FILE.to_owned();
-        page.variables = variables_of(&fmu)?;
+        page.variables = variables_of(&of_this_run(&fmu, &summary)?);
     }
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
@@ -110,9 +111,8 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     page.live = sliders(&study, read(MODEL_FILE))?;
     let turbulent = read(buffeting::PAGE).filter(|_| summary.buffeting.is_some());
     let turbulent = turbulent.and_then(|bytes| String::from_utf8(bytes).ok());
-    page.taken_up = turbulent
-        .and_then(|text| sections_of(&text, buffeting::OF_STUDY))
-        .unwrap_or_default();
+    let sections = turbulent.and_then(|text| sections_of(&text, buffeting::OF_STUDY));
+    page.taken_up = sections.unwrap_or_default();
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
     let said = |name: &&str| !in_the_archive || *name != FMU_FILE;
@@ -122,6 +122,18 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     }
     page.text = study_text;
     rendered(&page)
+}
+
+/// The FMU in `path`, which holds the model of the run: the page in it is written last, so that no digest of the whole file is known.
+fn of_this_run(path: &Path, summary: &Summary) -> Result<Fmu> {
+    let fmu = Fmu::open(path)?;
+    let held = std::fs::read(fmu.folder().join("resources").join(MODEL_FILE));
+    let held = held.map_or_else(|_| "none".to_owned(), |bytes| digest(&bytes));
+    let run = summary.sha1.get(MODEL_FILE).unwrap_or(&held);
+    let expected = format!("the FMU of the run, with its model (SHA-1 {run}), or `study` again");
+    let found = format_args!("another one (SHA-1 of its model: {held})");
+    ensure(*run == held, path.display().to_string(), expected, found)?;
+    Ok(fmu)
 }
 
 /// SHA-1 of those files in a folder of results that its page takes up, by name. The FMU is none of them: it is closed with the page in it.
@@ -159,13 +171,10 @@ fn study_of(folder: &Path, summary: &Summary) -> Result<String> {
     let Ok(text) = read_text(&folder.join(name)) else {
         return Ok(ran.clone());
     };
+    let [run, now] = [ran, &text].map(|text| digest(text.as_bytes()));
     match computed_from(&text) == computed_from(ran) {
         true => Ok(text),
-        false => Err(refused(
-            name,
-            &digest(ran.as_bytes()),
-            &digest(text.as_bytes()),
-        )),
+        false => Err(refused(name, &run, &now)),
     }
 }
 

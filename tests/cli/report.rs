@@ -378,6 +378,9 @@ fn a_study_that_was_changed_since_the_run_has_no_report() {
     succeeds(at, &["report", "d"]);
     let page = fs::read_to_string(at.join("d/report.html")).unwrap();
     assert!(page.contains("Strait crossing"));
+    let softer = "section.torsion.frequency_hz=4.4";
+    let run = format!("study d/study.toml --no-figures --out o --set {softer}");
+    succeeds(at, &run.split(' ').collect::<Vec<_>>());
     let wider = study.replace("width_m = 0.5", "width_m = 5.0");
     assert_ne!(wider, study);
     fs::write(at.join("d/study.toml"), wider).unwrap();
@@ -389,6 +392,16 @@ fn a_study_that_was_changed_since_the_run_has_no_report() {
     refused(at, &["report", "d"], &says);
     fs::remove_file(at.join("d/study.toml")).unwrap();
     succeeds(at, &["report", "d"]);
+    // the FMU of another study in the place of its own
+    let [own, other] = ["d", "o"].map(|folder| at.join(folder).join("deck_section.fmu"));
+    let kept = fs::read(&own).unwrap();
+    fs::copy(other, &own).unwrap();
+    refused(
+        at,
+        &["report", "d"],
+        &["deck_section.fmu", "the FMU of the run"],
+    );
+    fs::write(own, kept).unwrap();
     let model = fs::read_to_string(at.join("d/model.json")).unwrap();
     fs::write(at.join("d/model.json"), model + " ").unwrap();
     refused(at, &["report", "d"], &["model.json", says[2]]);

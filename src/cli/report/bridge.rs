@@ -11,6 +11,7 @@ use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
 use crate::flutter::ModeShare;
+use crate::fmu::importer::Fmu;
 use crate::report::{
     PageCurve, PageFigure, PageSection, StudyPage, rendered, sections_of, summary_figure,
 };
@@ -76,18 +77,13 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
     page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
     if read(BRIDGE_FMU).is_some() {
         page.fmu = BRIDGE_FMU.to_owned();
-        page.variables = variables_of(&folder.join(BRIDGE_FMU))?;
+        page.variables = variables_of(&Fmu::open(folder.join(BRIDGE_FMU))?);
     }
-    page.hashes.push((
-        "bridge file".to_owned(),
-        digest(facts.bridge_file.as_bytes()),
-    ));
-    page.hashes.extend(
-        facts
-            .inputs
-            .iter()
-            .map(|i| (i.name.clone(), i.sha1.clone())),
-    );
+    let own = digest(facts.bridge_file.as_bytes());
+    page.hashes.push(("bridge file".to_owned(), own));
+    let inputs = facts.inputs.iter();
+    page.hashes
+        .extend(inputs.map(|i| (i.name.clone(), i.sha1.clone())));
     let fmu = (!in_the_archive).then_some(BRIDGE_FMU);
     for name in fmu.into_iter().chain([CURVES]) {
         page.hashes

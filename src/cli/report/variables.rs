@@ -1,19 +1,13 @@
 //! The variables of an FMU, as its own description names them.
 
-use crate::error::Result;
 use crate::fmu::importer::{Causality, Fmu, ScalarVariable};
 use std::collections::HashMap;
-use std::path::Path;
 
 /// Members of an array that stand in rows of their own.
 const SINGLE: usize = 3;
 
-/// Name, causality, unit and meaning of each variable of the FMU in `path`; of a long array one row.
-///
-/// # Errors
-/// Those of [`Fmu::open`].
-pub(super) fn variables_of(path: &Path) -> Result<Vec<[String; 4]>> {
-    let fmu = Fmu::open(path)?;
+/// Name, causality, unit and meaning of each variable of an FMU; of a long array one row.
+pub(super) fn variables_of(fmu: &Fmu) -> Vec<[String; 4]> {
     let description = fmu.model_description();
     let types = description.types_by_name();
     let variables = &description.variables;
@@ -37,7 +31,7 @@ pub(super) fn variables_of(path: &Path) -> Result<Vec<[String; 4]>> {
         let unit = unit.unwrap_or_else(|| "–".to_owned());
         Some([name, causality(v.causality).to_owned(), unit, meaning])
     });
-    Ok(rows.collect())
+    rows.collect()
 }
 
 /// The words with which both texts begin.
