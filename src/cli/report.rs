@@ -15,11 +15,12 @@ use super::output::{OutputDir, list};
 use super::result_files::{CURVES, DERIVATIVES, FIGURE, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
-use crate::error::{Error, Result, ensure};
+use crate::error::{Error, Result};
 use crate::files::text::read_text;
 use crate::fmu::importer::Fmu;
 use crate::fmu::package::with_report;
 use crate::report::{PageFigure, StudyPage, rendered, sections_of, summary_figure};
+use crate::selection::Recommendation;
 use crate::study::Study;
 use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row, sliders};
@@ -99,10 +100,17 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     let mut page = of_summary(&summary, &study);
     page.figures = figures(&|name| std::fs::read_to_string(folder.join(name)).ok());
     page.derivatives = first_derivatives(&mut page.figures);
-    let fmu = folder.join(FMU_FILE);
-    if fmu.exists() {
-        page.fmu = FMU_FILE.to_owned();
-        page.variables = variables_of(&of_this_run(&fmu, &summary)?);
+    let path = folder.join(FMU_FILE);
+    let fmu = path.exists().then(|| Fmu::open(&path)).transpose()?;
+    match &fmu {
+        Some(fmu) if is_of_this_run(fmu, &summary) => {
+            page.fmu = FMU_FILE.to_owned();
+            page.variables = variables_of(fmu);
+        }
+        Some(_) => page.whose.push_str(
+            " The FMU beside this page is another one, with another model, and no part of it.",
+        ),
+        None => {}
     }
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
@@ -115,7 +123,8 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     page.taken_up = sections.unwrap_or_default();
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
-    let said = |name: &&str| !in_the_archive || *name != FMU_FILE;
+    let is_said = !in_the_archive && !page.fmu.is_empty();
+    let said = |name: &&str| is_said || *name != FMU_FILE;
     for name in [MODEL_FILE, FMU_FILE, CURVES].into_iter().filter(said) {
         let hash = read(name).map(|bytes| (name.to_owned(), digest(&bytes)));
         page.hashes.extend(hash);
@@ -124,16 +133,11 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     rendered(&page)
 }
 
-/// The FMU in `path`, which holds the model of the run: the page in it is written last, so that no digest of the whole file is known.
-fn of_this_run(path: &Path, summary: &Summary) -> Result<Fmu> {
-    let fmu = Fmu::open(path)?;
+/// Whether an FMU holds the model of the run: the page in it is written last, so that no digest of the whole file is known.
+fn is_of_this_run(fmu: &Fmu, summary: &Summary) -> bool {
     let held = std::fs::read(fmu.folder().join("resources").join(MODEL_FILE));
-    let held = held.map_or_else(|_| "none".to_owned(), |bytes| digest(&bytes));
-    let run = summary.sha1.get(MODEL_FILE).unwrap_or(&held);
-    let expected = format!("the FMU of the run, with its model (SHA-1 {run}), or `study` again");
-    let found = format_args!("another one (SHA-1 of its model: {held})");
-    ensure(*run == held, path.display().to_string(), expected, found)?;
-    Ok(fmu)
+    let held = held.map_or_else(|_| String::new(), |bytes| digest(&bytes));
+    summary.sha1.get(MODEL_FILE).is_none_or(|run| *run == held)
 }
 
 /// SHA-1 of those files in a folder of results that its page takes up, by name. The FMU is none of them: it is closed with the page in it.
@@ -188,6 +192,8 @@ fn computed_from(text: &str) -> Option<toml::Table> {
 fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
     let (verdict, found) = (&summary.verdict, &summary.results);
     let own = own_onset(found, &summary.model);
+    let selected = summary.selection.as_ref();
+    let beside_table = selected.and_then(Recommendation::beside_table);
     let all = found.onsets.iter().chain(&found.undetermined);
     let unstable = found.unstable.iter();
     let unstable = unstable.map(|s| sentence_row(&s.at.model, s.at.method.name(), s.explain()));
@@ -203,9 +209,10 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
         verdict: verdict.clone(),
         card: own.map_or(vec![], card),
         whose: format!(
-            "The answer is that of the model “{}”{}; the other models and routes stand below for comparison.",
+            "The answer is that of the model “{}”{}; the other models and routes stand below for comparison.{}",
             summary.model,
-            summary.fmu().map_or("", |_| ", which the FMU holds")
+            summary.fmu().map_or("", |_| ", which the FMU holds"),
+            beside_table.map_or(String::new(), |said| format!(" {said}"))
         ),
         asked: asked(summary, study),
         onsets: all.map(row).chain(unstable).chain(stable).collect(),

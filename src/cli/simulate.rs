@@ -102,15 +102,23 @@ fn verdict(model: &TrainedModel, speed: f64, modes: &[ModeSummary]) -> String {
     let damped = format!(
         "least damped mode {hertz:.4} Hz, growth {growth:+.4} 1/s, damping ratio {percent:+.3} %"
     );
+    let rounding = growth.abs() <= STATIC_GROWTH * hertz;
     let mut text = match (hertz > 0.0, growth > 0.0) {
+        (true, _) if rounding => {
+            format!("  the motion neither grows nor dies down: {damped}\n")
+        }
         (false, _) => format!(
             "  the motion GROWS without oscillating (static divergence): growth {growth:+.4} 1/s\n"
         ),
         (true, true) => format!("  the motion GROWS: {damped}\n"),
         (true, false) => format!("  the motion dies down: {damped}\n"),
     };
-    if speed == 0.0 {
-        return text + "  no wind: the structure alone\n";
+    if speed <= NO_WIND {
+        return text + "  no wind: the structure, and the air that moves with it\n";
+    }
+    let aliased = section_of(model).and_then(|section| aliased_below(&section));
+    if aliased.is_ok_and(|below| speed <= below) {
+        text += "  a sample of the forces lasts half a period or more: the modes are those of the structure\n";
     }
     let tested = &model.tested_range;
     for mode in modes.iter().filter(|mode| !mode.in_tested_range) {
@@ -155,7 +163,9 @@ impl SimulateArgs {
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let e = &model.experiment;
-    let speed = non_negative("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
+    let speed = args.wind_speed.unwrap_or(e.wind_speed_m_s);
+    // -0 is 0
+    let speed = non_negative("--wind-speed", speed)? + 0.0;
     let (stop, step) = args.stop_and_step(e)?;
     let findings = of_trained(&model.section, &model);
     warn(&args.model, &sentences(&findings));

@@ -90,7 +90,7 @@ fn beside(recommended: &Value) -> String {
     let side = if percent < 0.0 { "below" } else { "above" };
     let percent = percent.abs();
     format!(
-        "The table by itself has its onset at {table:.3} m/s, the recommended model {percent:.1} % {side} it, at {own:.3} m/s"
+        "The table by itself has its onset at {table:.2} m/s, the recommended model {percent:.1} % {side} it, at {own:.2} m/s"
     )
 }
 
@@ -108,6 +108,8 @@ fn a_study_chooses_its_own_model() {
     assert!((36.0..37.7).contains(&speed), "{speed}");
     let said = beside(&summary["selection"]);
     assert!(flowing(&text).contains(&said), "{said}\n{text}");
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains(&said), "{said}");
     // the stages one by one give the same
     let at = folder.path();
     let stage = |name| {

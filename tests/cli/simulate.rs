@@ -57,7 +57,20 @@ fn a_simulation_says_whether_the_motion_grows() {
         }
     }
     let (_, said, _) = run("d/model.json", &["0"]);
-    assert!(said.contains("  no wind: the structure alone\n"), "{said}");
+    assert!(said.contains("  no wind: the structure, "), "{said}");
+    let (_, said, _) = run("sampled.json", &["0.2"]);
+    assert!(
+        said.contains("  a sample of the forces lasts half a period or more: "),
+        "{said}"
+    );
+    let undamped = fs::read_to_string(at.join("d/model.json")).unwrap();
+    let undamped = undamped.replace("\"damping_ratio\": 0.003", "\"damping_ratio\": 0");
+    fs::write(at.join("undamped.json"), undamped).unwrap();
+    let (_, said, _) = run("undamped.json", &["0"]);
+    assert!(
+        said.contains("  the motion neither grows nor dies down: "),
+        "{said}"
+    );
     assert!(!said.contains("OUTSIDE"), "{said}");
     let (code, _, error) = run("d/model.json", &["-1"]);
     assert!(code == 2 && error.contains("-1"), "{error}");

@@ -1,7 +1,7 @@
 //! A selection in words and figures.
 
 use crate::cli::text_table::TextTable;
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::report::{Figure, HeatMap, heat_map_figure};
 use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
 use crate::study::Study;
@@ -27,11 +27,9 @@ pub(crate) fn text(selection: &Selection, metrics: &[MetricGrid]) -> String {
     for grid in metrics {
         let mut problems = grid.cells.iter().flatten().flat_map(|m| &m.problem);
         if let Some(problem) = problems.next() {
-            let (force, count) = (grid.force.name(), 1 + problems.count());
-            let _ = writeln!(
-                text,
-                "no M_phi of the {force} force in {count} cells: {problem}"
-            );
+            let cells = counted(1 + problems.count(), "cell");
+            let force = grid.force.name();
+            let _ = writeln!(text, "no M_phi of the {force} force in {cells}: {problem}");
         }
     }
     text

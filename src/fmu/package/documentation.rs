@@ -162,6 +162,9 @@ fn groups<'a>(rows: &[Row<'a>], version: FmiVersion) -> Vec<Group<'a>> {
     let tunable =
         "A change holds from the next communication step on and updates the calculated parameters.";
     let calculated = "From the current parameters; available from the initialisation mode on.";
+    let changed = "Parameters that may be changed while running";
+    let kept = "Parameters that are fixed once initialised";
+    let computed = "Calculated parameters";
     vec![
         group("Inputs", inputs, "input", ""),
         group("Outputs", "At the communication points.", "output", ""),
@@ -171,24 +174,9 @@ fn groups<'a>(rows: &[Row<'a>], version: FmiVersion) -> Vec<Group<'a>> {
             "structuralParameter",
             "",
         ),
-        group(
-            "Parameters that may be changed while running",
-            tunable,
-            "parameter",
-            "tunable",
-        ),
-        group(
-            "Parameters that are fixed once initialised",
-            "",
-            "parameter",
-            "fixed",
-        ),
-        group(
-            "Calculated parameters",
-            calculated,
-            "calculatedParameter",
-            "",
-        ),
+        group(changed, tunable, "parameter", "tunable"),
+        group(kept, "", "parameter", "fixed"),
+        group(computed, calculated, "calculatedParameter", ""),
         group("States and their rates", "", "local", "continuous"),
         group("Constants", "", "local", "constant"),
         group("Time", "", "independent", ""),

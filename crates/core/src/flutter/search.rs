@@ -185,7 +185,7 @@ pub fn left_tests(
     tested: ReducedFrequencyRange,
 ) -> Result<Option<String>> {
     let lowest = lowest_speed(section)?;
-    if search.speed_max_m_s <= lowest {
+    if lowest > 0.0 && search.speed_max_m_s <= lowest {
         return Ok(Some(format!(
             "the onset lies at or below {lowest:.3} m/s, the lowest wind speed at which the sampled model knows its forces"
         )));

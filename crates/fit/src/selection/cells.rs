@@ -146,9 +146,9 @@ pub struct Recommendation {
     pub onset_m_s: Option<f64>,
     /// Least and greatest onset of the models within one standard error of the least error, m/s; `None` where none of them flutters.
     pub onsets_within_m_s: Option<[f64; 2]>,
-    /// Onset of the table of the deck by itself, m/s; `None` where not both have one.
+    /// Onset of the table of the deck by itself, m/s; `None` where it has none.
     pub table_onset_m_s: Option<f64>,
-    /// How far the onset of the model lies above it, percent.
+    /// How far the onset of the model lies above it, percent; `None` where not both have one.
     pub above_table_percent: Option<f64>,
 }
 
@@ -162,9 +162,9 @@ impl Selection {
     /// Takes the onset of the table by itself, m/s, beside that of the recommended model; a table that has none says nothing of models.
     pub fn put_beside(&mut self, table_m_s: f64) {
         if let Some(found) = &mut self.recommended {
+            found.table_onset_m_s = Some(table_m_s);
             let percent = found.onset_m_s.map(|own| 100.0 * (own / table_m_s - 1.0));
-            (found.table_onset_m_s, found.above_table_percent) =
-                (percent.map(|_| table_m_s), percent);
+            found.above_table_percent = percent;
             self.reason
                 .extend(found.beside_table().map(|said| format!(" {said}")));
         }
@@ -174,16 +174,20 @@ impl Selection {
 impl Recommendation {
     /// What the onset of the table by itself says of that of the model.
     pub fn beside_table(&self) -> Option<String> {
-        let (own, percent) = (self.table_onset_m_s?, self.above_table_percent?);
+        let own = self.table_onset_m_s?;
+        let (Some(percent), Some(model)) = (self.above_table_percent, self.onset_m_s) else {
+            return Some(format!(
+                "The table by itself has its onset at {own:.2} m/s, the recommended model none: the recommendation is doubtful."
+            ));
+        };
         let doubt = match percent.abs() <= LIKE_TABLE {
             true => "",
             false => ": the recommendation is doubtful",
         };
         let side = if percent < 0.0 { "below" } else { "above" };
         Some(format!(
-            "The table by itself has its onset at {own:.3} m/s, the recommended model {:.1} % {side} it, at {:.3} m/s{doubt}.",
-            percent.abs(),
-            self.onset_m_s?
+            "The table by itself has its onset at {own:.2} m/s, the recommended model {:.1} % {side} it, at {model:.2} m/s{doubt}.",
+            percent.abs()
         ))
     }
 }
@@ -345,7 +349,7 @@ mod tests {
         };
         let chosen = |simple: Option<f64>, best: Option<f64>| {
             let cells = vec![cell(1, 0.3, simple), cell(2, 0.2, best)];
-            let selection = Selection {
+            let mut selection = Selection {
                 symbol: "p".into(),
                 values: vec![0.5],
                 filters_max: 2,
@@ -355,12 +359,14 @@ mod tests {
                 recommended: None,
                 reason: String::new(),
             };
-            let (recommended, reason) = recommend(&selection);
+            (selection.recommended, selection.reason) = recommend(&selection);
+            selection.put_beside(37.0);
             if simple.is_none() && best.is_none() {
-                let said = "20.00 % with L = 2, p = 0.500) and that, like the best, have no onset.";
-                assert!(reason.contains(said), "{reason}");
+                let said = "20.00 % with L = 2, p = 0.500) and that, like the best, have no onset. The table by itself has its onset at 37.00 m/s, the \
+                            recommended model none: the recommendation is doubtful.";
+                assert!(selection.reason.contains(said), "{}", selection.reason);
             }
-            recommended.unwrap().filters
+            selection.recommended.unwrap().filters
         };
         assert_eq!(chosen(Some(37.3), Some(37.0)), 1);
         assert_eq!(chosen(Some(37.7), Some(37.0)), 2);

@@ -74,7 +74,7 @@ pub fn robust_deviation(values: &[f64]) -> f64 {
 /// Refuses samples of a channel that are no finite numbers; `before` so many samples precede these.
 ///
 /// # Errors
-/// [`Error::Input`](crate::Error::Input) at the first of them.
+/// [`Error::Input`](crate::error::Error::Input) at the first of them.
 pub fn check_finite(channel: &str, before: usize, samples: &[f64]) -> Result<()> {
     match samples.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
@@ -139,7 +139,7 @@ const CLIPPED_PART: f64 = 0.005;
 /// First sample and number of samples of every stretch in which a channel stands at its limit; `before` so many samples precede these.
 ///
 /// # Errors
-/// [`Error::Input`](crate::Error::Input) at the channel for more than a short while.
+/// [`Error::Input`](crate::error::Error::Input) at the channel for more than a short while.
 pub fn check_clipping(
     channel: &str,
     before: usize,

@@ -140,13 +140,8 @@ pub fn write_points(
     writeln!(out, "{}", CSV_COLUMNS.join(","))?;
     for (derivative, of_one) in points {
         for (i, p) in of_one.iter().enumerate() {
-            write_row(
-                out,
-                derivative.name(),
-                i,
-                p.mean_speed_m_s,
-                [p.v_hat, p.value],
-            )?;
+            let (at, speed) = ([p.v_hat, p.value], p.mean_speed_m_s);
+            write_row(out, derivative.name(), i, speed, at)?;
         }
     }
     Ok(())
@@ -164,13 +159,8 @@ pub fn write_csv_in(
     writeln!(out, "{}", columns.join(","))?;
     for derivative in convention.express(table).derivatives {
         for (i, p) in derivative.points.iter().enumerate() {
-            write_row(
-                out,
-                derivative.name,
-                i,
-                p.mean_speed_m_s,
-                [p.argument, p.value],
-            )?;
+            let (at, speed) = ([p.argument, p.value], p.mean_speed_m_s);
+            write_row(out, derivative.name, i, speed, at)?;
         }
     }
     Ok(())
