@@ -75,12 +75,8 @@ pub fn quasi_pk_mode(
 ) -> Result<Complex<f64>> {
     positive("wind speed", speed_m_s)?;
     let n = structure.dofs.len();
-    ensure(
-        dof < n,
-        "degree of freedom",
-        format_args!("an index below {n}"),
-        dof,
-    )?;
+    let expected = format_args!("an index below {n}");
+    ensure(dof < n, "degree of freedom", expected, dof)?;
     let speeds: Vec<f64> = (1..=STEPS_TO_MODE)
         .map(|i| speed_m_s * i as f64 / STEPS_TO_MODE as f64)
         .collect();

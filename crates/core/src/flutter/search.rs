@@ -6,6 +6,7 @@ use super::judged::{Exit, JudgedSpeeds, MovedOnset, damps_fast_motion};
 use super::scan::Scan;
 use super::still_air::lowest_speed;
 use super::tracking::Tracker;
+use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure, positive};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -184,8 +185,10 @@ pub fn left_tests(
     search: &OnsetSearch,
     tested: ReducedFrequencyRange,
 ) -> Result<Option<String>> {
-    let lowest = lowest_speed(section)?;
-    if lowest > 0.0 && search.speed_max_m_s <= lowest {
+    if let Realization::Discrete(_) = section.aerodynamics()
+        && let lowest = lowest_speed(section)?
+        && search.speed_max_m_s <= lowest
+    {
         return Ok(Some(format!(
             "the onset lies at or below {lowest:.3} m/s, the lowest wind speed at which the sampled model knows its forces"
         )));

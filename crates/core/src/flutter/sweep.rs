@@ -146,12 +146,8 @@ impl OnsetSweep {
     /// [`Error::Input`](crate::error::Error::Input) for a section that cannot be and coefficients of another number.
     pub fn onset(&self, section: &SectionModel, coefficients: &[f64]) -> Result<SweepOutcome> {
         let (expected, found) = (self.forces.coefficients().len(), coefficients.len());
-        ensure(
-            found == expected,
-            "coefficients of the force model",
-            expected,
-            found,
-        )?;
+        let what = "coefficients of the force model";
+        ensure(found == expected, what, expected, found)?;
         Ok(match self.forces.dofs.len() {
             2 => Sweep::<2>::new(self, supports(section)?, coefficients).run(),
             _ => Sweep::<3>::new(self, supports(section)?, coefficients).run(),
