@@ -40,12 +40,8 @@ pub(crate) struct MonteCarloArgs {
 pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> {
     if let Some(samples) = args.samples {
         let expected = format_args!("a number from 1 to {MAX_SAMPLES:e}");
-        ensure(
-            (1..=MAX_SAMPLES).contains(&samples),
-            "--samples",
-            expected,
-            samples,
-        )?;
+        let within = (1..=MAX_SAMPLES).contains(&samples);
+        ensure(within, "--samples", expected, samples)?;
     }
     let plan_text = read_text(&args.plan)?;
     let folder = args.plan.parent().unwrap_or(Path::new(""));

@@ -64,11 +64,16 @@ const STATIC_GROWTH: f64 = 1e-9;
 /// Wind speed, m/s, that no double tells from still air beside any structure.
 const NO_WIND: f64 = 1e-100;
 
-/// The modes that vibrate, and static divergence as one of frequency 0; the least damped first. Without wind, and in one so slow that a
-/// sample of the forces lasts half a period, they are those of the structure alone.
+/// Whether no force of the wind can be told in modes: without wind, and in one so slow that a sample of the forces lasts half a period.
+fn is_still(section: &CoupledSection, speed: f64) -> bool {
+    speed <= aliased_below(section).unwrap_or(0.0).max(NO_WIND)
+}
+
+/// The modes that vibrate, and static divergence as one of frequency 0; the least damped first. In still air they are those of the
+/// structure alone.
 fn modes(model: &TrainedModel, speed: f64) -> Result<Vec<ModeSummary>> {
     let section = section_of(model)?;
-    let system = match speed <= aliased_below(&section).unwrap_or(0.0).max(NO_WIND) {
+    let system = match is_still(&section, speed) {
         true => CoupledSystem::Continuous(section.structure_alone().a),
         false => section.at(speed)?,
     };
@@ -116,8 +121,7 @@ fn verdict(model: &TrainedModel, speed: f64, modes: &[ModeSummary]) -> String {
     if speed <= NO_WIND {
         return text + "  no wind: the structure, and the air that moves with it\n";
     }
-    let aliased = section_of(model).and_then(|section| aliased_below(&section));
-    if aliased.is_ok_and(|below| speed <= below) {
+    if section_of(model).is_ok_and(|section| is_still(&section, speed)) {
         text += "  a sample of the forces lasts half a period or more: the modes are those of the structure\n";
     }
     let tested = &model.tested_range;

@@ -129,8 +129,8 @@ fn the_house_does_not_grow() {
     let (found, whole) = (figures(), of_every_file());
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 87_712),
-        ("code lines of the core", core, 15_196),
+        ("code lines", found.line_count(), 87_708),
+        ("code lines of the core", core, 15_194),
         ("types", found.type_count(), 910),
         ("names of several types", found.names_used_twice(), 0),
         (

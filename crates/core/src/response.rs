@@ -213,12 +213,17 @@ impl Stepper {
         let gusts = self.gusts_act(state, inputs);
         let same_wind = state.last_wind_m_s.is_none_or(|last| last == wind);
         let steady = wind_rate == 0.0 && self.next.len() <= STATES_OF_A_MATRIX;
-        let series = &self.series;
-        let parts = series.parts(wind + wind_rate.abs() * step_s, step_s, gusts);
+        let alike = steady && same_wind && !gusts;
+        let fastest = wind + wind_rate.abs() * step_s;
+        // a matrix that is kept has none
+        let parts = match alike {
+            true => 1.0,
+            false => self.series.parts(fastest, step_s, gusts),
+        };
         let too_many = parts.is_nan() || parts > MAX_SUBSTEPS;
-        let is_worth_a_matrix = same_wind || parts.is_nan() || parts > PARTS_OF_A_MATRIX;
+        let is_long = parts.is_nan() || parts > PARTS_OF_A_MATRIX;
         match &self.series.gusts {
-            _ if steady && !gusts && is_worth_a_matrix => {
+            _ if alike || steady && !gusts && is_long => {
                 self.advance_by_matrix(state, inputs, step_s)?;
             }
             Some(of) if of.on_section && steady && same_wind && parts > 1.0 && !too_many => {

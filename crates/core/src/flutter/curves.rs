@@ -157,12 +157,9 @@ pub fn trace_modes_watched(
     let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
         watch();
-        ensure(
-            non_negative("wind speeds", speed)? >= last,
-            "wind speeds",
-            "increasing numbers",
-            format_args!("{speed} after {last}"),
-        )?;
+        let grows = non_negative("wind speeds", speed)? >= last;
+        let found = format_args!("{speed} after {last}");
+        ensure(grows, "wind speeds", "increasing numbers", found)?;
         last = speed;
         if speed < modes.speed {
             // below the first speed at which the sampled system resolves the modes nothing can be said

@@ -35,12 +35,9 @@ pub fn pk_curves(
 ) -> Result<FlutterCurves> {
     let mut last = 0.0;
     for &speed in speeds_m_s {
-        ensure(
-            positive("wind speeds", speed)? > last,
-            "wind speeds",
-            "increasing numbers above zero",
-            format_args!("{speed} after {last}"),
-        )?;
+        let grows = positive("wind speeds", speed)? > last;
+        let found = format_args!("{speed} after {last}");
+        ensure(grows, "wind speeds", "increasing numbers above zero", found)?;
         last = speed;
     }
     let iteration = StructureInWind::new(structure, model)?;

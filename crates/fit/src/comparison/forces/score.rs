@@ -226,16 +226,16 @@ impl ModelOnRecord<'_> {
             for segment in &h.segments {
                 let ramp_s = self.deck.plan.ramp_s;
                 let window = options.scoring.window(record, segment, ramp_s)?;
-                let metrics = options.scoring.metrics(
-                    &record.force[i][window.clone()],
-                    &predicted[i][window],
-                    h.sampling_hz,
-                    segment.frequency_hz,
-                )?;
+                let frequency_hz = segment.frequency_hz;
+                let [measured, predicted] = [&record.force[i], &predicted[i]];
+                let (measured, predicted) = (&measured[window.clone()], &predicted[window]);
+                let scoring = &options.scoring;
+                let metrics = scoring.metrics(measured, predicted, h.sampling_hz, frequency_hz);
+                let which = || format!("{}, {} force, {frequency_hz} Hz", case.deck, force.name());
                 scores.push(Score {
                     case: case.clone(),
-                    frequency_hz: segment.frequency_hz,
-                    metrics,
+                    frequency_hz,
+                    metrics: metrics.map_err(|e| e.within(which()))?,
                 });
             }
         }
