@@ -111,7 +111,6 @@ fn files_are_short() {
     report(&found);
 }
 
-/// Rows stand above the rows that may use them, so that the table has no cycle.
 /// A reader who looks for what tests a room finds it under the name of the room.
 #[test]
 fn tests_carry_the_names_of_rooms() {
@@ -136,6 +135,37 @@ fn tests_carry_the_names_of_rooms() {
     }
 }
 
+/// The manual's table of rooms has the modules of the rules and says of each what it may use.
+#[test]
+fn the_manual_shows_the_arrows() {
+    let page = include_str!("../../docs/architecture.md");
+    let quoted = |cell: &str| -> BTreeSet<String> {
+        let words = cell.split('`').skip(1).step_by(2);
+        words.map(str::to_owned).collect()
+    };
+    let mut shown = std::collections::BTreeMap::new();
+    let (_, table) = page.split_once("| room | question").unwrap();
+    for line in table.lines().take_while(|line| !line.is_empty()) {
+        let cells: Vec<&str> = line.split('|').collect();
+        for room in quoted(cells[1]) {
+            shown.insert(room, cells[3].trim());
+        }
+    }
+    for row in ARROWS.iter().filter(|row| !row.module.contains("::")) {
+        if ["prelude", "main"].contains(&row.module) {
+            continue;
+        }
+        let cell = shown.get(row.module);
+        let cell = cell.unwrap_or_else(|| panic!("{} is not in the manual", row.module));
+        let names = row.may_use.iter().map(|entry| entry.trim_end_matches('+'));
+        let names = names.map(|entry| entry.split("::").next().unwrap_or(entry).to_owned());
+        let may_use: BTreeSet<String> = names.collect();
+        let all = *cell == "everything above";
+        assert!(all || quoted(cell) == may_use, "{}: {cell}", row.module);
+    }
+}
+
+/// Rows stand above the rows that may use them, so that the table has no cycle.
 #[test]
 fn the_arrows_run_one_way() {
     for (i, row) in ARROWS.iter().enumerate() {
