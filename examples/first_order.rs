@@ -1,5 +1,5 @@
 //! The first-order example of section 2.5 of the thesis: trains discrete Laguerre filters on six sines, predicts a seventh,
-//! varies `α` and `L`, and writes Figures 2.6 to 2.11 as SVG and PNG.
+//! varies `α` and `L`, and writes Figures 2.6 to 2.11 as SVG.
 //!
 //! `cargo run --release --example first_order -- OUT_FOLDER`
 

@@ -77,7 +77,7 @@ const EXIT_CODES: [(u8, &str); 5] = [
     (panic_message::OWN_FAULT, "a fault of the program itself"),
 ];
 
-/// Bridge aeroelasticity from wind-tunnel data to an FMI 2.0 co-simulation FMU.
+/// Bridge aeroelasticity from wind-tunnel data to an FMU (FMI 2.0 or 3.0).
 #[derive(Parser)]
 #[command(name = "aerodeck", version, about, propagate_version = true)]
 struct Cli {

@@ -1,7 +1,7 @@
 //! Named reference cases: what is computed, what is expected and who says so, how far off it may be and why.
 //!
 //! The figures stand in `data/reference`, one file per source; here stands how each case is computed. The same list serves the
-//! tests, `aerodeck validate` and the table in the README. "Published" figures are printed in the source named; "computed" ones
+//! tests, `aerodeck validate` and the table in docs/validation.md. "Published" figures are printed in the source named; "computed" ones
 //! were obtained with NumPy and SciPy, independently of this crate. Users write cases of their own as `UserCase`.
 
 mod bridges;

@@ -1,4 +1,4 @@
-"""Bridge aeroelasticity from wind-tunnel data to a co-simulation FMU.
+"""Bridge aeroelasticity from wind-tunnel data to an FMU.
 
 Fifteen lines from a deck to its flutter onset::
 

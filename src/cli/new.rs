@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct NewArgs {
-    /// An embedded deck (see `aerodeck derivatives show --help`) or `flat plate`.
+    /// An embedded deck (LN20-5500, LN21-5200, LN21-5500, LN21-5800, LN21-6100) or `flat plate`.
     #[arg(long, default_value = "LN21-5200")]
     deck: String,
     /// A table of derivatives of your own (.xlsx, .xls, .ods, .csv).

@@ -141,7 +141,7 @@ fn interval(of: &OnsetInterval) -> String {
             standard_error_m_s,
             ..
         } => format!(
-            "95 % interval {low_m_s:.3} to {high_m_s:.3} m/s by the scatter of the tests (standard error {standard_error_m_s:.3} m/s)"
+            "95 % interval {low_m_s:.3} to {high_m_s:.3} m/s by the scatter of the tests and the form of the models (standard error {standard_error_m_s:.3} m/s)"
         ),
         OnsetInterval::Spread {
             low_m_s,

@@ -25,7 +25,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
+/// Pack a trained model (`model.json`) or a bridge as an FMU (FMI 2.0 or 3.0): with its forces, or the forces alone
 ///
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
 /// Example: aerodeck fmu export bridge.toml --bridge --nodes 1001,1156
@@ -40,7 +40,7 @@ pub(crate) struct FmuExportArgs {
     /// Pack a whole bridge: the file is a bridge file (see docs/bridge.md).
     #[arg(long)]
     bridge: bool,
-    /// Nodes of a bridge with inputs and outputs; left out, mid-span and both quarter points.
+    /// Nodes of a bridge with inputs and outputs; left out, mid-span and both quarter points, of the structure alone all.
     #[arg(long, value_delimiter = ',', requires = "bridge")]
     nodes: Vec<String>,
     /// What is packed: the section of the model (with --bridge the whole bridge) with its forces, or its forces alone, or with
@@ -57,7 +57,7 @@ pub(crate) struct FmuExportArgs {
     #[arg(long)]
     strip_length: Option<f64>,
     /// How far ahead of the motion a force FMU puts its forces out, in communication steps: 1.5 for an importer that
-    /// holds them over its next step, 0 for none [default: 1.5].
+    /// holds them over its next step, others in docs/coupling.md [default: 1.5].
     #[arg(long)]
     prediction: Option<f64>,
     /// List real variables only, for importers that do not accept strings, Booleans or integers.
@@ -76,7 +76,7 @@ pub(crate) struct FmuExportArgs {
     /// `static` coefficients of its sections.
     #[arg(long, value_name = "COUNT", requires = "bridge")]
     gust_strips: Option<usize>,
-    /// Turbulence that blows on a bridge and goes into its archive: a file as `bridge buffeting --field` writes it.
+    /// Turbulence that blows on a bridge and goes into its archive: a file as `bridge buffeting --field` or TurbSim (`.bts`) writes it.
     #[arg(long, value_name = "FILE", requires = "bridge")]
     turbulence: Option<PathBuf>,
     /// Admittance of the gusts [default: none].
@@ -94,7 +94,8 @@ pub(crate) struct FmuExportArgs {
     /// Copyright holder of the FMU.
     #[arg(long)]
     copyright: Option<String>,
-    /// The FMU; by default `deck_section.fmu`, `deck_force.fmu` or `bridge.fmu` beside the model.
+    /// The FMU; by default `deck_section.fmu` or `deck_force.fmu` beside the model, `bridge.fmu`, `bridge_force.fmu` or
+    /// `bridge_structure.fmu` beside the bridge file.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Replace a file that is there.
