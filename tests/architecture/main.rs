@@ -135,7 +135,7 @@ fn tests_carry_the_names_of_rooms() {
     }
 }
 
-/// The manual's table of rooms has the modules of the rules and says of each what it may use.
+/// The manual's table has the modules of the rules and says of each what it may use.
 #[test]
 fn the_manual_shows_the_arrows() {
     let page = include_str!("../../docs/architecture.md");
@@ -144,7 +144,7 @@ fn the_manual_shows_the_arrows() {
         words.map(str::to_owned).collect()
     };
     let mut shown = std::collections::BTreeMap::new();
-    let (_, table) = page.split_once("| room | question").unwrap();
+    let (_, table) = page.split_once("| module | question").unwrap();
     for line in table.lines().take_while(|line| !line.is_empty()) {
         let cells: Vec<&str> = line.split('|').collect();
         for room in quoted(cells[1]) {

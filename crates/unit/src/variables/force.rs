@@ -34,7 +34,7 @@ pub(super) fn variables(
         );
     }
     for (model, s) in each() {
-        table.extend(forces(model, s, options));
+        table.extend(forces(model, s, options, gusts.is_some()));
         let names = name(options, s, "");
         table.extend(OF_A_STRIP.iter().map(|row| row.of_strip(s, &names)));
     }
@@ -153,7 +153,12 @@ fn forces<'a>(
     model: &'a TrainedModel,
     s: usize,
     options: &'a ForceOptions,
+    of_gusts: bool,
 ) -> impl Iterator<Item = Variable> + 'a {
+    let kind = match of_gusts {
+        true => "Self-excited and gust",
+        false => "Self-excited",
+    };
     model.section.dofs().into_iter().flat_map(move |dof| {
         let w = names_of(dof);
         let (total_unit, total_quantity): (&'static SiUnit, _) = match dof {
@@ -162,8 +167,8 @@ fn forces<'a>(
         };
         let of = w.responses[3];
         let ahead = "at the instant at which it acts (see prediction)";
-        let per_length = format!("Self-excited {}, {ahead}", w.force);
-        let total = format!("Self-excited {of} on the length of the strip, {ahead}");
+        let per_length = format!("{kind} {}, {ahead}", w.force);
+        let total = format!("{kind} {of} on the length of the strip, {ahead}");
         let output = |of: String, kind, text| {
             let role = Role::Force(s, kind, dof);
             real(name(options, s, &of), role, OUTPUT, text)

@@ -149,10 +149,18 @@ pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
         .nominal(10.0)
 }
 
+/// Moments of a section that states its axis are about that.
+fn force_words(model: &TrainedModel, w: &DofNames) -> String {
+    match model.section.axis_offset_m {
+        Some(_) => w.force.replace("the reference point", "the axis of rotation"),
+        None => w.force.to_owned(),
+    }
+}
+
 fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
     let external = dofs.iter().map(|&dof| {
         let w = names_of(dof);
-        let text = format!("External {}", w.force);
+        let text = format!("External {}", force_words(model, w));
         real(w.external, Role::ExternalForce(dof), INPUT, text)
             .start(0.0)
             .quantity(w.force_quantity, Some(w.units[3]))
@@ -174,7 +182,8 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
         Response::Rate => format!("Rate of the {}", w.motion),
         Response::Acceleration => format!("Second rate of the {}", w.motion),
         Response::SelfExcitedForce => {
-            format!("Self-excited {}, added mass included{sampling}", w.force)
+            let force = force_words(model, w);
+            format!("Self-excited {force}, added mass included{sampling}")
         }
     };
     dofs.iter()
