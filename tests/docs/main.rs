@@ -334,6 +334,40 @@ fn the_glossary_is_true() {
     }
 }
 
+/// Items of the library that pages name by a path are there.
+#[test]
+fn items_that_pages_name_are_there() {
+    let mut source = String::new();
+    let mut waiting = ["src", "crates"].map(|name| root().join(name)).to_vec();
+    while let Some(path) = waiting.pop() {
+        if path.is_dir() {
+            let entries = fs::read_dir(path).unwrap();
+            waiting.extend(entries.map(|entry| entry.unwrap().path()));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            source.push_str(&fs::read_to_string(path).unwrap());
+        }
+    }
+    let mut named = 0;
+    for path in pages() {
+        let text = fs::read_to_string(&path).unwrap();
+        let quoted = text.split('`').skip(1).step_by(2);
+        for item in quoted.filter(|q| q.contains("::") && !q.contains([' ', '\n', '/'])) {
+            let name = item.rsplit("::").next().unwrap();
+            let kinds = ["fn", "mod", "struct", "enum", "trait", "pub", "const", "as"];
+            let is_there = kinds
+                .iter()
+                .any(|kind| source.contains(&format!("{kind} {name}")));
+            assert!(
+                is_there || item.starts_with("clippy::"),
+                "{}: {item}",
+                path.display()
+            );
+            named += 1;
+        }
+    }
+    assert!(named > 20, "{named}");
+}
+
 /// Files of the source that pages name are there.
 #[test]
 fn sources_that_pages_name_are_there() {
