@@ -173,7 +173,7 @@ pub struct CaseResult {
     /// Whose figure it is; left out in a file, that of the case.
     #[serde(default = "of_the_case")]
     pub source: Citation,
-    /// Whether it stands in the short table of the README.
+    /// Whether it stands in the short table of docs/validation.md.
     #[serde(default)]
     pub headline: bool,
     /// Why the computation failed, if it did.
