@@ -114,7 +114,8 @@ fn the_page_of_an_archive_describes_that_archive() {
         });
         let xml = Element::parse(&xml).unwrap();
         let fmi = xml.attribute("fmiVersion").unwrap();
-        assert!(page.contains(&format!("FMI {fmi} co-simulation")), "{page}");
+        let kinds = format!("FMI {fmi} co-simulation and model exchange");
+        assert!(page.contains(&kinds), "{page}");
         let is_three = version == FmiVersion::Three;
         for v in &xml.child("ModelVariables").unwrap().children {
             let name = v.attribute("name").unwrap();
