@@ -152,7 +152,9 @@ pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
 /// Moments of a section that states its axis are about that.
 fn force_words(model: &TrainedModel, w: &DofNames) -> String {
     match model.section.axis_offset_m {
-        Some(_) => w.force.replace("the reference point", "the axis of rotation"),
+        Some(_) => w
+            .force
+            .replace("the reference point", "the axis of rotation"),
         None => w.force.to_owned(),
     }
 }
