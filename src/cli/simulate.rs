@@ -11,7 +11,7 @@ use crate::plausibility::{of_trained, sentences};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
-use crate::state_space::Damping;
+use crate::state_space::damping_ratio;
 use crate::trained_model::{Experiment, TrainedModel};
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
@@ -74,24 +74,27 @@ fn is_still(section: &CoupledSection, speed: f64) -> bool {
 fn modes(model: &TrainedModel, speed: f64) -> Result<Vec<ModeSummary>> {
     let section = section_of(model)?;
     let system = match is_still(&section, speed) {
-        true => CoupledSystem::Continuous(section.structure_alone().a),
+        true => CoupledSystem {
+            a: section.structure_alone().a,
+            step_s: None,
+        },
         false => section.at(speed)?,
     };
-    let all = system.damp()?;
-    let fastest = all.iter().map(|m| m.natural_frequency).fold(0.0, f64::max);
+    let all = system.eigenvalues()?;
+    let fastest = all.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let counts =
-        |pole: Complex<f64>| pole.im > 0.0 || pole.im == 0.0 && pole.re > STATIC_GROWTH * fastest;
-    let summary = |mode: Damping| {
-        let frequency_hz = mode.pole.im / std::f64::consts::TAU;
+        |pole: &Complex<f64>| pole.im > 0.0 || pole.im == 0.0 && pole.re > STATIC_GROWTH * fastest;
+    let summary = |pole: Complex<f64>| {
+        let frequency_hz = pole.im / std::f64::consts::TAU;
         let k = ReducedFrequency::from_hertz(frequency_hz, model.section.width_m, speed);
         ModeSummary {
             frequency_hz,
-            growth_rate_per_s: mode.pole.re,
-            damping_ratio: mode.damping_ratio,
+            growth_rate_per_s: pole.re,
+            damping_ratio: damping_ratio(pole),
             in_tested_range: model.tested_range.contains(k),
         }
     };
-    let all = all.into_iter().filter(|mode| counts(mode.pole));
+    let all = all.into_iter().filter(counts);
     let mut modes: Vec<ModeSummary> = all.map(summary).collect();
     modes.sort_by(|a, b| a.damping_ratio.total_cmp(&b.damping_ratio));
     modes.truncate(section.structure().dofs.len());

@@ -149,10 +149,10 @@ fn of_model(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Opti
 fn reach(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Result<Reach> {
     let section = CoupledSection::with_model(&study.section.structure()?, &model.model)?;
     let search = study.speeds().search();
-    let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
+    let (range, from) = judged_speeds(&section, &search, Some(model.tested_range))?;
     let curves = results.curves.iter().find(|c| c.model == model.name);
     let curves = curves.ok_or_else(|| Error::Numerical("no modes".to_owned()))?;
-    Ok(Reach::new(judged, curves, study.section.width_m))
+    Ok(Reach::new(range, from, curves, study.section.width_m))
 }
 
 fn of_deck(
@@ -244,13 +244,13 @@ pub(super) fn add_coefficients(
         }
     }
     match found.equilibrium_end {
-        Some(EquilibriumEnd::Divergence(last)) => {
+        Some(EquilibriumEnd::Divergence { speed_m_s, .. }) => {
             evidence.divergence.push(DivergenceReading {
                 measured: true,
-                ..DivergenceReading::at(&forces, Some(last.speed_m_s))
+                ..DivergenceReading::at(&forces, Some(speed_m_s))
             });
         }
-        Some(end @ EquilibriumEnd::OutsideTable(_)) => {
+        Some(end @ EquilibriumEnd::OutsideTable { .. }) => {
             evidence
                 .remarks
                 .push(format!("By {forces}: {}", end.explain()));

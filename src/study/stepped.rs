@@ -93,8 +93,8 @@ pub fn stepped_onset(
                 // what is stepped knows nothing of tests; where its modes leave them is asked of the model
                 let section = CoupledSection::with_model(&structure, &model.model)?;
                 let search = OnsetSearch::up_to(speed_max_m_s);
-                let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
-                return without_runs(FlutterSearch::StableUpTo(range.and(judged.range)));
+                let (judged, _) = judged_speeds(&section, &search, Some(model.tested_range))?;
+                return without_runs(FlutterSearch::StableUpTo(range.and(judged)));
             }
         }
     }

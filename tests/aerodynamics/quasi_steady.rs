@@ -1,6 +1,6 @@
 //! Linearised quasi-steady forces against finite differences, their quasi-steady limit and their realisation.
 
-use aerodeck::aerodynamics::quasi_steady::{Arms, QuasiSteady, RelativeWind};
+use aerodeck::aerodynamics::quasi_steady::{Arms, QuasiSteady};
 use aerodeck::aerodynamics::{Realizable, Transfer};
 use aerodeck::files::coefficients::embedded;
 use aerodeck::section::Dof;
@@ -27,12 +27,8 @@ fn agrees_with_finite_differences_of_the_nonlinear_forces() {
             let theta = degrees.to_radians();
             let linear = theory.linearised(theta).unwrap();
             let at = |dx: f64, dy: f64, rate: f64, turn: f64| {
-                let wind = RelativeWind {
-                    along_m_s: 1.0 + dx,
-                    vertical_m_s: dy,
-                    rotation_m_s: rate,
-                };
-                theory.specific_forces(theta + turn, &wind).unwrap()
+                let forces = theory.specific_forces(theta + turn, [1.0 + dx, dy, rate]);
+                forces.unwrap()
             };
             let by_u = derivative(|h| at(h, 0.0, 0.0, 0.0));
             let by_w = derivative(|h| at(0.0, h, 0.0, 0.0));

@@ -12,7 +12,7 @@ use aerodeck::flutter::{
     OnsetSearch, determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset,
     impedance, pk_onset,
 };
-use aerodeck::response::{GustyWind, Inputs, NonlinearSection, Stepper};
+use aerodeck::response::{Inputs, NonlinearSection, Stepper};
 use aerodeck::section::{Dof, SectionModel, Structure};
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -265,12 +265,8 @@ fn static_forces_act_about_the_axis() {
     let wave = |rate: f64| (0..=400).map(|i| (rate * f64::from(i)).sin()).collect();
     let gusts = GustSeries::new(0.01, wave(0.07), wave(0.12)).unwrap();
     let run = |s: &Structure, z: &[f64]| {
-        let section = NonlinearSection::new(s.clone(), theory.clone()).unwrap();
-        let wind = GustyWind {
-            speed_m_s: 14.0,
-            gusts: &gusts,
-        };
-        section.run(z, wind, 0.01, 400, 1e-7).unwrap()
+        let section = NonlinearSection::new(s.clone(), theory.clone(), 14.0, &gusts).unwrap();
+        section.run(z, 0.01, 400, 1e-7).unwrap()
     };
     let (by_axis, by_chord) = (run(&s, &[0.0; 4]), run(&chord, &[0.0; 4]));
     let largest = by_chord.rows.iter().map(|r| r[0].abs()).fold(0.0, f64::max);

@@ -102,7 +102,7 @@ fn by_gusts(study: &BridgeStudy, export: &Export, of_node: &dyn Fn(usize) -> [f6
             let at = |n: usize| -> f64 {
                 let [u, w] = of_node(n);
                 let each = Dof::THREE.into_iter().map(|dof| {
-                    let i = aerodeck::bridge::motion_index(dof);
+                    let i = dof as usize;
                     let scale = if dof == Dof::Torsion {
                         width * width
                     } else {

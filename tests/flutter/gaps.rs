@@ -242,7 +242,7 @@ fn where_a_mode_leaves_the_tests_does_not_depend_on_the_search() {
         };
         judged_speeds(&coupled, &search, Some(range))
             .unwrap()
-            .range
+            .0
             .to_m_s
     });
     assert!(limits[0] < 15.0);
@@ -265,7 +265,7 @@ fn a_mode_is_judged_up_to_where_it_stops_oscillating() {
         let range = ReducedFrequencyRange::between(k(lowest), k(100.0));
         let judged = [37, 120, 411].map(|speeds| {
             let search = OnsetSearch { speeds, ..SEARCH };
-            judged_speeds(&coupled, &search, Some(range)).unwrap().range
+            judged_speeds(&coupled, &search, Some(range)).unwrap().0
         });
         let words = judged.each_ref().map(|range| range.not_judged.as_deref());
         let why = if lowest > 1e-3 {
@@ -304,8 +304,8 @@ fn four_winds_on_the_way_see_what_a_search_sees() {
         };
         for tested in [whole, with_gap] {
             let few = left_tests(&coupled, &up_to(4), tested).unwrap();
-            let many = judged_speeds(&coupled, &up_to(200), Some(tested)).unwrap();
-            let leaves = many.range.to_m_s < speed_max_m_s * (1.0 - 1e-6);
+            let (many, _) = judged_speeds(&coupled, &up_to(200), Some(tested)).unwrap();
+            let leaves = many.to_m_s < speed_max_m_s * (1.0 - 1e-6);
             assert_eq!(
                 few.is_some(),
                 leaves,

@@ -8,7 +8,7 @@ use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
 use aerodeck::aeroelastic::{CoupledSection, StaticEquilibrium, static_equilibria};
 use aerodeck::files::coefficients::embedded;
 
-use aerodeck::response::{GustyWind, Inputs, NonlinearSection, Stepper, largest_difference};
+use aerodeck::response::{Inputs, NonlinearSection, Stepper, largest_difference};
 use aerodeck::section::Structure;
 use aerodeck::section::{SectionModel, Translation};
 
@@ -93,10 +93,8 @@ fn distance(lateral: bool, size: f64) -> f64 {
     let gusts = gusts(size);
     let n = structure.dofs.len();
     let initial = [rest.displacement.clone(), vec![0.0; n]].concat();
-    let nonlinear = NonlinearSection::new(structure.clone(), theory.clone()).unwrap();
-    let run = nonlinear
-        .run(&initial, in_wind(SPEED, &gusts), 0.01, 800, 1e-9)
-        .unwrap();
+    let nonlinear = NonlinearSection::new(structure.clone(), theory.clone(), SPEED, &gusts);
+    let run = nonlinear.unwrap().run(&initial, 0.01, 800, 1e-9).unwrap();
     let about: Vec<Vec<f64>> = run
         .rows
         .iter()
@@ -104,10 +102,6 @@ fn distance(lateral: bool, size: f64) -> f64 {
         .collect();
     let model = theory.linearised(rest.rotation_rad).unwrap();
     largest_difference(&linear(&structure, &model, &gusts), &about)
-}
-
-fn in_wind(speed_m_s: f64, gusts: &GustSeries) -> GustyWind<'_> {
-    GustyWind { speed_m_s, gusts }
 }
 
 #[test]
@@ -125,16 +119,11 @@ fn small_motions_are_linear() {
 fn weightless_air_leaves_the_structure_alone() {
     let mut structure = section(false);
     structure.air_density_kg_m3 = 1e-14;
-    let nonlinear = NonlinearSection::new(structure.clone(), theory(&structure)).unwrap();
     let calm = GustSeries::calm(2.0).unwrap();
+    let nonlinear = NonlinearSection::new(structure.clone(), theory(&structure), 10.0, &calm);
     let run = nonlinear
-        .run(
-            &[1e-6, 1e-6, 0.0, 0.0],
-            in_wind(10.0, &calm),
-            0.02,
-            100,
-            1e-9,
-        )
+        .unwrap()
+        .run(&[1e-6, 1e-6, 0.0, 0.0], 0.02, 100, 1e-9)
         .unwrap();
     let omega = std::f64::consts::TAU * 2.0;
     let (zeta, t) = (0.003_f64, 2.0);
@@ -154,25 +143,17 @@ fn weightless_air_leaves_the_structure_alone() {
 #[test]
 fn leaving_the_table_is_said_with_time_and_angle() {
     let structure = section(false);
-    let nonlinear = NonlinearSection::new(structure.clone(), theory(&structure)).unwrap();
     let calm = GustSeries::calm(60.0).unwrap();
-    let message = nonlinear
-        .run(
-            &[0.0, 0.1, 0.0, 0.0],
-            in_wind(120.0, &calm),
-            0.01,
-            6000,
-            1e-6,
-        )
-        .unwrap_err()
-        .to_string();
+    let refused = |initial: &[f64], speed: f64, steps: usize| {
+        let nonlinear = NonlinearSection::new(structure.clone(), theory(&structure), speed, &calm);
+        let run = nonlinear.unwrap().run(initial, 0.01, steps, 1e-6);
+        run.unwrap_err().to_string()
+    };
+    let message = refused(&[0.0, 0.1, 0.0, 0.0], 120.0, 6000);
     assert!(
         message.starts_with("t = ") && message.contains("an angle of attack from -16 to 16 deg"),
         "{message}"
     );
-    let message = nonlinear
-        .run(&[0.0; 4], in_wind(10.0, &calm), 0.01, 6001, 1e-6)
-        .unwrap_err()
-        .to_string();
+    let message = refused(&[0.0; 4], 10.0, 6001);
     assert!(message.contains("at least 60.01 s of them"), "{message}");
 }

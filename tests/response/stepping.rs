@@ -41,9 +41,8 @@ fn one_step_is_two_halves() {
 #[test]
 fn the_discrete_model_follows_its_own_recursion() {
     let mut stepper = discrete();
-    let CoupledSystem::Sampled { a, step_s } = stepper.section().at(20.0).unwrap() else {
-        panic!("not sampled");
-    };
+    let CoupledSystem { a, step_s } = stepper.section().at(20.0).unwrap();
+    let step_s = step_s.expect("sampled");
     let mut state = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
     let mut z = DVector::from_column_slice(&state.values);
     let inputs = Inputs::steady(20.0, 2);

@@ -5,7 +5,7 @@ use super::models::folder;
 use crate::bridges;
 use crate::entry::Job;
 use aerodeck::aerodynamics::RationalModel;
-use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
+use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, tributary_lengths};
 use aerodeck::buffeting::{
     BuffetingProblem, Coherence, Gust, GustSpectrum, SpectrumShape, Turbulence, span_record,
@@ -178,10 +178,7 @@ pub(crate) fn sweep() -> Job {
 /// The matrices of the sweep.
 pub(crate) fn sweep_argument() -> Value {
     let section = langenuen();
-    let matrix = |v: &f64| match section.at(*v).expect("a system") {
-        CoupledSystem::Continuous(a) => super::models::rows(&a),
-        CoupledSystem::Sampled { .. } => panic!("not continuous"),
-    };
+    let matrix = |v: &f64| super::models::rows(&section.at(*v).expect("a system").a);
     json!({ "matrices": sixty().iter().map(matrix).collect::<Vec<_>>() })
 }
 

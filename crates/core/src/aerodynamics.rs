@@ -23,13 +23,27 @@ pub use rational::{Lags, MinimumStateModel, RationalModel};
 pub use realization::DiscreteRealization;
 pub use realization::{ContinuousRealization, Realization};
 
-use crate::error::Result;
+use crate::error::{Place, Result, ensure};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
 
 /// `G(K)`, n×n, dimensionless.
 pub type TransferMatrix = DMatrix<Complex<f64>>;
+
+/// Refuses a matrix of a model of another size, or with a number that is not finite.
+fn check_matrix(
+    place: impl Into<Place>,
+    m: &DMatrix<f64>,
+    rows: usize,
+    columns: usize,
+) -> Result<()> {
+    let holds = m.shape() == (rows, columns) && m.iter().all(|x| x.is_finite());
+    let expected = format_args!("a finite {rows}x{columns} matrix");
+    let (rows, columns) = m.shape();
+    let found = format_args!("{rows}x{columns}, or a number that is not finite");
+    ensure(holds, place, expected, found)
+}
 
 /// A linear model of the self-excited forces.
 ///

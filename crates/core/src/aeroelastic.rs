@@ -14,14 +14,12 @@
 mod by_wind;
 mod equilibrium;
 
-pub use equilibrium::{
-    EquilibriumEnd, EquilibriumPath, LastEquilibrium, StaticEquilibrium, static_equilibria,
-};
+pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
 
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{Damping, StateEquation, c2d, eigenvalues, first_order};
+use crate::state_space::{StateEquation, c2d, eigenvalues, first_order};
 use nalgebra::{Complex, DMatrix};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -50,52 +48,32 @@ pub struct CoupledSection {
 
 /// The coupled system at one wind speed, with the states `[q, q̇, x]` and without external forces.
 #[derive(Debug, Clone)]
-pub enum CoupledSystem {
-    /// `ż = A z`, from a continuous model.
-    Continuous(DMatrix<f64>),
-    /// `z(k+1) = A z(k)`, from the discrete Laguerre model.
-    Sampled {
-        /// `A`.
-        a: DMatrix<f64>,
-        /// From sample to sample, s.
-        step_s: f64,
-    },
+pub struct CoupledSystem {
+    /// The state matrix: of `ż = A z` from a continuous model, of `z(k+1) = A z(k)` from the discrete Laguerre model.
+    pub a: DMatrix<f64>,
+    /// From sample to sample, s; `None` for a continuous model.
+    pub step_s: Option<f64>,
 }
 
 impl CoupledSystem {
-    /// Natural frequencies (rad/s) and damping ratios of all eigenvalues; of the sampled system of the rates `ln z/Δt`, exact when the
-    /// motion between two samples holds no frequency above half the sampling frequency. A pole at the origin has died out after
-    /// one sample and is left out: no finite rate describes it.
+    /// Eigenvalues in continuous time, rad/s; of the sampled system the rates `ln z/Δt`, exact when the motion between two samples
+    /// holds no frequency above half the sampling frequency. A pole at the origin has died out after one sample and is left out:
+    /// no finite rate describes it.
     ///
     /// # Errors
     /// [`Error::Numerical`] when the iteration for the eigenvalues does not end.
-    pub fn damp(&self) -> Result<Vec<Damping>> {
-        let mut poles = eigenvalues(self.state_matrix())?;
-        if let Self::Sampled { step_s, .. } = self {
-            poles.retain(|z| z.norm() > f64::MIN_POSITIVE);
-            poles.iter_mut().for_each(|z| *z = z.ln() / *step_s);
-        }
-        Ok(poles.into_iter().map(Damping::from_pole).collect())
-    }
-
-    /// Eigenvalues in continuous time, rad/s (`ln z / Δt` for the sampled system).
     pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>> {
-        Ok(self.damp()?.iter().map(|d| d.pole).collect())
-    }
-
-    /// The state matrix: of `ż = A z`, or of `z(k+1) = A z(k)`.
-    pub fn state_matrix(&self) -> &DMatrix<f64> {
-        match self {
-            Self::Continuous(a) | Self::Sampled { a, .. } => a,
+        let mut poles = eigenvalues(&self.a)?;
+        if let Some(step_s) = self.step_s {
+            poles.retain(|z| z.norm() > f64::MIN_POSITIVE);
+            poles.iter_mut().for_each(|z| *z = z.ln() / step_s);
         }
+        Ok(poles)
     }
 
     /// The eigenvalue of the state matrix that belongs to the continuous-time eigenvalue `lambda`.
     pub fn matrix_eigenvalue(&self, lambda: Complex<f64>) -> Complex<f64> {
-        match self {
-            Self::Continuous(_) => lambda,
-            Self::Sampled { step_s, .. } => (lambda * *step_s).exp(),
-        }
+        self.step_s.map_or(lambda, |step_s| (lambda * step_s).exp())
     }
 }
 
@@ -170,20 +148,17 @@ impl CoupledSection {
     /// [`Error::Input`] for a speed that is negative, not finite, or zero with the discrete model.
     pub fn at(&self, wind_speed_m_s: f64) -> Result<CoupledSystem> {
         let system = match &self.aerodynamics {
-            Realization::Continuous(_) => {
-                CoupledSystem::Continuous(self.equation_at(wind_speed_m_s)?.a)
-            }
-            Realization::Discrete(d) => {
-                positive("wind speed", wind_speed_m_s)?;
-                self.sampled_at(d, wind_speed_m_s)?
-            }
+            Realization::Continuous(_) => CoupledSystem {
+                a: self.equation_at(wind_speed_m_s)?.a,
+                step_s: None,
+            },
+            Realization::Discrete(d) => self.sampled_at(d, wind_speed_m_s)?,
         };
-        if system.state_matrix().iter().all(|x| x.is_finite()) {
-            return Ok(system);
-        }
-        Err(Error::Numerical(
-            "coupled system: a matrix entry is not finite".into(),
-        ))
+        let finite = system.a.iter().all(|x| x.is_finite());
+        let why = "coupled system: a matrix entry is not finite";
+        finite
+            .then_some(system)
+            .ok_or_else(|| Error::Numerical(why.into()))
     }
 
     /// What moves in the coupled system of a continuous model at the wind speed `V` (m/s): the equation of its states.
@@ -228,6 +203,7 @@ impl CoupledSection {
     }
 
     fn sampled_at(&self, aero: &DiscreteRealization, wind_speed_m_s: f64) -> Result<CoupledSystem> {
+        positive("wind speed", wind_speed_m_s)?;
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let step = aero.delta_s * s.width_m / wind_speed_m_s;
@@ -250,7 +226,8 @@ impl CoupledSection {
             .copy_from(&(&drive * &held.phi));
         a.view_mut((2 * n, 2 * n), (filters, filters))
             .copy_from(&(&aero.a + &drive * force_to_motion));
-        Ok(CoupledSystem::Sampled { a, step_s: step })
+        let step_s = Some(step);
+        Ok(CoupledSystem { a, step_s })
     }
 
     /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; zero for a
@@ -318,6 +295,7 @@ mod tests {
     use super::*;
     use crate::aerodynamics::{RationalModel, Realizable};
     use crate::section::SectionModel;
+    use crate::state_space::damping_ratio;
 
     /// `ẍ + 2ζω₀ẋ + ω₀²x = u`, continuous and sampled with its input held: the damping table has the closed form for both, and
     /// holding changes nothing of the answer to a constant input.
@@ -337,15 +315,12 @@ mod tests {
             let gain = stiffness.lu().solve(&push).unwrap()[0];
             assert!((gain / static_gain - 1.0).abs() < 1e-12);
         }
-        let sampled = CoupledSystem::Sampled {
-            a: held.phi,
-            step_s: h,
-        };
-        for modes in [CoupledSystem::Continuous(a), sampled].map(|s| s.damp().unwrap()) {
+        for (a, step_s) in [(a, None), (held.phi, Some(h))] {
+            let modes = CoupledSystem { a, step_s }.eigenvalues().unwrap();
             assert_eq!(modes.len(), 2);
-            for mode in modes {
-                assert!((mode.natural_frequency / frequency - 1.0).abs() < 1e-12);
-                assert!((mode.damping_ratio / ratio - 1.0).abs() < 1e-12);
+            for pole in modes {
+                assert!((pole.norm() / frequency - 1.0).abs() < 1e-12);
+                assert!((damping_ratio(pole) / ratio - 1.0).abs() < 1e-12);
             }
         }
     }

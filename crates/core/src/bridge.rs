@@ -131,12 +131,8 @@ impl Bridge {
         };
         positive("air_density_kg_m3", air_density_kg_m3)?;
         check_nodes(&bridge.nodes)?;
-        ensure(
-            !bridge.modes.is_empty(),
-            "modes",
-            "at least one mode",
-            "none",
-        )?;
+        let has_modes = !bridge.modes.is_empty();
+        ensure(has_modes, "modes", "at least one mode", "none")?;
         for mode in &bridge.modes {
             check_mode(mode, bridge.nodes.len())?;
         }
@@ -160,7 +156,7 @@ impl Bridge {
         let mode = |i: usize| {
             let (m, k) = (s.mass[(i, i)], s.stiffness[(i, i)]);
             let mut shape = [0.0; 3];
-            shape[motion_index(s.dofs[i])] = 1.0;
+            shape[s.dofs[i] as usize] = 1.0;
             BridgeMode {
                 number: i + 1,
                 frequency_hz: (k / m).sqrt() / TAU,
@@ -182,13 +178,8 @@ impl Bridge {
             length_m: 1.0,
         };
         let modes = (0..s.dofs.len()).map(mode).collect();
-        Self::new(
-            "section",
-            s.air_density_kg_m3,
-            vec![node],
-            modes,
-            vec![group],
-        )
+        let (nodes, groups) = (vec![node], vec![group]);
+        Self::new("section", s.air_density_kg_m3, nodes, modes, groups)
     }
 
     /// Width to which reduced frequencies of the bridge refer: that of the first group, m.
@@ -201,14 +192,11 @@ impl Bridge {
     /// # Errors
     /// [`Error::Input`] when none is left.
     pub fn with_modes(&self, keep: impl Fn(usize) -> bool) -> Result<Self> {
-        let modes = self.modes.iter().enumerate();
-        let kept: Vec<BridgeMode> = modes
-            .filter(|(i, _)| keep(*i))
-            .map(|(_, m)| m.clone())
-            .collect();
-        ensure(!kept.is_empty(), "modes", "at least one mode", "none")?;
+        let kept = (0..self.modes.len()).filter(|i| keep(*i));
+        let modes: Vec<BridgeMode> = kept.map(|i| self.modes[i].clone()).collect();
+        ensure(!modes.is_empty(), "modes", "at least one mode", "none")?;
         Ok(Self {
-            modes: kept,
+            modes,
             ..self.clone()
         })
     }
@@ -238,9 +226,8 @@ impl Bridge {
     /// [`Error::Input`] when nothing moves.
     pub fn equivalent_section(&self, dofs: &[Dof]) -> Result<SectionModel> {
         let own = |dof: Dof| {
-            let i = motion_index(dof);
-            let mode = (0..self.modes.len()).find(|m| self.main_motion(&self.modes[*m]) == Some(i));
-            let mode = mode.map(|m| &self.modes[m])?;
+            let (i, mut modes) = (dof as usize, self.modes.iter());
+            let mode = modes.find(|m| self.main_motion(m) == Some(i))?;
             let nodes = self.nodes.iter().zip(&mode.shape);
             let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();
             let inertia = mode.generalised_mass / square;
@@ -279,12 +266,8 @@ impl Bridge {
     }
 
     fn check_groups(&self) -> Result<()> {
-        ensure(
-            !self.groups.is_empty(),
-            "section",
-            "at least one section",
-            "none",
-        )?;
+        let has_groups = !self.groups.is_empty();
+        ensure(has_groups, "section", "at least one section", "none")?;
         let mut owner: Vec<Option<&str>> = vec![None; self.nodes.len()];
         for group in &self.groups {
             let place = format!("section {}", group.name);
@@ -309,25 +292,12 @@ impl Bridge {
                 }
             }
         }
-        let wind = self
-            .groups
-            .iter()
-            .any(|g| g.wind_factor > 0.0 && !g.nodes.is_empty());
-        ensure(
-            wind,
-            "wind profile",
+        let blown = |g: &StripGroup| g.wind_factor > 0.0 && !g.nodes.is_empty();
+        let (wind, expected) = (
+            self.groups.iter().any(blown),
             "wind somewhere along the bridge",
-            "zero everywhere",
-        )
-    }
-}
-
-/// Index of a motion in a shape: vertical, lateral, rotation.
-pub fn motion_index(dof: Dof) -> usize {
-    match dof {
-        Dof::Vertical => 0,
-        Dof::Lateral => 1,
-        Dof::Torsion => 2,
+        );
+        ensure(wind, "wind profile", expected, "zero everywhere")
     }
 }
 

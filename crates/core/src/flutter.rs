@@ -50,7 +50,7 @@ pub use elimination::{pivots, solve_complex};
 pub use growth_band::GrowthBand;
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
-pub use judged::{JudgedSpeeds, bridge_damps_fast_motion, damps_fast_motion};
+pub use judged::{bridge_damps_fast_motion, damps_fast_motion};
 pub use mode_words::the_mode;
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, ModeRatio, Onset, OnsetInterval};

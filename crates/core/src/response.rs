@@ -22,7 +22,7 @@ mod strip_gusts;
 mod values;
 
 pub use prescribed::{Airflow, ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
-pub use quasi_steady::{GustyWind, NonlinearRun, NonlinearSection, largest_difference};
+pub use quasi_steady::{NonlinearRun, NonlinearSection, largest_difference};
 pub use strip_gusts::StripGusts;
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 

@@ -45,18 +45,16 @@ impl Dof {
 
     /// Factor from motion to dimensionless motion: `1/B` for displacements, 1 for rotation.
     pub fn motion_scale(self, width_m: f64) -> f64 {
-        if self == Dof::Torsion {
-            1.0
-        } else {
-            1.0 / width_m
+        match self {
+            Dof::Torsion => 1.0,
+            Dof::Vertical | Dof::Lateral => 1.0 / width_m,
         }
     }
     /// Factor from dimensionless force to force over `½ρV²`: `B` for forces, `B²` for the moment.
     pub fn force_scale(self, width_m: f64) -> f64 {
-        if self == Dof::Torsion {
-            width_m * width_m
-        } else {
-            width_m
+        match self {
+            Dof::Torsion => width_m * width_m,
+            Dof::Vertical | Dof::Lateral => width_m,
         }
     }
     /// Symbol of the motion: `y`, `x`, `θ`.
@@ -221,10 +219,9 @@ impl SectionModel {
 
     /// Degrees of freedom in the order of every matrix of this crate.
     pub fn dofs(&self) -> Vec<Dof> {
-        if self.lateral.is_some() {
-            Dof::THREE.to_vec()
-        } else {
-            Dof::TWO.to_vec()
+        match self.lateral {
+            Some(_) => Dof::THREE.to_vec(),
+            None => Dof::TWO.to_vec(),
         }
     }
 
@@ -266,23 +263,28 @@ impl SectionModel {
     /// What is stated of the support of a degree of freedom: inertia (kg/m or kg·m²/m), frequency (Hz), stiffness (N/m² or N) and
     /// damping ratio; `None` without one.
     pub fn stated(&self, dof: Dof) -> Option<(f64, Option<f64>, Option<f64>, f64)> {
-        let translation = match dof {
-            Dof::Torsion => {
-                let s = &self.torsion;
-                let (inertia, stiffness) = (s.inertia_kg_m2_m, s.stiffness_n);
-                return Some((inertia, s.frequency_hz, stiffness, s.damping_ratio));
-            }
-            Dof::Vertical => Some(&self.vertical),
-            Dof::Lateral => self.lateral.as_ref(),
+        let (translation, turns) = match dof {
+            Dof::Vertical => (Some(&self.vertical), None),
+            Dof::Lateral => (self.lateral.as_ref(), None),
+            Dof::Torsion => (None, Some(&self.torsion)),
         };
-        translation.map(|s| {
+        let of_rotation = |s: &Rotation| {
+            (
+                s.inertia_kg_m2_m,
+                s.frequency_hz,
+                s.stiffness_n,
+                s.damping_ratio,
+            )
+        };
+        let of_translation = |s: &Translation| {
             (
                 s.mass_kg_m,
                 s.frequency_hz,
                 s.stiffness_n_m2,
                 s.damping_ratio,
             )
-        })
+        };
+        turns.map(of_rotation).or(translation.map(of_translation))
     }
 
     /// The vertical, lateral and torsional support.

@@ -26,40 +26,6 @@ pub struct StateEquation {
     pub b: DMatrix<f64>,
 }
 
-/// One pole as a table of damping has it.
-///
-/// ```
-/// # extern crate aerodeck_core as aerodeck;
-/// use aerodeck::state_space::{Damping, eigenvalues};
-/// use nalgebra::DMatrix;
-///
-/// // ẍ + 0.2 ẋ + x = 0
-/// let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -0.2]);
-/// let mode = Damping::from_pole(eigenvalues(&a)?[0]);
-/// assert!((mode.natural_frequency - 1.0).abs() < 1e-12 && (mode.damping_ratio - 0.1).abs() < 1e-12);
-/// # Ok::<(), aerodeck::Error>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Damping {
-    /// The pole `λ` in continuous time, in the inverse time unit.
-    pub pole: Complex<f64>,
-    /// `|λ|`, rad per time unit.
-    pub natural_frequency: f64,
-    /// `−Re λ/|λ|`; negative when the motion grows.
-    pub damping_ratio: f64,
-}
-
-impl Damping {
-    /// Of a pole in continuous time, in the inverse time unit; exact.
-    pub fn from_pole(pole: Complex<f64>) -> Self {
-        Self {
-            pole,
-            natural_frequency: pole.norm(),
-            damping_ratio: damping_ratio(pole),
-        }
-    }
-}
-
 /// `[0 I; M⁻¹K M⁻¹R]`, 2n×2n: the state matrix of `[q, q̇]` with `M q̈ = K q + R q̇`.
 pub fn first_order<T: ComplexField>(
     inverse_mass: &DMatrix<T>,
@@ -74,6 +40,11 @@ pub fn first_order<T: ComplexField>(
     a.view_mut((n, n), (n, n))
         .copy_from(&(inverse_mass * on_rate));
     a
+}
+
+/// Whether every number beside the diagonal of a square matrix is zero.
+pub(crate) fn is_diagonal(m: &DMatrix<f64>) -> bool {
+    (0..m.len()).all(|i| i % (m.nrows() + 1) == 0 || m[i] == 0.0)
 }
 
 /// Damping ratio of a continuous-time pole, `−Re λ/|λ|`.

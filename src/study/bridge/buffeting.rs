@@ -3,7 +3,7 @@
 use super::BridgeStudy;
 use super::envelope::{SpanEnvelope, envelope};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::bridge::{Bridge, motion_index};
+use crate::bridge::Bridge;
 use crate::buffeting::{
     BuffetingProblem, Coherence, FrequencyDomain, Gust, SpanEnsemble, SpanPlan, SpanRecord,
     SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, check_plan, part, span_ensemble,
@@ -126,7 +126,7 @@ impl BridgeStudy {
             let forces = theory.buffeting();
             let mut matrix = [[0.0; 2]; 3];
             for (row, dof) in Dof::THREE.into_iter().enumerate() {
-                matrix[motion_index(dof)] = [forces[(row, 0)], forces[(row, 1)]];
+                matrix[dof as usize] = [forces[(row, 0)], forces[(row, 1)]];
             }
             Ok(matrix)
         };

@@ -86,13 +86,14 @@ impl BridgeStudy {
     fn reach(&self, results: &BridgeFlutter, tested: ReducedFrequencyRange) -> Result<Reach> {
         let tested = tested.not_empty()?;
         let section = coupled(&self.by_model)?;
-        let mut judged = judged_speeds(&section, &self.search(), Some(tested))?;
-        if let Some(from) = &mut judged.tested_from {
+        let (range, mut from) = judged_speeds(&section, &self.search(), Some(tested))?;
+        if let Some(from) = &mut from {
             let damped = bridge_damps_fast_motion(&self.by_model, tested.max)?;
             let damped = damped.then_some(FastMotion::Damped);
             from.below = FastMotion::new(damped, self.section_ranges());
         }
-        Ok(Reach::new(judged, &results.curves, self.by_model.width_m()))
+        let width_m = self.by_model.width_m();
+        Ok(Reach::new(range, from, &results.curves, width_m))
     }
 
     /// By the tables, where there are some, then by the models.

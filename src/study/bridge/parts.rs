@@ -1,7 +1,7 @@
 //! A bridge in parts: its structure alone, the wind forces on its sections, and both as a system of FMUs.
 
 use crate::aerodynamics::{GustForce, RationalAdmittance, RationalModel, Transfer as _};
-use crate::bridge::{StripGroup, motion_index};
+use crate::bridge::StripGroup;
 use crate::error::{Error, Result};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
 use crate::fmu::force_options::{ForceOptions, FurtherModel, StripOptions};
@@ -168,10 +168,7 @@ impl BridgeStudy {
                 .as_ref()
                 .zip(gusts)
                 .map(|(of_group, admittance)| GustForce {
-                    coefficients: dofs
-                        .iter()
-                        .map(|d| of_group[first][motion_index(*d)])
-                        .collect(),
+                    coefficients: dofs.iter().map(|d| of_group[first][*d as usize]).collect(),
                     dofs: dofs.clone(),
                     admittance,
                     source: format!(

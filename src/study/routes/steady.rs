@@ -31,7 +31,7 @@ impl RouteTable {
         let rotation = path.points.first().map_or(0.0, |p| p.rotation_rad);
         let linear = theory.linearised(rotation)?;
         let divergence_m_s = match found.equilibrium_end {
-            Some(end @ EquilibriumEnd::Divergence(_)) => Some(end.speed_m_s()),
+            Some(EquilibriumEnd::Divergence { speed_m_s, .. }) => Some(speed_m_s),
             _ => None,
         };
         let forces = Forces {

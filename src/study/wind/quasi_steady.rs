@@ -10,7 +10,7 @@ use crate::buffeting::{BuffetingProblem, turbulence_field};
 use crate::error::{Error, Result, ensure};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
-use crate::response::{GustyWind, Inputs, NonlinearSection, Stepper};
+use crate::response::{Inputs, NonlinearSection, Stepper};
 use crate::section::{Dof, Structure};
 use crate::verdict::{DivergenceReading, Evidence, FlutterReading, ForceBasis, Verdict};
 use serde::Serialize;
@@ -98,11 +98,11 @@ pub(super) fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Evidence 
         ..Evidence::default()
     };
     match onset.equilibrium_end {
-        Some(EquilibriumEnd::Divergence(last)) => {
-            let at = DivergenceReading::at(forces, Some(last.speed_m_s));
+        Some(EquilibriumEnd::Divergence { speed_m_s, .. }) => {
+            let at = DivergenceReading::at(forces, Some(speed_m_s));
             evidence.divergence.push(at);
         }
-        Some(end @ EquilibriumEnd::OutsideTable(_)) => evidence.remarks.push(end.explain()),
+        Some(end @ EquilibriumEnd::OutsideTable { .. }) => evidence.remarks.push(end.explain()),
         None => {}
     }
     evidence
@@ -156,13 +156,9 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
     let start: Vec<f64> = (0..2 * n)
         .map(|i| released[i] + equilibrium.displacement.get(i).copied().unwrap_or(0.0))
         .collect();
-    let wind = GustyWind {
-        speed_m_s: run.wind_speed_m_s,
-        gusts: &gusts,
-    };
-    let section = NonlinearSection::new(structure.clone(), theory)?;
-    let nonlinear = section.run(&start, wind, run.step_s, steps, STEP_TOLERANCE)?;
-    let about = linear_rows(&structure, &linear, &released, wind, run.step_s, steps)?;
+    let section = NonlinearSection::new(structure.clone(), theory, run.wind_speed_m_s, &gusts)?;
+    let nonlinear = section.run(&start, run.step_s, steps, STEP_TOLERANCE)?;
+    let about = linear_rows(&structure, &linear, &released, &gusts, run, steps)?;
     let with_rest = |row: Vec<f64>| -> Vec<f64> {
         let rest = equilibrium
             .displacement
@@ -227,24 +223,24 @@ fn linear_rows(
     structure: &Structure,
     linear: &LinearQuasiSteady,
     released: &[f64],
-    wind: GustyWind<'_>,
-    step_s: f64,
+    gusts: &GustSeries,
+    run: &SimulationBlock,
     steps: usize,
 ) -> Result<Vec<Vec<f64>>> {
-    let n = structure.dofs.len();
+    let (n, step_s) = (structure.dofs.len(), run.step_s);
     let mut stepper = Stepper::new(CoupledSection::with_model(structure, linear)?);
     let mut state = stepper.released(&released[..n], &released[n..])?;
-    let half_rho_v = 0.5 * structure.air_density_kg_m3 * wind.speed_m_s;
+    let half_rho_v = 0.5 * structure.air_density_kg_m3 * run.wind_speed_m_s;
     let buffeting = structure.forces_at_axis(linear.buffeting().clone());
     let force = |time: f64| -> Vec<f64> {
-        let (u, w) = wind.gusts.at(time);
+        let (u, w) = gusts.at(time);
         let rows = buffeting.row_iter().zip(&structure.dofs);
         rows.map(|(row, dof)| {
             half_rho_v * dof.force_scale(structure.width_m) * (row[0] * u + row[1] * w)
         })
         .collect()
     };
-    let mut inputs = Inputs::steady(wind.speed_m_s, n);
+    let mut inputs = Inputs::steady(run.wind_speed_m_s, n);
     let mut rows = vec![state.values.clone()];
     for i in 0..steps {
         let (now, next) = (force(step_s * i as f64), force(step_s * (i + 1) as f64));

@@ -42,11 +42,8 @@ impl GustSeries {
 
     /// No gusts for at least `duration_s` seconds.
     pub fn calm(duration_s: f64) -> Result<Self> {
-        Self::new(
-            positive("duration", duration_s)?,
-            vec![0.0; 2],
-            vec![0.0; 2],
-        )
+        let step_s = positive("duration", duration_s)?;
+        Self::new(step_s, vec![0.0; 2], vec![0.0; 2])
     }
 
     /// Time step, s.

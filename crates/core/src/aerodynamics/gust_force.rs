@@ -90,17 +90,14 @@ impl GustForce {
         dofs: &[Dof],
         admittance: RationalAdmittance,
     ) -> Result<Self> {
-        let source = format!(
-            "quasi-steady theory with the static coefficients `{}`",
-            table.name()
-        );
+        let of_table = format!("the static coefficients `{}`", table.name());
         let theory = QuasiSteady::new(table, Arms::default(), dofs)?.linearised(0.0)?;
         let rows = theory.buffeting().row_iter();
         Ok(Self {
             dofs: dofs.to_vec(),
             coefficients: rows.map(|row| [row[0], row[1]]).collect(),
             admittance,
-            source,
+            source: format!("quasi-steady theory with {of_table}"),
         })
     }
 
@@ -114,28 +111,22 @@ impl GustForce {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) for other degrees of freedom, another number of rows and numbers that are not finite.
     pub fn validate(&self, dofs: &[Dof]) -> Result<()> {
+        let (wanted, own, rows) = (
+            Dof::names(dofs),
+            Dof::names(&self.dofs),
+            self.coefficients.len(),
+        );
         ensure(
-            self.dofs == dofs && self.coefficients.len() == dofs.len(),
+            self.dofs == dofs && rows == dofs.len(),
             "gust forces",
-            format_args!(
-                "a row for each degree of freedom of the model, {}",
-                Dof::names(dofs)
-            ),
-            format_args!(
-                "{} rows for {}",
-                self.coefficients.len(),
-                Dof::names(&self.dofs)
-            ),
+            format_args!("a row for each degree of freedom of the model, {wanted}"),
+            format_args!("{rows} rows for {own}"),
         )?;
         for (row, dof) in self.coefficients.iter().zip(dofs) {
+            let force = format!("{} force", dof.symbol());
             for (x, gust) in row.iter().zip(["u", "w"]) {
-                finite(
-                    format!(
-                        "gust forces: coefficient of {gust} in the {} force",
-                        dof.symbol()
-                    ),
-                    *x,
-                )?;
+                let place = format!("gust forces: coefficient of {gust} in the {force}");
+                finite(place, *x)?;
             }
         }
         Ok(())

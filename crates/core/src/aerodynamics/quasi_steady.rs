@@ -33,17 +33,6 @@ pub struct QuasiSteady {
     dofs: Vec<Dof>,
 }
 
-/// What the deck feels of the wind at one instant: mean wind, gusts and its own velocity.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct RelativeWind {
-    /// `V + u − ẋ`, m/s.
-    pub along_m_s: f64,
-    /// `w − ẏ`, m/s.
-    pub vertical_m_s: f64,
-    /// `B θ̇`, m/s.
-    pub rotation_m_s: f64,
-}
-
 impl QuasiSteady {
     /// The theory for a deck of these degrees of freedom.
     ///
@@ -74,13 +63,18 @@ impl QuasiSteady {
         &self.dofs
     }
 
-    /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad).
-    pub fn specific_forces(&self, rotation_rad: f64, wind: &RelativeWind) -> Result<[f64; 3]> {
+    /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad), in what the deck feels of the
+    /// wind with its gusts and its own velocity: `V + u − ẋ`, `w − ẏ` and `B θ̇`, m/s.
+    pub fn specific_forces(
+        &self,
+        rotation_rad: f64,
+        [along, vertical, rotation]: [f64; 3],
+    ) -> Result<[f64; 3]> {
         let mut forces = [0.0; 3];
         for (force, dof) in forces.iter_mut().zip(&self.dofs) {
-            let normal = wind.vertical_m_s - self.arms.arm(*dof) * wind.rotation_m_s;
-            let square = wind.along_m_s * wind.along_m_s + normal * normal;
-            let psi = normal.atan2(wind.along_m_s);
+            let normal = vertical - self.arms.arm(*dof) * rotation;
+            let square = along * along + normal * normal;
+            let psi = normal.atan2(along);
             let c = self.coefficients.at(rotation_rad + psi)?;
             let direction = match dof {
                 Dof::Vertical => c.drag * psi.sin() + c.lift * psi.cos(),

@@ -54,18 +54,10 @@ impl Lags {
         let lists = match self {
             Self::Shared(lags) => std::slice::from_ref(lags),
             Self::PerForce(rows) => {
-                ensure(
-                    rows.len() == n,
-                    PLACE,
-                    format_args!("{n} lists, one per force"),
-                    rows.len(),
-                )?;
-                ensure(
-                    rows.iter().all(|r| r.len() == rows[0].len()),
-                    PLACE,
-                    "lists of one length",
-                    "different lengths",
-                )?;
+                let (count, expected) = (rows.len(), format_args!("{n} lists, one per force"));
+                ensure(count == n, PLACE, expected, count)?;
+                let alike = rows.iter().all(|r| r.len() == rows[0].len());
+                ensure(alike, PLACE, "lists of one length", "different lengths")?;
                 rows
             }
         };
@@ -142,25 +134,20 @@ impl RationalModel {
         terms.extend(&self.lag_terms);
         check_square("rational model", n, &terms)?;
         self.lags.validate(n)?;
-        ensure(
-            self.lag_terms.len() == self.lags.count(),
-            "rational model: lag_terms",
-            format_args!("one matrix per lag, {} in all", self.lags.count()),
-            self.lag_terms.len(),
-        )
+        let (count, found) = (self.lags.count(), self.lag_terms.len());
+        let expected = format_args!("one matrix per lag, {count} in all");
+        ensure(found == count, "rational model: lag_terms", expected, found)
     }
 
     /// The different values of the `l`-th lag, each with the forces (rows) that have it: one for shared lags.
     pub fn lag_groups(&self, l: usize) -> Vec<(f64, Vec<bool>)> {
         let mut groups: Vec<(f64, Vec<bool>)> = Vec::new();
-        for i in 0..self.dofs.len() {
-            let lag = self.lags.of_force(i)[l];
-            let at = groups.iter().position(|(d, _)| *d == lag);
-            let at = at.unwrap_or_else(|| {
-                groups.push((lag, vec![false; self.dofs.len()]));
-                groups.len() - 1
-            });
-            groups[at].1[i] = true;
+        let lag_of = |i: usize| self.lags.of_force(i)[l];
+        for lag in (0..self.dofs.len()).map(lag_of) {
+            if groups.iter().all(|(known, _)| *known != lag) {
+                let has_it = |i: usize| lag_of(i) == lag;
+                groups.push((lag, (0..self.dofs.len()).map(has_it).collect()));
+            }
         }
         groups
     }

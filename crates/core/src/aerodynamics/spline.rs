@@ -38,15 +38,17 @@ impl Spline {
     }
 }
 
+/// Slopes of the straight lines between neighbouring points.
+pub(super) fn secants(x: &[f64], y: &[f64]) -> Vec<f64> {
+    let pairs = x.windows(2).zip(y.windows(2));
+    pairs.map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0])).collect()
+}
+
 /// Second derivatives from continuity of slope inside and of the third derivative at the second and last but one point.
 fn curvatures(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = x.len();
     let h: Vec<f64> = x.windows(2).map(|w| w[1] - w[0]).collect();
-    let d: Vec<f64> = y
-        .windows(2)
-        .zip(&h)
-        .map(|(w, h)| (w[1] - w[0]) / h)
-        .collect();
+    let d = secants(x, y);
     // unknowns at the inner points; those at the ends are eliminated
     let inner = n - 2;
     let mut diagonal: Vec<f64> = (1..=inner).map(|i| 2.0 * (h[i - 1] + h[i])).collect();
@@ -65,11 +67,8 @@ fn curvatures(x: &[f64], y: &[f64]) -> Vec<f64> {
     }
     let mut m = vec![0.0; n];
     for i in (0..inner).rev() {
-        let next = if i + 1 < inner {
-            upper[i] * m[i + 2]
-        } else {
-            0.0
-        };
+        let has_next = i + 1 < inner;
+        let next = if has_next { upper[i] * m[i + 2] } else { 0.0 };
         m[i + 1] = (right[i] - next) / diagonal[i];
     }
     m[0] = m[1] * (1.0 + first) - m[2] * first;

@@ -42,37 +42,41 @@ pub struct StaticEquilibrium {
 #[serde(rename_all = "snake_case")]
 pub enum EquilibriumEnd {
     /// Torsional divergence: no equilibrium beyond, or no stable one.
-    Divergence(LastEquilibrium),
+    Divergence {
+        /// Wind speed of the last equilibrium, m/s.
+        speed_m_s: f64,
+        /// Rotation there, rad.
+        rotation_rad: f64,
+    },
     /// The rotation leaves the table of static coefficients.
-    OutsideTable(LastEquilibrium),
-}
-
-/// The last equilibrium of a branch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct LastEquilibrium {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Rotation, rad.
-    pub rotation_rad: f64,
+    OutsideTable {
+        /// Wind speed of the last equilibrium, m/s.
+        speed_m_s: f64,
+        /// Rotation there, rad.
+        rotation_rad: f64,
+    },
 }
 
 impl EquilibriumEnd {
     /// Wind speed, m/s.
     pub fn speed_m_s(&self) -> f64 {
         match self {
-            Self::Divergence(last) | Self::OutsideTable(last) => last.speed_m_s,
+            Self::Divergence { speed_m_s, .. } | Self::OutsideTable { speed_m_s, .. } => *speed_m_s,
         }
     }
 
     /// In words.
     pub fn explain(&self) -> String {
-        let (what, last) = match self {
-            Self::Divergence(last) => ("torsional divergence", last),
-            Self::OutsideTable(last) => ("the rotation leaves the table of coefficients", last),
+        let (what, rotation) = match self {
+            Self::Divergence { rotation_rad, .. } => ("torsional divergence", rotation_rad),
+            Self::OutsideTable { rotation_rad, .. } => (
+                "the rotation leaves the table of coefficients",
+                rotation_rad,
+            ),
         };
-        let (speed, rotation) = (last.speed_m_s, last.rotation_rad);
         format!(
-            "no equilibrium above {speed:.3} m/s: {what} at {:.3} deg",
+            "no equilibrium above {:.3} m/s: {what} at {:.3} deg",
+            self.speed_m_s(),
             rotation.to_degrees()
         )
     }
@@ -225,14 +229,18 @@ impl<'a> Branch<'a> {
     }
 
     fn end(&self, at: BranchPoint) -> EquilibriumEnd {
-        let last = LastEquilibrium {
-            speed_m_s: (2.0 * at.pressure / self.structure.air_density_kg_m3).sqrt(),
-            rotation_rad: at.rotation,
-        };
+        let speed_m_s = (2.0 * at.pressure / self.structure.air_density_kg_m3).sqrt();
+        let rotation_rad = at.rotation;
         if at.left < STIFF {
-            EquilibriumEnd::Divergence(last)
+            EquilibriumEnd::Divergence {
+                speed_m_s,
+                rotation_rad,
+            }
         } else {
-            EquilibriumEnd::OutsideTable(last)
+            EquilibriumEnd::OutsideTable {
+                speed_m_s,
+                rotation_rad,
+            }
         }
     }
 

@@ -11,7 +11,7 @@
 //! A viscous link between two points, or a point and the ground, is `R += c g gᵀ` with `g = (v₁ − v₂, 0)`. Modes and dampers are
 //! coupled by nothing else: the wind does not blow at a damper.
 
-use super::{Bridge, DampedPoint, Dampers, motion_index};
+use super::{Bridge, DampedPoint, Dampers};
 use crate::error::{Result, counted, ensure, finite, non_negative, positive};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
@@ -27,12 +27,8 @@ impl Bridge {
         for damper in &dampers.masses {
             let key = |of: &str| format!("{}: {of}", damper.name);
             self.check_point(&damper.name, &damper.at)?;
-            ensure(
-                damper.at.motion != Dof::Torsion,
-                key("motion"),
-                "vertical or lateral",
-                "torsion",
-            )?;
+            let moves = damper.at.motion != Dof::Torsion;
+            ensure(moves, key("motion"), "vertical or lateral", "torsion")?;
             positive(key("mass_kg"), damper.mass_kg)?;
             positive(key("frequency_hz"), damper.frequency_hz)?;
             non_negative(key("damping_ratio"), damper.damping_ratio)?;
@@ -79,7 +75,7 @@ impl Bridge {
 
     /// The motion of a point by unit mass-normalised coordinates; zero for those of dampers.
     pub fn motion_of(&self, point: &DampedPoint) -> DVector<f64> {
-        let (row, offset) = (motion_index(point.motion), point.offset_m);
+        let (row, offset) = (point.motion as usize, point.offset_m);
         // nose-up lifts what is upwind of the axis
         let turned = |shape: &[f64; 3]| match point.motion {
             Dof::Vertical => offset * shape[2],

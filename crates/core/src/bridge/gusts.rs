@@ -63,17 +63,14 @@ impl GustChannels {
 
     /// First channel of the strips with this wind factor over width.
     fn channel_of(&mut self, convection_per_width: f64, modes: usize) -> usize {
-        let known = self
-            .convection_per_width
-            .iter()
-            .position(|p| *p == convection_per_width);
-        let group = known.unwrap_or_else(|| {
+        let mut known = self.convection_per_width.iter();
+        let group = known.position(|p| *p == convection_per_width);
+        let group = group.unwrap_or_else(|| {
             self.convection_per_width.push(convection_per_width);
-            let channels = self.convection_per_width.len() * modes;
-            self.by_gust
-                .iter_mut()
-                .for_each(|c| c.resize(channels, 0.0));
-            self.convection_per_width.len() - 1
+            let groups = self.convection_per_width.len();
+            let columns = self.by_gust.iter_mut();
+            columns.for_each(|c| c.resize(groups * modes, 0.0));
+            groups - 1
         });
         group * modes
     }
@@ -99,15 +96,9 @@ fn owners(bridge: &Bridge, strips: &[Vec<usize>]) -> Result<Vec<Option<usize>>> 
                 Error::input(&place, expected, node.to_string())
             })?;
             if let Some(other) = claimed.replace(s) {
-                return Err(Error::input(
-                    place,
-                    "each node in one strip",
-                    format!(
-                        "node {} also in strip {}",
-                        bridge.nodes[node].name,
-                        other + 1
-                    ),
-                ));
+                let (name, other) = (&bridge.nodes[node].name, other + 1);
+                let found = format!("node {name} also in strip {other}");
+                return Err(Error::input(place, "each node in one strip", found));
             }
         }
     }

@@ -13,6 +13,7 @@ use super::{Bridge, StripGroup};
 use crate::aerodynamics::{ContinuousRealization, Realization, Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
+use crate::state_space::is_diagonal;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, DVectorView};
 use std::f64::consts::TAU;
@@ -162,10 +163,7 @@ fn section_banks(
         let a = aero.a.select_rows(&kept).select_columns(&kept);
         let mut b = DVector::from_iterator(kept.len(), kept.iter().map(|l| aero.b[(*l, input)]));
         let mut c = aero.c.select_columns(&kept);
-        if a.iter()
-            .enumerate()
-            .all(|(i, x)| i % (kept.len() + 1) == 0 || *x == 0.0)
-        {
+        if is_diagonal(&a) {
             for (l, drive) in b.iter_mut().enumerate() {
                 c.column_mut(l).scale_mut(*drive);
                 *drive = 1.0;
@@ -203,14 +201,10 @@ fn assemble(total: &mut ContinuousRealization, banks: &[ModalBank]) {
     for bank in banks {
         let filters = bank.b.len();
         for mode in 0..n {
-            total
-                .a
-                .view_mut((at, at), (filters, filters))
-                .copy_from(&(&bank.a * bank.rate));
-            total
-                .b
-                .view_mut((at, mode), (filters, 1))
-                .copy_from(&(&bank.b * bank.rate));
+            let mut place = total.a.view_mut((at, at), (filters, filters));
+            place.copy_from(&(&bank.a * bank.rate));
+            let mut place = total.b.view_mut((at, mode), (filters, 1));
+            place.copy_from(&(&bank.b * bank.rate));
             for (l, output) in bank.outputs.iter().enumerate() {
                 total.c.column_mut(at + l).copy_from(&output.column(mode));
             }
@@ -230,18 +224,14 @@ impl Transfer for ModalForces {
         for sums in &self.groups {
             let group = &sums.group;
             let of_group = k.full_width() * self.frequency_ratio(group);
-            let g = group
-                .forces
-                .transfer(ReducedFrequency::from_full_width(of_group))?;
+            let of_group = ReducedFrequency::from_full_width(of_group);
+            let g = group.forces.transfer(of_group)?;
             let pressure = self.pressure_ratio(group);
             sums.add_modal(&g, pressure, &mut real, &mut imaginary);
         }
         let parts = real.into_iter().zip(imaginary);
-        Ok(TransferMatrix::from_iterator(
-            n,
-            n,
-            parts.map(|(re, im)| Complex::new(re, im)),
-        ))
+        let all = parts.map(|(re, im)| Complex::new(re, im));
+        Ok(TransferMatrix::from_iterator(n, n, all))
     }
 
     fn known_range(&self) -> Option<ReducedFrequencyRange> {

@@ -19,23 +19,23 @@ pub struct Similarity {
 ///
 /// A mode counts as what carries the largest part of its sum of squares, rotations times half the width.
 pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
-    let kinds = bridge.modes.iter().map(|m| bridge.main_motion(m));
-    let kinds: Vec<Option<usize>> = kinds.collect();
+    let kind = |of: Dof| {
+        let modes = bridge.modes.iter();
+        modes.filter(move |m| bridge.main_motion(m) == Some(of as usize))
+    };
+    let product = |a: &BridgeMode, i: usize, b: &BridgeMode, j: usize| -> f64 {
+        let shapes = a.shape.iter().zip(&b.shape).zip(&bridge.nodes);
+        let each = shapes.map(|((a, b), node)| node.length_m * a[i] * b[j]);
+        each.sum()
+    };
     let mut all = Vec::new();
-    for (y, _) in kinds.iter().enumerate().filter(|(_, k)| **k == Some(0)) {
-        for (theta, _) in kinds.iter().enumerate().filter(|(_, k)| **k == Some(2)) {
-            let product = |a: (usize, usize), b: (usize, usize)| -> f64 {
-                let shape = |m: usize, i: usize, n: usize| bridge.modes[m].shape[n][i];
-                let nodes = bridge.nodes.iter().enumerate();
-                nodes
-                    .map(|(n, node)| node.length_m * shape(a.0, a.1, n) * shape(b.0, b.1, n))
-                    .sum()
-            };
-            let (v, t) = ((y, 0), (theta, 2));
+    for y in kind(Dof::Vertical) {
+        for theta in kind(Dof::Torsion) {
+            let squares = product(y, 0, y, 0) * product(theta, 2, theta, 2);
             all.push(Similarity {
-                vertical_mode: bridge.modes[y].number,
-                torsional_mode: bridge.modes[theta].number,
-                similarity: product(v, t).powi(2) / (product(v, v) * product(t, t)),
+                vertical_mode: y.number,
+                torsional_mode: theta.number,
+                similarity: product(y, 0, theta, 2).powi(2) / squares,
             });
         }
     }
@@ -50,19 +50,17 @@ impl Bridge {
         let scale = [1.0, 1.0, 0.5 * self.width_m()];
         let part = |i: usize| -> f64 {
             let nodes = self.nodes.iter().zip(&mode.shape);
-            nodes
-                .map(|(node, s)| node.length_m * (scale[i] * s[i]).powi(2))
-                .sum()
+            let squares = nodes.map(|(node, s)| node.length_m * (scale[i] * s[i]).powi(2));
+            squares.sum()
         };
         let parts = [part(0), part(1), part(2)];
-        (0..3)
-            .filter(|i| parts[*i] > 0.0)
-            .max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
+        let moving = (0..3).filter(|i| parts[*i] > 0.0);
+        moving.max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
     }
 
     /// Its name; `none` where there is none.
     pub fn main_motion_name(&self, mode: &BridgeMode) -> &'static str {
-        self.main_motion(mode)
-            .map_or("none", |i| Dof::THREE[i].name())
+        let motion = self.main_motion(mode);
+        motion.map_or("none", |i| Dof::THREE[i].name())
     }
 }

@@ -1,6 +1,6 @@
 //! Sums over the nodes of a group: `I_ab^ij = Σ_n w_n φ_a,i(n) φ_b,j(n)`.
 
-use super::{Bridge, StripGroup, motion_index};
+use super::{Bridge, StripGroup};
 use crate::aerodynamics::TransferMatrix;
 use crate::section::Dof;
 use nalgebra::DMatrix;
@@ -21,7 +21,7 @@ impl GroupSums {
             DMatrix::from_fn(group.nodes.len(), bridge.coordinates(), |n, m| {
                 let (node, mode) = (group.nodes[n], bridge.modes.get(m));
                 mode.map_or(0.0, |mode| {
-                    let value = mode.shape[node][motion_index(*dof)];
+                    let value = mode.shape[node][*dof as usize];
                     value * bridge.nodes[node].length_m.powf(power) / mode.generalised_mass.sqrt()
                 })
             })

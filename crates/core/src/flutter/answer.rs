@@ -104,10 +104,8 @@ impl FlutterSearch {
             Self::StableUpTo(range) => Some(range.to_m_s).filter(|to| *to > 0.0),
             growing => growing.critical_speed_m_s(),
         };
-        [own, divergence_m_s]
-            .into_iter()
-            .flatten()
-            .fold(limit_m_s, f64::min)
+        let both = own.into_iter().chain(divergence_m_s);
+        both.fold(limit_m_s, f64::min)
     }
 
     /// The answer in words.
@@ -191,12 +189,9 @@ pub(super) struct Findings {
 /// Picks the answer: the lowest crossing between the lowest and the highest tested `K`, be it in a gap, or growth where a mode
 /// enters them if that is lower; crossings below are named as suspicious. Without either, the lowest outside, with a warning.
 pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
-    found
-        .crossings
-        .sort_by(|a, b| a.at.speed_m_s.total_cmp(&b.at.speed_m_s));
-    found
-        .starts
-        .sort_by(|a, b| a.at.speed_m_s.total_cmp(&b.at.speed_m_s));
+    let by_speed = |a: &CriticalPoint, b: &CriticalPoint| a.speed_m_s.total_cmp(&b.speed_m_s);
+    found.crossings.sort_by(|a, b| by_speed(&a.at, &b.at));
+    found.starts.sort_by(|a, b| by_speed(&a.at, &b.at));
     for onset in &mut found.crossings {
         let k = onset.at.reduced_frequency;
         onset.in_tested_range = tested.map(|range| range.contains(k));
@@ -205,15 +200,12 @@ pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>)
     let spanned = |at: &CriticalPoint| tested.is_none_or(|r| r.spans(at.reduced_frequency));
     let (crossings, starts) = (&found.crossings, &found.starts);
     let onset = crossings.iter().position(|o| spanned(&o.at));
-    let start = starts
-        .iter()
-        .position(|s| s.in_tested_range == Some(true) || spanned(&s.at));
+    let entered = |s: &UnstableStart| s.in_tested_range == Some(true) || spanned(&s.at);
+    let start = starts.iter().position(entered);
     // what lies outside all that was tested is an answer only where there is none inside
+    let any = [crossings.is_empty(), starts.is_empty()].map(|none| (!none).then_some(0));
     let (onset, start) = match (onset, start) {
-        (None, None) => (
-            (!crossings.is_empty()).then_some(0),
-            (!starts.is_empty()).then_some(0),
-        ),
+        (None, None) => any.into(),
         trusted => trusted,
     };
     match (onset, start) {
@@ -254,22 +246,16 @@ impl Findings {
 
     fn onset(mut self, chosen: usize, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
         let mut onset = self.crossings.swap_remove(chosen);
-        let (spurious, warnings) = self.below(
-            onset.at.speed_m_s,
-            tested,
-            "probably spurious, a sign of over-fitting",
-        );
+        let verdict = "probably spurious, a sign of over-fitting";
+        let (spurious, warnings) = self.below(onset.at.speed_m_s, tested, verdict);
         onset.spurious_speeds_m_s.extend(spurious);
         onset.warnings.extend(warnings);
         onset.warnings.append(&mut self.warnings);
-        let (k, v_star) = (
-            onset.at.reduced_frequency,
-            onset.at.reduced_velocity.v_star(),
-        );
+        let v_star = onset.at.reduced_velocity.v_star();
         if let Some(gap) = onset.gap {
             onset.warnings.push(format!(
                 "K {:.3} of this onset lies {}: what the forces are there is the model's guess",
-                k.full_width(),
+                onset.at.reduced_frequency.full_width(),
                 gap.explain()
             ));
         } else if onset.in_tested_range == Some(false) {
@@ -301,10 +287,9 @@ impl Findings {
             let speed = onset.at.speed_m_s;
             let starts = self.starts.iter().filter(|s| began(&s.at, speed));
             let crossings = self.crossings.iter().filter(|o| began(&o.at, speed));
-            let grown = starts
-                .map(|s| (&s.branch, s.at.speed_m_s))
-                .chain(crossings.map(|o| (&o.branch, o.at.speed_m_s)));
-            let mut grown = grown.collect::<Vec<_>>();
+            let starts = starts.map(|s| (&s.branch, s.at.speed_m_s));
+            let crossings = crossings.map(|o| (&o.branch, o.at.speed_m_s));
+            let mut grown: Vec<_> = starts.chain(crossings).collect();
             // each growth ends with a recovery of its own
             grown.retain(|(branch, from)| {
                 let ends = |(at, of): &(f64, String)| of == *branch && (*from..speed).contains(at);
@@ -323,23 +308,20 @@ impl Findings {
         tested: Option<ReducedFrequencyRange>,
         verdict: &str,
     ) -> (Vec<f64>, Vec<String>) {
-        let crossings = self
-            .crossings
-            .iter()
-            .map(|o| (&o.at, &o.branch, "loses damping"));
+        let crossings = self.crossings.iter();
+        let crossings = crossings.map(|o| (&o.at, &o.branch, "loses damping"));
         let starts = self.starts.iter().map(|s| (&s.at, &s.branch, "grows"));
-        let mut below: Vec<_> = crossings
-            .chain(starts)
-            .filter(|(at, ..)| at.speed_m_s < speed_m_s)
-            .collect();
+        let mut below: Vec<_> = crossings.chain(starts).collect();
+        below.retain(|(at, ..)| at.speed_m_s < speed_m_s);
         below.sort_by(|a, b| a.0.speed_m_s.total_cmp(&b.0.speed_m_s));
         let warning = |(at, branch, what): &(&CriticalPoint, &String, &str)| {
             let slower = tested.is_some_and(|range| at.reduced_frequency < range.min);
             // slow motion is no place where a fit makes up growth: the deck may do it
-            let verdict = if slower {
-                "an extrapolation below the lowest tested K, which only tests there can confirm or refute"
-            } else {
-                verdict
+            let verdict = match slower {
+                true => {
+                    "an extrapolation below the lowest tested K, which only tests there can confirm or refute"
+                }
+                false => verdict,
             };
             format!(
                 "the model also {what} at {:.3} m/s (V* {:.2}, {}), outside the tested range: {verdict}",

@@ -1,7 +1,7 @@
 //! What a whole bridge does at an onset: the modes that take part and the motion of every node.
 
 use super::critical_point::CriticalPoint;
-use super::determinant::{impedance, null_vector};
+use super::determinant::StructureInWind;
 use super::following::{MIN_ASSURANCE, Mode, assurance};
 use super::modal_characteristic::ModalCharacteristic;
 use super::onset::ModeRatio;
@@ -59,10 +59,8 @@ impl BridgeMotion {
     pub fn mode_ratio(&self, width_m: f64) -> Option<ModeRatio> {
         let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
         let turning = |n: &&NodeMotion| complex(n.motion[2]).norm();
-        let most = self
-            .nodes
-            .iter()
-            .max_by(|a, b| turning(a).total_cmp(&turning(b)));
+        let nodes = self.nodes.iter();
+        let most = nodes.max_by(|a, b| turning(a).total_cmp(&turning(b)));
         most.and_then(|n| ModeRatio::new(complex(n.motion[0]), complex(n.motion[2]) * width_m))
     }
 }
@@ -90,12 +88,11 @@ fn modal_shape(
     forces: &dyn Transfer,
     at: &CriticalPoint,
 ) -> Result<DVector<Complex<f64>>> {
-    let structure = bridge.structure();
-    let omega = at
-        .reduced_frequency
-        .circular(structure.width_m, at.speed_m_s);
-    let resistance = impedance(&structure, forces, at.speed_m_s, omega)?;
-    null_vector(&structure, &resistance, omega)
+    let problem = StructureInWind {
+        structure: &bridge.structure(),
+        model: forces,
+    };
+    problem.shape(at.speed_m_s, at.omega(bridge.width_m()))
 }
 
 /// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.
@@ -114,12 +111,9 @@ impl NearbyOnset {
     /// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
     /// motion.
     pub fn new(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
-        let omega = at
-            .reduced_frequency
-            .circular(bridge.width_m(), at.speed_m_s);
         Ok(Self {
             speed_m_s: at.speed_m_s,
-            lambda: Complex::new(0.0, omega),
+            lambda: Complex::new(0.0, at.omega(bridge.width_m())),
             shape: modal_shape(bridge, &bridge.forces(), at)?,
         })
     }
@@ -194,10 +188,8 @@ fn nodes(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<NodeMotion> {
     };
     let all: Vec<[Complex<f64>; 3]> = (0..bridge.nodes.len()).map(at).collect();
     let in_metres = all.iter().flat_map(|[y, x, t]| [*y, *x, t * half_width]);
-    let greatest = in_metres.fold(
-        Complex::default(),
-        |a: Complex<f64>, b| if b.norm() > a.norm() { b } else { a },
-    );
+    let greater = |a: Complex<f64>, b: Complex<f64>| if b.norm() > a.norm() { b } else { a };
+    let greatest = in_metres.fold(Complex::default(), greater);
     let motion = |(node, z): (&crate::bridge::Node, &[Complex<f64>; 3])| NodeMotion {
         node: node.name.clone(),
         along_m: node.along_m,

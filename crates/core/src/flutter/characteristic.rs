@@ -5,11 +5,12 @@
 //! evaluation is a forward substitution: much cheaper than the eigenvalues of the whole state matrix.
 
 use super::dynamic_stiffness::{Determinant, Small, ZERO, newton, oscillator};
-use crate::aerodynamics::{ContinuousRealization, Realization};
+use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
-use crate::section::Suspension;
+use crate::section::{Dof, Suspension};
 use crate::state_space::Complex64;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
+use std::array::from_fn;
 
 /// Degrees of freedom at most.
 const MAX_DOFS: usize = 3;
@@ -50,17 +51,16 @@ impl Characteristic {
             return None;
         }
         let half_rho = 0.5 * s.air_density_kg_m3;
-        let small = |m: &nalgebra::DMatrix<f64>| {
-            let mut out = [[0.0; MAX_DOFS]; MAX_DOFS];
-            for (i, row) in out.iter_mut().enumerate().take(n) {
-                for (j, x) in row.iter_mut().enumerate().take(n) {
-                    *x = m[(i, j)];
-                }
-            }
-            out
+        let small = |m: &DMatrix<f64>| -> [[f64; MAX_DOFS]; MAX_DOFS] {
+            from_fn(|i| from_fn(|j| m.get((i, j)).copied().unwrap_or(0.0)))
         };
-        let air = |m: &nalgebra::DMatrix<f64>| small(&(s.scaled(m) * half_rho));
-        let filters = aero.a.nrows();
+        let air = |m: &DMatrix<f64>| small(&(s.scaled(m) * half_rho));
+        let columns = |mut all: DMatrix<f64>, scale: &dyn Fn(Dof) -> f64| {
+            for (mut column, dof) in all.column_iter_mut().zip(&s.dofs) {
+                column *= scale(*dof);
+            }
+            all.as_slice().to_vec()
+        };
         Some(Self {
             n,
             width: s.width_m,
@@ -68,15 +68,12 @@ impl Characteristic {
             damping: small(&s.damping),
             stiffness: small(&s.stiffness),
             feed_through: [air(&aero.e0), air(&aero.e1), air(&aero.e2)],
-            filters,
+            filters: aero.a.nrows(),
             a: aero.a.transpose().as_slice().to_vec(),
-            b: scaled_input(aero, |j| s.dofs[j].motion_scale(s.width_m)),
-            c: (0..n)
-                .flat_map(|i| {
-                    let scale = half_rho * s.dofs[i].force_scale(s.width_m);
-                    aero.c.row(i).iter().map(|x| scale * x).collect::<Vec<_>>()
-                })
-                .collect(),
+            b: columns(aero.b.clone(), &|dof| dof.motion_scale(s.width_m)),
+            c: columns(aero.c.transpose(), &|dof| {
+                half_rho * dof.force_scale(s.width_m)
+            }),
         })
     }
 
@@ -161,13 +158,4 @@ impl Characteristic {
         })?;
         Some((lambda, last?.null_vector()))
     }
-}
-
-fn scaled_input(aero: &ContinuousRealization, scale: impl Fn(usize) -> f64) -> Vec<f64> {
-    (0..aero.b.ncols())
-        .flat_map(|j| {
-            let s = scale(j);
-            aero.b.column(j).iter().map(|x| s * x).collect::<Vec<_>>()
-        })
-        .collect()
 }

@@ -50,14 +50,12 @@ fn each_alone(
     predicted: &[Complex64],
     before: &[Mode],
 ) -> Vec<Option<Root>> {
-    let alone = |i: &usize| {
-        let i = *i;
+    let alone = |i: usize| {
         let old = &before[i].shape;
         let root = problem.solve(predicted[i], old, Some(apart(predicted, i)));
         root.filter(|(_, shape)| assurance(shape, old) >= MIN_ASSURANCE)
     };
-    let all: Vec<usize> = (0..before.len()).collect();
-    threads::each(&all, true, alone)
+    threads::numbered(before.len(), true, alone)
 }
 
 /// How far an eigenvalue is from the nearest of the others.

@@ -88,13 +88,9 @@ impl RealColumns {
     }
 }
 
-/// A real matrix in a sum, the number it is multiplied with, and that number's derivative.
+/// In a sum the number that a real matrix is multiplied with, that number's derivative, and the matrix.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Term<'a> {
-    pub value: Complex64,
-    pub slope: Complex64,
-    pub matrix: &'a RealColumns,
-}
+pub(super) struct Term<'a>(pub Complex64, pub Complex64, pub &'a RealColumns);
 
 /// A complex matrix, column by column.
 #[derive(Debug, Clone)]
@@ -149,8 +145,8 @@ impl ComplexColumns {
         let mut value = Self::like(terms);
         for i in 0..value.all.len() {
             let mut sum = EntryBlock::ZERO;
-            for term in terms {
-                sum.add(&term.matrix.all[i], term.value);
+            for Term(factor, _, matrix) in terms {
+                sum.add(&matrix.all[i], *factor);
             }
             value.all[i] = sum;
         }
@@ -163,9 +159,9 @@ impl ComplexColumns {
         let (mut value, mut slope) = (Self::like(terms), Self::like(terms));
         for i in 0..value.all.len() {
             let (mut sum, mut slopes) = (EntryBlock::ZERO, EntryBlock::ZERO);
-            for term in terms {
-                sum.add(&term.matrix.all[i], term.value);
-                slopes.add(&term.matrix.all[i], term.slope);
+            for Term(factor, slope, matrix) in terms {
+                sum.add(&matrix.all[i], *factor);
+                slopes.add(&matrix.all[i], *slope);
             }
             (value.all[i], slope.all[i]) = (sum, slopes);
         }
@@ -174,10 +170,8 @@ impl ComplexColumns {
 
     /// Zeros of the size of the terms.
     fn like(terms: &[Term<'_>]) -> Self {
-        let (rows, eights) = terms.first().map_or((0, 0), |t| {
-            let matrix = t.matrix;
-            (matrix.rows, matrix.all.len())
-        });
+        let matrix = terms.first().map(|Term(.., matrix)| matrix);
+        let (rows, eights) = matrix.map_or((0, 0), |m| (m.rows, m.all.len()));
         Self {
             rows,
             stride: rows.div_ceil(WIDTH),

@@ -15,7 +15,7 @@
 
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
-use crate::state_space::eigenvalues;
+use crate::state_space::{Complex64, eigenvalues};
 use nalgebra::{DMatrix, DVector};
 
 /// Largest problem: beyond, a grid of speeds is quicker.
@@ -39,23 +39,17 @@ pub(super) fn critical_speeds(section: &CoupledSection) -> Option<Vec<f64>> {
     // μ² C(σ) + μ C'(σ) + C₂ with u = σ + 1/μ
     let mut companion = DMatrix::zeros(2 * size, 2 * size);
     companion.view_mut((0, 0), (size, size)).copy_from(&-slope);
-    companion
-        .view_mut((0, size), (size, size))
-        .copy_from(&-bend);
-    companion
-        .view_mut((size, 0), (size, size))
-        .fill_with_identity();
-    if !companion.iter().all(|x| x.is_finite()) {
-        return None;
-    }
-    let found = eigenvalues(&companion).ok()?;
-    let pairs = found
-        .into_iter()
+    let mut columns = companion.columns_mut(size, size);
+    columns.rows_mut(0, size).copy_from(&-bend);
+    let mut rows = companion.rows_mut(size, size);
+    rows.columns_mut(0, size).fill_with_identity();
+    // refused where a number of it is not finite
+    let found = eigenvalues(&companion).ok()?.into_iter();
+    let speeds = found
         .filter(|mu| mu.norm() > 0.0)
-        .map(|mu| mu.inv() + SHIFT)
-        .filter(|u| u.re > 0.0 && u.im.abs() <= REAL * u.re)
-        .map(|u| u.re);
-    let all = pairs.chain(system.at_rest()?);
+        .map(|mu| mu.inv() + SHIFT);
+    let all = speeds.filter(is_positive).map(|u| u.re);
+    let all = all.chain(system.at_rest()?);
     let mut speeds: Vec<f64> = all.map(|u| system.unit_m_s / u).collect();
     speeds.sort_by(f64::total_cmp);
     Some(speeds)
@@ -124,9 +118,8 @@ impl Dimensionless {
             false => &self.e0 - &self.c * self.a.clone().lu().solve(&self.b)?,
         };
         let flexibility = self.e2.clone().try_inverse()?;
-        let squares = eigenvalues(&(flexibility * -steady)).ok()?;
-        let real = |z: &nalgebra::Complex<f64>| z.re > 0.0 && z.im.abs() <= REAL * z.re;
-        Some(squares.into_iter().filter(real).map(|z| z.re.sqrt()))
+        let squares = eigenvalues(&(flexibility * -steady)).ok()?.into_iter();
+        Some(squares.filter(is_positive).map(|z| z.re.sqrt()))
     }
 
     /// The matrices of 1, `u` and `u²`, rows scaled to unit size.
@@ -134,80 +127,60 @@ impl Dimensionless {
         let filters = antisymmetric_lyapunov(&self.a)?;
         let mut pencil = [0; 3].map(|_| DMatrix::zeros(size, size));
         for j in 0..size {
-            let unknowns = Unknowns::unit(j, self, &filters)?;
+            let unknowns = self.unit(j, &filters)?;
             for (power, matrix) in pencil.iter_mut().enumerate() {
                 matrix.set_column(j, &self.equations(&unknowns, power, size));
             }
         }
         for i in 0..size {
-            let largest = pencil.iter().map(|m| m.row(i).amax()).fold(0.0, f64::max);
+            let mut rows = pencil.each_mut().map(|m| m.row_mut(i));
+            let largest = rows.iter().map(|row| row.amax()).fold(0.0, f64::max);
             if largest > 0.0 {
-                pencil
-                    .iter_mut()
-                    .for_each(|m| m.row_mut(i).unscale_mut(largest));
+                rows.iter_mut().for_each(|row| row.unscale_mut(largest));
             }
         }
         Some(pencil)
     }
 
     /// What `u` to this power multiplies in the rows of `v` of `A X + X Aᵀ`.
-    fn equations(&self, x: &Unknowns, power: usize, size: usize) -> DVector<f64> {
-        let (n, filters) = self.c.shape();
+    fn equations(&self, x: &[DMatrix<f64>; 6], power: usize, size: usize) -> DVector<f64> {
+        let ([q, s, t, w, y, z], (n, filters)) = (x, self.c.shape());
         let (mut vq, mut vx) = (DMatrix::zeros(n, n), DMatrix::zeros(n, filters));
         let mut vv = DMatrix::zeros(n, n);
         if let Some(e) = [Some(&self.e0), None, Some(&self.e2)][power] {
-            vq += e * &x.q;
-            vx += e * &x.w;
-            vv -= e * &x.s;
+            vq += e * q;
+            vx += e * w;
+            vv -= e * s;
         }
         if let Some(d) = [Some(&self.d0), Some(&self.d1), None][power] {
-            vq += d * &x.s;
-            vx += d * &x.y;
-            vv += d * &x.t;
+            vq += d * s;
+            vx += d * y;
+            vv += d * t;
         }
         if power == 0 {
-            vq += &x.t - &self.c * x.w.transpose();
-            vx += &self.c * &x.z + &x.s * self.b.transpose() + &x.y * self.a.transpose();
-            vv -= &self.c * x.y.transpose();
+            vq += t - &self.c * w.transpose();
+            vx += &self.c * z + s * self.b.transpose() + y * self.a.transpose();
+            vv -= &self.c * y.transpose();
         }
         let below = pairs(n).map(|(i, j)| vv[(i, j)] - vv[(j, i)]);
         let all = vq.iter().chain(vx.iter()).copied().chain(below);
         DVector::from_iterator(size, all)
     }
-}
 
-/// Places below the diagonal.
-fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..n).flat_map(|i| (0..i).map(move |j| (i, j)))
-}
-
-/// The blocks of `X`: `q` and `t` antisymmetric, `s` symmetric, `w` free, `y` and `z` what follows from them.
-struct Unknowns {
-    q: DMatrix<f64>,
-    s: DMatrix<f64>,
-    t: DMatrix<f64>,
-    w: DMatrix<f64>,
-    y: DMatrix<f64>,
-    z: DMatrix<f64>,
-}
-
-impl Unknowns {
-    /// The one of which only the free number `j` is 1: those of `q`, `t`, `s`, `w` in turn.
-    fn unit(j: usize, of: &Dimensionless, filters: &Factors) -> Option<Self> {
-        let (n, f) = of.c.shape();
-        let zeros = || DMatrix::zeros(n, n);
-        let (mut q, mut s, mut t, mut w) = (zeros(), zeros(), zeros(), DMatrix::zeros(n, f));
+    /// The blocks `[q, s, t, w, y, z]` of `X` of which only the free number `j` is 1: those of `q` and `t`, antisymmetric, of `s`,
+    /// symmetric, and of `w` in turn; `y` and `z` follow from them.
+    fn unit(&self, j: usize, filters: &Factors) -> Option<[DMatrix<f64>; 6]> {
+        let (n, f) = self.c.shape();
+        let [mut q, mut s, mut t] = [0; 3].map(|_| DMatrix::zeros(n, n));
+        let mut w = DMatrix::zeros(n, f);
         let below: Vec<_> = pairs(n).collect();
         let (first, second) = (below.len(), 2 * below.len());
         let third = second + n * (n + 1) / 2;
         if j < second {
-            let (matrix, pair) = if j < first {
-                (&mut q, below[j])
-            } else {
-                (&mut t, below[j - first])
-            };
-            matrix[pair] = 1.0;
-            matrix[(pair.1, pair.0)] = -1.0;
+            let matrix = if j < first { &mut q } else { &mut t };
+            let (row, column) = below[j % first];
+            matrix[(row, column)] = 1.0;
+            matrix[(column, row)] = -1.0;
         } else if j < third {
             let mut all = below.into_iter().chain((0..n).map(|i| (i, i)));
             let (row, column) = all.nth(j - second)?;
@@ -216,25 +189,32 @@ impl Unknowns {
         } else {
             w[((j - third) % n, (j - third) / n)] = 1.0;
         }
-        let y = -(&q * of.b.transpose() + &w * of.a.transpose());
-        let product = &of.b * &w;
+        let y = -(&q * self.b.transpose() + &w * self.a.transpose());
+        let product = &self.b * &w;
         let right = product.transpose() - product;
-        let below: Vec<f64> = pairs(f).map(|place| right[place]).collect();
+        let below = pairs(f).map(|place| right[place]);
+        let mut solved = DVector::from_vec(below.collect());
         // factors of no rows solve nothing
-        let solved = match below.is_empty() {
-            true => below,
-            false => filters
-                .solve(&DVector::from_vec(below))?
-                .as_slice()
-                .to_vec(),
-        };
+        if !solved.is_empty() {
+            solved = filters.solve(&solved)?;
+        }
         let mut z = DMatrix::zeros(f, f);
         for ((i, j), value) in pairs(f).zip(solved.iter()) {
             z[(i, j)] = *value;
             z[(j, i)] = -value;
         }
-        Some(Self { q, s, t, w, y, z })
+        Some([q, s, t, w, y, z])
     }
+}
+
+/// Whether a number is real but for rounding, and positive.
+fn is_positive(z: &Complex64) -> bool {
+    z.re > 0.0 && z.im.abs() <= REAL * z.re
+}
+
+/// Places below the diagonal.
+fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).flat_map(|i| (0..i).map(move |j| (i, j)))
 }
 
 type Factors = nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>;

@@ -49,6 +49,11 @@ pub struct CriticalPoint {
 }
 
 impl CriticalPoint {
+    /// Its circular frequency (rad/s) for this width.
+    pub(super) fn omega(&self, width_m: f64) -> f64 {
+        self.reduced_frequency.circular(width_m, self.speed_m_s)
+    }
+
     /// A motion of the structure with the circular frequency `omega` (rad/s).
     pub(super) fn of_motion(
         model: &str,

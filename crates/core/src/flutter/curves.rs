@@ -174,9 +174,8 @@ pub fn trace_modes_watched(
             other => other?,
         };
         for mode in &modes.all {
-            branches[mode.branch]
-                .points
-                .push(ModePoint::new(speed, mode, 1.0));
+            let point = ModePoint::new(speed, mode, 1.0);
+            branches[mode.branch].points.push(point);
         }
     }
     Ok(FlutterCurves {

@@ -8,7 +8,7 @@ use super::answer::{Findings, FlutterSearch, UnstableStart, choose};
 use super::critical_point::{CriticalPoint, OnsetMethod};
 use super::judged::{Exit, FastMotion, StableRange, TestedFrom, damps_at, entry_reason};
 use super::onset::Onset;
-use crate::aerodynamics::Transfer;
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{ValueAt, complex, first_order, root};
@@ -33,25 +33,14 @@ pub fn impedance(
     model: &dyn Transfer,
     speed_m_s: f64,
     omega: f64,
-) -> Result<DMatrix<Complex<f64>>> {
+) -> Result<TransferMatrix> {
     let k = ReducedFrequency::from_circular(omega, structure.width_m, speed_m_s);
-    let forces = self_excited(structure, model, k, speed_m_s)?;
+    let forces = StructureInWind { structure, model }.forces(k, speed_m_s)?;
     let (s, n) = (structure, forces.nrows());
     Ok(DMatrix::from_fn(n, n, |i, j| {
         let elastic = s.stiffness[(i, j)] - omega * omega * s.mass[(i, j)];
         Complex::new(elastic, omega * s.damping[(i, j)]) - forces[(i, j)]
     }))
-}
-
-/// Self-excited forces of unit motions, `½ρV² P(G(K))`: N/m and N·m/m for m and rad.
-pub(super) fn self_excited(
-    structure: &Structure,
-    model: &dyn Transfer,
-    k: ReducedFrequency,
-    speed_m_s: f64,
-) -> Result<DMatrix<Complex<f64>>> {
-    let pressure = 0.5 * structure.air_density_kg_m3 * speed_m_s * speed_m_s;
-    Ok(structure.to_physical(&model.transfer(k)?) * Complex::from(pressure))
 }
 
 /// Lowest speed up to `speed_max_m_s` at which the section flutters at a reduced frequency inside `range`.
@@ -85,11 +74,9 @@ pub fn determinant_onset(
     range: ReducedFrequencyRange,
     speed_max_m_s: f64,
 ) -> Result<FlutterSearch> {
-    let k_min = positive(
-        "range of reduced frequencies",
-        range.not_empty()?.min.full_width(),
-    )?;
-    let k_max = positive("range of reduced frequencies", range.max.full_width())?;
+    let place = "range of reduced frequencies";
+    let k_min = positive(place, range.not_empty()?.min.full_width())?;
+    let k_max = positive(place, range.max.full_width())?;
     let problem = StructureInWind::new(structure, model)?;
     let at = |i: usize| {
         // both ends exactly, so that a table is not asked beyond its last point
@@ -101,10 +88,11 @@ pub fn determinant_onset(
     };
     let width = structure.width_m;
     let exits = |roots: &[(Complex<f64>, usize)], (k, gap): LowerEnd| {
-        let speed = |omega: &Complex<f64>| omega.re * width / k.full_width();
-        let exit = |(omega, row)| (speed(omega), structure.branch_name(row), Exit::at(k, gap));
-        let all = roots.iter().map(|(omega, row)| (omega, *row));
-        all.map(exit).collect::<Vec<_>>()
+        let exit = |(omega, row): &(Complex<f64>, usize)| {
+            let speed = omega.re * width / k.full_width();
+            (speed, structure.branch_name(*row), Exit::at(k, gap))
+        };
+        roots.iter().map(exit).collect::<Vec<_>>()
     };
     // each root with its branch, as long as it stays in the right half plane
     let mut roots = problem.named_roots(k_max)?;
@@ -122,8 +110,7 @@ pub fn determinant_onset(
         }
     }
     for i in 1..=GRID {
-        let current = problem.frequencies(at(i))?;
-        let before: Vec<_> = roots.iter().map(|r| r.0).collect();
+        let current = problem.frequencies(at(i), 1.0)?;
         let into_gap = |(k, gap): &LowerEnd| {
             gap.is_some() && at(i) < k.full_width() && k.full_width() <= at(i - 1)
         };
@@ -131,7 +118,7 @@ pub fn determinant_onset(
             findings.reach.exits.extend(exits(&roots, end));
         }
         let mut next = Vec::with_capacity(roots.len());
-        for ((root, row), after) in roots.into_iter().zip(paired(&before, &current)) {
+        for ((root, row), after) in roots.iter().copied().zip(paired(&roots, &current)) {
             let Some(after) = after else {
                 continue;
             };
@@ -148,10 +135,8 @@ pub fn determinant_onset(
         roots = next;
     }
     // at the lowest K each root has come to a speed of its own; beyond the slowest nothing was looked at
-    findings
-        .reach
-        .exits
-        .extend(exits(&roots, (range.min, None)));
+    let exits = exits(&roots, (range.min, None));
+    findings.reach.exits.extend(exits);
     Ok(choose(findings, Some(range)))
 }
 
@@ -178,15 +163,12 @@ pub fn table_tested_from(
 }
 
 /// For every root the nearest of `current` that is not nearer to another; `None` where there are too few.
-fn paired(roots: &[Complex<f64>], current: &[Complex<f64>]) -> Vec<Option<Complex<f64>>> {
-    let mut distances: Vec<(f64, usize, usize)> = roots
-        .iter()
-        .enumerate()
-        .flat_map(|(i, a)| {
-            let to = current.iter().enumerate();
-            to.map(move |(j, b)| ((a - b).norm(), i, j))
-        })
-        .collect();
+fn paired(roots: &[(Complex<f64>, usize)], current: &[Complex<f64>]) -> Vec<Option<Complex<f64>>> {
+    let all = roots.iter().enumerate().flat_map(|(i, (a, _))| {
+        let to = current.iter().enumerate();
+        to.map(move |(j, b)| ((a - b).norm(), i, j))
+    });
+    let mut distances: Vec<(f64, usize, usize)> = all.collect();
     distances.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut pairs = vec![None; roots.len()];
     let mut taken = vec![false; current.len()];
@@ -199,14 +181,8 @@ fn paired(roots: &[Complex<f64>], current: &[Complex<f64>]) -> Vec<Option<Comple
     pairs
 }
 
-fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>> {
-    among
-        .iter()
-        .copied()
-        .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
-}
-
 /// A structure in the forces of a model.
+#[derive(Clone, Copy)]
 pub(super) struct StructureInWind<'a> {
     pub(super) structure: &'a Structure,
     pub(super) model: &'a dyn Transfer,
@@ -224,57 +200,38 @@ impl<'a> StructureInWind<'a> {
     /// Roots at the reduced frequency `k` with the rows whose modes they are: those of the structure without air, followed
     /// while the air comes to its density.
     fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, usize)>> {
-        let mut still = self.frequencies_in(k, 0.0)?;
+        let mut still = self.frequencies(k, 0.0)?;
         still.sort_by(|a, b| a.re.total_cmp(&b.re));
         let rows = self.structure.rows_by_frequency();
         let mut named: Vec<_> = still.into_iter().zip(rows).collect();
         for i in 1..=AIR_STEPS {
-            let current = self.frequencies_in(k, i as f64 / AIR_STEPS as f64)?;
-            let before: Vec<_> = named.iter().map(|r| r.0).collect();
-            let pairs = paired(&before, &current);
-            let names = named.into_iter().map(|r| r.1);
+            let current = self.frequencies(k, i as f64 / AIR_STEPS as f64)?;
+            let pairs = paired(&named, &current).into_iter().zip(named);
             named = pairs
-                .into_iter()
-                .zip(names)
-                .filter_map(|(root, dof)| Some((root?, dof)))
+                .filter_map(|(root, (_, row))| Some((root?, row)))
                 .collect();
         }
         Ok(named)
     }
 
-    /// Roots `ω` with positive real part at the reduced frequency `k`, rad/s.
-    fn frequencies(&self, k: f64) -> Result<Vec<Complex<f64>>> {
-        self.frequencies_in(k, 1.0)
-    }
-
-    /// The same with a part of the density of the air.
-    fn frequencies_in(&self, k: f64, part: f64) -> Result<Vec<Complex<f64>>> {
+    /// Roots `ω` with positive real part at the reduced frequency `k`, rad/s, in air of this part of its density.
+    fn frequencies(&self, k: f64, part: f64) -> Result<Vec<Complex<f64>>> {
         let s = self.structure;
+        let failed = |what: &str| Error::Numerical(format!("determinant: {what} at K = {k}"));
         let g = self.model.transfer(ReducedFrequency::from_full_width(k))?;
         let air = 0.5 * part * s.air_density_kg_m3 * (s.width_m / k).powi(2);
         let mass = complex(&s.mass) + s.to_physical(&g) * Complex::new(air, 0.0);
-        let inverse = mass
-            .try_inverse()
-            .ok_or_else(|| Error::Numerical(format!("determinant: singular at K = {k}")))?;
+        let inverse = mass.try_inverse().ok_or_else(|| failed("singular"))?;
         let on_rate = complex(&s.damping) * Complex::i();
         let companion = first_order(&inverse, &complex(&s.stiffness), &on_rate);
-        if !companion
-            .iter()
-            .all(|z| z.re.is_finite() && z.im.is_finite())
-        {
-            return Err(Error::Numerical(format!(
-                "determinant: the model is not finite at K = {k}"
-            )));
+        if !companion.iter().all(|z| z.is_finite()) {
+            return Err(failed("the model is not finite"));
         }
-        let (_, triangular) = Schur::try_new(companion, f64::EPSILON, MAX_SCHUR_SWEEPS)
-            .ok_or_else(|| Error::Numerical(format!("determinant: no roots at K = {k}")))?
-            .unpack();
-        Ok(triangular
-            .diagonal()
-            .iter()
-            .copied()
-            .filter(|omega| omega.re > 0.0)
-            .collect())
+        let schur = Schur::try_new(companion, f64::EPSILON, MAX_SCHUR_SWEEPS);
+        let (_, triangular) = schur.ok_or_else(|| failed("no roots"))?.unpack();
+        let diagonal = triangular.diagonal();
+        let all = diagonal.iter().copied();
+        Ok(all.filter(|omega| omega.re > 0.0).collect())
     }
 
     /// The reduced frequency at which the root becomes real, and the onset there.
@@ -289,8 +246,9 @@ impl<'a> StructureInWind<'a> {
             // the roots move little over one cell of the grid: nearest to the straight line between its ends
             let share = (k - before.at) / (after.at - before.at);
             let guess = before.value + (after.value - before.value) * share;
-            nearest(guess, &self.frequencies(k)?)
-                .ok_or_else(|| Error::Numerical(format!("determinant: no root at K = {k}")))
+            let all = self.frequencies(k, 1.0)?.into_iter();
+            let nearest = all.min_by(|a, b| (a - guess).norm().total_cmp(&(b - guess).norm()));
+            nearest.ok_or_else(|| Error::Numerical(format!("determinant: no root at K = {k}")))
         };
         let imaginary = |end: ValueAt<Complex<f64>>| ValueAt::new(end.at, -end.value.im);
         let k = root(imaginary(before), imaginary(after), |k| Ok(-root_at(k)?.im))?;
@@ -302,60 +260,57 @@ impl<'a> StructureInWind<'a> {
             )));
         }
         let speed = omega * s.width_m / k;
-        let shape = null_vector(s, &impedance(s, self.model, speed, omega)?, omega)?;
+        let shape = self.shape(speed, omega)?;
         let at = CriticalPoint::of_motion(name, OnsetMethod::Determinant, s, speed, omega);
         let mut onset = Onset::new(at, s, &shape, branch);
-        onset.damping_slope_s_m = damping_slope(s, self.model, speed, omega);
+        onset.damping_slope_s_m = self.damping_slope(speed, omega);
         Ok(onset)
     }
-}
 
-/// `dζ/dV` (s/m) at an onset, from the determinant `d(V, ω)` of the impedance alone: with `λ = iω` on the axis,
-/// `dλ/dV = −d_V/d_λ = −i d_V/d_ω` and `dζ/dV = −Re(dλ/dV)/ω`, central differences. `None` where the model does not
-/// answer on both sides (a table at the end of its range).
-pub(super) fn damping_slope(
-    structure: &Structure,
-    model: &dyn Transfer,
-    speed_m_s: f64,
-    omega: f64,
-) -> Option<f64> {
-    let determinant = |speed: f64, omega: f64| {
-        let z = impedance(structure, model, speed, omega).ok()?;
-        Some(z.determinant())
-    };
-    let h = SLOPE_STEP;
-    let over_speed =
-        determinant(speed_m_s * (1.0 + h), omega)? - determinant(speed_m_s * (1.0 - h), omega)?;
-    let over_omega =
-        determinant(speed_m_s, omega * (1.0 + h))? - determinant(speed_m_s, omega * (1.0 - h))?;
-    let rate = Complex::new(0.0, -1.0) * (over_speed / speed_m_s) / (over_omega / omega);
-    let slope = -rate.re / omega;
-    slope.is_finite().then_some(slope)
-}
-
-/// The motion (m, rad) that the impedance at `omega` resists least: the right singular vector of the smallest singular
-/// value. Rows and columns are scaled by the root of the typical impedance of each degree of freedom, `K_ii + ω² M_ii`,
-/// since heave and rotation have different units; a row by its own size would hide a degree of freedom that is alone.
-pub(super) fn null_vector(
-    structure: &Structure,
-    impedance: &DMatrix<Complex<f64>>,
-    omega: f64,
-) -> Result<DVector<Complex<f64>>> {
-    let scale = |i: usize| {
-        let typical = structure.stiffness[(i, i)] + omega * omega * structure.mass[(i, i)];
-        typical.sqrt().recip()
-    };
-    let n = impedance.nrows();
-    let scaled = DMatrix::from_fn(n, n, |i, j| impedance[(i, j)] * (scale(i) * scale(j)));
-    let singular = || Error::Numerical("determinant: no mode shape at the onset".into());
-    let svd = scaled
-        .try_svd(false, true, f64::EPSILON, MAX_SCHUR_SWEEPS)
-        .ok_or_else(singular)?;
-    let v_t = svd.v_t.ok_or_else(singular)?;
-    let smallest = svd.singular_values.imin();
-    let mut shape = v_t.row(smallest).adjoint();
-    for (i, z) in shape.iter_mut().enumerate() {
-        *z *= Complex::from(scale(i));
+    /// Self-excited forces of unit motions, `½ρV² P(G(K))`: N/m and N·m/m for m and rad.
+    pub(super) fn forces(&self, k: ReducedFrequency, speed_m_s: f64) -> Result<TransferMatrix> {
+        let pressure = 0.5 * self.structure.air_density_kg_m3 * speed_m_s * speed_m_s;
+        Ok(self.structure.to_physical(&self.model.transfer(k)?) * Complex::from(pressure))
     }
-    Ok(shape)
+
+    /// `dζ/dV` (s/m) at an onset, from the determinant `d(V, ω)` of the impedance alone: with `λ = iω` on the axis,
+    /// `dλ/dV = −d_V/d_λ = −i d_V/d_ω` and `dζ/dV = −Re(dλ/dV)/ω`, central differences. `None` where the model does not
+    /// answer on both sides (a table at the end of its range).
+    pub(super) fn damping_slope(&self, speed_m_s: f64, omega: f64) -> Option<f64> {
+        let determinant = |speed: f64, omega: f64| {
+            let z = impedance(self.structure, self.model, speed, omega).ok()?;
+            Some(z.determinant())
+        };
+        let (more, less) = (1.0 + SLOPE_STEP, 1.0 - SLOPE_STEP);
+        let over_speed =
+            determinant(speed_m_s * more, omega)? - determinant(speed_m_s * less, omega)?;
+        let over_omega =
+            determinant(speed_m_s, omega * more)? - determinant(speed_m_s, omega * less)?;
+        let rate = Complex::new(0.0, -1.0) * (over_speed / speed_m_s) / (over_omega / omega);
+        let slope = -rate.re / omega;
+        slope.is_finite().then_some(slope)
+    }
+
+    /// The motion (m, rad) that the impedance at a speed (m/s) and a circular frequency resists least: the right singular vector
+    /// of the smallest singular value. Rows and columns are scaled by the root of the typical impedance of each degree of freedom,
+    /// `K_ii + ω² M_ii`, since heave and rotation have different units; a row by its own size would hide a degree of freedom that
+    /// is alone.
+    pub(super) fn shape(&self, speed_m_s: f64, omega: f64) -> Result<DVector<Complex<f64>>> {
+        let s = self.structure;
+        let impedance = impedance(s, self.model, speed_m_s, omega)?;
+        let scale = |i: usize| {
+            let typical = s.stiffness[(i, i)] + omega * omega * s.mass[(i, i)];
+            typical.sqrt().recip()
+        };
+        let n = impedance.nrows();
+        let scaled = DMatrix::from_fn(n, n, |i, j| impedance[(i, j)] * (scale(i) * scale(j)));
+        let singular = || Error::Numerical("determinant: no mode shape at the onset".into());
+        let svd = scaled.try_svd(false, true, f64::EPSILON, MAX_SCHUR_SWEEPS);
+        let svd = svd.ok_or_else(singular)?;
+        let smallest = svd.singular_values.imin();
+        let shape = svd.v_t.ok_or_else(singular)?.row(smallest).adjoint();
+        Ok(DVector::from_fn(n, |i, _| {
+            shape[i] * Complex::from(scale(i))
+        }))
+    }
 }

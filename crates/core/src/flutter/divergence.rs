@@ -135,12 +135,9 @@ pub fn divergence_by_eigenvalues(
 
 /// A number with the sign of the product of all eigenvalues (less one for the sampled system); zero at divergence.
 fn singularity(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
-    let matrix = match section.at(speed_m_s)? {
-        CoupledSystem::Continuous(a) => a,
-        CoupledSystem::Sampled { a, .. } => {
-            let n = a.nrows();
-            a - DMatrix::identity(n, n)
-        }
-    };
-    Ok(balance(&matrix).determinant())
+    let CoupledSystem { mut a, step_s } = section.at(speed_m_s)?;
+    if step_s.is_some() {
+        a -= DMatrix::identity(a.nrows(), a.nrows());
+    }
+    Ok(balance(&a).determinant())
 }

@@ -237,20 +237,21 @@ impl<F: Follower> OnsetWatch<'_, F> {
             let Some(before) = low.mode(after.branch) else {
                 continue;
             };
-            if before.lambda.re < 0.0 && after.lambda.re >= 0.0 {
-                let (speed, mode) = self.zero(low, before, high, after, |_, m| m.lambda.re)?;
-                let (s, branch) = (self.follower.structure(), self.follower.name(mode.branch));
-                let onset = Onset::new(self.motion(speed, &mode), s, &mode.shape, branch);
-                found
-                    .crossings
-                    .extend(self.follower.complete(onset, low, &mode)?);
+            let grows = [before, after].map(|mode| mode.lambda.re >= 0.0);
+            if grows[0] != grows[1] {
+                let (speed, mode) = self.zero(low, high, after.branch, |_, m| m.lambda.re)?;
+                let (s, name) = (self.follower.structure(), self.follower.name(mode.branch));
+                if grows[1] {
+                    let onset = Onset::new(self.motion(speed, &mode), s, &mode.shape, name);
+                    let onset = self.follower.complete(onset, low, &mode)?;
+                    found.crossings.extend(onset);
+                } else {
+                    found.recoveries.push((speed, name));
+                }
             }
-            if before.lambda.re >= 0.0 && after.lambda.re < 0.0 {
-                let (speed, mode) = self.zero(low, before, high, after, |_, m| m.lambda.re)?;
-                let name = self.follower.name(mode.branch);
-                found.recoveries.push((speed, name));
+            if grows.contains(&true) {
+                found.starts.extend(self.entry(low, high, after.branch)?);
             }
-            found.starts.extend(self.entry(low, before, high, after)?);
         }
         Ok(())
     }
@@ -258,9 +259,7 @@ impl<F: Follower> OnsetWatch<'_, F> {
     /// Adds the ends of what can be judged that modes pass between two speeds.
     fn look(&self, low: &Modes, all_high: &Modes, found: &mut Findings) {
         let Some(range) = self.judged else { return };
-        let k = |modes: &Modes, mode: &Mode| {
-            ValueAt::new(modes.speed, self.follower.k(modes.speed, mode))
-        };
+        let slowness = |v: f64, mode: &Mode| 1.0 / self.follower.k(v, mode).full_width();
         for before in &low.all {
             let branch = self.follower.name(before.branch);
             let lost = all_high.mode(before.branch).is_none();
@@ -274,13 +273,13 @@ impl<F: Follower> OnsetWatch<'_, F> {
                 all_high
             };
             if let Some(after) = high.mode(before.branch) {
-                let slowness = |v: f64, mode: &Mode| 1.0 / self.follower.k(v, mode).full_width();
                 let refined = |limit: f64| {
                     let beyond = |v: f64, mode: &Mode| slowness(v, mode) - limit;
-                    let passage = self.zero(low, before, high, after, beyond);
+                    let passage = self.zero(low, high, after.branch, beyond);
                     passage.ok().map(|(speed, _)| speed)
                 };
-                let (before, after) = (k(low, before), k(high, after));
+                let [before, after] = [(low, before), (high, after)]
+                    .map(|(at, mode)| ValueAt::new(at.speed, slowness(at.speed, mode)));
                 found.reach.look(range, &branch, before, after, refined);
             }
             if lost {
@@ -304,24 +303,20 @@ impl<F: Follower> OnsetWatch<'_, F> {
     }
 
     /// A mode that comes into the tested range between two speeds and grows there.
-    fn entry(
-        &self,
-        low: &Modes,
-        before: &Mode,
-        high: &Modes,
-        after: &Mode,
-    ) -> Result<Option<UnstableStart>> {
-        let grows = before.lambda.re >= 0.0 || after.lambda.re >= 0.0;
-        let Some(range) = self.tested.filter(|_| grows) else {
+    fn entry(&self, low: &Modes, high: &Modes, branch: usize) -> Result<Option<UnstableStart>> {
+        let Some(range) = self.tested else {
             return Ok(None);
         };
-        let k = |modes: &Modes, mode: &Mode| self.follower.k(modes.speed, mode);
-        if k(low, before) <= range.max || k(high, after) > range.max {
-            return Ok(None);
-        }
         let beyond =
             |v: f64, mode: &Mode| range.max.full_width() - self.follower.k(v, mode).full_width();
-        let (speed, mode) = self.zero(low, before, high, after, beyond)?;
+        let is_beyond = |modes: &Modes| {
+            let mode = modes.mode(branch);
+            mode.is_some_and(|mode| self.follower.k(modes.speed, mode) > range.max)
+        };
+        if !is_beyond(low) || is_beyond(high) {
+            return Ok(None);
+        }
+        let (speed, mode) = self.zero(low, high, branch, beyond)?;
         Ok(growing(&mode.lambda).then(|| {
             let mut start = self.start(speed, &mode, entry_reason(range.max));
             start.in_tested_range = Some(true);
@@ -333,16 +328,16 @@ impl<F: Follower> OnsetWatch<'_, F> {
     fn zero(
         &self,
         low: &Modes,
-        before: &Mode,
         high: &Modes,
-        after: &Mode,
+        branch: usize,
         value: impl Fn(f64, &Mode) -> f64,
     ) -> Result<(f64, Mode)> {
-        let mode_at = |v: f64| self.follower.mode_at(low, v, after.branch);
-        let end = |modes: &Modes, mode: &Mode| ValueAt::new(modes.speed, value(modes.speed, mode));
-        let speed = root(end(low, before), end(high, after), |v| {
-            Ok(value(v, &mode_at(v)?))
-        })?;
+        let mode_at = |v: f64| self.follower.mode_at(low, v, branch);
+        let end = |modes: &Modes| {
+            let mode = modes.mode(branch).ok_or_else(|| F::lost(modes.speed))?;
+            Ok(ValueAt::new(modes.speed, value(modes.speed, mode)))
+        };
+        let speed = root(end(low)?, end(high)?, |v| Ok(value(v, &mode_at(v)?)))?;
         Ok((speed, mode_at(speed)?))
     }
 }

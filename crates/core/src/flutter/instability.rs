@@ -4,11 +4,12 @@
 //! damping derivative of that degree of freedom (`H1*`, `P1*`, `A2*`: `Im G_ii/K²`) is positive there, so that its own
 //! motion is fed by the wind without any help of another.
 
-use super::determinant::{determinant_onset, impedance, null_vector};
+use super::determinant::{StructureInWind, determinant_onset};
 use super::onset::Onset;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::{Dof, Structure};
+use crate::state_space::complex;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
@@ -84,14 +85,12 @@ pub fn classify(
     speed_max_m_s: f64,
 ) -> Result<ModeAtOnset> {
     let k = onset.at.reduced_frequency;
-    let omega = k.circular(structure.width_m, onset.at.speed_m_s);
-    let resistance = impedance(structure, model, onset.at.speed_m_s, omega)?;
-    let shape = null_vector(structure, &resistance, omega)?;
+    let omega = onset.at.omega(structure.width_m);
+    let shape = StructureInWind { structure, model }.shape(onset.at.speed_m_s, omega)?;
     let velocity = shape.map(|z| z * Complex::new(0.0, omega));
-    let momentum = structure.mass.map(|x| Complex::new(x, 0.0)) * &velocity;
-    let energy: Vec<f64> = (0..shape.len())
-        .map(|i| (velocity[i].conj() * momentum[i]).re)
-        .collect();
+    let momentum = complex(&structure.mass) * &velocity;
+    let both = velocity.iter().zip(momentum.iter());
+    let energy: Vec<f64> = both.map(|(v, m)| (v.conj() * m).re).collect();
     let total: f64 = energy.iter().sum();
     let g = model.transfer(k)?;
     let k_squared = k.full_width() * k.full_width();
@@ -111,22 +110,13 @@ pub fn classify(
 }
 
 fn kind(participation: &[Participation]) -> Instability {
-    let fed = |p: &&Participation| p.direct_damping > 0.0;
-    let alone = participation
-        .iter()
-        .filter(fed)
-        .find(|p| p.energy_share >= SINGLE_DOF_SHARE);
+    let mut fed = participation.iter().filter(|p| p.direct_damping > 0.0);
+    let alone = fed.clone().find(|p| p.energy_share >= SINGLE_DOF_SHARE);
     match alone.map(|p| p.dof) {
         Some(Dof::Torsion) => Instability::TorsionalFlutter,
         Some(Dof::Vertical) => Instability::Galloping,
         Some(Dof::Lateral) => Instability::LateralGalloping,
-        None if participation
-            .iter()
-            .filter(fed)
-            .any(|p| p.dof == Dof::Torsion) =>
-        {
-            Instability::TorsionDrivenFlutter
-        }
+        None if fed.any(|p| p.dof == Dof::Torsion) => Instability::TorsionDrivenFlutter,
         None => Instability::CoupledFlutter,
     }
 }

@@ -62,11 +62,8 @@ impl StableRange {
     /// The answer in words.
     pub fn explain(&self) -> String {
         if self.is_empty() {
-            let why = self
-                .not_judged
-                .as_deref()
-                .unwrap_or("no speed was looked at");
-            return format!("not judged: {why}");
+            let why = self.not_judged.as_deref();
+            return format!("not judged: {}", why.unwrap_or("no speed was looked at"));
         }
         let mut text = format!("no flutter up to {:.3} m/s", self.to_m_s);
         if self.from_m_s > 0.0 {
@@ -80,10 +77,8 @@ impl StableRange {
 
     /// The speeds that are in both.
     pub fn and(self, other: Self) -> Self {
-        let why: Vec<String> = [self.not_judged, other.not_judged]
-            .into_iter()
-            .flatten()
-            .collect();
+        let both = self.not_judged.into_iter().chain(other.not_judged);
+        let why: Vec<String> = both.collect();
         Self {
             from_m_s: self.from_m_s.max(other.from_m_s),
             to_m_s: self.to_m_s.min(other.to_m_s),
@@ -152,15 +147,6 @@ pub struct TestedFrom {
     pub below: FastMotion,
 }
 
-/// The speeds at which data judge a structure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JudgedSpeeds {
-    /// Speeds at which every mode is among the tests, or above them where the forces damp every such motion.
-    pub range: StableRange,
-    /// From where on every mode is among the tests or below; `None` where all are from the beginning.
-    pub tested_from: Option<TestedFrom>,
-}
-
 /// Why a mode cannot be judged beyond a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Exit {
@@ -204,18 +190,19 @@ pub(super) struct RangePassages {
 impl RangePassages {
     /// Adds the lower ends of `range` that the `K` of a branch passes between two speeds, and the upper end, if modes are
     /// judged from there. In fast motion `1/K` is all but linear in between; near divergence it is not, so that the first of the
-    /// exits, which ends what is judged, is `refined` to the speed at which `1/K` is that of the end.
+    /// exits, which ends what is judged, is `refined` to the speed at which `1/K` is that of the end. `before` and `after` are
+    /// `1/K` at the two.
     pub(super) fn look(
         &mut self,
         range: ReducedFrequencyRange,
         branch: &str,
-        before: ValueAt<ReducedFrequency>,
-        after: ValueAt<ReducedFrequency>,
+        before: ValueAt,
+        after: ValueAt,
         refined: impl Fn(f64) -> Option<f64>,
     ) {
         let slowness = |k: ReducedFrequency| 1.0 / k.full_width();
         let passes = |k: ReducedFrequency| {
-            let (a, b, c) = (slowness(before.value), slowness(after.value), slowness(k));
+            let (a, b, c) = (before.value, after.value, slowness(k));
             (a <= c && c < b).then(|| before.at + (after.at - before.at) * (c - a) / (b - a))
         };
         let ended = self.exits.iter().any(|exit| exit.0 <= before.at);
@@ -360,12 +347,10 @@ pub(super) fn damps_at(dofs: &[Dof], g: &TransferMatrix) -> bool {
 
 /// The motions that are asked together: sway by itself, and the others.
 fn blocks(dofs: &[Dof]) -> Vec<Vec<usize>> {
-    let (sway, others): (Vec<usize>, Vec<usize>) =
-        (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
-    [sway, others]
-        .into_iter()
-        .filter(|b| !b.is_empty())
-        .collect()
+    let (sway, others) = (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
+    let mut blocks: Vec<Vec<usize>> = vec![sway, others];
+    blocks.retain(|block| !block.is_empty());
+    blocks
 }
 
 fn part(block: &[usize], of: &dyn Fn(usize, usize) -> f64) -> DMatrix<f64> {

@@ -19,14 +19,10 @@ impl Scan<'_> {
     pub(super) fn add_missed(&self, found: &mut Findings, to_m_s: f64) -> Result<()> {
         // without warnings the structural modes were followed
         let coarse = found.warnings.is_empty();
-        let speeds = found
-            .crossings
-            .iter()
-            .map(|o| (o.at.speed_m_s, o.at.reduced_frequency));
-        let to_m_s = speeds
-            .filter(|(_, k)| self.tested.is_none_or(|range| range.spans(*k)))
-            .map(|(speed, _)| speed)
-            .fold(to_m_s, f64::min);
+        let spanned = |k| self.tested.is_none_or(|range| range.spans(k));
+        let crossings = found.crossings.iter().map(|o| &o.at);
+        let trusted = crossings.filter(|at| spanned(at.reduced_frequency));
+        let to_m_s = trusted.map(|at| at.speed_m_s).fold(to_m_s, f64::min);
         for band in self.bands(0.0, to_m_s, coarse, f64::INFINITY)? {
             let at = self.at(band.from_m_s)?;
             if let Some(lambda) = at.fastest.filter(|_| !found.knows(band.from_m_s)) {
@@ -61,26 +57,18 @@ impl Scan<'_> {
     }
 
     fn start(&self, speed: f64, lambda: Complex<f64>, reason: &str) -> UnstableStart {
-        let branch = self.branch(speed, lambda);
-        UnstableStart::new(
-            self.motion(speed, lambda),
-            lambda.re,
-            branch,
-            reason.to_owned(),
-        )
+        let (at, branch) = (self.motion(speed, lambda), self.branch(speed, lambda));
+        UnstableStart::new(at, lambda.re, branch, reason.to_owned())
     }
 
     fn crossing(&self, speed: f64, lambda: Complex<f64>) -> Result<Onset> {
         let shape = mode_shape(self.section, &self.section.at(speed)?, lambda)?;
-        let branch = self.branch(speed, lambda);
-        let force_model = branch == AERODYNAMIC;
-        let (at, s) = (self.motion(speed, lambda), self.section.structure());
-        let mut onset = Onset::new(at, s, &shape, branch);
-        let nearby = self.at(speed * (1.0 - SLOPE_STEP))?;
-        onset.damping_slope_s_m = nearby
-            .fastest
-            .map(|before| (damping_ratio(lambda) - damping_ratio(before)) / (speed * SLOPE_STEP));
-        if force_model {
+        let (at, branch) = (self.motion(speed, lambda), self.branch(speed, lambda));
+        let mut onset = Onset::new(at, self.section.structure(), &shape, branch);
+        let nearby = self.at(speed * (1.0 - SLOPE_STEP))?.fastest;
+        let slope = |before| (damping_ratio(lambda) - damping_ratio(before)) / (speed * SLOPE_STEP);
+        onset.damping_slope_s_m = nearby.map(slope);
+        if onset.branch == AERODYNAMIC {
             onset.warnings.push(
                 "an eigenvalue of the forces, which is no mode of still air, becomes unstable: a defect of the fit, unless static \
                  divergence is near"

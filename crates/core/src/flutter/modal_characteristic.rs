@@ -128,12 +128,8 @@ impl AtSpeed<'_> {
             };
             lambda -= round.step;
             let part = part(round.step);
-            if converged(
-                round.step,
-                round.step.norm() * part * part,
-                lambda,
-                TOLERANCE,
-            ) {
+            let left = round.step.norm() * part * part;
+            if converged(round.step, left, lambda, TOLERANCE) {
                 return Some((lambda, round.right.to_column()));
             }
             if !small(round.step) {
@@ -177,22 +173,17 @@ impl AtSpeed<'_> {
     /// `D(λ)` as a sum.
     fn terms(&self, lambda: Complex64) -> Option<Vec<Term<'_>>> {
         let p = self.problem;
-        let term = |value: Complex64, slope: Complex64, matrix| Term {
-            value,
-            slope,
-            matrix,
-        };
         let one = Complex64::from(1.0);
         let mut terms = vec![
-            term(lambda * lambda, lambda * 2.0, &p.mass),
-            term(lambda, one, &self.damping),
-            term(one, Complex64::default(), &self.stiffness),
+            Term(lambda * lambda, lambda * 2.0, &p.mass),
+            Term(lambda, one, &self.damping),
+            Term(one, Complex64::default(), &self.stiffness),
         ];
         let cube = Complex64::from(-self.speed.powi(3));
         for chain in &p.chains {
             let (x, dx) = chain.response(lambda, p.width, self.speed)?;
             let filters = x.iter().zip(&dx).zip(&chain.outputs);
-            terms.extend(filters.map(|((x, dx), output)| term(x * cube, dx * cube, output)));
+            terms.extend(filters.map(|((x, dx), output)| Term(x * cube, dx * cube, output)));
         }
         Some(terms)
     }
@@ -272,9 +263,8 @@ pub(super) fn inverse_step(
     let better = solve_complex(value, &slope)?.column(0).into_owned();
     let step = shape.dotc(&better).inv();
     let size = better.norm();
-    if !(step.re.is_finite() && step.im.is_finite() && size > 0.0) {
-        return None;
-    }
-    *shape = better.unscale(size);
-    Some(step)
+    (step.is_finite() && size > 0.0).then(|| {
+        *shape = better.unscale(size);
+        step
+    })
 }

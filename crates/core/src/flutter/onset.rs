@@ -72,14 +72,8 @@ impl ModeRatio {
 
 impl fmt::Display for ModeRatio {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            mode_ratio,
-            phase_deg,
-        } = self;
-        write!(
-            f,
-            "|y|/(B|θ|) {mode_ratio:.4}, phase of y to θ {phase_deg:.1}°"
-        )
+        let (ratio, phase) = (self.mode_ratio, self.phase_deg);
+        write!(f, "|y|/(B|θ|) {ratio:.4}, phase of y to θ {phase:.1}°")
     }
 }
 

@@ -1,13 +1,12 @@
 //! Modes of the p-k iteration followed over wind speed by what they are: small changes and like shapes from step to step.
 
 use super::critical_point::OnsetMethod;
-use super::determinant::{StructureInWind, damping_slope};
+use super::determinant::StructureInWind;
 use super::following::{
     Continued, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
 use super::judged::{Exit, RangePassages};
 use super::onset::Onset;
-use super::quasi_pk::{pk_mode, pk_mode_at};
 use super::still_air::{coupled_modes, is_coupled};
 use crate::error::{Error, Result};
 use crate::section::Structure;
@@ -148,7 +147,11 @@ impl StructureInWind<'_> {
         for i in 1..=AIR_STEPS {
             thin.air_density_kg_m3 = self.structure.air_density_kg_m3 * i as f64 / AIR_STEPS as f64;
             let before: Vec<Mode> = at.into_iter().map(|(_, mode)| mode).collect();
-            let solved = |mode: &Mode| pk_mode_at(&thin, self.model, range.max, mode);
+            let problem = StructureInWind {
+                structure: &thin,
+                ..*self
+            };
+            let solved = |mode: &Mode| problem.pk_mode_at(range.max, mode);
             at = self.of_each(&before, solved)?;
             for i in 0..at.len() {
                 let double = (0..i).find(|&j| same_root(&at[i].1, &at[j].1));
@@ -174,16 +177,10 @@ impl StructureInWind<'_> {
             shape - &taken * along
         };
         let (of_own, of_other) = (rest(own), rest(of(other.branch)?));
-        let shape = if of_own.norm() > of_other.norm() {
-            of_own
-        } else {
-            of_other
-        };
+        let own_is_larger = of_own.norm() > of_other.norm();
+        let shape = if own_is_larger { of_own } else { of_other };
         let is_left = self.structure.is_modal() && shape.norm() > SEPARATION;
-        is_left.then(|| Mode {
-            shape,
-            ..own.clone()
-        })
+        is_left.then(|| Mode::new(own.branch, own.lambda, shape))
     }
 
     /// What is found of each mode, on all cores where there are many.
@@ -248,8 +245,7 @@ impl StructureInWind<'_> {
 
     /// The modes at `speed` that settle and oscillate.
     fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let solved = |mode: &Mode| pk_mode(self.structure, self.model, speed, mode);
-        let all = self.of_each(&from.all, solved)?;
+        let all = self.of_each(&from.all, |mode| self.pk_mode(speed, mode))?;
         Ok(Modes { speed, all })
     }
 
@@ -290,9 +286,8 @@ impl Follower for StructureInWind<'_> {
     /// both came on it together, as a mode does that enters a table on the root of another.
     fn without_lost(&self, before: &Modes, after: Modes) -> Result<Modes> {
         let moved = |mode: &Mode| {
-            before
-                .mode(mode.branch)
-                .map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
+            let old = before.mode(mode.branch);
+            old.map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
         };
         let nearest = |(i, m): (usize, &Mode)| {
             let mut rivals = after.all.iter().enumerate().filter(|r| same_root(r.1, m));
@@ -322,7 +317,7 @@ impl Follower for StructureInWind<'_> {
             return Ok(None);
         }
         let (speed, omega) = (onset.at.speed_m_s, mode.lambda.im);
-        onset.damping_slope_s_m = damping_slope(self.structure, self.model, speed, omega);
+        onset.damping_slope_s_m = self.damping_slope(speed, omega);
         Ok(Some(onset))
     }
 }

@@ -51,34 +51,31 @@ pub struct PresentModes {
 /// The smallest damping ratio of all modes, asked for again and again.
 #[derive(Debug)]
 pub enum LeastDamping {
-    /// Of a few states, by their eigenvalues, in memory of its own.
-    Solved(Box<Solved>),
+    /// Of a few states, by their eigenvalues.
+    Solved {
+        /// The state matrix as a polynomial of the wind.
+        by_wind: [DMatrix<f64>; 3],
+        /// Room for it at one wind.
+        matrix: DMatrix<f64>,
+        /// Room for what is found.
+        eigenvalues: Vec<Complex<f64>>,
+    },
     /// Of many, by the modes.
     Followed(PresentModes),
-}
-
-/// A state matrix at the winds to come, and room for it.
-#[derive(Debug)]
-pub struct Solved {
-    by_wind: [DMatrix<f64>; 3],
-    matrix: DMatrix<f64>,
-    eigenvalues: Vec<Complex<f64>>,
 }
 
 impl LeastDamping {
     /// That of `section`; `None` for sampled models.
     pub fn new(section: &CoupledSection) -> Option<Self> {
-        let states = section.states();
-        let followed = (states > MOST_STATES_SOLVED).then(|| PresentModes::new(section));
-        if let Some(modes) = followed.flatten() {
+        if let Some(modes) = PresentModes::of_many(section) {
             return Some(Self::Followed(modes));
         }
         let by_wind = section.state_matrix_by_wind()?;
-        Some(Self::Solved(Box::new(Solved {
+        Some(Self::Solved {
             matrix: by_wind[0].clone(),
             by_wind,
-            eigenvalues: Vec::with_capacity(states),
-        })))
+            eigenvalues: Vec::with_capacity(section.states()),
+        })
     }
 
     /// At `wind`, m/s, of the same section; one where nothing oscillates.
@@ -87,7 +84,19 @@ impl LeastDamping {
     /// As [`smallest_damping`].
     pub fn at(&mut self, section: &CoupledSection, wind: f64) -> Result<f64> {
         let prepared = match self {
-            Self::Solved(solved) => solved.at(wind),
+            Self::Solved {
+                by_wind: [a0, a1, a2],
+                matrix,
+                eigenvalues,
+            } => {
+                let entries = a0.iter().zip(&*a1).zip(&*a2);
+                for (to, ((a0, a1), a2)) in matrix.iter_mut().zip(entries) {
+                    *to = a0 + wind * (a1 + wind * a2);
+                }
+                // nothing for what is no wind speed, and where the eigenvalues are not found
+                let found = write_eigenvalues(matrix, eigenvalues).filter(|()| wind >= 0.0);
+                found.map(|()| least(eigenvalues))
+            }
             Self::Followed(modes) => modes.smallest_damping(section, wind),
         };
         prepared.map_or_else(|| smallest_damping(section, wind), Ok)
@@ -102,7 +111,7 @@ impl LeastDamping {
     fn last(&self) -> Option<&Modes> {
         match self {
             Self::Followed(modes) => modes.last.as_ref(),
-            Self::Solved(_) => None,
+            Self::Solved { .. } => None,
         }
     }
 
@@ -115,18 +124,6 @@ impl LeastDamping {
             .iter()
             .min_by(|a, b| damping(a).total_cmp(&damping(b)))?;
         Some(NearbyOnset::of_mode(last.speed, least))
-    }
-}
-
-impl Solved {
-    /// `None` for what is no wind speed, and where the eigenvalues are not found.
-    fn at(&mut self, wind: f64) -> Option<f64> {
-        let [a0, a1, a2] = &self.by_wind;
-        for (to, ((a0, a1), a2)) in self.matrix.iter_mut().zip(a0.iter().zip(a1).zip(a2)) {
-            *to = a0 + wind * (a1 + wind * a2);
-        }
-        write_eigenvalues(&mut self.matrix, &mut self.eigenvalues)?;
-        (wind >= 0.0).then(|| least(&self.eigenvalues))
     }
 }
 
@@ -164,6 +161,12 @@ fn least(eigenvalues: &[Complex<f64>]) -> f64 {
 }
 
 impl PresentModes {
+    /// The modes of a section of so many states that all eigenvalues are not found sooner; `None` of others.
+    pub(super) fn of_many(section: &CoupledSection) -> Option<Self> {
+        let many = section.states() > MOST_STATES_SOLVED;
+        many.then(|| Self::new(section)).flatten()
+    }
+
     /// The modes of `section`; `None` where they are not followed by shapes: sections, whose eigenvalues are quickly found, and
     /// sampled models.
     pub fn new(section: &CoupledSection) -> Option<Self> {
@@ -185,7 +188,11 @@ impl PresentModes {
     }
 
     /// The eigenvalues of all modes of `section` at `wind`, m/s, rad/s; `None` where one is lost.
-    fn follow(&mut self, section: &CoupledSection, wind: f64) -> Option<Vec<Complex<f64>>> {
+    pub(super) fn follow(
+        &mut self,
+        section: &CoupledSection,
+        wind: f64,
+    ) -> Option<Vec<Complex<f64>>> {
         let tracker = Tracker::by_shapes(section, Arc::clone(&self.problem));
         let from = match self.last.take() {
             Some(last) => last,
@@ -219,32 +226,12 @@ impl PresentModes {
         });
         turn(rest, [ENDS[0] * low, ENDS[1] * high])
     }
-}
 
-/// The modes of a bridge at many wind speeds, up to where one is lost.
-pub(super) struct ModesOverWind<'a> {
-    modes: PresentModes,
-    speeds: &'a [f64],
-    /// Eigenvalues at each of the speeds, rad/s.
-    at: Vec<Vec<Complex<f64>>>,
-}
-
-impl<'a> ModesOverWind<'a> {
-    /// The modes of `section` at rising `speeds`, m/s; `None` where all eigenvalues are found sooner.
-    pub(super) fn new(section: &CoupledSection, speeds: &'a [f64]) -> Option<Self> {
-        let many = section.states() > MOST_STATES_SOLVED;
-        let mut modes = PresentModes::new(section).filter(|_| many)?;
-        let each = speeds.iter().map_while(|v| modes.follow(section, *v));
-        let at = each.collect();
-        Some(Self { modes, speeds, at })
-    }
-
-    /// The mode that decays slowest at one of the speeds, where none grows and every other eigenvalue is damped by
+    /// Of the `modes` at a wind speed (m/s) the one that decays slowest, where none grows and every other eigenvalue is damped by
     /// [`MARGIN`] at least; `None` where that is not known.
-    pub(super) fn slowest_decay(&self, place: usize) -> Option<Complex<f64>> {
-        let all = self.at.get(place)?;
-        let slowest = all.iter().max_by(|a, b| a.re.total_cmp(&b.re))?;
-        let alone = || self.modes.none_below(all, self.speeds[place], MARGIN);
+    pub(super) fn slowest_decay(&self, modes: &[Complex<f64>], wind: f64) -> Option<Complex<f64>> {
+        let slowest = modes.iter().max_by(|a, b| a.re.total_cmp(&b.re))?;
+        let alone = || self.none_below(modes, wind, MARGIN);
         (!growing(slowest) && alone() == Some(true)).then_some(*slowest)
     }
 }

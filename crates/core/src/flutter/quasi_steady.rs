@@ -65,10 +65,8 @@ pub fn quasi_steady_onset(
         let Some(before) = before.replace(here) else {
             if growth > 0.0 {
                 let start = grows_in_still_air(name, &section, point.speed_m_s)?;
-                return Ok(found(
-                    FlutterSearch::UnstableAtOrBelow(Box::new(start)),
-                    None,
-                ));
+                let start = FlutterSearch::UnstableAtOrBelow(Box::new(start));
+                return Ok(found(start, None));
             }
             continue;
         };
@@ -85,10 +83,8 @@ pub fn quasi_steady_onset(
         }
     }
     let stable_up_to = path.end.map_or(search.speed_max_m_s, |end| end.speed_m_s());
-    Ok(found(
-        FlutterSearch::StableUpTo(StableRange::up_to(stable_up_to)),
-        None,
-    ))
+    let stable = FlutterSearch::StableUpTo(StableRange::up_to(stable_up_to));
+    Ok(found(stable, None))
 }
 
 /// Frequencies and damping over rising wind speeds, about the equilibrium of each; ends with the equilibrium.
@@ -101,11 +97,8 @@ pub fn quasi_steady_modes(
     let mut branches = empty_branches(structure, path.points.len());
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
-        let at = trace_modes(
-            name,
-            &CoupledSection::with_model(structure, &linear)?,
-            &[point.speed_m_s],
-        )?;
+        let section = CoupledSection::with_model(structure, &linear)?;
+        let at = trace_modes(name, &section, &[point.speed_m_s])?;
         for (all, one) in branches.iter_mut().zip(at.branches) {
             all.points.extend(one.points);
         }
@@ -123,23 +116,17 @@ fn at_equilibrium(
     speed_m_s: f64,
 ) -> Result<LinearQuasiSteady> {
     let path = static_equilibria(structure, theory, &[speed_m_s])?;
-    let point = path.points.first().ok_or_else(|| {
-        Error::Numerical(format!(
-            "quasi-steady onset: no equilibrium at {speed_m_s:.3} m/s"
-        ))
-    })?;
+    let why = format_args!("quasi-steady onset: no equilibrium at {speed_m_s:.3} m/s");
+    let point = path.points.first();
+    let point = point.ok_or_else(|| Error::Numerical(why.to_string()))?;
     theory.linearised(point.rotation_rad)
 }
 
 /// Largest real part of the eigenvalues that oscillate, 1/s; divergence is the end of the equilibrium.
 fn fastest_growth(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
-    Ok(section
-        .at(speed_m_s)?
-        .eigenvalues()?
-        .into_iter()
-        .filter(oscillates)
-        .map(|z| z.re)
-        .fold(f64::NEG_INFINITY, f64::max))
+    let all = section.at(speed_m_s)?.eigenvalues()?.into_iter();
+    let rates = all.filter(oscillates).map(|z| z.re);
+    Ok(rates.fold(f64::NEG_INFINITY, f64::max))
 }
 
 fn grows_in_still_air(name: &str, section: &CoupledSection, speed: f64) -> Result<UnstableStart> {
@@ -153,16 +140,10 @@ fn grows_in_still_air(name: &str, section: &CoupledSection, speed: f64) -> Resul
 
 /// The mode with the least damping, followed from still air at one linearisation.
 fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<Mode> {
-    Tracker::new(section)
-        .at(speed_m_s)?
-        .all
-        .into_iter()
-        .max_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re))
-        .ok_or_else(|| {
-            Error::Numerical(format!(
-                "quasi-steady onset: no mode oscillates at {speed_m_s:.3} m/s"
-            ))
-        })
+    let modes = Tracker::new(section).at(speed_m_s)?.all.into_iter();
+    let least = modes.max_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re));
+    let why = format_args!("quasi-steady onset: no mode oscillates at {speed_m_s:.3} m/s");
+    least.ok_or_else(|| Error::Numerical(why.to_string()))
 }
 
 fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64) -> Result<Onset> {

@@ -2,10 +2,10 @@
 //! many states as take long, by the modes and a count of all others (`present_modes`) wherever none of them grows.
 
 use super::critical::critical_speeds;
-use super::following::{dimensionless, growing, oscillates};
+use super::following::{Mode, dimensionless, growing, oscillates};
 use super::growth_band::GrowthBand;
 use super::judged::StableRange;
-use super::present_modes::ModesOverWind;
+use super::present_modes::PresentModes;
 use super::still_air::lowest_speed;
 use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
@@ -65,16 +65,6 @@ pub fn growth_scan(
     Scan::new("", section, tested).bands(from_m_s, to_m_s, false, f64::INFINITY)
 }
 
-/// What is found for each of many speeds, on all cores where a section has so many `states` that it pays.
-fn shared<T: Sync, U: Send>(
-    of: &[T],
-    states: usize,
-    find: impl Fn(&T) -> Result<U> + Send + Sync,
-) -> Result<Vec<U>> {
-    let found = threads::each(of, states > ALONE, find);
-    found.into_iter().collect()
-}
-
 /// The fastest growing oscillations at one speed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ScanPoint {
@@ -120,11 +110,8 @@ impl<'a> Scan<'a> {
     /// Lowest speed of a scan from still air, m/s.
     pub(super) fn lowest(&self, to_m_s: f64) -> Result<f64> {
         let s = self.section.structure();
-        let slowest_hz = s
-            .still_air_rad_s()
-            .map(|omega| omega / TAU)
-            .filter(|f| *f > 0.0)
-            .fold(f64::INFINITY, f64::min);
+        let hertz = s.still_air_rad_s().map(|omega| omega / TAU);
+        let slowest_hz = hertz.filter(|f| *f > 0.0).fold(f64::INFINITY, f64::min);
         let nearly_still = (NEARLY_STILL * slowest_hz * s.width_m).min(1e-3 * to_m_s);
         Ok(nearly_still.max(lowest_speed(self.section)?))
     }
@@ -224,23 +211,39 @@ impl<'a> Scan<'a> {
         })
     }
 
+    /// What is found for each of many, on all cores where the section has so many states that it pays.
+    fn shared<T: Sync, U: Send>(
+        &self,
+        of: &[T],
+        find: impl Fn(&T) -> Result<U> + Sync,
+    ) -> Result<Vec<U>> {
+        let found = threads::each(of, self.section.states() > ALONE, find);
+        found.into_iter().collect()
+    }
+
     fn all_at(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
-        shared(speeds, self.section.states(), |v| self.at(*v))
+        self.shared(speeds, |v| self.at(*v))
     }
 
     /// The same at rising speeds, by the modes alone where these decay and everything else decays faster.
     fn by_modes(&self, speeds: &[f64]) -> Result<Vec<ScanPoint>> {
-        let modes = ModesOverWind::new(self.section, speeds);
+        let mut modes = PresentModes::of_many(self.section);
+        let mut follow = |speed: &f64| modes.as_mut()?.follow(self.section, *speed);
+        // up to where a mode is lost
+        let followed: Vec<_> = speeds.iter().map_while(&mut follow).collect();
         let places: Vec<usize> = (0..speeds.len()).collect();
-        shared(&places, self.section.states(), |place| {
-            let decaying = modes.as_ref().and_then(|m| m.slowest_decay(*place));
-            let point = |fastest| ScanPoint {
-                speed: speeds[*place],
-                fastest: Some(fastest),
-                inside: None,
-                unstable: 0,
-            };
-            decaying.map_or_else(|| self.at(speeds[*place]), |fastest| Ok(point(fastest)))
+        self.shared(&places, |place| {
+            let (speed, all) = (speeds[*place], followed.get(*place));
+            let known = modes.as_ref().zip(all);
+            match known.and_then(|(modes, all)| modes.slowest_decay(all, speed)) {
+                None => self.at(speed),
+                decaying => Ok(ScanPoint {
+                    speed,
+                    fastest: decaying,
+                    inside: None,
+                    unstable: 0,
+                }),
+            }
         })
     }
 
@@ -281,7 +284,7 @@ impl<'a> Scan<'a> {
         };
         let around: Vec<&[ScanPoint]> = points.windows(3).filter(is_peak).collect();
         let highest = |three: &&[ScanPoint]| self.peak(three[0].speed, three[2].speed);
-        let peaks = shared(&around, self.section.states(), highest)?;
+        let peaks = self.shared(&around, highest)?;
         points.extend(peaks.into_iter().flatten());
         points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok(())
@@ -303,20 +306,15 @@ impl<'a> Scan<'a> {
     /// The band of the points `from..to`, its ends refined.
     fn band(&self, points: &[ScanPoint], from: usize, to: usize) -> Result<GrowthBand> {
         let within = &points[from..to];
-        let from_m_s = match from.checked_sub(1) {
-            Some(before) => {
-                self.edge(points[from].speed, points[before].speed, ScanPoint::grows)?
-            }
-            None => points[0].speed,
+        let end = |last: &ScanPoint, beyond: Option<&ScanPoint>| match beyond {
+            Some(beyond) => self.edge(last.speed, beyond.speed, ScanPoint::grows),
+            None => Ok(last.speed),
         };
-        let to_m_s = match points.get(to) {
-            Some(after) => self.edge(points[to - 1].speed, after.speed, ScanPoint::grows)?,
-            None => points[to - 1].speed,
-        };
-        let fastest = within
-            .iter()
-            .max_by(|a, b| a.rate().total_cmp(&b.rate()))
-            .unwrap_or(&points[from]);
+        let before = from.checked_sub(1).map(|before| &points[before]);
+        let from_m_s = end(&points[from], before)?;
+        let to_m_s = end(&points[to - 1], points.get(to))?;
+        let fastest = within.iter().max_by(|a, b| a.rate().total_cmp(&b.rate()));
+        let fastest = fastest.unwrap_or(&points[from]);
         let lambda = fastest.fastest.unwrap_or_default();
         let width = self.section.structure().width_m;
         Ok(GrowthBand {
@@ -333,12 +331,12 @@ impl<'a> Scan<'a> {
     }
 
     fn tested_from(&self, from_m_s: f64, within: &[ScanPoint]) -> Result<Option<f64>> {
-        let Some(first) = within.iter().position(|p| p.inside.is_some()) else {
+        let is_inside = |p: &ScanPoint| p.inside.is_some();
+        let Some(first) = within.iter().position(is_inside) else {
             return Ok(None);
         };
         let before = first.checked_sub(1).map_or(from_m_s, |i| within[i].speed);
-        self.edge(within[first].speed, before, |p| p.inside.is_some())
-            .map(Some)
+        self.edge(within[first].speed, before, is_inside).map(Some)
     }
 
     /// The last speed from `yes` towards `no` at which the test still holds.
@@ -353,20 +351,18 @@ impl<'a> Scan<'a> {
     /// of freedom that moves most.
     pub(super) fn branch(&self, speed: f64, lambda: Complex<f64>) -> String {
         let structure = self.section.structure();
-        match Tracker::new(self.section).at(speed) {
-            Ok(tracked) => tracked
-                .all
-                .iter()
-                .find(|m| (m.lambda - lambda).norm() < 1e-6 * lambda.norm())
-                .map_or(AERODYNAMIC.to_owned(), |m| structure.branch_name(m.branch)),
-            Err(_) => self
-                .section
-                .at(speed)
-                .and_then(|system| mode_shape(self.section, &system, lambda))
-                .map_or(AERODYNAMIC.to_owned(), |shape| {
-                    let sizes = dimensionless(structure, &shape).map(|z| z.norm());
-                    structure.branch_name(sizes.imax())
-                }),
-        }
+        let row = match Tracker::new(self.section).at(speed) {
+            Ok(tracked) => {
+                let is_it = |m: &&Mode| (m.lambda - lambda).norm() < 1e-6 * lambda.norm();
+                tracked.all.iter().find(is_it).map(|m| m.branch)
+            }
+            Err(_) => {
+                let system = self.section.at(speed);
+                let shape = system.and_then(|system| mode_shape(self.section, &system, lambda));
+                let sizes = shape.map(|s| dimensionless(structure, &s).map(|z| z.norm()));
+                sizes.ok().map(|sizes| sizes.imax())
+            }
+        };
+        row.map_or(AERODYNAMIC.to_owned(), |row| structure.branch_name(row))
     }
 }

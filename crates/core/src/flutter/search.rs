@@ -2,7 +2,7 @@
 
 use super::answer::{Findings, FlutterSearch, choose};
 use super::following::{Follower, OnsetWatch, growing, oscillates};
-use super::judged::{Exit, JudgedSpeeds, MovedOnset, damps_fast_motion};
+use super::judged::{Exit, MovedOnset, StableRange, TestedFrom, damps_fast_motion};
 use super::scan::Scan;
 use super::still_air::lowest_speed;
 use super::tracking::Tracker;
@@ -10,6 +10,7 @@ use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure, positive};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 /// States at most of which all eigenvalues are looked at, a hundred times or more: those of some 700 take a second each.
@@ -112,7 +113,7 @@ pub fn find_onset(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {
     let scan = Scan::new(model, section, tested);
-    let (mut found, ended) = followed(model, &scan, search, |_| false)?;
+    let (mut found, ended) = scan.followed(search, |_| false)?;
     let lost = ended.is_some();
     if let Some(why) = ended {
         // without names the answer still stands
@@ -156,8 +157,9 @@ impl MovedOnset {
 /// Part of a speed by which it may lie below that of the end of the tests which it was followed to.
 const AT_THE_END: f64 = 1e-6;
 
-/// The speeds at which every mode of `section` is inside what was tested, as [`find_onset`] judges them, whether anything
-/// grows or not.
+/// The speeds at which every mode of `section` is inside what was tested, or above it where the forces damp every such motion, as
+/// [`find_onset`] judges them, whether anything grows or not; and from where on every mode is among the tests or below, `None`
+/// where all are from the beginning.
 ///
 /// # Errors
 /// As [`find_onset`].
@@ -165,14 +167,12 @@ pub fn judged_speeds(
     section: &CoupledSection,
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
-) -> Result<JudgedSpeeds> {
+) -> Result<(StableRange, Option<TestedFrom>)> {
     let scan = Scan::new("", section, tested);
-    let (mut found, ended) = followed("", &scan, search, |_| false)?;
+    let (mut found, ended) = scan.followed(search, |_| false)?;
     scan.bound(&mut found, ended.is_some(), &search.speeds_m_s()?)?;
-    Ok(JudgedSpeeds {
-        tested_from: found.reach.tested_from(tested),
-        range: found.reach.judged(found.looked_at),
-    })
+    let reach = found.reach;
+    Ok((reach.judged(found.looked_at), reach.tested_from(tested)))
 }
 
 /// Which mode of `section` leaves what was `tested` first below the highest speed of a search, its onset, and where, in words; `None` where
@@ -194,7 +194,7 @@ pub fn left_tests(
         )));
     }
     let scan = Scan::new("", section, Some(tested));
-    let (mut found, ended) = followed("", &scan, search, |found| !found.reach.exits.is_empty())?;
+    let (mut found, ended) = scan.followed(search, |found| !found.reach.exits.is_empty())?;
     if ended.is_some() {
         scan.bound(&mut found, true, &search.speeds_m_s()?)?;
     }
@@ -219,77 +219,73 @@ pub fn find_onset_of_modes(
         let mut crossings = found.crossings.iter();
         crossings.any(|o| tested.is_none_or(|range| range.spans(o.at.reduced_frequency)))
     };
-    let search = match followed(model, &scan, search, inside)? {
+    let search = match scan.followed(search, inside)? {
         (found, None) => choose(found, tested),
         (_, Some(_)) => find_onset(model, section, search, tested)?,
     };
     Ok(search.critical_speed_m_s())
 }
 
-/// What the structural modes do, up to where it is `enough`, and why they could not be followed to the end, if so.
-fn followed(
-    model: &str,
-    scan: &Scan<'_>,
-    search: &OnsetSearch,
-    enough: impl Fn(&Findings) -> bool,
-) -> Result<(Findings, Option<String>)> {
-    let speeds = search.speeds_m_s()?;
-    let mut found = Findings::between(scan.looked_at(search.speed_max_m_s)?);
-    let ended = match follow(model, scan, &speeds, &mut found, enough) {
-        Err(Error::NotDistinct(why) | Error::Numerical(why)) => Some(why),
-        other => other.map(|()| None)?,
-    };
-    Ok((found, ended))
-}
-
-/// What the structural modes do between the lowest and the highest speed of a scan, up to where it is `enough`.
-fn follow(
-    model: &str,
-    scan: &Scan<'_>,
-    speeds: &[f64],
-    found: &mut Findings,
-    enough: impl Fn(&Findings) -> bool,
-) -> Result<()> {
-    let tracker = Tracker::new(scan.section);
-    let watch = OnsetWatch {
-        model,
-        follower: &tracker,
-        tested: scan.tested,
-        judged: scan.tested,
-    };
-    let highest = speeds[speeds.len() - 1];
-    let lowest = scan.lowest(highest)?;
-    let mut modes = tracker.at(lowest)?;
-    for mode in modes.all.iter().filter(|m| growing(&m.lambda)) {
-        let reason = "the lowest speed looked at".to_owned();
-        found.starts.push(watch.start(lowest, mode, reason));
-    }
-    found.followed_to_m_s = lowest;
-    for &speed in speeds.iter().filter(|v| **v > lowest) {
-        let next = tracker.advance(&modes, speed)?;
-        watch.step(&modes, &next, found)?;
-        modes = next;
-        found.followed_to_m_s = speed;
-        if enough(found) {
-            return Ok(());
-        }
-    }
-    if let Some(range) = scan.tested {
-        let above = modes.all.iter().map(|mode| {
-            let part = tracker.k(highest, mode).full_width() / range.max.full_width();
-            (part, tracker.name(mode.branch))
-        });
-        // beyond the search a mode comes among the tests about where its last frequency does
-        let never = above.filter(|(part, _)| *part > 1.0);
-        found
-            .reach
-            .entries
-            .extend(never.map(|(part, name)| (part * highest, name)));
-    }
-    Ok(())
-}
-
 impl Scan<'_> {
+    /// What the structural modes do, up to where it is `enough`, and why they could not be followed to the end, if so.
+    fn followed(
+        &self,
+        search: &OnsetSearch,
+        enough: impl Fn(&Findings) -> bool,
+    ) -> Result<(Findings, Option<String>)> {
+        let speeds = search.speeds_m_s()?;
+        let mut found = Findings::between(self.looked_at(search.speed_max_m_s)?);
+        let ended = match self.follow(&speeds, &mut found, enough) {
+            Err(Error::NotDistinct(why) | Error::Numerical(why)) => Some(why),
+            other => other.map(|()| None)?,
+        };
+        Ok((found, ended))
+    }
+
+    /// What the structural modes do between the lowest and the highest speed of a scan, up to where it is `enough`.
+    fn follow(
+        &self,
+        speeds: &[f64],
+        found: &mut Findings,
+        enough: impl Fn(&Findings) -> bool,
+    ) -> Result<()> {
+        let tracker = Tracker::new(self.section);
+        let watch = OnsetWatch {
+            model: self.model,
+            follower: &tracker,
+            tested: self.tested,
+            judged: self.tested,
+        };
+        let highest = speeds[speeds.len() - 1];
+        let lowest = self.lowest(highest)?;
+        let mut modes = tracker.at(lowest)?;
+        for mode in modes.all.iter().filter(|m| growing(&m.lambda)) {
+            let reason = "the lowest speed looked at".to_owned();
+            found.starts.push(watch.start(lowest, mode, reason));
+        }
+        found.followed_to_m_s = lowest;
+        for &speed in speeds.iter().filter(|v| **v > lowest) {
+            let next = tracker.advance(&modes, speed)?;
+            watch.step(&modes, &next, found)?;
+            modes = next;
+            found.followed_to_m_s = speed;
+            if enough(found) {
+                return Ok(());
+            }
+        }
+        if let Some(range) = self.tested {
+            let above = modes.all.iter().map(|mode| {
+                let part = tracker.k(highest, mode).full_width() / range.max.full_width();
+                (part, tracker.name(mode.branch))
+            });
+            // beyond the search a mode comes among the tests about where its last frequency does
+            let never = above.filter(|(part, _)| *part > 1.0);
+            let entries = never.map(|(part, name)| (part * highest, name));
+            found.reach.entries.extend(entries);
+        }
+        Ok(())
+    }
+
     /// Completes what is known of the speeds that can be judged: beyond where modes were `lost` by all eigenvalues, each of
     /// which has to lie inside the tested range or above it; in slow wind by what the forces do to fast motion.
     fn bound(&self, found: &mut Findings, lost: bool, speeds: &[f64]) -> Result<()> {
@@ -303,17 +299,15 @@ impl Scan<'_> {
             damps_fast_motion(&s.dofs, range.max, |k| forces.transfer(k))?
         };
         found.reach.damped_before = damps;
-        let beyond = speeds
-            .iter()
-            .filter(|v| lost && **v > found.followed_to_m_s);
-        for &speed in beyond {
-            let all = self.section.at(speed)?.eigenvalues()?;
-            let ks = all
-                .iter()
-                .filter(|z| oscillates(z))
-                .map(|z| ReducedFrequency::from_circular(z.im, s.width_m, speed));
-            let known = ks.map(|k| range.contains(k) || k > range.max);
-            let known: Vec<bool> = known.collect();
+        let reached = found.followed_to_m_s;
+        for &speed in speeds.iter().filter(|v| lost && **v > reached) {
+            let mut all = self.section.at(speed)?.eigenvalues()?;
+            all.retain(oscillates);
+            let is_known = |z: &Complex<f64>| {
+                let k = ReducedFrequency::from_circular(z.im, s.width_m, speed);
+                range.contains(k) || k > range.max
+            };
+            let known: Vec<bool> = all.iter().map(is_known).collect();
             if known.len() < s.dofs.len() || known.contains(&false) {
                 let nameless = "slowest".to_owned();
                 found.reach.exits.push((speed, nameless, Exit::Lost));

@@ -5,7 +5,7 @@ use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::{eigenvalues, eigenvector, first_order};
+use crate::state_space::{eigenvalues, eigenvector, first_order, is_diagonal};
 use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
 
 /// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
@@ -35,11 +35,8 @@ pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
     });
     let natural = SymmetricEigen::new(symmetric);
     let mut modes = Vec::with_capacity(n);
-    for (square, vector) in natural
-        .eigenvalues
-        .iter()
-        .zip(natural.eigenvectors.column_iter())
-    {
+    let vectors = natural.eigenvectors.column_iter();
+    for (square, vector) in natural.eigenvalues.iter().zip(vectors) {
         let shape = DVector::from_fn(n, |i, _| vector[i] / root[i]);
         let decay = 0.5 * square * shape.dot(&(&s.damping * &shape));
         let lambda = Complex::new(-decay, (square - decay * decay).max(0.0).sqrt());
@@ -55,8 +52,9 @@ pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
 
 /// Whether springs, dashpots or masses couple the coordinates of a structure.
 pub(super) fn is_coupled(s: &Structure) -> bool {
-    let coupled = |m: &DMatrix<f64>| (0..m.len()).any(|i| i % (m.nrows() + 1) != 0 && m[i] != 0.0);
-    coupled(&s.mass) || coupled(&s.damping) || coupled(&s.stiffness)
+    ![&s.mass, &s.damping, &s.stiffness]
+        .into_iter()
+        .all(is_diagonal)
 }
 
 /// The modes of such a structure that oscillate, by the eigenvalues of its states. Equal eigenvalues, as of dampers that are alike,
@@ -128,14 +126,9 @@ pub(super) fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
 fn order_by_dof(section: &CoupledSection, modes: &mut [Mode]) {
     let n = modes.len();
     for dof in 0..n {
-        let strongest = (dof..n)
-            .max_by(|i, j| {
-                let share =
-                    |m: usize| dimensionless(section.structure(), &modes[m].shape)[dof].norm();
-                share(*i).total_cmp(&share(*j))
-            })
-            .unwrap_or(dof);
-        modes.swap(dof, strongest);
+        let share = |m: &usize| dimensionless(section.structure(), &modes[*m].shape)[dof].norm();
+        let strongest = (dof..n).max_by(|i, j| share(i).total_cmp(&share(j)));
+        modes.swap(dof, strongest.unwrap_or(dof));
         modes[dof].branch = dof;
     }
 }

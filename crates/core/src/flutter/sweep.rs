@@ -21,7 +21,7 @@ pub use samples::stands_at_samples;
 use crate::error::{Result, ensure, positive};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::state_space::Complex64;
-use crossing::{Crossing, refine};
+use crossing::Crossing;
 use pencil::{Pencil, Supports};
 use setup::{K_MAX, grid, supports};
 
@@ -345,8 +345,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
             let k = before.k + (after.k - before.k) * share;
             let omega = a.re + (b.re - a.re) * share;
             let speed = omega * self.supports.width / k;
-            let forces = &self.sweep.forces;
-            let crossing = refine(forces, self.coefficients, &self.supports, speed, omega)?;
+            let crossing = self.refine(speed, omega)?;
             if crossing.speed <= self.sweep.speed_max {
                 *self.crossings.get_mut(self.found)? = Some(crossing);
                 self.found += 1;

@@ -106,11 +106,8 @@ impl<'a> Tracker<'a> {
             true => course.curved(before.speed, speed),
             false => course.straight(before.speed, speed),
         };
-        let predicted: Vec<_> = before
-            .all
-            .iter()
-            .map(|mode| mode.lambda + change(&mode.course))
-            .collect();
+        let predict = |mode: &Mode| mode.lambda + change(&mode.course);
+        let predicted: Vec<_> = before.all.iter().map(predict).collect();
         let corrected = match &self.correction {
             Correction::Determinant(problem) => {
                 let mut work = Vec::new();
@@ -288,7 +285,7 @@ pub(super) fn mode_shape(
 ) -> Result<DVector<Complex<f64>>> {
     let s = section.structure();
     let n = s.dofs.len();
-    let vector = eigenvector(system.state_matrix(), system.matrix_eigenvalue(lambda))?;
+    let vector = eigenvector(&system.a, system.matrix_eigenvalue(lambda))?;
     let mut shape = vector.rows(0, n).into_owned();
     let size = dimensionless(section.structure(), &shape).norm();
     if size == 0.0 {

@@ -2,7 +2,7 @@
 //! until two runs agree.
 
 use crate::aerodynamics::GustSeries;
-use crate::aerodynamics::quasi_steady::{QuasiSteady, RelativeWind};
+use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::error::{Error, Result, ensure, finite_numbers, positive};
 use crate::section::{Dof, Structure};
 use nalgebra::{DMatrix, DVector};
@@ -15,23 +15,16 @@ const FIRST_STEP: f64 = 0.1;
 /// Longest run that is kept in memory, in steps.
 const MAX_STEPS: f64 = 1e7;
 
-/// A section under nonlinear quasi-steady forces: `M q̈ + R q̇ + K q = F(q, q̇, V, u(t), w(t))`.
+/// A section under nonlinear quasi-steady forces in gusty wind: `M q̈ + R q̇ + K q = F(q, q̇, V, u(t), w(t))`.
 #[derive(Debug, Clone)]
-pub struct NonlinearSection {
+pub struct NonlinearSection<'a> {
+    speed_m_s: f64,
+    gusts: &'a GustSeries,
     structure: Structure,
     theory: QuasiSteady,
     inverse_mass: DMatrix<f64>,
     /// Places of the motions among the degrees of freedom: vertical, lateral if there is one, torsion.
     places: (usize, Option<usize>, usize),
-}
-
-/// A mean wind with gusts.
-#[derive(Debug, Clone, Copy)]
-pub struct GustyWind<'a> {
-    /// Mean speed, m/s.
-    pub speed_m_s: f64,
-    /// About the mean.
-    pub gusts: &'a GustSeries,
 }
 
 /// Motion of one run, and how exact it is.
@@ -47,12 +40,17 @@ pub struct NonlinearRun {
     pub step_error: f64,
 }
 
-impl NonlinearSection {
-    /// Couples a structure with a theory of the same degrees of freedom.
+impl<'a> NonlinearSection<'a> {
+    /// Couples a structure with a theory of the same degrees of freedom, in a mean wind (m/s) and gusts about it.
     ///
     /// # Errors
     /// [`Error::Input`] when the degrees of freedom differ, [`Error::Numerical`] when one has no mass.
-    pub fn new(structure: Structure, theory: QuasiSteady) -> Result<Self> {
+    pub fn new(
+        structure: Structure,
+        theory: QuasiSteady,
+        speed_m_s: f64,
+        gusts: &'a GustSeries,
+    ) -> Result<Self> {
         ensure(
             theory.dofs() == structure.dofs,
             "nonlinear section",
@@ -65,6 +63,8 @@ impl NonlinearSection {
         let lateral = structure.dofs.iter().position(|d| *d == Dof::Lateral);
         let places = (0, lateral, structure.dofs.len() - 1);
         Ok(Self {
+            speed_m_s,
+            gusts,
             structure,
             theory,
             inverse_mass,
@@ -85,36 +85,29 @@ impl NonlinearSection {
     pub fn run(
         &self,
         initial: &[f64],
-        wind: GustyWind<'_>,
         step_s: f64,
         steps: usize,
         tolerance: f64,
     ) -> Result<NonlinearRun> {
-        positive("wind speed", wind.speed_m_s)?;
+        positive("wind speed", self.speed_m_s)?;
         positive("step size", step_s)?;
         positive("tolerance", tolerance)?;
         let n = self.structure.dofs.len();
         finite_numbers("initial state", initial, 2 * n)?;
         let duration = step_s * steps as f64;
         // the last step may end on the last gust but for rounding
-        let recorded = wind.gusts.duration_s();
+        let recorded = self.gusts.duration_s();
+        let covered = duration <= recorded * (1.0 + 1e-9);
         let expected = format_args!("at least {duration} s of them");
-        ensure(
-            duration <= recorded * (1.0 + 1e-9),
-            "gusts",
-            expected,
-            format_args!("{recorded} s"),
-        )?;
-        let fastest = (0..n)
-            .map(|i| (self.structure.stiffness[(i, i)] * self.inverse_mass[(i, i)]).sqrt())
-            .fold(0.0, f64::max);
-        let period = std::f64::consts::TAU / fastest;
+        ensure(covered, "gusts", expected, format_args!("{recorded} s"))?;
+        let omega = |i| (self.structure.stiffness[(i, i)] * self.inverse_mass[(i, i)]).sqrt();
+        let period = std::f64::consts::TAU / (0..n).map(omega).fold(0.0, f64::max);
         let mut substeps = (step_s / (FIRST_STEP * period)).ceil().max(1.0) as usize;
-        let mut coarse = self.rows(initial, wind, step_s, steps, substeps)?;
+        let mut coarse = self.rows(initial, step_s, steps, substeps)?;
         let mut step_error = f64::INFINITY;
         for _ in 0..MAX_HALVINGS {
             substeps *= 2;
-            let fine = self.rows(initial, wind, step_s, steps, substeps)?;
+            let fine = self.rows(initial, step_s, steps, substeps)?;
             step_error = largest_difference(&coarse, &fine);
             if step_error <= tolerance {
                 return Ok(NonlinearRun {
@@ -134,7 +127,6 @@ impl NonlinearSection {
     fn rows(
         &self,
         initial: &[f64],
-        wind: GustyWind<'_>,
         step_s: f64,
         steps: usize,
         substeps: usize,
@@ -150,42 +142,35 @@ impl NonlinearSection {
             for j in 0..substeps {
                 // from the count, so that no rounding accumulates
                 let time = step_s * i as f64 + h * j as f64;
-                state = self
-                    .runge_kutta(&state, wind, time, h)
-                    .map_err(|e| e.within(format!("t = {time:.3} s")))?;
+                let next = self.runge_kutta(&state, time, h);
+                state = next.map_err(|e| e.within(format!("t = {time:.3} s")))?;
             }
             rows.push(state.as_slice().to_vec());
         }
         Ok(rows)
     }
 
-    fn runge_kutta(
-        &self,
-        z: &DVector<f64>,
-        wind: GustyWind<'_>,
-        t: f64,
-        h: f64,
-    ) -> Result<DVector<f64>> {
-        let k1 = self.rate(z, wind, t)?;
-        let k2 = self.rate(&(z + &k1 * (0.5 * h)), wind, t + 0.5 * h)?;
-        let k3 = self.rate(&(z + &k2 * (0.5 * h)), wind, t + 0.5 * h)?;
-        let k4 = self.rate(&(z + &k3 * h), wind, t + h)?;
+    fn runge_kutta(&self, z: &DVector<f64>, t: f64, h: f64) -> Result<DVector<f64>> {
+        let k1 = self.rate(z, t)?;
+        let k2 = self.rate(&(z + &k1 * (0.5 * h)), t + 0.5 * h)?;
+        let k3 = self.rate(&(z + &k2 * (0.5 * h)), t + 0.5 * h)?;
+        let k4 = self.rate(&(z + &k3 * h), t + h)?;
         Ok(z + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0))
     }
 
     /// `d/dt [q, q̇]`.
-    fn rate(&self, z: &DVector<f64>, wind: GustyWind<'_>, time: f64) -> Result<DVector<f64>> {
+    fn rate(&self, z: &DVector<f64>, time: f64) -> Result<DVector<f64>> {
         let s = &self.structure;
         let n = s.dofs.len();
-        let (u, w) = wind.gusts.at(time);
+        let (u, w) = self.gusts.at(time);
         let (vertical, lateral, torsion) = self.places;
-        let wind = RelativeWind {
-            along_m_s: wind.speed_m_s + u - lateral.map_or(0.0, |i| z[n + i]),
+        let wind = [
+            self.speed_m_s + u - lateral.map_or(0.0, |i| z[n + i]),
             // of the reference point
-            vertical_m_s: w - z[n + vertical] - s.axis_offset_m * z[n + torsion],
-            rotation_m_s: s.width_m * z[n + torsion],
-        };
-        let mut forces = self.theory.specific_forces(z[torsion], &wind)?;
+            w - z[n + vertical] - s.axis_offset_m * z[n + torsion],
+            s.width_m * z[n + torsion],
+        ];
+        let mut forces = self.theory.specific_forces(z[torsion], wind)?;
         forces[torsion] += s.axis_offset_m / s.width_m * forces[vertical];
         let mut total = DVector::from_fn(n, |i, _| {
             0.5 * s.air_density_kg_m3 * s.dofs[i].force_scale(s.width_m) * forces[i]

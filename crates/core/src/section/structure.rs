@@ -89,18 +89,14 @@ impl Structure {
             .filter(|i| dofs.contains(&self.dofs[*i]))
             .collect();
         let part = |m: &DMatrix<f64>| m.select_rows(&kept).select_columns(&kept);
+        let names = kept.iter().filter_map(|i| self.mode_names.get(*i));
         Self {
             dofs: kept.iter().map(|i| self.dofs[*i]).collect(),
-            width_m: self.width_m,
-            air_density_kg_m3: self.air_density_kg_m3,
-            axis_offset_m: self.axis_offset_m,
             mass: part(&self.mass),
             damping: part(&self.damping),
             stiffness: part(&self.stiffness),
-            mode_names: kept
-                .iter()
-                .filter_map(|i| self.mode_names.get(*i).cloned())
-                .collect(),
+            mode_names: names.cloned().collect(),
+            ..*self
         }
     }
 

@@ -11,13 +11,8 @@ const MAX_SWEEPS_A_ROW: usize = 30;
 /// Sweeps between two exceptional shifts.
 const EXCEPTIONAL: usize = 10;
 
-/// The trailing 2 × 2 block whose eigenvalues are the shifts: its diagonal and the product of the others.
-#[derive(Clone, Copy)]
-struct Shifts {
-    x: f64,
-    y: f64,
-    w: f64,
-}
+/// The trailing 2 × 2 block whose eigenvalues are the shifts: its diagonal `x`, `y` and the product `w` of the others.
+type Shifts = [f64; 3];
 
 /// Makes a matrix upper Hessenberg by elimination with pivots, which keeps its eigenvalues: half the work of reflections.
 pub(super) fn reduce(a: &mut DMatrix<f64>) {
@@ -80,11 +75,7 @@ pub(super) fn append_eigenvalues(
                 let shifts = if exceptional {
                     exceptional_shifts(h, last, &mut taken)
                 } else {
-                    Shifts {
-                        x: h[(last, last)],
-                        y: h[(last - 1, last - 1)],
-                        w: h[(last, last - 1)] * h[(last - 1, last)],
-                    }
+                    trailing(h, last)
                 };
                 sweeps += 1;
                 sweep(h, first, last, shifts);
@@ -121,10 +112,14 @@ fn changes_nothing(h: &DMatrix<f64>, l: usize) -> bool {
         || least * (beside / sum) <= (f64::EPSILON * below * (apart / sum)).max(f64::MIN_POSITIVE)
 }
 
+fn trailing(h: &DMatrix<f64>, last: usize) -> Shifts {
+    let w = h[(last, last - 1)] * h[(last - 1, last)];
+    [h[(last, last)], h[(last - 1, last - 1)], w]
+}
+
 /// Eigenvalues of the 2 × 2 block that ends at `last`.
 fn pair(h: &DMatrix<f64>, last: usize) -> [Complex<f64>; 2] {
-    let (x, y) = (h[(last, last)], h[(last - 1, last - 1)]);
-    let w = h[(last, last - 1)] * h[(last - 1, last)];
+    let [x, y, w] = trailing(h, last);
     let p = 0.5 * (y - x);
     let q = p * p + w;
     if q < 0.0 {
@@ -143,21 +138,17 @@ fn exceptional_shifts(h: &mut DMatrix<f64>, last: usize, taken: &mut f64) -> Shi
         h[(i, i)] -= x;
     }
     let s = h[(last, last - 1)].abs() + h[(last - 1, last - 2)].abs();
-    Shifts {
-        x: 0.75 * s,
-        y: 0.75 * s,
-        w: -0.4375 * s * s,
-    }
+    [0.75 * s, 0.75 * s, -0.4375 * s * s]
 }
 
 /// First row of the sweep, between `first` and `last − 2`, and the first column of the double shift there, up to scale.
-fn start(h: &DMatrix<f64>, first: usize, last: usize, shifts: Shifts) -> (usize, [f64; 3]) {
+fn start(h: &DMatrix<f64>, first: usize, last: usize, [x, y, w]: Shifts) -> (usize, [f64; 3]) {
     let mut m = last - 2;
     loop {
         let z = h[(m, m)];
-        let (r, s) = (shifts.x - z, shifts.y - z);
+        let (r, s) = (x - z, y - z);
         let column = [
-            (r * s - shifts.w) / h[(m + 1, m)] + h[(m, m + 1)],
+            (r * s - w) / h[(m + 1, m)] + h[(m, m + 1)],
             h[(m + 1, m + 1)] - z - r - s,
             h[(m + 2, m + 1)],
         ];

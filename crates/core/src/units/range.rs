@@ -92,11 +92,7 @@ impl ReducedFrequencyRange {
                 to: part.min,
             };
             gaps.extend(gap.unknown().map(|_| gap));
-            reached = if part.max > reached {
-                part.max
-            } else {
-                reached
-            };
+            reached.0 = reached.0.max(part.max.0);
         }
         Some(Self {
             min: parts[0].min,
@@ -109,16 +105,8 @@ impl ReducedFrequencyRange {
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self {
-            min: if self.min > other.min {
-                self.min
-            } else {
-                other.min
-            },
-            max: if self.max < other.max {
-                self.max
-            } else {
-                other.max
-            },
+            min: ReducedFrequency(self.min.0.max(other.min.0)),
+            max: ReducedFrequency(self.max.0.min(other.max.0)),
             gaps: Gaps::new(self.gaps().chain(other.gaps()).collect()),
         }
     }
@@ -126,8 +114,7 @@ impl ReducedFrequencyRange {
     /// The same in reduced frequencies that are `factor` times as high.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
-        let scaled =
-            |k: ReducedFrequency| ReducedFrequency::from_full_width(k.full_width() * factor);
+        let scaled = |k: ReducedFrequency| ReducedFrequency(k.0 * factor);
         let gaps = self.gaps().map(|gap| ReducedFrequencyGap {
             from: scaled(gap.from),
             to: scaled(gap.to),
@@ -264,11 +251,7 @@ impl Gaps {
 fn join_nearest(gaps: &mut Vec<ReducedFrequencyGap>) {
     let joined = |i: usize| ReducedFrequencyGap {
         from: gaps[i].from,
-        to: if gaps[i].to > gaps[i + 1].to {
-            gaps[i].to
-        } else {
-            gaps[i + 1].to
-        },
+        to: ReducedFrequency(gaps[i].to.0.max(gaps[i + 1].to.0)),
     };
     let ratio = |i: usize| joined(i).to.full_width() / joined(i).from.full_width();
     let nearest = (0..gaps.len() - 1).min_by(|a, b| ratio(*a).total_cmp(&ratio(*b)));

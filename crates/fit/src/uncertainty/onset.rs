@@ -232,8 +232,8 @@ pub(crate) fn onset_gradient(
     }
     let here = section.at(speed_m_s)?;
     let mu = here.matrix_eigenvalue(lambda);
-    let right = eigenvector(here.state_matrix(), mu)?;
-    let left = eigenvector(&here.state_matrix().transpose(), mu)?;
+    let right = eigenvector(&here.a, mu)?;
+    let left = eigenvector(&here.a.transpose(), mu)?;
     // the transposed matrix has the conjugate of the left vector, so no conjugation here
     let scale = bilinear(
         &left,
@@ -244,7 +244,7 @@ pub(crate) fn onset_gradient(
         let mut moved = values.clone();
         moved[p] += step;
         let section = section_at(structure, estimate, &moved)?;
-        Ok(section.at(speed_m_s)?.state_matrix().clone())
+        Ok(section.at(speed_m_s)?.a)
     };
     (0..values.len())
         .map(|p| {
@@ -267,10 +267,9 @@ fn bilinear(
 
 /// Change of the continuous-time eigenvalue for a change of that of the state matrix.
 fn rate_change(system: &CoupledSystem, mu: Complex<f64>, change: Complex<f64>) -> Complex<f64> {
-    match system {
-        CoupledSystem::Continuous(_) => change,
-        CoupledSystem::Sampled { step_s, .. } => change / (mu * *step_s),
-    }
+    system
+        .step_s
+        .map_or(change, |step_s| change / (mu * step_s))
 }
 
 /// The eigenvalue nearest to `target`, rad/s.

@@ -1,6 +1,6 @@
 //! The wind speeds at which every mode has a reduced frequency that was tested.
 
-use crate::flutter::{FlutterCurves, JudgedSpeeds, ModePoint, TestedFrom};
+use crate::flutter::{FlutterCurves, ModePoint, StableRange, TestedFrom};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
 /// How far tests reach as the wind rises.
@@ -46,8 +46,13 @@ impl Reach {
         }
     }
 
-    /// The speeds that a search of a structure of this width could judge; its modes are in `curves`.
-    pub fn new(judged: JudgedSpeeds, curves: &FlutterCurves, width_m: f64) -> Self {
+    /// The speeds that a search of a structure of this width could `judge`; its modes are in `curves`.
+    pub fn new(
+        judged: StableRange,
+        tested_from: Option<TestedFrom>,
+        curves: &FlutterCurves,
+        width_m: f64,
+    ) -> Self {
         let mut all: Vec<&ModePoint> = curves.branches.iter().flat_map(|b| &b.points).collect();
         all.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
         let mut lowest: Vec<(f64, f64)> = Vec::new();
@@ -59,10 +64,10 @@ impl Reach {
             }
         }
         Self {
-            from_m_s: judged.range.from_m_s,
-            tested_from: judged.tested_from,
-            to_m_s: judged.range.to_m_s,
-            why: judged.range.not_judged,
+            from_m_s: judged.from_m_s,
+            tested_from,
+            to_m_s: judged.to_m_s,
+            why: judged.not_judged,
             lowest,
         }
     }

@@ -28,9 +28,10 @@ impl Evidence {
             ..Self::default()
         };
         let structure = section.structure();
-        let reach = judged_speeds(section, search, Some(tested)).and_then(|judged| {
+        let judged = judged_speeds(section, search, Some(tested));
+        let reach = judged.and_then(|(range, tested_from)| {
             let curves = trace_modes(forces, section, &search.speeds_m_s()?)?;
-            Ok(Reach::new(judged, &curves, structure.width_m))
+            Ok(Reach::new(range, tested_from, &curves, structure.width_m))
         });
         let reach = evidence.noted("modes over wind speed", reach);
         let growth = unwanted_growth_below(Some(&found), section, search, Some(tested));

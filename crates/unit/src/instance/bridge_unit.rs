@@ -10,7 +10,6 @@ use super::coupled::{Built, Coupled, CoupledKind};
 use super::memory::Memory;
 use super::section::OnsetCard;
 use super::unit::Prepared;
-use crate::bridge::motion_index;
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
 use crate::onset_start::OnsetStart;
@@ -205,7 +204,7 @@ impl CoupledKind for ModalBridge {
         let (own, roots) = (&unit.built.own, &unit.own.roots);
         match role {
             Role::NodeMotion(node, response, dof) => {
-                let row = 3 * node + motion_index(dof);
+                let row = 3 * node + dof as usize;
                 unit.at_row(row, modal.lists()[response as usize])
             }
             Role::Damper(d, response) => product(&own.strokes, d, modal.lists()[response as usize]),
@@ -229,7 +228,7 @@ impl CoupledKind for ModalBridge {
             return 0.0;
         }
         let rotation = unit.most_turned(&state.values[..unit.own.roots.len()]);
-        let row = rotation - motion_index(Dof::Torsion) + motion_index(dof);
+        let row = rotation - Dof::Torsion as usize + dof as usize;
         unit.at_row(row, outputs.lists()[response as usize])
     }
 

@@ -2,7 +2,6 @@
 
 use super::dual::Dual;
 use super::response::Response;
-use crate::bridge::motion_index;
 use crate::section::Dof;
 use crate::si::SiUnit;
 use crate::standard::Causality;
@@ -86,11 +85,11 @@ pub struct Present {
 impl Present {
     /// What [`Known::Motion`] stands for, in SI units.
     pub fn motion(&self, response: Response, dof: Dof) -> Dual {
-        self.motion[response as usize][motion_index(dof)]
+        self.motion[response as usize][dof as usize]
     }
 
     pub(crate) fn motion_mut(&mut self, response: Response, dof: Dof) -> &mut Dual {
-        &mut self.motion[response as usize][motion_index(dof)]
+        &mut self.motion[response as usize][dof as usize]
     }
 }
 

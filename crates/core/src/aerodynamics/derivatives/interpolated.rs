@@ -84,27 +84,23 @@ impl InterpolatedTable {
         table.require(dofs)?;
         let groups = table.speed_groups_end();
         let curve = |force, motion, part| {
-            let points = table
-                .points(Derivative::from_entry(force, motion, part))
-                .iter();
+            let points = table.points(Derivative::from_entry(force, motion, part));
             let with_group = |p: &DerivativePoint| {
                 let speed = p.mean_speed_m_s.unwrap_or(0.0);
                 (*p, groups.partition_point(|end| *end < speed))
             };
-            let points: Vec<_> = points.map(with_group).collect();
+            let points: Vec<_> = points.iter().map(with_group).collect();
             Curve::new(interpolation, part, &points)
         };
-        let entries = dofs
-            .iter()
-            .flat_map(|force| dofs.iter().map(move |motion| (*force, *motion)))
-            .map(|(f, m)| (curve(f, m, Part::Real), curve(f, m, Part::Imaginary)))
-            .collect();
+        let forces = dofs.iter();
+        let pairs = forces.flat_map(|force| dofs.iter().map(move |motion| (*force, *motion)));
+        let entry = |(f, m)| (curve(f, m, Part::Real), curve(f, m, Part::Imaginary));
         Ok(Self {
             name: table.name.clone(),
             dofs: dofs.to_vec(),
             extrapolation,
             tested_range: table.tested_range(dofs),
-            entries,
+            entries: pairs.map(entry).collect(),
         })
     }
 
@@ -126,14 +122,11 @@ impl Transfer for InterpolatedTable {
             Extrapolation::Hold => k_full.is_finite() && k_full >= 0.0,
         };
         if !allowed {
-            let (min, max) = (self.tested_range.min, self.tested_range.max);
+            let tested = [self.tested_range.min, self.tested_range.max];
+            let [min, max] = tested.map(ReducedFrequency::full_width);
             return Err(Error::input(
                 format!("table {}", self.name),
-                format!(
-                    "a reduced frequency K in the tested range {:.4} to {:.4}",
-                    min.full_width(),
-                    max.full_width()
-                ),
+                format!("a reduced frequency K in the tested range {min:.4} to {max:.4}"),
                 format!("K = {k_full:.4}"),
             ));
         }

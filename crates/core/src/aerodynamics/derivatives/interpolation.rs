@@ -6,7 +6,7 @@
 //! measurements that scatter), 5.5 % (linear over `V̂`); the reference case `flat-plate-tables`.
 
 use super::{DerivativePoint, Part};
-use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
+use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline, secants};
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 
@@ -122,19 +122,11 @@ impl Curve {
         part: Part,
         points: &[(DerivativePoint, usize)],
     ) -> Self {
-        let mut all: Vec<(f64, f64, f64, usize)> = points
-            .iter()
-            .map(|(p, group)| {
-                let k = p.k();
-                let value = p.value * interpolation.scale(part, k.full_width());
-                (
-                    interpolation.abscissa(k),
-                    value,
-                    k.full_width().ln(),
-                    *group,
-                )
-            })
-            .collect();
+        let read = |(p, group): &(DerivativePoint, usize)| {
+            let (k, at) = (p.k().full_width(), interpolation.abscissa(p.k()));
+            (at, p.value * interpolation.scale(part, k), k.ln(), *group)
+        };
+        let mut all: Vec<(f64, f64, f64, usize)> = points.iter().map(read).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut x = Vec::new();
         let mut y = Vec::new();
@@ -214,11 +206,6 @@ fn clusters(
         }
     }
     found
-}
-
-fn secants(x: &[f64], y: &[f64]) -> Vec<f64> {
-    let pairs = x.windows(2).zip(y.windows(2));
-    pairs.map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0])).collect()
 }
 
 /// Slopes after H. Akima, J. ACM 17 (1970) 589, with the weights of the modified rule, which add half the size of the

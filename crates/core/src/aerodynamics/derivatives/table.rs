@@ -134,14 +134,14 @@ impl DerivativeTable {
     ) -> Result<Self> {
         let dofs = model.dofs();
         let mut points = BTreeMap::<_, Vec<_>>::new();
-        let tests = speeds_m_s
-            .iter()
-            .flat_map(|v| frequencies_hz.iter().map(move |f| (*v, *f)));
+        let tests = speeds_m_s.iter();
+        let tests = tests.flat_map(|v| frequencies_hz.iter().map(move |f| (*v, *f)));
         for (speed, frequency) in tests {
             let k = ReducedFrequency::from_hertz(frequency, width_m, speed);
             let g = model.transfer(k)?;
-            for (i, j) in (0..dofs.len()).flat_map(|i| (0..dofs.len()).map(move |j| (i, j))) {
-                for (part, value) in [(Part::Real, g[(i, j)].re), (Part::Imaginary, g[(i, j)].im)] {
+            for (place, z) in g.iter().enumerate() {
+                let (i, j) = (place % dofs.len(), place / dofs.len());
+                for (part, value) in [(Part::Real, z.re), (Part::Imaginary, z.im)] {
                     let of_one = points.entry(Derivative::from_entry(dofs[i], dofs[j], part));
                     of_one.or_default().push(DerivativePoint {
                         mean_speed_m_s: Some(speed),
@@ -178,17 +178,14 @@ impl DerivativeTable {
     /// # Errors
     /// [`Error::Input`] listing those that are missing.
     pub fn require(&self, dofs: &[Dof]) -> Result<()> {
-        let missing: Vec<&str> = coupling(dofs)
-            .filter(|d| !self.points.contains_key(d))
-            .map(Derivative::name)
-            .collect();
+        let missing = coupling(dofs).filter(|d| !self.points.contains_key(d));
+        let missing: Vec<&str> = missing.map(Derivative::name).collect();
         if missing.is_empty() {
             return Ok(());
         }
-        let words: Vec<&str> = dofs.iter().map(|d| d.name()).collect();
         Err(Error::input(
             format!("table {}", self.name),
-            format!("the derivatives of {} motion", words.join(", ")),
+            format!("the derivatives of {} motion", Dof::names(dofs)),
             format!("none of {}", missing.join(", ")),
         ))
     }
@@ -206,8 +203,8 @@ impl DerivativeTable {
         let ranges = |d: Derivative| {
             ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
         };
-        coupling(dofs)
-            .filter_map(ranges)
+        let ranges = coupling(dofs).filter_map(ranges);
+        ranges
             .reduce(ReducedFrequencyRange::intersection)
             // Nothing asked for was tested: an empty range, which contains no K.
             .unwrap_or(ReducedFrequencyRange::between(
@@ -219,10 +216,8 @@ impl DerivativeTable {
     /// Mean wind speed of each group of test points, m/s, rising; empty when the source does not give speeds.
     /// Speeds less than 5 % apart belong to one group.
     pub fn speed_groups(&self) -> Vec<f64> {
-        self.grouped_speeds()
-            .iter()
-            .map(|group| group.iter().sum::<f64>() / group.len() as f64)
-            .collect()
+        let mean = |group: &Vec<f64>| group.iter().sum::<f64>() / group.len() as f64;
+        self.grouped_speeds().iter().map(mean).collect()
     }
 
     /// Highest speed of each group, m/s, rising.
@@ -262,11 +257,10 @@ impl DerivativeTable {
         }
         let of_speed = |v: f64| ranges.iter().any(|range| range.contains(&v));
         let inside = |p: &&DerivativePoint| p.mean_speed_m_s.is_some_and(of_speed);
-        let points = self
-            .points
-            .iter()
-            .map(|(d, all)| (*d, all.iter().filter(inside).copied().collect()))
-            .collect();
+        let of_one = |(d, all): (&Derivative, &Vec<DerivativePoint>)| {
+            (*d, all.iter().filter(inside).copied().collect())
+        };
+        let points = self.points.iter().map(of_one).collect();
         Self::new(self.name.clone(), self.width_m, self.header.clone(), points)
     }
 

@@ -41,14 +41,10 @@ impl FilterBank {
     /// # Errors
     /// [`Error::Input`] when a pole is not positive or there is none.
     pub fn new(poles: Vec<f64>) -> Result<Self> {
-        ensure(
-            !poles.is_empty(),
-            "filter bank: poles",
-            "at least one",
-            "none",
-        )?;
+        let place = "filter bank: poles";
+        ensure(!poles.is_empty(), place, "at least one", "none")?;
         for p in &poles {
-            positive("filter bank: poles", *p)?;
+            positive(place, *p)?;
         }
         Ok(Self { poles })
     }

@@ -3,7 +3,7 @@
 
 use super::bank::{FilterBank, side_by_side};
 use crate::aerodynamics::{
-    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
+    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix, check_matrix,
 };
 use crate::error::{Result, ensure};
 use crate::section::Dof;
@@ -75,41 +75,29 @@ impl LaguerreModel {
     /// Checks that shapes agree.
     pub fn validate(&self) -> Result<()> {
         let n = self.dofs.len();
-        let finite = |m: &DMatrix<f64>| m.iter().all(|x| x.is_finite());
         for (name, m) in [("e0", &self.e0), ("e1", &self.e1), ("e2", &self.e2)] {
-            ensure(
-                m.shape() == (n, n) && finite(m),
-                format_args!("Laguerre model: {name}"),
-                format_args!("a finite {n}x{n} matrix"),
-                format_args!(
-                    "{}x{}, or a number that is not finite",
-                    m.nrows(),
-                    m.ncols()
-                ),
-            )?;
+            check_matrix(format_args!("Laguerre model: {name}"), m, n, n)?;
         }
         for (i, term) in self.terms.iter().enumerate() {
             // the poles of a file have not passed through the constructor yet
             FilterBank::new(term.poles.poles().to_vec())?;
+            let (filters, c) = (term.poles.count(), &term.coefficients);
+            let fits = c.shape() == (n, filters) && c.iter().all(|x| x.is_finite());
             ensure(
-                term.input < n
-                    && term.coefficients.shape() == (n, term.poles.count())
-                    && finite(&term.coefficients),
+                term.input < n && fits,
                 format_args!("Laguerre model: terms[{i}]"),
-                format_args!(
-                    "an input below {n} and finite {n}x{} coefficients",
-                    term.poles.count()
-                ),
-                format_args!(
-                    "input {}, {}x{} coefficients, or one that is not finite",
-                    term.input,
-                    term.coefficients.nrows(),
-                    term.coefficients.ncols()
-                ),
+                format_args!("an input below {n} and finite {n}x{filters} coefficients"),
+                not_fitting(term.input, c),
             )?;
         }
         Ok(())
     }
+}
+
+/// What is said of a term whose input or coefficients are none.
+pub(super) fn not_fitting(input: usize, c: &DMatrix<f64>) -> String {
+    let (rows, columns) = c.shape();
+    format!("input {input}, {rows}x{columns} coefficients, or one that is not finite")
 }
 
 impl Transfer for LaguerreModel {

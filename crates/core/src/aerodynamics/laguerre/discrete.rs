@@ -1,6 +1,7 @@
 //! The discrete Laguerre model of the thesis (2.16, 2.33, 4.2): filters advancing by one `Δs`, no feed-through.
 
 use super::bank::side_by_side;
+use super::continuous::not_fitting;
 use crate::aerodynamics::{DiscreteRealization, Realizable, Realization, Transfer, TransferMatrix};
 use crate::error::{Result, ensure, finite_numbers, positive};
 use crate::section::Dof;
@@ -148,31 +149,18 @@ impl DiscreteLaguerre {
         positive("discrete Laguerre model: delta_s", self.delta_s)?;
         let n = self.dofs.len();
         for (i, term) in self.terms.iter().enumerate() {
-            let (alpha, place) = (
-                term.alpha,
-                format_args!("discrete Laguerre model: terms[{i}]"),
-            );
+            let (alpha, c) = (term.alpha, &term.coefficients);
+            let place = |key| format!("discrete Laguerre model: terms[{i}].{key}");
             let inside = alpha > 0.0 && alpha < 1.0;
-            ensure(
-                inside,
-                format_args!("{place}.alpha"),
-                "0 < alpha < 1",
-                alpha,
-            )?;
-            let c = &term.coefficients;
+            ensure(inside, place("alpha"), "0 < alpha < 1", alpha)?;
             let fits = c.nrows() == n && c.ncols() > 0 && c.iter().all(|x| x.is_finite());
             ensure(
                 term.input < n && fits,
-                format_args!("{place}.coefficients"),
+                place("coefficients"),
                 format_args!(
                     "an input below {n} and {n} rows of finite numbers, at least one filter"
                 ),
-                format_args!(
-                    "input {}, {}x{} coefficients, or one that is not finite",
-                    term.input,
-                    c.nrows(),
-                    c.ncols()
-                ),
+                not_fitting(term.input, c),
             )?;
         }
         ensure(

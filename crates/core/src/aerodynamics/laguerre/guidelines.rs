@@ -53,12 +53,8 @@ impl FilterBank {
     /// the measure of `discrete_memory` for continuous filters.
     pub fn memory(&self, delta_s: f64) -> Result<usize> {
         let (a, b) = self.matrices();
-        let phi = c2d(
-            &a,
-            &DMatrix::from_column_slice(b.len(), 1, b.as_slice()),
-            delta_s,
-        )?
-        .phi;
+        let drive = DMatrix::from_column_slice(b.len(), 1, b.as_slice());
+        let phi = c2d(&a, &drive, delta_s)?.phi;
         let slowest = self.poles().iter().copied().fold(f64::INFINITY, f64::min);
         let spread = 2.0 * self.count() as f64 / (slowest * delta_s);
         Ok(last_above(&phi, b * delta_s.sqrt(), spread))

@@ -6,9 +6,9 @@
 
 use super::{RationalModel, check_square};
 use crate::aerodynamics::{
-    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
+    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix, check_matrix,
 };
-use crate::error::{Result, ensure, positive};
+use crate::error::{Result, positive};
 use crate::section::Dof;
 use crate::state_space::complex;
 use crate::units::ReducedFrequency;
@@ -46,19 +46,8 @@ impl MinimumStateModel {
         const PLACE: &str = "minimum-state model";
         let (n, m) = (self.dofs.len(), self.lags.len());
         check_square(PLACE, n, &[&self.a1, &self.a2, &self.a3])?;
-        let finite = |x: &DMatrix<f64>| x.iter().all(|x| x.is_finite());
-        for (name, matrix, shape) in [("d", &self.d, (n, m)), ("e", &self.e, (m, n))] {
-            ensure(
-                matrix.shape() == shape && finite(matrix),
-                format_args!("{PLACE}: {name}"),
-                format_args!("a finite {}x{} matrix", shape.0, shape.1),
-                format_args!(
-                    "{}x{}, or a number that is not finite",
-                    matrix.nrows(),
-                    matrix.ncols()
-                ),
-            )?;
-        }
+        check_matrix(format_args!("{PLACE}: d"), &self.d, n, m)?;
+        check_matrix(format_args!("{PLACE}: e"), &self.e, m, n)?;
         for d in &self.lags {
             positive(format!("{PLACE}: lags"), *d)?;
         }
@@ -67,15 +56,14 @@ impl MinimumStateModel {
 
     /// The same as a function in Roger's form, with n states per lag: `a_{l+3} = D_l E_l`.
     pub fn to_roger(&self) -> RationalModel {
+        let pairs = self.d.column_iter().zip(self.e.row_iter());
         RationalModel {
             dofs: self.dofs.clone(),
             a1: self.a1.clone(),
             a2: self.a2.clone(),
             a3: self.a3.clone(),
             lags: super::Lags::Shared(self.lags.clone()),
-            lag_terms: (0..self.lags.len())
-                .map(|l| self.d.column(l) * self.e.row(l))
-                .collect(),
+            lag_terms: pairs.map(|(d, e)| d * e).collect(),
         }
     }
 }
@@ -87,10 +75,8 @@ impl Transfer for MinimumStateModel {
 
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let p = Complex::new(0.0, k.full_width());
-        let filters = DMatrix::from_diagonal(&DVector::from_iterator(
-            self.lags.len(),
-            self.lags.iter().map(|d| p / (p + d)),
-        ));
+        let filters: Vec<_> = self.lags.iter().map(|d| p / (p + d)).collect();
+        let filters = DMatrix::from_diagonal(&filters.into());
         let feed = complex(&self.a1) + complex(&self.a2) * p + complex(&self.a3) * (p * p);
         Ok(feed + complex(&self.d) * filters * complex(&self.e))
     }

@@ -52,7 +52,7 @@ fn a_straight_moment_curve_has_a_closed_form() {
 fn the_plate_diverges() {
     let (path, s) = path(|a| PI / 2.0 * a, &[80.0, 90.0, 91.0]);
     assert_eq!(path.points.len(), 2);
-    let Some(EquilibriumEnd::Divergence(LastEquilibrium { speed_m_s, .. })) = path.end else {
+    let Some(EquilibriumEnd::Divergence { speed_m_s, .. }) = path.end else {
         panic!("{:?}", path.end)
     };
     let exact = (s.stiffness[(1, 1)] / (0.25 * PI * s.air_density_kg_m3)).sqrt() / s.width_m;
@@ -68,10 +68,10 @@ fn the_plate_diverges() {
 fn a_fold_is_divergence() {
     let (c0, c1, c2) = (0.01, 1.0, 4.0_f64);
     let (path, s) = path(|a| c0 + c1 * a + c2 * a * a, &[60.0, 120.0]);
-    let Some(EquilibriumEnd::Divergence(LastEquilibrium {
+    let Some(EquilibriumEnd::Divergence {
         speed_m_s,
         rotation_rad,
-    })) = path.end
+    }) = path.end
     else {
         panic!("{:?}", path.end)
     };
@@ -91,10 +91,10 @@ fn a_fold_is_divergence() {
 #[test]
 fn leaving_the_table_is_said() {
     let (path, s) = path(|_| 0.2, &[30.0, 60.0, 90.0, 200.0]);
-    let Some(EquilibriumEnd::OutsideTable(LastEquilibrium {
+    let Some(EquilibriumEnd::OutsideTable {
         speed_m_s,
         rotation_rad,
-    })) = path.end
+    }) = path.end
     else {
         panic!("{:?}", path.end)
     };

@@ -23,33 +23,6 @@ enum Function {
     },
 }
 
-/// What a coefficient is called, in the letters of its model; in words where somebody reads it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum CoefficientName {
-    /// A power of `p`.
-    Power(&'static str),
-    /// A filter of the motion's chain.
-    Filter(usize),
-    /// A filter of one chain of several.
-    OfChain { chain: usize, filter: usize },
-    /// A lag.
-    Lag(usize),
-    /// A lag by which another force than that of the coefficient is delayed.
-    OfOther { lag: f64, term: usize },
-}
-
-impl std::fmt::Display for CoefficientName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Power(name) => f.write_str(name),
-            Self::Filter(l) => write!(f, "c{l}"),
-            Self::OfChain { chain, filter } => write!(f, "chain{chain}.c{filter}"),
-            Self::Lag(term) => write!(f, "a{term}"),
-            Self::OfOther { lag, term } => write!(f, "lag{lag}.a{term}"),
-        }
-    }
-}
-
 /// Functions and coefficients of a force model. Coefficients stand by motion, then function, then force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearForces {
@@ -58,7 +31,8 @@ pub struct LinearForces {
     /// First function of each motion, and one past the last.
     pub(super) starts: Vec<usize>,
     coefficients: Vec<f64>,
-    terms: Vec<CoefficientName>,
+    /// What each coefficient is called, in the letters of its model.
+    terms: Vec<String>,
     pub(super) tested: Option<ReducedFrequencyRange>,
 }
 
@@ -67,10 +41,8 @@ impl LinearForces {
     pub fn of_laguerre(model: &LaguerreModel, tested: Option<ReducedFrequencyRange>) -> Self {
         let mut forces = Self::empty(&model.dofs, tested);
         for input in 0..model.dofs.len() {
-            forces.add_powers(
-                input,
-                [("e0", &model.e0), ("e1", &model.e1), ("e2", &model.e2)],
-            );
+            let powers = [("e0", &model.e0), ("e1", &model.e1), ("e2", &model.e2)];
+            forces.add_powers(input, powers);
             let terms: Vec<_> = model.terms.iter().filter(|t| t.input == input).collect();
             for (t, term) in terms.iter().enumerate() {
                 let poles = term.poles.poles();
@@ -80,11 +52,8 @@ impl LinearForces {
                     let function = Function::Filter(poles[..=l].to_vec());
                     let value = |i: usize| term.coefficients[(i, l)];
                     forces.add(function, value, |i| match own(i) {
-                        true => CoefficientName::Filter(l),
-                        false => CoefficientName::OfChain {
-                            chain: t,
-                            filter: l,
-                        },
+                        true => format!("c{l}"),
+                        false => format!("chain{t}.c{l}"),
                     });
                 }
             }
@@ -102,21 +71,16 @@ impl LinearForces {
     ) -> Self {
         let mut forces = Self::empty(&model.dofs, tested);
         for input in 0..model.dofs.len() {
-            for (t, term) in model.terms.iter().enumerate() {
-                if term.input != input {
-                    continue;
-                }
+            let terms = model.terms.iter().enumerate();
+            for (t, term) in terms.filter(|(_, term)| term.input == input) {
                 for (order, column) in term.coefficients.column_iter().enumerate() {
                     let function = Function::Sampled {
                         alpha: term.alpha,
                         order: order as i32,
                         delta_s: model.delta_s,
                     };
-                    let term = CoefficientName::OfChain {
-                        chain: t,
-                        filter: order,
-                    };
-                    forces.add(function, |i| column[i], |_| term);
+                    let name = |_| format!("chain{t}.c{order}");
+                    forces.add(function, |i| column[i], name);
                 }
             }
             forces.starts.push(forces.functions.len());
@@ -128,26 +92,18 @@ impl LinearForces {
     pub fn of_rational(model: &RationalModel, tested: Option<ReducedFrequencyRange>) -> Self {
         let mut forces = Self::empty(&model.dofs, tested);
         for input in 0..model.dofs.len() {
-            forces.add_powers(
-                input,
-                [("a1", &model.a1), ("a2", &model.a2), ("a3", &model.a3)],
-            );
+            let powers = [("a1", &model.a1), ("a2", &model.a2), ("a3", &model.a3)];
+            forces.add_powers(input, powers);
             for (l, term) in model.lag_terms.iter().enumerate() {
                 for (lag, forces_of_it) in model.lag_groups(l) {
                     // where every force has a lag of its own, it counts its own term only
-                    let value = |i: usize| {
-                        if forces_of_it[i] {
-                            term[(i, input)]
-                        } else {
-                            0.0
-                        }
+                    let value = |i: usize| match forces_of_it[i] {
+                        true => term[(i, input)],
+                        false => 0.0,
                     };
-                    forces.add(Function::Lag(lag), value, |i| {
-                        let term = l + 4;
-                        match forces_of_it[i] {
-                            true => CoefficientName::Lag(term),
-                            false => CoefficientName::OfOther { lag, term },
-                        }
+                    forces.add(Function::Lag(lag), value, |i| match forces_of_it[i] {
+                        true => format!("a{}", l + 4),
+                        false => format!("lag{lag}.a{}", l + 4),
                     });
                 }
             }
@@ -167,12 +123,10 @@ impl LinearForces {
         }
     }
 
-    fn add_powers(&mut self, input: usize, terms: [(&'static str, &DMatrix<f64>); 3]) {
+    fn add_powers(&mut self, input: usize, terms: [(&str, &DMatrix<f64>); 3]) {
         for ((name, matrix), power) in terms.into_iter().zip(0..) {
             let value = |i: usize| matrix[(i, input)];
-            self.add(Function::Power(power), value, |_| {
-                CoefficientName::Power(name)
-            });
+            self.add(Function::Power(power), value, |_| name.to_owned());
         }
     }
 
@@ -180,7 +134,7 @@ impl LinearForces {
         &mut self,
         function: Function,
         value: impl Fn(usize) -> f64,
-        term: impl Fn(usize) -> CoefficientName,
+        term: impl Fn(usize) -> String,
     ) {
         self.functions.push(function);
         for i in 0..self.dofs.len() {
@@ -197,7 +151,7 @@ impl LinearForces {
     /// Their names, `force.motion.term`, e.g. `vertical.torsion.e0`.
     pub fn names(&self) -> Vec<String> {
         let count = self.dofs.len();
-        let name = |(place, term): (usize, &CoefficientName)| {
+        let name = |(place, term): (usize, &String)| {
             let (function, force) = (place / count, self.dofs[place % count].name());
             let motion = self.starts[1..].partition_point(|end| *end <= function);
             format!("{force}.{}.{term}", self.dofs[motion].name())

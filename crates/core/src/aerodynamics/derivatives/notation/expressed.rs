@@ -46,24 +46,20 @@ pub struct ExpressedPoint {
 impl Convention {
     /// The table in this convention.
     pub fn express(&self, table: &DerivativeTable) -> ExpressedTable {
-        let derivatives = table
-            .derivatives()
-            .map(|derivative| ExpressedDerivative {
+        let of_one = |derivative: Derivative| {
+            let points = table.points(derivative).iter();
+            ExpressedDerivative {
                 name: self.notation.name_of(derivative),
                 derivative,
-                points: table
-                    .points(derivative)
-                    .iter()
-                    .map(|p| self.express_point(derivative, p))
-                    .collect(),
-            })
-            .collect();
+                points: points.map(|p| self.express_point(derivative, p)).collect(),
+            }
+        };
         ExpressedTable {
             name: table.name.clone(),
             width_m: table.width_m,
             header: table.header.clone(),
             convention: *self,
-            derivatives,
+            derivatives: table.derivatives().map(of_one).collect(),
         }
     }
 
@@ -94,17 +90,11 @@ impl ExpressedTable {
     /// # Errors
     /// As [`DerivativeTable::new`].
     pub fn to_table(&self) -> crate::Result<DerivativeTable> {
-        let points = self
-            .derivatives
-            .iter()
-            .map(|d| {
-                let points = d
-                    .points
-                    .iter()
-                    .map(|p| self.convention.read_point(d.derivative, p));
-                (d.derivative, points.collect())
-            })
-            .collect();
+        let of_one = |d: &ExpressedDerivative| {
+            let read = |p| self.convention.read_point(d.derivative, p);
+            (d.derivative, d.points.iter().map(read).collect())
+        };
+        let points = self.derivatives.iter().map(of_one).collect();
         DerivativeTable::new(self.name.clone(), self.width_m, self.header.clone(), points)
     }
 }

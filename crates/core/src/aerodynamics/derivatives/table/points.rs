@@ -86,18 +86,10 @@ pub fn check_points<P: Into<Place>>(
     let check = |p: &DerivativePoint| {
         let (v_hat, value, speed) = (p.v_hat, p.value, p.mean_speed_m_s.unwrap_or(1.0));
         ensure(positive(v_hat), "", "a positive reduced velocity V̂", v_hat)?;
-        ensure(
-            value.abs() <= LARGEST_VALUE,
-            "",
-            format_args!("a value of the derivative, no larger than {LARGEST_VALUE:e}"),
-            value,
-        )?;
-        ensure(
-            positive(speed),
-            "",
-            "a positive mean wind speed, m/s",
-            speed,
-        )
+        let expected = format_args!("a value of the derivative, no larger than {LARGEST_VALUE:e}");
+        ensure(value.abs() <= LARGEST_VALUE, "", expected, value)?;
+        let is_wind = positive(speed);
+        ensure(is_wind, "", "a positive mean wind speed, m/s", speed)
     };
     for (i, p) in points.iter().enumerate() {
         check(p).map_err(|e| e.at(place(i)))?;
