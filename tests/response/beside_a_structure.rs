@@ -4,7 +4,7 @@ use aerodeck::aerodynamics::{RationalModel, Realizable, Realization};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::identification::{FrequencyFit, fit_table};
-use aerodeck::response::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
+use aerodeck::response::{ForceAhead, KnownMotion, PrescribedForces, StripFlow};
 use aerodeck::section::{SectionModel, Structure, Translation};
 use nalgebra::{DMatrix, DVector};
 
@@ -88,12 +88,8 @@ fn radius(structure: &Structure, realization: &Realization, wind: f64, exchange:
                 known,
             })
             .collect();
-        let given = GivenMotion {
-            time_s: 0.0,
-            wind_speed_m_s: wind,
-            motion: &motion,
-        };
-        forces.take(&mut state, &given, &[flow]).unwrap();
+        let taken = forces.take(&mut state, 0.0, wind, &motion, &[flow]);
+        taken.unwrap();
         for point in state[first..].chunks_mut(per_point) {
             point[3] = 0.0;
         }

@@ -21,7 +21,7 @@ mod step_cache;
 mod strip_gusts;
 mod values;
 
-pub use prescribed::{Airflow, ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
+pub use prescribed::{Airflow, ForceAhead, KnownMotion, PrescribedForces, StripFlow};
 pub use quasi_steady::{NonlinearRun, NonlinearSection, largest_difference};
 pub use strip_gusts::StripGusts;
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};

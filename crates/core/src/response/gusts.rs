@@ -27,14 +27,9 @@ pub(super) struct Gusts {
     weights: [f64; LAGS],
     /// How fast each number of the state follows its gust, 1/m times the wind: the pole of its lag over the width.
     speeds: Vec<f64>,
-    series: LagSeries,
-}
-
-/// Memory of a series: the lags of each channel, one channel after the other.
-#[derive(Debug, Clone, Default)]
-struct LagSeries {
-    /// Channels in this order of time.
+    /// Channels in the present order of time of a series.
     gusts: Vec<f64>,
+    /// The lags of each channel in it, one channel after the other, and what they lack of their gust.
     term: Vec<f64>,
     lacking: Vec<f64>,
     /// `Q g` of this order and the one before, and the force.
@@ -103,7 +98,13 @@ impl Gusts {
             on_section: false,
             weights: array::from_fn(|lag| lags.get(lag).map_or(0.0, |[_, weight]| *weight)),
             speeds: per_width.iter().flat_map(of_channel).collect(),
-            series: LagSeries::default(),
+            gusts: Vec::new(),
+            term: Vec::new(),
+            lacking: Vec::new(),
+            felt: Default::default(),
+            force: Vec::new(),
+            largest: 0.0,
+            last: 0.0,
         }
     }
 
@@ -178,17 +179,16 @@ impl Gusts {
 
     /// Begins the series of one part at the present lagging gusts.
     pub(super) fn begin(&mut self, lagging: &[f64]) {
-        let s = &mut self.series;
-        s.term.clear();
-        s.term.extend_from_slice(lagging);
-        s.lacking.clear();
-        s.lacking.resize(lagging.len(), 0.0);
-        for list in s.felt.iter_mut().chain([&mut s.force]) {
+        self.term.clear();
+        self.term.extend_from_slice(lagging);
+        self.lacking.clear();
+        self.lacking.resize(lagging.len(), 0.0);
+        for list in self.felt.iter_mut().chain([&mut self.force]) {
             list.clear();
             list.resize(self.motions, 0.0);
         }
-        s.largest = largest_of(lagging);
-        s.last = s.largest;
+        self.largest = largest_of(lagging);
+        self.last = self.largest;
     }
 
     /// The force of order `k` over a part; adds the lagging gusts of order `k + 1` to `sum`.
@@ -201,10 +201,10 @@ impl Gusts {
         sum: &mut [f64],
     ) -> &[f64] {
         let SeriesPart { wind, change, .. } = part;
-        let s = &mut self.series;
+        let s = self;
         if k <= 2 {
             s.gusts.clear();
-            s.gusts.extend((0..self.channels).map(|j| match k {
+            s.gusts.extend((0..s.channels).map(|j| match k {
                 0 => stated(&inputs.gust_m_s, j) + part.start * stated(&inputs.gust_rate_m_s2, j),
                 1 => part.tau * stated(&inputs.gust_rate_m_s2, j),
                 _ => 0.0,
@@ -213,20 +213,15 @@ impl Gusts {
         }
         s.felt.swap(0, 1);
         s.felt[0].fill(0.0);
-        add_force(
-            &self.by_channel,
-            self.weights,
-            |j| s.gusts[j],
-            &s.term,
-            &mut s.felt[0],
-        );
+        let (gust, felt) = (|j| s.gusts[j], &mut s.felt[0]);
+        add_force(&s.by_channel, s.weights, gust, &s.term, felt);
         let [felt, before] = &s.felt;
         for (force, (felt, before)) in s.force.iter_mut().zip(felt.iter().zip(before)) {
             *force = wind * felt + change * before;
         }
         let factor = part.tau / (k + 1) as f64;
         let lags = lanes(&mut s.term).iter_mut().zip(lanes(&mut s.lacking));
-        let places = lanes(sum).iter_mut().zip(self.speeds.as_chunks::<LAGS>().0);
+        let places = lanes(sum).iter_mut().zip(s.speeds.as_chunks::<LAGS>().0);
         for (gust, ((term, lacking), (sum, speed))) in s.gusts.iter().zip(lags.zip(places)) {
             let now = term.map(|term| gust - term);
             *term = array::from_fn(|i| factor * speed[i] * (wind * now[i] + change * lacking[i]));
@@ -241,7 +236,7 @@ impl Gusts {
     /// Whether the last term is below `part` of the largest gust.
     #[inline(always)]
     pub(super) fn converged(&self, part: f64) -> bool {
-        self.series.last <= part * self.series.largest
+        self.last <= part * self.largest
     }
 }
 

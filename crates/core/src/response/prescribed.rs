@@ -35,17 +35,6 @@ pub struct KnownMotion {
     pub known: usize,
 }
 
-/// Wind and motion of all strips at one point of time.
-#[derive(Debug, Clone, Copy)]
-pub struct GivenMotion<'a> {
-    /// Point of time, s.
-    pub time_s: f64,
-    /// Mean wind speed, m/s.
-    pub wind_speed_m_s: f64,
-    /// Motion, strip by strip in the order of the degrees of freedom.
-    pub motion: &'a [KnownMotion],
-}
-
 /// A force and how fast it changes, per unit length.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ForceAhead {
@@ -121,8 +110,9 @@ impl PrescribedForces {
         }
     }
 
-    /// Takes the motion of a new point of time: the filters go to it along the cubic that now is known. At the first
-    /// point the flow has settled around the section held there. On an error the state is as it was.
+    /// Takes the mean wind speed and the motion, strip by strip in the order of the degrees of freedom, of a new point of time: the
+    /// filters go to it along the cubic that now is known. At the first point the flow has settled around the section held there.
+    /// On an error the state is as it was.
     ///
     /// # Errors
     /// [`Error::Input`] for a point that is not later than the newest and for a step of more than ten thousand parts over
@@ -131,20 +121,21 @@ impl PrescribedForces {
     pub fn take(
         &mut self,
         state: &mut [f64],
-        given: &GivenMotion,
+        time_s: f64,
+        wind_speed_m_s: f64,
+        motion: &[KnownMotion],
         strips: &[StripFlow],
     ) -> Result<()> {
-        if Self::points(state) > 0 && given.time_s <= state[2] {
-            return Err(Error::input(
-                "prescribed motion",
-                format!("a point of time after {} s", state[2]),
-                format!("{} s", given.time_s),
-            ));
+        if Self::points(state) > 0 && time_s <= state[2] {
+            let expected = format!("a point of time after {} s", state[2]);
+            let found = format!("{time_s} s");
+            return Err(Error::input("prescribed motion", expected, found));
         }
         let mut new = std::mem::take(&mut self.next);
         new.clear();
         new.extend_from_slice(state);
-        let taken = self.take_into(&mut new, state[1], given, strips);
+        self.enter(&mut new, time_s, wind_speed_m_s, motion);
+        let taken = self.go_to_newest(&mut new, state[1], strips);
         if taken.is_ok() {
             state.copy_from_slice(&new);
         }
@@ -152,15 +143,13 @@ impl PrescribedForces {
         taken
     }
 
-    /// The same in place, from the wind before.
-    fn take_into(
+    /// The filters go to the newest point, from the wind before.
+    fn go_to_newest(
         &mut self,
         new: &mut [f64],
         wind_before_m_s: f64,
-        given: &GivenMotion,
         strips: &[StripFlow],
     ) -> Result<()> {
-        self.enter(new, given);
         let (per_strip, states) = (self.per_strip(), self.realization.states());
         if Self::points(new) == 1 {
             return self.enter_steady_flow_of(new, strips);
@@ -169,7 +158,7 @@ impl PrescribedForces {
         let step = FilterAdvance {
             flows: strips,
             // to second order in the change of the wind over the step
-            wind_m_s: 0.5 * (wind_before_m_s + given.wind_speed_m_s),
+            wind_m_s: 0.5 * (wind_before_m_s + new[1]),
             duration_s: now - before,
         };
         self.series.prepare(&step)?;
@@ -243,12 +232,12 @@ impl PrescribedForces {
     }
 
     /// Enters the point in front of the others.
-    fn enter(&self, state: &mut [f64], given: &GivenMotion) {
+    fn enter(&self, state: &mut [f64], time_s: f64, wind_speed_m_s: f64, motion: &[KnownMotion]) {
         state.copy_within(2..SHARED - 1, 3);
         state[0] = (Self::points(state) + 1).min(POINTS) as f64;
-        (state[1], state[2]) = (given.wind_speed_m_s, given.time_s);
+        (state[1], state[2]) = (wind_speed_m_s, time_s);
         let n = self.dofs.len();
-        for (i, motion) in given.motion.iter().enumerate() {
+        for (i, motion) in motion.iter().enumerate() {
             let first = self.strip(i / n).end - (n - i % n) * POINTS * NUMBERS;
             state.copy_within(first..first + (POINTS - 1) * NUMBERS, first + NUMBERS);
             let point = &mut state[first..first + NUMBERS];
@@ -336,10 +325,6 @@ impl PrescribedForces {
             };
         }
     }
-}
-
-fn without_steady_flow() -> Error {
-    Error::Numerical("prescribed motion: a filter does not settle".into())
 }
 
 #[cfg(test)]

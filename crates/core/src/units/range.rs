@@ -2,7 +2,7 @@
 
 use super::ReducedFrequency;
 use crate::error::{Error, Result};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 
 /// Ratio of the `K` of tests that are meant to be one.
 const ONE_TEST: f64 = 1.05;
@@ -60,7 +60,12 @@ pub struct ReducedFrequencyRange {
     /// Highest `K`.
     pub max: ReducedFrequency,
     /// Where no test is near, by rising `K`.
-    #[serde(default, skip_serializing_if = "Gaps::is_empty")]
+    #[serde(
+        default,
+        skip_serializing_if = "no_gaps",
+        serialize_with = "write_gaps",
+        deserialize_with = "read_gaps"
+    )]
     gaps: Gaps,
 }
 
@@ -70,7 +75,7 @@ impl ReducedFrequencyRange {
         Self {
             min,
             max,
-            gaps: Gaps::NONE,
+            gaps: [None; MOST_GAPS],
         }
     }
 
@@ -97,7 +102,7 @@ impl ReducedFrequencyRange {
         Some(Self {
             min: parts[0].min,
             max: reached,
-            gaps: Gaps::new(gaps),
+            gaps: kept(gaps),
         })
     }
 
@@ -107,7 +112,7 @@ impl ReducedFrequencyRange {
         Self {
             min: ReducedFrequency(self.min.0.max(other.min.0)),
             max: ReducedFrequency(self.max.0.min(other.max.0)),
-            gaps: Gaps::new(self.gaps().chain(other.gaps()).collect()),
+            gaps: kept(self.gaps().chain(other.gaps()).collect()),
         }
     }
 
@@ -122,7 +127,7 @@ impl ReducedFrequencyRange {
         Self {
             min: scaled(self.min),
             max: scaled(self.max),
-            gaps: Gaps::new(gaps.collect()),
+            gaps: kept(gaps.collect()),
         }
     }
 
@@ -173,7 +178,7 @@ impl ReducedFrequencyRange {
 
     /// The gaps, by rising `K`.
     pub fn gaps(&self) -> impl Iterator<Item = ReducedFrequencyGap> {
-        self.gaps.each.into_iter().take(self.gaps.count)
+        self.gaps.into_iter().flatten()
     }
 
     /// Where a motion whose `K` falls leaves what was tested.
@@ -188,63 +193,32 @@ impl ReducedFrequencyRange {
 }
 
 /// A few gaps in place, so that a range is a value that can be copied.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(
-    try_from = "Vec<ReducedFrequencyGap>",
-    into = "Vec<ReducedFrequencyGap>"
-)]
-struct Gaps {
-    each: [ReducedFrequencyGap; MOST_GAPS],
-    count: usize,
+type Gaps = [Option<ReducedFrequencyGap>; MOST_GAPS];
+
+fn no_gaps(gaps: &Gaps) -> bool {
+    gaps[0].is_none()
 }
 
-impl Default for Gaps {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
-impl Gaps {
-    const NONE: Self = {
-        let zero = ReducedFrequency::from_full_width(0.0);
-        let nothing = ReducedFrequencyGap {
-            from: zero,
-            to: zero,
-        };
-        Self {
-            each: [nothing; MOST_GAPS],
-            count: 0,
-        }
+/// All of them, those left out that say nothing besides the others.
+fn kept(mut gaps: Vec<ReducedFrequencyGap>) -> Gaps {
+    gaps.sort_by(|a, b| a.from.0.total_cmp(&b.from.0));
+    let within = |a: &ReducedFrequencyGap, b: &ReducedFrequencyGap| match (a.unknown(), b.unknown())
+    {
+        (Some(a), Some(b)) => b.0 <= a.0 && a.1 <= b.1,
+        (None, _) => true,
+        (Some(_), None) => false,
     };
-
-    fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// All of them, those left out that say nothing besides the others.
-    fn new(mut gaps: Vec<ReducedFrequencyGap>) -> Self {
-        gaps.sort_by(|a, b| a.from.full_width().total_cmp(&b.from.full_width()));
-        let within =
-            |a: &ReducedFrequencyGap, b: &ReducedFrequencyGap| match (a.unknown(), b.unknown()) {
-                (Some(a), Some(b)) => b.0 <= a.0 && a.1 <= b.1,
-                (None, _) => true,
-                (Some(_), None) => false,
-            };
-        let mut kept: Vec<ReducedFrequencyGap> = Vec::new();
-        for gap in gaps {
-            if !kept.iter().any(|other| within(&gap, other)) {
-                kept.retain(|other| !within(other, &gap));
-                kept.push(gap);
-            }
+    let mut kept: Vec<ReducedFrequencyGap> = Vec::new();
+    for gap in gaps {
+        if !kept.iter().any(|other| within(&gap, other)) {
+            kept.retain(|other| !within(other, &gap));
+            kept.push(gap);
         }
-        while kept.len() > MOST_GAPS {
-            join_nearest(&mut kept);
-        }
-        let mut all = Self::NONE;
-        all.count = kept.len();
-        all.each[..kept.len()].copy_from_slice(&kept);
-        all
     }
+    while kept.len() > MOST_GAPS {
+        join_nearest(&mut kept);
+    }
+    std::array::from_fn(|i| kept.get(i).copied())
 }
 
 /// Joins the two neighbours that make the narrowest gap together.
@@ -261,26 +235,20 @@ fn join_nearest(gaps: &mut Vec<ReducedFrequencyGap>) {
     }
 }
 
-impl From<Gaps> for Vec<ReducedFrequencyGap> {
-    fn from(gaps: Gaps) -> Self {
-        gaps.each[..gaps.count].to_vec()
-    }
+fn write_gaps<S: Serializer>(gaps: &Gaps, s: S) -> std::result::Result<S::Ok, S::Error> {
+    s.collect_seq(gaps.iter().flatten())
 }
 
-impl TryFrom<Vec<ReducedFrequencyGap>> for Gaps {
-    type Error = String;
-
-    fn try_from(gaps: Vec<ReducedFrequencyGap>) -> std::result::Result<Self, String> {
-        for gap in &gaps {
-            let (from, to) = (gap.from.full_width(), gap.to.full_width());
-            if !(from > 0.0 && from < to && to.is_finite()) {
-                return Err(format!(
-                    "gaps: expected 0 < from < to, found {from} to {to}"
-                ));
-            }
+fn read_gaps<'de, D: Deserializer<'de>>(d: D) -> std::result::Result<Gaps, D::Error> {
+    let gaps = Vec::<ReducedFrequencyGap>::deserialize(d)?;
+    for gap in &gaps {
+        let (from, to) = (gap.from.0, gap.to.0);
+        if !(from > 0.0 && from < to && to.is_finite()) {
+            let why = format!("gaps: expected 0 < from < to, found {from} to {to}");
+            return Err(D::Error::custom(why));
         }
-        Ok(Self::new(gaps))
     }
+    Ok(kept(gaps))
 }
 
 #[cfg(test)]

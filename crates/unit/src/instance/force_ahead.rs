@@ -4,9 +4,7 @@ use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE};
 use super::memory::Memory;
 use crate::error::{Error, Result};
-use crate::response::{
-    ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow,
-};
+use crate::response::{ForceAhead, KnownMotion, PrescribedForces, SectionState, StripFlow};
 use std::ops::Range;
 
 impl ForceUnit {
@@ -37,16 +35,16 @@ impl ForceUnit {
     pub(super) fn take(
         &mut self,
         state: &mut [f64],
-        given: &GivenMotion,
+        time_s: f64,
+        wind_m_s: f64,
+        motion: &[KnownMotion],
         flows: &[StripFlow],
     ) -> Result<()> {
         for part in &mut self.parts {
-            let own = GivenMotion {
-                motion: &given.motion[part.coordinates.clone()],
-                ..*given
-            };
             let state = &mut state[part.state.clone()];
-            part.forces.take(state, &own, &flows[part.strips.clone()])?;
+            let motion = &motion[part.coordinates.clone()];
+            let flows = &flows[part.strips.clone()];
+            part.forces.take(state, time_s, wind_m_s, motion, flows)?;
         }
         Ok(())
     }
@@ -57,12 +55,8 @@ impl ForceUnit {
         self.motion(memory, &mut work.motion);
         work.flows.clear();
         work.flows.extend(self.flows(&memory.values));
-        let given = GivenMotion {
-            time_s: memory.time,
-            wind_speed_m_s: memory.values[self.inputs[0]],
-            motion: &work.motion,
-        };
-        let taken = self.take(&mut memory.system.values, &given, &work.flows);
+        let (wind, system) = (memory.values[self.inputs[0]], &mut memory.system.values);
+        let taken = self.take(system, memory.time, wind, &work.motion, &work.flows);
         if taken.is_ok() {
             let mut gusts = std::mem::take(&mut memory.system.gusts);
             self.take_gusts(&mut gusts, before, memory, &work.flows);
@@ -95,13 +89,9 @@ impl ForceUnit {
         self.motion(memory, &mut work.motion);
         let newest = PrescribedForces::newest_s(self.first_of(system));
         let left_s = newest.map_or(ahead_s, |t| (t + ahead_s - memory.time).max(0.0));
-        let given = GivenMotion {
-            time_s: memory.time,
-            wind_speed_m_s: memory.values[self.inputs[0]],
-            motion: &work.motion,
-        };
         work.renewed.set_to(system);
-        self.take(&mut work.renewed.values, &given, &work.flows)?;
+        let (wind, renewed) = (memory.values[self.inputs[0]], &mut work.renewed.values);
+        self.take(renewed, memory.time, wind, &work.motion, &work.flows)?;
         self.take_gusts(&mut work.renewed.gusts, system, memory, &work.flows);
         let (flows, forces) = (&work.flows, &mut work.forces);
         self.forces_of(&work.renewed, left_s, memory, flows, forces)?;

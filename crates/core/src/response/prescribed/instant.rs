@@ -4,7 +4,7 @@ use super::course::MotionCubic;
 use super::filters::add_product;
 use super::{Airflow, ForceAhead, PrescribedForces};
 use crate::aerodynamics::Realization;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -38,10 +38,9 @@ impl PrescribedForces {
         if matrix.is_empty() {
             return Ok(drive.clone());
         }
-        matrix
-            .lu()
-            .solve(drive)
-            .ok_or_else(super::without_steady_flow)
+        let settled = matrix.lu().solve(drive);
+        let why = "prescribed motion: a filter does not settle";
+        settled.ok_or_else(|| Error::Numerical(why.into()))
     }
 
     /// Enters the filters of a strip of this width (m) held at a displacement (m or rad) until the flow has settled.
@@ -52,7 +51,8 @@ impl PrescribedForces {
         width: f64,
         filters: &mut [f64],
     ) {
-        let filters_at_rest = steady_flow * self.dimensionless(displacement, width);
+        let motion = self.dimensionless(displacement, width);
+        let filters_at_rest = steady_flow * DVector::from_iterator(self.dofs.len(), motion);
         filters.copy_from_slice(filters_at_rest.as_slice());
     }
 
@@ -80,27 +80,23 @@ impl PrescribedForces {
         width_m: f64,
         rates: &mut [f64],
     ) {
+        rates.fill(0.0);
         let Realization::Continuous(c) = &self.realization else {
-            rates.fill(0.0);
             return;
         };
-        rates.fill(0.0);
         add_product(&c.a, filters, rates);
-        let scaled = self.dofs.iter().zip(displacement);
-        let scaled = scaled.map(|(dof, x)| x * dof.motion_scale(width_m));
-        for (column, r) in c.b.column_iter().zip(scaled) {
+        let motion = self.dimensionless(displacement, width_m);
+        for (column, r) in c.b.column_iter().zip(motion) {
             for (rate, b) in rates.iter_mut().zip(&column) {
                 *rate += b * r;
             }
         }
-        rates
-            .iter_mut()
-            .for_each(|rate| *rate *= wind_m_s / width_m);
+        let speed = wind_m_s / width_m;
+        rates.iter_mut().for_each(|rate| *rate *= speed);
     }
 
-    fn dimensionless(&self, displacement: &[f64], width: f64) -> DVector<f64> {
+    fn dimensionless(&self, displacement: &[f64], width: f64) -> impl Iterator<Item = f64> {
         let scaled = self.dofs.iter().zip(displacement);
-        let scaled = scaled.map(|(dof, x)| x * dof.motion_scale(width));
-        DVector::from_iterator(self.dofs.len(), scaled)
+        scaled.map(move |(dof, x)| x * dof.motion_scale(width))
     }
 }

@@ -27,12 +27,7 @@ fn take(
     known: usize,
 ) {
     let motion = motion.map(|values| KnownMotion { values, known });
-    let given = GivenMotion {
-        time_s: t,
-        wind_speed_m_s: wind,
-        motion: &motion,
-    };
-    forces.take(state, &given, &[FLOW]).unwrap();
+    forces.take(state, t, wind, &motion, &[FLOW]).unwrap();
 }
 
 fn ahead(forces: &mut PrescribedForces, state: &[f64], ahead_s: f64) -> [ForceAhead; 2] {
@@ -159,12 +154,8 @@ fn what_cannot_be_computed_leaves_the_state() {
             values: [0.1, 0.0, 0.0],
             known: 1,
         }; 2];
-        let given = GivenMotion {
-            time_s,
-            wind_speed_m_s,
-            motion: &motion,
-        };
-        assert!(forces.take(&mut state, &given, &[FLOW]).is_err());
+        let taken = forces.take(&mut state, time_s, wind_speed_m_s, &motion, &[FLOW]);
+        assert!(taken.is_err());
         assert_eq!(state, before);
     }
 }
