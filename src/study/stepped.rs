@@ -7,8 +7,7 @@ use crate::flutter::{
     StableRange, UnstableStart, judged_speeds,
 };
 use crate::fmu::importer::{
-    Fmu, GrowthOnset as Found, GrowthPoint, SteppedSearch, SteppingSearch, growth_by_stepping,
-    onset_by_stepping,
+    Fmu, GrowthOnset as Found, GrowthPoint, SteppedSearch, growth_by_stepping, onset_by_stepping,
 };
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
@@ -78,16 +77,15 @@ pub fn stepped_onset(
     let mut found: Vec<Found> = Vec::with_capacity(STEPS_PER_PERIOD.len());
     for steps in STEPS_PER_PERIOD {
         let step = 1.0 / (steps * fastest_hz);
-        let search = SteppingSearch::between(LOWEST_PART * speed_max_m_s, speed_max_m_s, step);
-        match onset_by_stepping(&fmu, &search)? {
+        match onset_by_stepping(&fmu, LOWEST_PART * speed_max_m_s, speed_max_m_s, step)? {
             SteppedSearch::Onset(onset) => found.push(*onset),
             SteppedSearch::UnstableAtOrBelow(at) => {
-                let reason = match at.frequency_hz > 0.0 {
+                let reason = match at.frequency_rad_s > 0.0 {
                     true => "the lowest speed stepped",
                     false => "the lowest speed stepped, where it diverges without oscillating",
                 };
                 let reason = reason.to_owned();
-                return without_runs(unstable(model, at, reason));
+                return without_runs(unstable(model, &at, reason));
             }
             SteppedSearch::StableUpTo(range) => {
                 // what is stepped knows nothing of tests; where its modes leave them is asked of the model
@@ -114,8 +112,8 @@ pub fn stepped_onset(
     }
     let mut onset = as_onset(model, first);
     if let Some(at) = entering(&fmu, model, first)? {
-        if at.growth_rate_per_s > 0.0 && at.frequency_hz > 0.0 {
-            return without_runs(grows_inside(model, at, first));
+        if at.growth_rate_per_s > 0.0 && at.frequency_rad_s > 0.0 {
+            return without_runs(grows_inside(model, &at, first));
         }
         onset.warnings.extend(diverges_inside(&at));
     }
@@ -124,9 +122,8 @@ pub fn stepped_onset(
 
 /// A section that diverges before anything that oscillates grows.
 fn diverges(found: &Found) -> FlutterSearch {
-    let lowest = found.growth.first().map_or(0.0, |point| point.speed_m_s);
     FlutterSearch::StableUpTo(StableRange {
-        from_m_s: lowest,
+        from_m_s: found.lowest_m_s,
         to_m_s: found.speed_m_s,
         not_judged: Some(format!(
             "from {:.3} m/s on the section diverges, which hides any oscillation",
@@ -147,8 +144,8 @@ fn entering(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<Gro
     let mut speed = speed_of(found.frequency_hz);
     let mut at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
     for _ in 0..MAX_ROUNDS {
-        let next = speed_of(at.frequency_hz);
-        if at.frequency_hz <= 0.0 || (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
+        let next = speed_of(at.frequency_hz());
+        if at.frequency_rad_s <= 0.0 || (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
             break;
         }
         speed = next;
@@ -158,7 +155,7 @@ fn entering(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<Gro
 }
 
 /// A motion that grows where it comes into the tested range: unstable at and below that speed.
-fn grows_inside(model: &TrainedModel, at: GrowthPoint, found: &Found) -> FlutterSearch {
+fn grows_inside(model: &TrainedModel, at: &GrowthPoint, found: &Found) -> FlutterSearch {
     let reason = format!(
         "there its motion enters the range that can be judged, which ends at K {:.4}; outside, the FMU grows from \
          {:.3} m/s on",
@@ -183,17 +180,11 @@ fn diverges_inside(at: &GrowthPoint) -> Option<String> {
     })
 }
 
-fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> FlutterSearch {
-    let speed_m_s = at.speed_m_s;
-    let k = ReducedFrequency::from_hertz(at.frequency_hz, model.section.width_m, speed_m_s);
+fn unstable(model: &TrainedModel, at: &GrowthPoint, reason: String) -> FlutterSearch {
+    let (speed_m_s, hertz) = (at.speed_m_s, at.frequency_hz());
+    let k = ReducedFrequency::from_hertz(hertz, model.section.width_m, speed_m_s);
     FlutterSearch::UnstableAtOrBelow(Box::new(UnstableStart {
-        at: CriticalPoint::new(
-            &model.name,
-            OnsetMethod::FmuStepping,
-            speed_m_s,
-            at.frequency_hz,
-            k,
-        ),
+        at: CriticalPoint::new(&model.name, OnsetMethod::FmuStepping, speed_m_s, hertz, k),
         growth_rate_per_s: at.growth_rate_per_s,
         branch: "dominant".to_owned(),
         in_tested_range: Some(model.tested_range.contains(k)),
@@ -237,7 +228,8 @@ mod tests {
         GrowthPoint {
             speed_m_s,
             growth_rate_per_s,
-            frequency_hz,
+            frequency_rad_s: TAU * frequency_hz,
+            shape: Vec::new(),
         }
     }
 
@@ -250,7 +242,7 @@ mod tests {
             mode_ratio: None,
             phase_deg: 0.0,
             communication_step_s: 0.01,
-            growth: vec![point(9.0, -0.2, 2.0), point(22.0, 0.1, 0.0)],
+            lowest_m_s: 9.0,
             steps: 1000,
         };
         let said = diverges(&found).explain();

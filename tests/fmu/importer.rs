@@ -4,9 +4,7 @@
 use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
-use aerodeck::fmu::importer::{
-    Fmu, FmuSeverity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
-};
+use aerodeck::fmu::importer::{Fmu, FmuSeverity, Slave, SteppedSearch, Value, onset_by_stepping};
 use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
@@ -106,9 +104,10 @@ fn onset_by_stepping_is_onset_by_eigenvalues() {
         let expected = by_eigenvalues(kind);
         let fmu = Fmu::open(exported(folder.path(), kind)).unwrap();
         for step in [0.005, 0.05] {
-            let search = SteppingSearch::between(20.0, 60.0, step);
-            let found = onset_by_stepping(&fmu, &search).unwrap();
-            let found = found.onset().unwrap();
+            let SteppedSearch::Onset(found) = onset_by_stepping(&fmu, 20.0, 60.0, step).unwrap()
+            else {
+                panic!("{kind}: no onset");
+            };
             let off = |a: f64, b: f64| (a / b - 1.0).abs();
             let message = format!("{kind} at {step} s: {found:#?} against {expected:#?}");
             assert!(
@@ -132,37 +131,48 @@ fn onset_by_stepping_is_onset_by_eigenvalues() {
 }
 
 #[test]
-fn simulated_values_and_refusals() {
+fn values_are_set_and_read_and_refused() {
     let folder = tempfile::tempdir().unwrap();
     let fmu = Fmu::open(exported(folder.path(), "rational")).unwrap();
-    let table = simulate(&fmu, &Simulation::default()).unwrap();
-    assert_eq!(table.rows.len(), 1001);
-    let heave = table.column("heave").unwrap();
-    assert_eq!(heave[0], 0.01);
-    assert!(heave.iter().all(|y| y.abs() < 0.1));
-    let still = Simulation {
-        values: vec![
-            ("initial_heave".into(), Value::Real(0.0)),
-            ("initial_rotation".into(), Value::Real(0.0)),
-            ("wind_speed".into(), Value::Integer(30)),
-        ],
-        record: vec!["rotation".into(), "onset_found".into()],
-        stop_s: Some(1.0),
-        ..Simulation::default()
+    let step = fmu.model_description().default_experiment.step_size;
+    let step = step.unwrap();
+    let released = |values: &[(&str, Value)]| -> Slave {
+        let mut slave = fmu.instantiate("released").unwrap();
+        for (name, value) in values {
+            slave.set(name, value).unwrap();
+        }
+        slave.setup(0.0, None, None).unwrap();
+        slave.enter_initialization().unwrap();
+        slave.exit_initialization().unwrap();
+        slave
     };
-    let table = simulate(&fmu, &still).unwrap();
-    assert!(table.rows.iter().all(|row| row[1] == 0.0 && row[2] == 1.0));
+    let mut slave = released(&[]);
+    assert_eq!(slave.get("heave").unwrap(), Value::Real(0.01));
+    for i in 0..1000 {
+        slave.do_step(f64::from(i) * step, step).unwrap();
+        let Value::Real(heave) = slave.get("heave").unwrap() else {
+            panic!("no number");
+        };
+        assert!(heave.abs() < 0.1);
+    }
+    let mut still = released(&[
+        ("initial_heave", Value::Real(0.0)),
+        ("initial_rotation", Value::Real(0.0)),
+        ("wind_speed", Value::Integer(30)),
+    ]);
+    for i in 0..100 {
+        still.do_step(f64::from(i) * step, step).unwrap();
+        assert_eq!(still.get("rotation").unwrap(), Value::Real(0.0));
+        assert_eq!(still.get("onset_found").unwrap(), Value::Boolean(true));
+    }
     for (name, value, words) in [
         ("no_such", Value::Real(1.0), "found `no_such`"),
-        ("heave", Value::Real(1.0), "one that can be set"),
+        ("heave", Value::Real(1.0), "fmi2SetReal answered"),
         ("wind_speed", Value::Boolean(true), "a value of type Real"),
         ("mass", Value::Real(-1.0), "fmi2SetReal answered"),
     ] {
-        let wrong = Simulation {
-            values: vec![(name.into(), value)],
-            ..Simulation::default()
-        };
-        let message = simulate(&fmu, &wrong).unwrap_err().to_string();
+        let mut slave = fmu.instantiate("refused").unwrap();
+        let message = slave.set(name, &value).unwrap_err().to_string();
         assert!(message.contains(words), "{message}");
     }
 }

@@ -5,7 +5,7 @@ use crate::three_dof;
 use aerodeck::aerodynamics::RationalModel;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, divergence_by_eigenvalues, find_onset};
 use aerodeck::fmu::importer::Fmu;
-use aerodeck::fmu::importer::{SteppedSearch, SteppingSearch, onset_by_stepping};
+use aerodeck::fmu::importer::{SteppedSearch, onset_by_stepping};
 use aerodeck::fmu::package::{GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::Form;
 use aerodeck::section::SectionModel;
@@ -137,8 +137,7 @@ fn growth_at_every_speed_is_an_answer() {
     )
     .unwrap();
     let fmu = Fmu::open(&path).unwrap();
-    let search = SteppingSearch::between(5.0, 30.0, 0.01);
-    let found = onset_by_stepping(&fmu, &search).unwrap();
+    let found = onset_by_stepping(&fmu, 5.0, 30.0, 0.01).unwrap();
     let SteppedSearch::UnstableAtOrBelow(point) = found else {
         panic!("{found:?}")
     };

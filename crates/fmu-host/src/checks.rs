@@ -11,12 +11,10 @@ use super::description::ModelDescription;
 use super::findings::FmuFindings;
 
 /// Applies every rule.
-pub(super) fn check(description: &ModelDescription) -> FmuFindings {
-    let mut findings = FmuFindings::default();
+pub(super) fn check(description: &ModelDescription, findings: &mut FmuFindings) {
     for rule in RULES {
-        rule(description, &mut findings);
+        rule(description, findings);
     }
-    findings
 }
 
 type Rule = fn(&ModelDescription, &mut FmuFindings);

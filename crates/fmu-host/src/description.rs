@@ -1,14 +1,13 @@
 //! What `modelDescription.xml` of a co-simulation FMU says, as plain values in the words of FMI 2.0.
 
 pub use crate::standard::{Causality, Initial, Variability};
-use serde::Serialize;
 use std::collections::HashMap;
 
 /// Name of the description in the archive.
 pub(super) const FILE: &str = "modelDescription.xml";
 
 /// Type of a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VariableType {
     /// `fmi2Real`.
     Real,
@@ -23,8 +22,7 @@ pub enum VariableType {
 }
 
 /// A value of a variable.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// Real.
     Real(f64),
@@ -48,7 +46,7 @@ impl std::fmt::Display for Value {
 }
 
 /// Attributes that a variable may take over from its declared type.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct TypeAttributes {
     /// Physical quantity.
     pub quantity: Option<String>,
@@ -65,7 +63,7 @@ pub struct TypeAttributes {
 }
 
 /// A variable of the FMU.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ScalarVariable {
     /// Name.
     pub name: String,
@@ -163,32 +161,21 @@ pub(super) fn initial_choices(
     }
 }
 
-/// A unit for display: `value in display unit = factor · value + offset`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DisplayUnitDefinition {
-    /// Name.
-    pub name: String,
-    /// Factor.
-    pub factor: f64,
-    /// Offset.
-    pub offset: f64,
-}
-
 /// A unit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct UnitDefinition {
     /// Name.
     pub name: String,
     /// Exponents of kg, m, s, A, K, mol, cd, rad, then factor and offset to the SI unit; `None` when not stated.
     pub base: Option<([i32; 8], f64, f64)>,
-    /// Display units.
-    pub display_units: Vec<DisplayUnitDefinition>,
+    /// Units for display, with factor and offset: `value in display unit = factor · value + offset`.
+    pub display_units: Vec<(String, f64, f64)>,
     /// Line in the file.
     pub line: usize,
 }
 
 /// A declared type.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SimpleType {
     /// Name.
     pub name: String,
@@ -201,7 +188,7 @@ pub struct SimpleType {
 }
 
 /// An entry of `ModelStructure`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Unknown {
     /// Index of the variable, from 1.
     pub index: usize,
@@ -214,7 +201,7 @@ pub struct Unknown {
 }
 
 /// Capabilities of the slave.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct CoSimulation {
     /// Name of the library in `binaries/` and prefix of its C code.
     pub model_identifier: String,
@@ -241,7 +228,7 @@ pub struct CoSimulation {
 }
 
 /// What to run when nothing else is said.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DefaultExperiment {
     /// Start, s.
     pub start_time: Option<f64>,
@@ -254,7 +241,7 @@ pub struct DefaultExperiment {
 }
 
 /// Where a variable of FMI 3.0 stands: an element of an array, or a variable that is none (the only one of 1).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ArrayElement {
     /// Value reference of the array.
     pub reference: u32,
@@ -267,7 +254,7 @@ pub(super) struct ArrayElement {
 }
 
 /// The model description.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ModelDescription {
     /// Version of the standard.
     pub fmi_version: String,

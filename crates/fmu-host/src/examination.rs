@@ -17,7 +17,7 @@ impl Fmu {
 
     fn examined(&self, running: bool) -> CheckReport {
         let mut findings = self.findings.clone();
-        findings.0.extend(checks::check(&self.description).0);
+        checks::check(&self.description, &mut findings);
         self.check_files(&mut findings);
         let mut trials = Vec::new();
         let mut messages = Vec::new();

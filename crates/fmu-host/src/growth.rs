@@ -4,11 +4,8 @@
 //! eigenvalues of the coupled system.
 
 mod estimate;
-mod search;
 
-pub use estimate::Growth;
-pub(crate) use estimate::growth_of_samples;
-pub use search::{GrowthOnset, GrowthPoint, SteppedSearch, SteppingSearch};
+use estimate::growth_of_samples;
 
 use super::Fmu;
 use super::description::{Value, VariableType};
@@ -16,6 +13,7 @@ use super::simulation::{Times, start};
 use super::slave::{Slave, find};
 use crate::error::{Error, Result, ensure, positive};
 use crate::flutter::StableRange;
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// Names of displacement and rate of the motions that a section may have.
@@ -41,8 +39,63 @@ const DIVERGENCE_HALVINGS: usize = 8;
 const DIED: f64 = 1e-250;
 /// Most steps of one run.
 const MAX_STEPS: usize = 2_000_000;
+/// Intervals in which the first change of sign is looked for.
+const INTERVALS: usize = 10;
+/// Relative width of the bracket at which the search ends.
+const TOLERANCE: f64 = 1e-6;
 
-/// First wind speed at which the released section of the FMU stops decaying.
+/// Growth of the dominant mode at one wind speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrowthPoint {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Real part of the eigenvalue, 1/s; negative when it decays.
+    pub growth_rate_per_s: f64,
+    /// Imaginary part, rad/s; 0 when it does not oscillate.
+    pub frequency_rad_s: f64,
+    /// Complex amplitudes of the displacements, one for each motion.
+    pub shape: Vec<Complex<f64>>,
+}
+
+impl GrowthPoint {
+    /// Its frequency, Hz.
+    pub fn frequency_hz(&self) -> f64 {
+        self.frequency_rad_s / TAU
+    }
+}
+
+/// An onset found by stepping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrowthOnset {
+    /// Wind speed at which the growth rate is zero, m/s.
+    pub speed_m_s: f64,
+    /// Frequency there, Hz.
+    pub frequency_hz: f64,
+    /// `|y|/(B|θ|)`, if the FMU has a variable `width`.
+    pub mode_ratio: Option<f64>,
+    /// Phase of `y` relative to `θ`, degrees in (−180, 180].
+    pub phase_deg: f64,
+    /// Communication step, s.
+    pub communication_step_s: f64,
+    /// The lowest speed that was run, m/s.
+    pub lowest_m_s: f64,
+    /// Communication steps done in all.
+    pub steps: usize,
+}
+
+/// Answer of the search.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SteppedSearch {
+    /// The section flutters.
+    Onset(Box<GrowthOnset>),
+    /// Growth at the lowest speed that was stepped.
+    UnstableAtOrBelow(GrowthPoint),
+    /// No growth of an oscillation between these speeds.
+    StableUpTo(StableRange),
+}
+
+/// First wind speed at which the released section of the FMU stops decaying, searched for between two wind speeds, m/s, with a
+/// communication step of several to a period of the fastest mode. Where the section grows at the lower one already, the search goes down.
 ///
 /// The FMU must have the input `wind_speed` and at least one of the pairs of outputs heave, sway, rotation with their
 /// rates, and the parameters for their initial values.
@@ -50,53 +103,63 @@ const MAX_STEPS: usize = 2_000_000;
 /// # Errors
 /// [`Error::Input`] for a search that makes no sense or an FMU without these variables; [`Error::Numerical`] when no growth
 /// rate can be told at the lowest speed, and when the FMU refuses a call.
-pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSearch> {
-    search.check()?;
-    let mut run = Run::new(fmu, search.communication_step_s)?;
-    let intervals = search.intervals.max(1);
-    let mut below = run.growth(search.speed_min_m_s)?;
+pub fn onset_by_stepping(
+    fmu: &Fmu,
+    speed_min_m_s: f64,
+    speed_max_m_s: f64,
+    communication_step_s: f64,
+) -> Result<SteppedSearch> {
+    let min = positive("speed_min_m_s", speed_min_m_s)?;
+    let step = positive("communication_step_s", communication_step_s)?;
+    ensure(
+        speed_max_m_s.is_finite() && speed_max_m_s > min,
+        "speed_max_m_s",
+        format_args!("a finite number above {min}"),
+        speed_max_m_s,
+    )?;
+    let mut run = Run::new(fmu, step)?;
+    let mut below = run.growth(min)?;
     let mut above = None;
-    while below.1.rate_per_s >= 0.0 && below.0 > DOWNWARDS * search.speed_min_m_s {
-        let speed = 0.5 * below.0;
+    while below.growth_rate_per_s >= 0.0 && below.speed_m_s > DOWNWARDS * min {
+        let speed = 0.5 * below.speed_m_s;
         above = Some(below);
         below = run.growth(speed)?;
     }
-    if below.1.rate_per_s >= 0.0 {
-        return Ok(SteppedSearch::UnstableAtOrBelow(point(below.0, &below.1)));
+    if below.growth_rate_per_s >= 0.0 {
+        return Ok(SteppedSearch::UnstableAtOrBelow(below));
     }
     if let Some(above) = above {
-        return run.found(below, above, search.tolerance);
+        return run.found(below, above);
     }
-    let lowest = below.0;
-    let stable = |to_m_s, why: Option<String>| {
-        SteppedSearch::StableUpTo(StableRange {
+    let lowest = below.speed_m_s;
+    let stable = |to_m_s, why: String| {
+        Ok(SteppedSearch::StableUpTo(StableRange {
             from_m_s: lowest,
             to_m_s,
-            not_judged: Some(why.unwrap_or_else(|| "lower speeds were not stepped".to_owned())),
-        })
+            not_judged: Some(why),
+        }))
     };
-    for i in 1..=intervals {
-        let part = i as f64 / intervals as f64;
-        let speed = search.speed_min_m_s + part * (search.speed_max_m_s - search.speed_min_m_s);
-        let above = match run.growth(speed) {
+    for i in 1..=INTERVALS {
+        let part = i as f64 / INTERVALS as f64;
+        let above = match run.growth(min + part * (speed_max_m_s - min)) {
             Ok(above) => above,
             Err(Error::Numerical(why)) => {
-                return Ok(stable(below.0, Some(format!("beyond: {why}"))));
+                return stable(below.speed_m_s, format!("beyond: {why}"));
             }
             Err(other) => return Err(other),
         };
-        if above.1.rate_per_s >= 0.0 && above.1.frequency_rad_s > 0.0 {
-            return run.found(below, above, search.tolerance);
+        if above.growth_rate_per_s >= 0.0 && above.frequency_rad_s > 0.0 {
+            return run.found(below, above);
         }
-        if above.1.rate_per_s >= 0.0 {
-            let (last, from) = run.divergence(below, above.0);
+        if above.growth_rate_per_s >= 0.0 {
+            let (to, from) = run.divergence(below.speed_m_s, above.speed_m_s);
             let why =
                 format!("from {from:.3} m/s on the section diverges, which hides any oscillation");
-            return Ok(stable(last.0, Some(why)));
+            return stable(to, why);
         }
         below = above;
     }
-    Ok(stable(search.speed_max_m_s, None))
+    stable(speed_max_m_s, "lower speeds were not stepped".to_owned())
 }
 
 /// Growth of the released section of the FMU at one wind speed (m/s).
@@ -111,16 +174,7 @@ pub fn growth_by_stepping(
 ) -> Result<GrowthPoint> {
     let speed = positive("wind speed", speed_m_s)?;
     let step = positive("communication_step_s", communication_step_s)?;
-    let (speed, growth) = Run::new(fmu, step)?.growth(speed)?;
-    Ok(point(speed, &growth))
-}
-
-fn point(speed_m_s: f64, growth: &Growth) -> GrowthPoint {
-    GrowthPoint {
-        speed_m_s,
-        growth_rate_per_s: growth.rate_per_s,
-        frequency_hz: growth.frequency_rad_s / TAU,
-    }
+    Run::new(fmu, step)?.growth(speed)
 }
 
 /// One instance, run again and again.
@@ -131,11 +185,9 @@ struct Run {
     references: Vec<u32>,
     release: Vec<(String, Value)>,
     names: Vec<&'static str>,
-    points: Vec<GrowthPoint>,
+    lowest_m_s: f64,
     steps: usize,
 }
-
-type At = (f64, Growth);
 
 impl Run {
     fn new(fmu: &Fmu, step: f64) -> Result<Self> {
@@ -160,13 +212,13 @@ impl Run {
             references,
             release,
             names,
-            points: Vec::new(),
+            lowest_m_s: f64::INFINITY,
             steps: 0,
         })
     }
 
     /// Growth at one wind speed, from windows that lie later and later until two agree.
-    fn growth(&mut self, speed: f64) -> Result<At> {
+    fn growth(&mut self, speed: f64) -> Result<GrowthPoint> {
         if self.steps > 0 {
             self.slave.reset()?;
         }
@@ -181,7 +233,7 @@ impl Run {
         let mut samples = Vec::new();
         self.extend(&mut samples, 64)?;
         let mut periods = FIRST_PERIODS;
-        let mut last: Option<Growth> = None;
+        let mut last: Option<GrowthPoint> = None;
         let released = TAU / estimate::rough_period(&samples, self.references.len());
         while periods <= MAX_PERIODS {
             let period = estimate::rough_period(&samples, self.references.len());
@@ -195,20 +247,21 @@ impl Run {
             }
             self.extend(&mut samples, wanted as usize)?;
             let moving = estimate::before_rest(&samples, self.references.len(), DIED);
-            let now = growth_of_samples(moving, self.references.len(), self.step)?;
+            let mut now = growth_of_samples(moving, self.references.len(), self.step)?;
             let oscillates = now.frequency_rad_s > 0.0;
-            let scale = now.rate_per_s.abs().max(match oscillates {
+            let scale = now.growth_rate_per_s.abs().max(match oscillates {
                 true => now.frequency_rad_s,
                 false => released,
             });
-            let steady = last
-                .as_ref()
-                .is_some_and(|last| (now.rate_per_s - last.rate_per_s).abs() <= AGREEMENT * scale);
+            let steady = last.as_ref().is_some_and(|last| {
+                (now.growth_rate_per_s - last.growth_rate_per_s).abs() <= AGREEMENT * scale
+            });
             // no later window holds more of a motion that has died away
-            let died = moving.len() < samples.len() && now.rate_per_s < 0.0;
+            let died = moving.len() < samples.len() && now.growth_rate_per_s < 0.0;
             if steady || died {
-                self.points.push(point(speed, &now));
-                return Ok((speed, now));
+                now.speed_m_s = speed;
+                self.lowest_m_s = self.lowest_m_s.min(speed);
+                return Ok(now);
             }
             last = Some(now);
             periods *= 2.0;
@@ -216,7 +269,10 @@ impl Run {
         Err(Error::Numerical(format!(
             "growth at {speed:.3} m/s: no steady rate after {:.0} s; last estimate {}",
             samples.len() as f64 / self.references.len() as f64 * self.step,
-            last.map_or("none".to_owned(), |g| format!("{:.6} 1/s", g.rate_per_s))
+            last.map_or("none".to_owned(), |g| format!(
+                "{:.6} 1/s",
+                g.growth_rate_per_s
+            ))
         )))
     }
 
@@ -237,28 +293,27 @@ impl Run {
     }
 
     /// Zero of the growth rate in a bracket: regula falsi with the Illinois weight, which never loses the bracket.
-    fn refine(&mut self, below: At, above: At, tolerance: f64) -> Result<At> {
-        let (mut low, mut high) = (below, above);
-        let (mut f_low, mut f_high) = (low.1.rate_per_s, high.1.rate_per_s);
+    fn refine(&mut self, mut low: GrowthPoint, mut high: GrowthPoint) -> Result<GrowthPoint> {
+        let (mut f_low, mut f_high) = (low.growth_rate_per_s, high.growth_rate_per_s);
         let mut side = 0;
         for _ in 0..60 {
-            if high.0 - low.0 <= tolerance * high.0 || f_high == 0.0 {
+            if high.speed_m_s - low.speed_m_s <= TOLERANCE * high.speed_m_s || f_high == 0.0 {
                 break;
             }
-            let guess = (low.0 * f_high - high.0 * f_low) / (f_high - f_low);
+            let guess = (low.speed_m_s * f_high - high.speed_m_s * f_low) / (f_high - f_low);
             // a hair inside, so that the last bracket is narrow on both sides
-            let margin = 0.2 * tolerance * high.0;
-            let speed = guess.clamp(low.0 + margin, high.0 - margin);
+            let margin = 0.2 * TOLERANCE * high.speed_m_s;
+            let speed = guess.clamp(low.speed_m_s + margin, high.speed_m_s - margin);
             let now = self.growth(speed)?;
-            if now.1.rate_per_s < 0.0 {
-                f_low = now.1.rate_per_s;
+            if now.growth_rate_per_s < 0.0 {
+                f_low = now.growth_rate_per_s;
                 low = now;
                 if side == -1 {
                     f_high *= 0.5;
                 }
                 side = -1;
             } else {
-                f_high = now.1.rate_per_s;
+                f_high = now.growth_rate_per_s;
                 high = now;
                 if side == 1 {
                     f_low *= 0.5;
@@ -266,34 +321,25 @@ impl Run {
                 side = 1;
             }
         }
-        Ok(if low.1.rate_per_s.abs() < high.1.rate_per_s.abs() {
-            low
-        } else {
-            high
-        })
+        let low_is_nearer = low.growth_rate_per_s.abs() < high.growth_rate_per_s.abs();
+        Ok(if low_is_nearer { low } else { high })
     }
 
-    /// The last speed without growth and the first with that of a divergence between two speeds.
-    fn divergence(&mut self, mut below: At, mut above_m_s: f64) -> (At, f64) {
+    /// The last speed without growth and the first with that of a divergence between two speeds, m/s.
+    fn divergence(&mut self, mut below: f64, mut above: f64) -> (f64, f64) {
         for _ in 0..DIVERGENCE_HALVINGS {
-            let middle = 0.5 * (below.0 + above_m_s);
+            let middle = 0.5 * (below + above);
             match self.growth(middle) {
-                Ok(at) if at.1.rate_per_s < 0.0 => below = at,
+                Ok(at) if at.growth_rate_per_s < 0.0 => below = middle,
                 // nearly at rest on both sides of it, no rate can be told
-                _ => above_m_s = middle,
+                _ => above = middle,
             }
         }
-        (below, above_m_s)
+        (below, above)
     }
 
-    fn found(mut self, below: At, above: At, tolerance: f64) -> Result<SteppedSearch> {
-        let (speed, growth) = self.refine(below, above, tolerance)?;
-        self.onset(speed, &growth)
-            .map(Box::new)
-            .map(SteppedSearch::Onset)
-    }
-
-    fn onset(mut self, speed: f64, growth: &Growth) -> Result<GrowthOnset> {
+    fn found(mut self, below: GrowthPoint, above: GrowthPoint) -> Result<SteppedSearch> {
+        let growth = self.refine(below, above)?;
         let place = |name: &str| self.names.iter().position(|n| *n == name);
         let relative = match (place("heave"), place("rotation")) {
             (Some(y), Some(theta)) => Some(growth.shape[y] / growth.shape[theta]),
@@ -306,16 +352,14 @@ impl Run {
             _ => None,
         };
         self.slave.terminate()?;
-        self.points
-            .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
-        Ok(GrowthOnset {
-            speed_m_s: speed,
-            frequency_hz: growth.frequency_rad_s / TAU,
+        Ok(SteppedSearch::Onset(Box::new(GrowthOnset {
+            speed_m_s: growth.speed_m_s,
+            frequency_hz: growth.frequency_hz(),
             mode_ratio: relative.zip(width).map(|(r, b)| r.norm() / b),
             phase_deg: relative.map_or(0.0, |r| r.arg().to_degrees()),
             communication_step_s: self.step,
-            growth: self.points,
+            lowest_m_s: self.lowest_m_s,
             steps: self.steps,
-        })
+        })))
     }
 }

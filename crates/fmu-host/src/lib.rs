@@ -2,7 +2,7 @@
 //!
 //! [`Fmu::open`] unpacks into a temporary directory and reads the description; [`Fmu::check`] looks for everything
 //! that some importer would stumble over and then runs the FMU; [`Fmu::instantiate`] gives a [`Slave`] to be driven
-//! call by call; [`simulate`] gives a table.
+//! call by call.
 //!
 //! The code of an FMU runs in this process: one that crashes takes it along.
 #![cfg_attr(not(test), deny(clippy::undocumented_unsafe_blocks))]
@@ -28,29 +28,22 @@ mod trials;
 pub mod xml;
 
 pub use description::{
-    Causality, CoSimulation, DefaultExperiment, DisplayUnitDefinition, Initial, ModelDescription,
-    ScalarVariable, SimpleType, TypeAttributes, UnitDefinition, Unknown, Value, Variability,
-    VariableType,
+    Causality, CoSimulation, DefaultExperiment, Initial, ModelDescription, ScalarVariable,
+    SimpleType, TypeAttributes, UnitDefinition, Unknown, Value, Variability, VariableType,
 };
 pub use findings::{CheckReport, FmuFinding, FmuSeverity, Trial};
-pub use growth::growth_by_stepping;
-pub use growth::{
-    Growth, GrowthOnset, GrowthPoint, SteppedSearch, SteppingSearch, onset_by_stepping,
-};
+pub use growth::{GrowthOnset, GrowthPoint, SteppedSearch, growth_by_stepping, onset_by_stepping};
 pub use log::LogMessage;
 pub use reading_fmi3::array_element_name;
 pub use replay::{LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
-pub use simulation::{Simulation, ValueTable, simulate};
 pub use slave::{FmuState, Slave};
 pub use status::Status;
 
 use crate::error::{Error, Result};
-use crate::location::location_of;
 use crate::xml::Element;
 use description::FILE;
 use findings::FmuFindings;
 use library::{Binary, OwnFunctions};
-use slave::LoadedFmu;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use tempfile::TempDir;
@@ -87,7 +80,7 @@ pub struct Fmu {
     findings: FmuFindings,
     /// The folder below `binaries/` to take; the first for this machine where none is named.
     platform: Option<String>,
-    loaded: Mutex<Option<Arc<LoadedFmu>>>,
+    loaded: Mutex<Option<Arc<Binary>>>,
 }
 
 impl Fmu {
@@ -120,15 +113,10 @@ impl Fmu {
         let is_fmi3 = |version: &str| version.starts_with('3');
         let is_fmi3 = root.attribute("fmiVersion").is_some_and(is_fmi3);
         let (root, elements) = match is_fmi3 {
-            true => {
-                let (root, elements, translation) = reading_fmi3::translated(&root);
-                findings.0.extend(translation.0);
-                (root, elements)
-            }
+            true => reading_fmi3::translated(&root, &mut findings),
             false => (root, Vec::new()),
         };
-        let (mut description, reading) = reading::read(&root);
-        findings.0.extend(reading.0);
+        let mut description = findings.description(&root);
         description.elements = elements;
         Ok(Self {
             path: path.to_path_buf(),
@@ -249,16 +237,16 @@ impl Fmu {
         let loaded = self.load()?;
         // SAFETY: both take nothing and answer with a constant C string
         Ok(unsafe {
-            let platform = match &loaded.binary.own {
+            let platform = match &loaded.own {
                 OwnFunctions::Two(own) => log::text((own.get_types_platform)()),
                 OwnFunctions::Three(_) => "default".to_owned(),
             };
-            (platform, log::text((loaded.binary.shared.get_version)()))
+            (platform, log::text((loaded.shared.get_version)()))
         })
     }
 
     /// The binary, loaded once.
-    fn load(&self) -> Result<Arc<LoadedFmu>> {
+    fn load(&self) -> Result<Arc<Binary>> {
         let mut slot = self
             .loaded
             .lock()
@@ -266,23 +254,8 @@ impl Fmu {
         if let Some(loaded) = &*slot {
             return Ok(Arc::clone(loaded));
         }
-        let loaded = Arc::new(LoadedFmu {
-            binary: Binary::load(&self.binary()?, self.description.is_fmi3())
-                .map_err(|e| e.in_file(&self.path))?,
-            resources: match self.description.is_fmi3() {
-                false => location_of(&self.folder.path().join("resources"))?,
-                // a path that ends with a separator
-                true => self
-                    .folder
-                    .path()
-                    .join("resources")
-                    .join("")
-                    .display()
-                    .to_string(),
-            },
-            _folder: Arc::clone(&self.folder),
-            description: Arc::clone(&self.description),
-        });
+        let loaded = Binary::load(&self.binary()?, &self.folder, &self.description);
+        let loaded = Arc::new(loaded.map_err(|e| e.in_file(&self.path))?);
         *slot = Some(Arc::clone(&loaded));
         Ok(loaded)
     }

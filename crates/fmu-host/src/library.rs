@@ -1,11 +1,15 @@
 //! The shared library of an FMU: the functions of co-simulation, of FMI 2.0 and of 3.0, with their C signatures.
 
+use super::description::ModelDescription;
 use super::findings::FmuFindings;
 use super::reading_fmi3::NUMERIC;
 use crate::error::{Error, Result, ensure};
+use crate::location::location_of;
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::Path;
+use std::sync::Arc;
+use tempfile::TempDir;
 
 /// `fmi2Component`.
 pub(super) type Component = *mut c_void;
@@ -62,15 +66,25 @@ macro_rules! functions {
             fn load(library: &Library, is_fmi3: bool) -> Result<Self> {
                 Ok(Self {
                     $($field: {
-                        let symbol = spelt($suffix, is_fmi3);
                         // SAFETY: the signature is that of the standard for this name
-                        *unsafe { library.get(symbol.as_bytes()) }
-                            .map_err(|e| Error::input(symbol, "this function in the binary", e.to_string()))?
+                        unsafe { function(library, &spelt($suffix, is_fmi3)) }?
                     },)*
                 })
             }
         }
     };
+}
+
+/// Looks a function up.
+///
+/// # Safety
+/// `F` is the type of a pointer to the function of this name.
+unsafe fn function<F: Copy>(library: &Library, symbol: &str) -> Result<F> {
+    // SAFETY: by the contract of this function
+    let found = unsafe { library.get::<F>(symbol.as_bytes()) };
+    found
+        .map(|found| *found)
+        .map_err(|e| Error::input(symbol, "this function in the binary", e.to_string()))
 }
 
 /// Name of a function in a version of the standard, which differ in the case of some.
@@ -155,8 +169,11 @@ pub(super) type Getter =
 pub(super) type Setter =
     unsafe extern "C" fn(Component, *const ValueReference, usize, *const c_void, usize) -> Int;
 
-/// A loaded binary with all its functions.
+/// A loaded binary with all its functions, and what else an instance needs for as long as it lives.
 pub(super) struct Binary {
+    /// Where the resources are, as the version of the standard has it.
+    pub resources: String,
+    pub description: Arc<ModelDescription>,
     pub shared: SharedFunctions,
     pub own: OwnFunctions,
     /// Of FMI 3.0, in the order of [`NUMERIC`].
@@ -164,37 +181,47 @@ pub(super) struct Binary {
     pub setters: Vec<Setter>,
     // unloaded after the last use of the functions
     _library: Library,
+    /// The unpacked archive; removed with the last user.
+    _folder: Arc<TempDir>,
 }
 
 impl Binary {
-    /// Loads the library and looks all functions up.
+    /// Loads the library of an archive that is unpacked in a folder, and looks all functions up.
     ///
     /// # Errors
     /// [`Error::Input`] with what the loader said, or naming the function that is missing.
-    pub(super) fn load(path: &Path, is_fmi3: bool) -> Result<Self> {
-        let library = open(path)?;
+    pub(super) fn load(
+        path: &Path,
+        folder: &Arc<TempDir>,
+        description: &Arc<ModelDescription>,
+    ) -> Result<Self> {
+        let (library, is_fmi3) = (open(path)?, description.is_fmi3());
+        let resources = folder.path().join("resources");
         let shared = SharedFunctions::load(&library, is_fmi3)?;
         let (mut getters, mut setters) = (Vec::new(), Vec::new());
         for (name, _) in NUMERIC.iter().filter(|_| is_fmi3) {
-            let missing = |symbol: &str, e: libloading::Error| {
-                Error::input(symbol, "this function in the binary", e.to_string())
-            };
-            let (get, set) = (format!("fmi3Get{name}"), format!("fmi3Set{name}"));
             // SAFETY: the signature is that of the standard for this name, with a pointer to any number
-            getters.push(*unsafe { library.get(get.as_bytes()) }.map_err(|e| missing(&get, e))?);
+            getters.push(unsafe { function(&library, &format!("fmi3Get{name}")) }?);
             // SAFETY: as above
-            setters.push(*unsafe { library.get(set.as_bytes()) }.map_err(|e| missing(&set, e))?);
+            setters.push(unsafe { function(&library, &format!("fmi3Set{name}")) }?);
         }
         let own = match is_fmi3 {
             false => OwnFunctions::Two(Fmi2Functions::load(&library, false)?),
             true => OwnFunctions::Three(Box::new(Fmi3Functions::load(&library, true)?)),
         };
         Ok(Self {
+            resources: match is_fmi3 {
+                false => location_of(&resources)?,
+                // a path that ends with a separator
+                true => resources.join("").display().to_string(),
+            },
+            description: Arc::clone(description),
             shared,
             own,
             getters,
             setters,
             _library: library,
+            _folder: Arc::clone(folder),
         })
     }
 }
@@ -228,7 +255,7 @@ pub(super) fn check_symbols(path: &Path, is_fmi3: bool, place: &str, findings: &
     }
 }
 
-fn open(path: &Path) -> Result<Library> {
+pub(super) fn open(path: &Path) -> Result<Library> {
     refuse_cut(path)?;
     // SAFETY: initialisers of the library run; that is what loading an FMU means, and its user asked for it
     unsafe { Library::new(path) }.map_err(|e| {

@@ -1,9 +1,8 @@
 //! From the XML tree to a [`ModelDescription`]. What is legal is taken; what is not becomes a finding and a default.
 
 use super::description::{
-    Causality, CoSimulation, DefaultExperiment, DisplayUnitDefinition, FILE, ModelDescription,
-    ScalarVariable, SimpleType, TypeAttributes, UnitDefinition, Unknown, Value, Variability,
-    VariableType,
+    Causality, CoSimulation, DefaultExperiment, FILE, ModelDescription, ScalarVariable, SimpleType,
+    TypeAttributes, UnitDefinition, Unknown, Value, Variability, VariableType,
 };
 use super::findings::FmuFindings;
 use crate::standard::FmiTerm;
@@ -23,68 +22,54 @@ const ROOT_CHILDREN: [&str; 9] = [
     "ModelStructure",
 ];
 
-/// Reads the description, with findings for everything that could not be read as the standard has it.
-pub(super) fn read(root: &Element) -> (ModelDescription, FmuFindings) {
-    let mut r = FmuFindings::default();
-    r.root(root);
-    let below = |outer: &str, inner: &'static str| -> Vec<&Element> {
-        root.child(outer)
-            .map(|e| e.children_named(inner).collect())
-            .unwrap_or_default()
-    };
-    let structure = root.child("ModelStructure");
-    let mut unknowns = |list: &str| -> Vec<Unknown> {
-        structure
-            .and_then(|s| s.child(list))
-            .into_iter()
-            .flat_map(|l| l.children_named("Unknown"))
-            .map(|e| r.unknown(e))
-            .collect()
-    };
-    let (outputs, derivatives, initial_unknowns) = (
-        unknowns("Outputs"),
-        unknowns("Derivatives"),
-        unknowns("InitialUnknowns"),
-    );
-    let description = ModelDescription {
-        fmi_version: r.required(root, "fmiVersion"),
-        model_name: r.required(root, "modelName"),
-        guid: r.required(root, "guid"),
-        description: text(root, "description"),
-        generation_tool: text(root, "generationTool"),
-        variable_naming_convention: text(root, "variableNamingConvention")
-            .unwrap_or_else(|| "flat".into()),
-        co_simulation: root.child("CoSimulation").map(|e| r.co_simulation(e)),
-        model_exchange: root.child("ModelExchange").is_some(),
-        units: below("UnitDefinitions", "Unit")
-            .into_iter()
-            .map(|e| r.unit(e))
-            .collect(),
-        types: below("TypeDefinitions", "SimpleType")
-            .into_iter()
-            .filter_map(|e| r.simple_type(e))
-            .collect(),
-        log_categories: below("LogCategories", "Category")
-            .into_iter()
-            .map(|e| r.required(e, "name"))
-            .collect(),
-        default_experiment: root
-            .child("DefaultExperiment")
-            .map(|e| r.default_experiment(e))
-            .unwrap_or_default(),
-        variables: below("ModelVariables", "ScalarVariable")
-            .into_iter()
-            .map(|e| r.variable(e))
-            .collect(),
-        outputs,
-        derivatives,
-        initial_unknowns,
-        elements: Vec::new(),
-    };
-    (description, r)
-}
-
 impl FmuFindings {
+    /// Reads the description, with findings for everything that could not be read as the standard has it.
+    pub(super) fn description(&mut self, root: &Element) -> ModelDescription {
+        self.root(root);
+        let below = |outer: &str, inner: &'static str| {
+            let outer = root.child(outer).into_iter();
+            outer.flat_map(move |e| e.children_named(inner))
+        };
+        let structure = root.child("ModelStructure");
+        let [outputs, derivatives, initial_unknowns] =
+            ["Outputs", "Derivatives", "InitialUnknowns"].map(|list| {
+                let list = structure.and_then(|s| s.child(list)).into_iter();
+                let unknowns = list.flat_map(|l| l.children_named("Unknown"));
+                unknowns.map(|e| self.unknown(e)).collect()
+            });
+        ModelDescription {
+            fmi_version: self.required(root, "fmiVersion"),
+            model_name: self.required(root, "modelName"),
+            guid: self.required(root, "guid"),
+            description: text(root, "description"),
+            generation_tool: text(root, "generationTool"),
+            variable_naming_convention: text(root, "variableNamingConvention")
+                .unwrap_or_else(|| "flat".into()),
+            co_simulation: root.child("CoSimulation").map(|e| self.co_simulation(e)),
+            model_exchange: root.child("ModelExchange").is_some(),
+            units: below("UnitDefinitions", "Unit")
+                .map(|e| self.unit(e))
+                .collect(),
+            types: below("TypeDefinitions", "SimpleType")
+                .filter_map(|e| self.simple_type(e))
+                .collect(),
+            log_categories: below("LogCategories", "Category")
+                .map(|e| self.required(e, "name"))
+                .collect(),
+            default_experiment: root
+                .child("DefaultExperiment")
+                .map(|e| self.default_experiment(e))
+                .unwrap_or_default(),
+            variables: below("ModelVariables", "ScalarVariable")
+                .map(|e| self.variable(e))
+                .collect(),
+            outputs,
+            derivatives,
+            initial_unknowns,
+            elements: Vec::new(),
+        }
+    }
+
     fn root(&mut self, root: &Element) {
         if root.name != "fmiModelDescription" {
             self.error(place(root), "<fmiModelDescription>", tag(&root.name));
@@ -222,10 +207,12 @@ impl FmuFindings {
             base,
             display_units: e
                 .children_named("DisplayUnit")
-                .map(|d| DisplayUnitDefinition {
-                    name: self.required(d, "name"),
-                    factor: self.real(d, "factor").unwrap_or(1.0),
-                    offset: self.real(d, "offset").unwrap_or(0.0),
+                .map(|d| {
+                    (
+                        self.required(d, "name"),
+                        self.real(d, "factor").unwrap_or(1.0),
+                        self.real(d, "offset").unwrap_or(0.0),
+                    )
                 })
                 .collect(),
             line: e.line,
@@ -234,20 +221,30 @@ impl FmuFindings {
 
     fn simple_type(&mut self, e: &Element) -> Option<SimpleType> {
         let name = self.required(e, "name");
-        let Some((kind, child)) = typed_child(e) else {
-            self.error(
-                place(e),
-                "one of Real, Integer, Boolean, String, Enumeration",
-                "none",
-            );
-            return None;
-        };
+        let (kind, child) = self.typed_child(e)?;
         Some(SimpleType {
             name,
             kind,
             attributes: self.type_attributes(child),
             line: e.line,
         })
+    }
+
+    fn typed_child<'e>(&mut self, e: &'e Element) -> Option<(VariableType, &'e Element)> {
+        let found = [
+            ("Real", VariableType::Real),
+            ("Integer", VariableType::Integer),
+            ("Boolean", VariableType::Boolean),
+            ("String", VariableType::String),
+            ("Enumeration", VariableType::Enumeration),
+        ]
+        .into_iter()
+        .find_map(|(name, kind)| e.child(name).map(|c| (kind, c)));
+        if found.is_none() {
+            let expected = "one of Real, Integer, Boolean, String, Enumeration";
+            self.error(place(e), expected, "none");
+        }
+        found
     }
 
     fn type_attributes(&mut self, e: &Element) -> TypeAttributes {
@@ -262,14 +259,7 @@ impl FmuFindings {
     }
 
     fn variable(&mut self, e: &Element) -> ScalarVariable {
-        let (kind, child) = typed_child(e).unwrap_or_else(|| {
-            self.error(
-                place(e),
-                "one of Real, Integer, Boolean, String, Enumeration",
-                "none",
-            );
-            (VariableType::Real, e)
-        });
+        let (kind, child) = self.typed_child(e).unwrap_or((VariableType::Real, e));
         let stated = self.choice(e, "variability");
         self.required(e, "valueReference");
         ScalarVariable {
@@ -322,18 +312,6 @@ impl FmuFindings {
             line: e.line,
         }
     }
-}
-
-fn typed_child(e: &Element) -> Option<(VariableType, &Element)> {
-    [
-        ("Real", VariableType::Real),
-        ("Integer", VariableType::Integer),
-        ("Boolean", VariableType::Boolean),
-        ("String", VariableType::String),
-        ("Enumeration", VariableType::Enumeration),
-    ]
-    .into_iter()
-    .find_map(|(name, kind)| e.child(name).map(|c| (kind, c)))
 }
 
 fn text(e: &Element, name: &str) -> Option<String> {

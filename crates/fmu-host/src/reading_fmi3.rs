@@ -47,7 +47,10 @@ const OF_THE_TYPE: [&str; 7] = [
 ];
 
 /// The description in the words of FMI 2.0, and where each of its variables stands in the FMU.
-pub(super) fn translated(root: &Element) -> (Element, Vec<ArrayElement>, FmuFindings) {
+pub(super) fn translated(
+    root: &Element,
+    findings: &mut FmuFindings,
+) -> (Element, Vec<ArrayElement>) {
     let mut t = VariableIndex::default();
     let mut described = like(root, &root.name);
     for (name, value) in &root.attributes {
@@ -60,7 +63,7 @@ pub(super) fn translated(root: &Element) -> (Element, Vec<ArrayElement>, FmuFind
     let variables = root.child("ModelVariables");
     let all = variables.map(|v| v.children.as_slice()).unwrap_or_default();
     t.structural(all);
-    let sizes: Vec<Option<usize>> = all.iter().map(|v| t.place(v)).collect();
+    let sizes: Vec<Option<usize>> = all.iter().map(|v| t.place(v, findings)).collect();
     let mut list = variables.map(|v| like(v, &v.name));
     for (variable, size) in all.iter().zip(sizes) {
         let made = t.variable(variable, size);
@@ -85,7 +88,7 @@ pub(super) fn translated(root: &Element) -> (Element, Vec<ArrayElement>, FmuFind
             _ => described.children.push(child.clone()),
         }
     }
-    (described, t.elements, t.findings)
+    (described, t.elements)
 }
 
 /// An element of that name in the same line.
@@ -106,15 +109,15 @@ fn capabilities(interface: &Element) -> Element {
     spelt
 }
 
+fn reference(of: &Element) -> &str {
+    of.attribute("valueReference").unwrap_or("").trim()
+}
+
 /// What FMI 2.0 calls a type.
 fn kind(of: &str) -> Option<&'static str> {
-    let number = NUMERIC.iter().find(|(name, _)| *name == of);
-    match (number, of) {
-        (Some((_, kind)), _) => Some(kind),
-        (None, "Enumeration") => Some("Enumeration"),
-        (None, "String") => Some("String"),
-        _ => None,
-    }
+    let others = [("Enumeration", "Enumeration"), ("String", "String")];
+    let mut all = NUMERIC.into_iter().chain(others);
+    all.find(|(name, _)| *name == of).map(|(_, kind)| kind)
 }
 
 fn simple_type(of: &Element) -> Option<Element> {
@@ -142,25 +145,23 @@ struct VariableIndex {
     left_out: HashSet<String>,
     /// Start values of structural parameters, by value reference.
     sizes: HashMap<String, usize>,
-    findings: FmuFindings,
 }
 
 impl VariableIndex {
     fn structural(&mut self, variables: &[Element]) {
         for v in variables {
             let size = v.attribute("start").and_then(|s| s.trim().parse().ok());
-            if let (Some("structuralParameter"), Some(reference), Some(size)) = (
-                v.attribute("causality"),
-                v.attribute("valueReference"),
-                size,
-            ) {
-                self.sizes.insert(reference.trim().to_owned(), size);
+            if v.attribute("causality") == Some("structuralParameter")
+                && v.attribute("valueReference").is_some()
+                && let Some(size) = size
+            {
+                self.sizes.insert(reference(v).to_owned(), size);
             }
         }
     }
 
     /// Number of elements; `None` for a variable that is no array.
-    fn size(&mut self, v: &Element) -> Option<usize> {
+    fn size(&self, v: &Element, findings: &mut FmuFindings) -> Option<usize> {
         let mut dimensions = v.children_named("Dimension").peekable();
         dimensions.peek()?;
         let of = |d: &Element| match (d.attribute("start"), d.attribute("valueReference")) {
@@ -171,7 +172,7 @@ impl VariableIndex {
         let size = dimensions.try_fold(1_usize, |product, d| product.checked_mul(of(d)?));
         let size = size.filter(|size| self.placed.saturating_add(*size) <= MAX_ELEMENTS);
         if size.is_none() {
-            self.findings.error(
+            findings.error(
                 format!("{FILE}, line {}, {}", v.line, v.name),
                 format!("dimensions that are known, at most {MAX_ELEMENTS} elements in all"),
                 "others",
@@ -181,21 +182,17 @@ impl VariableIndex {
     }
 
     /// Gives the elements of a variable their indices; returns how many an array has.
-    fn place(&mut self, v: &Element) -> Option<usize> {
-        let reference = v
-            .attribute("valueReference")
-            .unwrap_or("")
-            .trim()
-            .to_owned();
+    fn place(&mut self, v: &Element, findings: &mut FmuFindings) -> Option<usize> {
+        let reference = reference(v).to_owned();
         if kind(&v.name).is_none() {
             self.left_out.insert(reference);
             return None;
         }
-        let dimension = self.size(v);
+        let dimension = self.size(v, findings);
         let size = dimension.unwrap_or(1);
         let place = (self.placed + 1, size);
         if let Some(before) = self.indices.insert(reference, place) {
-            self.findings.error(
+            findings.error(
                 format!("{FILE}, line {}, {}", v.line, v.name),
                 "a value reference of its own",
                 format!("that of variable {}", before.0),
@@ -211,7 +208,7 @@ impl VariableIndex {
             return Vec::new();
         };
         let size = dimension.unwrap_or(1);
-        let reference = v.attribute("valueReference").unwrap_or("").trim();
+        let reference = reference(v);
         // as FMI 3.0 stores an enumeration
         let of_type = if kind == "Enumeration" {
             "Int64"
@@ -288,8 +285,7 @@ impl VariableIndex {
         let list = |from: &str, to: &str| {
             let mut unknowns: Vec<(usize, Element)> = Vec::new();
             for e in of.children_named(from) {
-                let reference = e.attribute("valueReference").unwrap_or("").trim();
-                let Some((first, size)) = self.indices.get(reference) else {
+                let Some((first, size)) = self.indices.get(reference(e)) else {
                     continue;
                 };
                 for element in 0..*size {

@@ -4,7 +4,7 @@
 //! initialisation.
 
 use super::Fmu;
-use super::description::{Value, VariableType};
+use super::description::{DefaultExperiment, Value, VariableType};
 use super::simulation::{Times, ValueTable, run, start};
 use super::slave::{Slave, find};
 use super::trials::check_starts;
@@ -73,7 +73,7 @@ pub fn replay(fmu: &Fmu) -> Result<Vec<ReplayedRun>> {
     // the runs set their own, an importer may not
     let d = fmu.model_description();
     let mut slave = fmu.instantiate(&d.model_name)?;
-    check_starts(&mut slave, &Times::new(d, &super::Simulation::default())?)?;
+    check_starts(&mut slave, &Times::new(d, DefaultExperiment::default())?)?;
     Ok(runs)
 }
 
@@ -149,15 +149,13 @@ fn times(fmu: &Fmu, experiment: &Element) -> Result<Times> {
         .child("TransientSimulation")
         .unwrap_or(experiment);
     let number = |name: &str| of.attribute(name).and_then(|text| text.trim().parse().ok());
-    Times::new(
-        fmu.model_description(),
-        &super::Simulation {
-            start_s: number("startTime"),
-            stop_s: number("stopTime"),
-            step_s: number("stepSize"),
-            ..super::Simulation::default()
-        },
-    )
+    let stated = DefaultExperiment {
+        start_time: number("startTime"),
+        stop_time: number("stopTime"),
+        step_size: number("stepSize"),
+        tolerance: None,
+    };
+    Times::new(fmu.model_description(), stated)
 }
 
 /// The real parameters of an SSV file, which holds no others.
@@ -231,18 +229,20 @@ fn in_new_instance(
 ) -> Result<ValueTable> {
     let d = fmu.model_description();
     let real = |name: &String| match find(d, name)? {
-        v if v.kind == VariableType::Real => Ok(v.value_reference),
+        v if v.kind == VariableType::Real => Ok(v),
         _ => Err(Error::input(
             format!("variable `{name}`"),
             "a real number",
             "another type",
         )),
     };
-    let record = expected.names[1..].iter();
-    let record = record.map(|name| Ok((name.clone(), VariableType::Real, real(name)?)));
-    let record = record.collect::<Result<Vec<_>>>()?;
+    let reals = |names: &[String]| names.iter().map(real).collect::<Result<Vec<_>>>();
+    let record = reals(&expected.names[1..])?;
     let of_inputs = stimuli.map_or(&[][..], |s| &s.names[1..]);
-    let references = of_inputs.iter().map(real).collect::<Result<Vec<_>>>()?;
+    let references: Vec<u32> = reals(of_inputs)?
+        .iter()
+        .map(|v| v.value_reference)
+        .collect();
     if let Some(first) = stimuli.and_then(|s| s.rows.first()) {
         let initial = of_inputs.iter().zip(&first[1..]);
         values.extend(initial.map(|(name, x)| (name.clone(), Value::Real(*x))));

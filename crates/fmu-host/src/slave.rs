@@ -7,10 +7,7 @@ mod values;
 pub use states::FmuState;
 
 use super::description::{ModelDescription, ScalarVariable};
-use super::library::{
-    Binary, CallbackFunctions, Component, Fmi2Functions, Int, OwnFunctions, SharedFunctions, Text,
-    spelt,
-};
+use super::library::{Binary, CallbackFunctions, Component, Int, OwnFunctions, Text, Truth, spelt};
 use super::log::{LogBook, LogMessage, collect_plain, logger, messages_of};
 use super::status::Status;
 use crate::error::{Error, Result};
@@ -18,38 +15,22 @@ use std::cell::Cell;
 use std::ffi::{CString, c_void};
 use std::rc::Rc;
 use std::sync::Arc;
-use tempfile::TempDir;
-
-/// What an instance needs for as long as it lives.
-pub(super) struct LoadedFmu {
-    pub binary: Binary,
-    /// The unpacked archive; removed with the last user.
-    pub _folder: Arc<TempDir>,
-    pub resources: String,
-    pub description: Arc<ModelDescription>,
-}
 
 /// The C side of an instance; freed with the last handle, so that saved states never outlive it.
 struct FmuComponent {
     component: Component,
     fatal: Cell<bool>,
-    loaded: Arc<LoadedFmu>,
+    binary: Arc<Binary>,
     // the FMU keeps the addresses of both
     _callbacks: Box<CallbackFunctions>,
     log: Box<LogBook>,
-}
-
-impl FmuComponent {
-    fn functions(&self) -> &Binary {
-        &self.loaded.binary
-    }
 }
 
 impl Drop for FmuComponent {
     fn drop(&mut self) {
         if !self.fatal.get() {
             // SAFETY: a live component of this library, freed once
-            unsafe { (self.functions().shared.free_instance)(self.component) }
+            unsafe { (self.binary.shared.free_instance)(self.component) }
         }
     }
 }
@@ -61,22 +42,17 @@ pub struct Slave {
     kept: Vec<f64>,
     /// Start and stop, s, and tolerance, which FMI 3.0 is told at the initialisation.
     experiment: (f64, Option<f64>, Option<f64>),
-    /// Whether the initialisation of FMI 3.0 has begun, so that all numbers can be read.
+    /// Whether the initialisation has begun, so that all numbers can be read.
     begun: bool,
 }
 
 impl Slave {
-    pub(super) fn new(
-        loaded: &Arc<LoadedFmu>,
-        name: &str,
-        guid: &str,
-        logging: bool,
-    ) -> Result<Self> {
+    pub(super) fn new(binary: &Arc<Binary>, name: &str, guid: &str, logging: bool) -> Result<Self> {
         let c_text = |what: &str, text: &str| {
             CString::new(text).map_err(|_| Error::input(what, "text without a zero byte", text))
         };
         let (c_name, c_guid) = (c_text("instance name", name)?, c_text("guid", guid)?);
-        let c_resources = c_text("resource location", &loaded.resources)?;
+        let c_resources = c_text("resource location", &binary.resources)?;
         let log = Box::new(LogBook::default());
         let callbacks = Box::new(CallbackFunctions {
             logger: logger(),
@@ -85,9 +61,8 @@ impl Slave {
             step_finished: None,
             environment: std::ptr::from_ref(&*log).cast_mut().cast::<c_void>(),
         });
-        let functions = &loaded.binary;
         let texts = [c_name.as_ptr(), c_guid.as_ptr(), c_resources.as_ptr()];
-        let component = instantiated(functions, texts, &callbacks, logging);
+        let component = instantiated(&binary.own, texts, &callbacks, logging);
         if component.is_null() {
             return Err(Error::Numerical(with_log(
                 format!("`{name}` was not instantiated"),
@@ -98,11 +73,11 @@ impl Slave {
             core: Rc::new(FmuComponent {
                 component,
                 fatal: Cell::new(false),
-                loaded: Arc::clone(loaded),
+                binary: Arc::clone(binary),
                 _callbacks: callbacks,
                 log,
             }),
-            kept: loaded.description.start_values(),
+            kept: binary.description.start_values(),
             experiment: (0.0, None, None),
             begun: false,
         })
@@ -110,7 +85,7 @@ impl Slave {
 
     /// The description of the FMU.
     pub fn model_description(&self) -> &ModelDescription {
-        &self.core.loaded.description
+        &self.core.binary.description
     }
 
     /// Messages logged so far.
@@ -123,52 +98,23 @@ impl Slave {
         std::mem::take(&mut *messages_of(&self.core.log))
     }
 
-    fn functions(&self) -> &Binary {
-        self.core.functions()
-    }
-
     /// Turns an answer into a status; calls after a fatal one are refused here.
     fn status(&self, call: impl FnOnce(&Binary, Component) -> Int) -> Status {
         if self.core.fatal.get() {
             return Status::Fatal;
         }
-        let status = Status::from_code(call(self.functions(), self.core.component));
+        let status = Status::from_code(call(&self.core.binary, self.core.component));
         if status == Status::Fatal {
             self.core.fatal.set(true);
         }
         status
     }
 
-    fn answered(&self, suffix: &str, status: Status) -> Result<()> {
-        if status.is_good() {
-            Ok(())
-        } else {
-            Err(self.failed(suffix, status))
-        }
-    }
-
-    /// A function of both versions.
-    fn good(
-        &self,
-        suffix: &str,
-        call: impl FnOnce(&SharedFunctions, Component) -> Int,
-    ) -> Result<()> {
-        self.answered(suffix, self.status(|f, c| call(&f.shared, c)))
-    }
-
-    /// A function of FMI 2.0.
-    fn good_two(
-        &self,
-        suffix: &str,
-        call: impl FnOnce(&Fmi2Functions, Component) -> Int,
-    ) -> Result<()> {
-        match &self.functions().own {
-            OwnFunctions::Two(own) => self.answered(suffix, self.status(|_, c| call(own, c))),
-            OwnFunctions::Three(_) => Err(Error::input(
-                format!("fmi2{suffix}"),
-                "an FMU of FMI 2.0",
-                "one of FMI 3.0",
-            )),
+    /// A call that has to succeed, under its name without the prefix of the version.
+    fn good(&self, suffix: &str, call: impl FnOnce(&Binary, Component) -> Int) -> Result<()> {
+        match self.status(call) {
+            status if status.is_good() => Ok(()),
+            status => Err(self.failed(suffix, status)),
         }
     }
 
@@ -195,40 +141,54 @@ impl Slave {
         stop_s: Option<f64>,
         tolerance: Option<f64>,
     ) -> Result<()> {
-        if self.model_description().is_fmi3() {
-            self.experiment = (start_s, stop_s, tolerance);
-            return Ok(());
-        }
+        let own = match &self.core.binary.own {
+            OwnFunctions::Two(own) => own,
+            OwnFunctions::Three(_) => {
+                self.experiment = (start_s, stop_s, tolerance);
+                return Ok(());
+            }
+        };
+        let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop_s));
         // SAFETY: plain values; so for every call below, with slices of the stated length
-        self.good_two("SetupExperiment", |f, c| unsafe {
-            (f.setup_experiment)(
+        self.good("SetupExperiment", |_, c| unsafe {
+            (own.setup_experiment)(
                 c,
-                Int::from(tolerance.is_some()),
-                tolerance.unwrap_or(0.0),
+                with_tolerance.into(),
+                tolerance,
                 start_s,
-                Int::from(stop_s.is_some()),
-                stop_s.unwrap_or(0.0),
+                with_stop.into(),
+                stop,
             )
         })
     }
 
     /// `fmi2EnterInitializationMode`.
     pub fn enter_initialization(&mut self) -> Result<()> {
-        let suffix = "EnterInitializationMode";
-        if let OwnFunctions::Three(own) = &self.functions().own {
-            self.answered(suffix, self.initialization_of_three(own))?;
-            self.begun = true;
-            return Ok(());
-        }
+        let (start, stop, tolerance) = self.experiment;
+        let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop));
         // SAFETY: the component lives; plain values
-        self.good_two(suffix, |f, c| unsafe { (f.enter_initialization_mode)(c) })
+        self.good("EnterInitializationMode", |f, c| unsafe {
+            match &f.own {
+                OwnFunctions::Two(own) => (own.enter_initialization_mode)(c),
+                OwnFunctions::Three(own) => (own.enter_initialization_mode)(
+                    c,
+                    with_tolerance,
+                    tolerance,
+                    start,
+                    with_stop,
+                    stop,
+                ),
+            }
+        })?;
+        self.begun = true;
+        Ok(())
     }
 
     /// `fmi2ExitInitializationMode`.
     pub fn exit_initialization(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
         self.good("ExitInitializationMode", |f, c| unsafe {
-            (f.exit_initialization_mode)(c)
+            (f.shared.exit_initialization_mode)(c)
         })
     }
 
@@ -237,13 +197,20 @@ impl Slave {
     /// # Errors
     /// [`Error::Numerical`] with status and log when the answer is an error.
     pub fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Status> {
-        let status = match &self.functions().own {
-            OwnFunctions::Two(own) => {
-                // SAFETY: the component lives; plain values
-                self.status(|_, c| unsafe { (own.do_step)(c, time_s, step_s, 1) })
+        let (mut event, mut end, mut early, mut last) = (0, 0, 0, time_s);
+        // SAFETY: the component lives; all four outlive the call
+        let status = self.status(|f, c| unsafe {
+            match &f.own {
+                OwnFunctions::Two(own) => (own.do_step)(c, time_s, step_s, 1),
+                OwnFunctions::Three(own) => (own.do_step)(
+                    c, time_s, step_s, 1, &mut event, &mut end, &mut early, &mut last,
+                ),
             }
-            OwnFunctions::Three(own) => self.step_of_three(own, time_s, step_s),
-        };
+        });
+        // a step that ends early or asks for the end of the run was not done
+        if status.is_good() && (end != 0 || early != 0) {
+            return Ok(Status::Discard);
+        }
         if status.is_good() || status == Status::Discard {
             Ok(status)
         } else {
@@ -265,38 +232,46 @@ impl Slave {
     /// `fmi2Terminate`.
     pub fn terminate(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
-        self.good("Terminate", |f, c| unsafe { (f.terminate)(c) })
+        self.good("Terminate", |f, c| unsafe { (f.shared.terminate)(c) })
     }
 
     /// `fmi2Reset`.
     pub fn reset(&mut self) -> Result<()> {
         // SAFETY: the component lives; plain values
-        self.good("Reset", |f, c| unsafe { (f.reset)(c) })?;
+        self.good("Reset", |f, c| unsafe { (f.shared.reset)(c) })?;
         self.kept = self.model_description().start_values();
         (self.experiment, self.begun) = ((0.0, None, None), false);
         Ok(())
     }
 }
 
+/// Whether there is a number, as C is told, and which.
+fn stated(number: Option<f64>) -> (Truth, f64) {
+    (Truth::from(number.is_some()), number.unwrap_or(0.0))
+}
+
 /// A new component, or null; `texts` are name, fingerprint and place of the resources.
 fn instantiated(
-    functions: &Binary,
+    functions: &OwnFunctions,
     [name, guid, resources]: [Text; 3],
     callbacks: &CallbackFunctions,
     logging: bool,
 ) -> Component {
     const CO_SIMULATION: Int = 1;
-    let log = Int::from(logging);
-    match &functions.own {
-        // SAFETY: C strings and callbacks live through the call, callbacks and log as long as the instance
-        OwnFunctions::Two(own) => unsafe {
-            (own.instantiate)(name, CO_SIMULATION, guid, resources, callbacks, 0, log)
-        },
-        // SAFETY: as above
-        OwnFunctions::Three(own) => unsafe {
-            let (none, environment) = (std::ptr::null(), callbacks.environment);
-            let log = u8::from(logging);
-            (own.instantiate)(
+    let (log, none, environment) = (logging.into(), std::ptr::null(), callbacks.environment);
+    // SAFETY: C strings and callbacks live through the call, callbacks and log as long as the instance
+    unsafe {
+        match functions {
+            OwnFunctions::Two(own) => (own.instantiate)(
+                name,
+                CO_SIMULATION,
+                guid,
+                resources,
+                callbacks,
+                0,
+                logging.into(),
+            ),
+            OwnFunctions::Three(own) => (own.instantiate)(
                 name,
                 guid,
                 resources,
@@ -309,8 +284,8 @@ fn instantiated(
                 environment,
                 collect_plain,
                 none.cast(),
-            )
-        },
+            ),
+        }
     }
 }
 

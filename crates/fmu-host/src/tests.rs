@@ -133,13 +133,13 @@ fn a_library_that_is_cut_short_is_refused() {
         (40, "too few"),
     ] {
         std::fs::write(&file, &bytes[..part]).unwrap();
-        let refused = crate::library::Binary::load(&file, false).err();
+        let refused = crate::library::open(&file).err();
         let refused = refused.unwrap().to_string();
         assert!(refused.contains(said), "{refused}");
     }
     // what the loader itself says is passed on
     std::fs::write(&file, b"no library").unwrap();
-    let refused = crate::library::Binary::load(&file, false).err();
+    let refused = crate::library::open(&file).err();
     let refused = refused.unwrap().to_string();
     assert!(refused.contains("cut.so"), "{refused}");
 }

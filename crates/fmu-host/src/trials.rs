@@ -1,8 +1,10 @@
 //! Running an FMU to see whether it keeps what it promises.
 
-use super::description::{Causality, CoSimulation, FILE, Initial, Value, VariableType};
+use super::description::{
+    Causality, DefaultExperiment, FILE, Initial, ScalarVariable, Value, VariableType,
+};
 use super::findings::{FmuFindings, Trial};
-use super::simulation::{Simulation, Times, ValueTable, recorded, run as step_through, start};
+use super::simulation::{Times, ValueTable, run as step_through, start};
 use super::slave::Slave;
 use super::{Fmu, LogMessage};
 use crate::error::{Error, Result, ensure};
@@ -17,7 +19,7 @@ type TrialFunction = fn(&Plan<'_>) -> Result<String>;
 /// Runs every trial that the capability flags allow.
 pub(super) fn run(fmu: &Fmu, findings: &mut FmuFindings) -> (Vec<Trial>, Vec<String>) {
     let capabilities = fmu.description.co_simulation.clone().unwrap_or_default();
-    let plan = match Plan::new(fmu, &capabilities) {
+    let plan = match Plan::new(fmu) {
         Ok(plan) => plan,
         Err(e) => {
             findings.error(FILE, "something to run", e.to_string());
@@ -108,24 +110,26 @@ fn versions(fmu: &Fmu) -> Result<String> {
 /// What all trials share.
 struct Plan<'a> {
     fmu: &'a Fmu,
-    capabilities: &'a CoSimulation,
     times: Times,
-    record: Vec<(String, VariableType, u32)>,
+    /// All outputs that are no texts.
+    record: Vec<&'a ScalarVariable>,
     messages: std::cell::RefCell<Vec<LogMessage>>,
 }
 
 impl<'a> Plan<'a> {
-    fn new(fmu: &'a Fmu, capabilities: &'a CoSimulation) -> Result<Self> {
+    fn new(fmu: &'a Fmu) -> Result<Self> {
         let d = fmu.model_description();
-        let mut times = Times::new(d, &Simulation::default())?;
+        let mut times = Times::new(d, DefaultExperiment::default())?;
         if times.steps() > MAX_STEPS {
             times.stop = times.at(MAX_STEPS);
         }
+        let is_recorded = |v: &&ScalarVariable| {
+            v.causality == Causality::Output && v.kind != VariableType::String
+        };
         Ok(Self {
             fmu,
-            capabilities,
             times,
-            record: recorded(d, &Simulation::default())?,
+            record: d.variables.iter().filter(is_recorded).collect(),
             messages: std::cell::RefCell::default(),
         })
     }
@@ -141,9 +145,13 @@ impl<'a> Plan<'a> {
     }
 
     fn run(&self, slave: &mut Slave) -> Result<ValueTable> {
-        let table = step_through(slave, &self.times, &self.record, |_, _| Ok(()));
+        let table = self.steps(slave, &self.times);
         self.messages.borrow_mut().extend(slave.take_log());
         table
+    }
+
+    fn steps(&self, slave: &mut Slave, times: &Times) -> Result<ValueTable> {
+        step_through(slave, times, &self.record, |_, _| Ok(()))
     }
 
     /// The second half of the run, from `half` on.
@@ -217,8 +225,8 @@ fn finite(table: &ValueTable) -> Result<()> {
 }
 
 /// Says how far two runs agree, or refuses. Times are not compared: the second may start later.
-fn compared(what: &str, names: &[String], a: &[Vec<f64>], b: &[Vec<f64>]) -> Result<String> {
-    let mut identical = true;
+fn compared(what: &str, first: &ValueTable, b: &[Vec<f64>]) -> Result<String> {
+    let (mut identical, names, a) = (true, &first.names, &first.rows);
     for (x, y) in a.iter().zip(b) {
         for at in 1..names.len() {
             let (p, q) = (x[at], y[at]);
@@ -246,7 +254,7 @@ fn reset_and_replay(plan: &Plan<'_>) -> Result<String> {
     slave.reset()?;
     start(&mut slave, &plan.times, &[])?;
     let second = plan.run(&mut slave)?;
-    compared("after fmi2Reset", &first.names, &first.rows, &second.rows)
+    compared("after fmi2Reset", &first, &second.rows)
 }
 
 fn side_by_side(plan: &Plan<'_>) -> Result<String> {
@@ -254,36 +262,36 @@ fn side_by_side(plan: &Plan<'_>) -> Result<String> {
     let (mut a, mut b) = (plan.initialised()?, plan.initialised()?);
     let (first, second) = plan.half();
     // in turns: halves of one between halves of the other
-    let mut rows = step_through(&mut a, &first, &plan.record, |_, _| Ok(()))?.rows;
+    let mut rows = plan.steps(&mut a, &first)?.rows;
     let other = plan.run(&mut b)?;
     rows.pop();
-    rows.extend(step_through(&mut a, &second, &plan.record, |_, _| Ok(()))?.rows);
-    compared("beside another instance", &alone.names, &alone.rows, &rows)?;
-    compared("another instance", &alone.names, &alone.rows, &other.rows)
+    rows.extend(plan.steps(&mut a, &second)?.rows);
+    compared("beside another instance", &alone, &rows)?;
+    compared("another instance", &alone, &other.rows)
 }
 
 fn restored_state(plan: &Plan<'_>) -> Result<String> {
     let mut slave = plan.initialised()?;
     let (first, second) = plan.half();
-    step_through(&mut slave, &first, &plan.record, |_, _| Ok(()))?;
+    plan.steps(&mut slave, &first)?;
     let state = slave.get_state()?;
-    let before = step_through(&mut slave, &second, &plan.record, |_, _| Ok(()))?;
+    let before = plan.steps(&mut slave, &second)?;
     slave.set_state(&state)?;
-    let after = step_through(&mut slave, &second, &plan.record, |_, _| Ok(()))?;
-    compared("restored state", &before.names, &before.rows, &after.rows)
+    let after = plan.steps(&mut slave, &second)?;
+    compared("restored state", &before, &after.rows)
 }
 
 fn serialised_state(plan: &Plan<'_>) -> Result<String> {
     let mut slave = plan.initialised()?;
     let (first, second) = plan.half();
-    step_through(&mut slave, &first, &plan.record, |_, _| Ok(()))?;
+    plan.steps(&mut slave, &first)?;
     let bytes = slave.serialize_state(&slave.get_state()?)?;
-    let before = step_through(&mut slave, &second, &plan.record, |_, _| Ok(()))?;
+    let before = plan.steps(&mut slave, &second)?;
     let mut other = plan.initialised()?;
     let state = other.deserialize_state(&bytes)?;
     other.set_state(&state)?;
-    let after = step_through(&mut other, &second, &plan.record, |_, _| Ok(()))?;
-    let agreement = compared("serialised state", &before.names, &before.rows, &after.rows)?;
+    let after = plan.steps(&mut other, &second)?;
+    let agreement = compared("serialised state", &before, &after.rows)?;
     Ok(format!("{} bytes, {agreement}", bytes.len()))
 }
 
@@ -300,12 +308,12 @@ fn changing_steps(plan: &Plan<'_>) -> Result<String> {
         time += step;
         steps += 1;
     }
-    for (name, kind, reference) in &plan.record {
-        if let Value::Real(v) = slave.get_by_reference(*kind, *reference)?
+    for output in &plan.record {
+        if let Value::Real(v) = slave.get_by_reference(output.kind, output.value_reference)?
             && !v.is_finite()
         {
             return Err(Error::input(
-                format!("output `{name}`"),
+                format!("output `{}`", output.name),
                 "a finite number",
                 v.to_string(),
             ));
@@ -352,18 +360,18 @@ fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
 fn output_derivatives(plan: &Plan<'_>) -> Result<String> {
     let mut slave = plan.initialised()?;
     slave.do_step(plan.times.start, plan.times.step)?;
-    let references: Vec<u32> = plan
-        .record
-        .iter()
-        .filter(|(_, kind, _)| *kind == VariableType::Real)
-        .map(|(.., r)| *r)
-        .collect();
+    let reals = plan.record.iter().filter(|v| v.kind == VariableType::Real);
+    let references: Vec<u32> = reals.map(|v| v.value_reference).collect();
     let derivatives = slave.output_derivatives(&references)?;
     match derivatives.iter().position(|v| !v.is_finite()) {
         None => Ok(format!(
             "{} outputs, highest order {}",
             references.len(),
-            plan.capabilities.max_output_derivative_order
+            slave
+                .model_description()
+                .co_simulation
+                .as_ref()
+                .map_or(0, |c| c.max_output_derivative_order)
         )),
         Some(at) => Err(Error::input(
             "fmi2GetRealOutputDerivatives",

@@ -41,7 +41,7 @@ mod unit;
 mod values;
 
 pub use layout::DataType;
-pub use saving::Snapshot;
+pub use memory::Memory;
 
 use super::lifecycle::{Call, Interface, LEGAL_CALLS, State, StateSet};
 use super::refusal::{CallResult, Refusal, RefusalEffect};
@@ -51,7 +51,6 @@ use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::VariableLayout;
-use memory::Memory;
 use section_unit::SectionUnit;
 use trust::shown;
 use unit::Unit;
@@ -87,7 +86,7 @@ impl Instance {
             (None, None) => Box::new(SectionUnit::of_section(&resources)?),
         };
         let layout = VariableLayout::new(&resources.table, |index| unit.state_index(index))?;
-        let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
+        let fresh = Memory::new(&resources, unit.inputs().len(), unit.at_rest());
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now
         unit.prepared(&resources, &mut memory)?;

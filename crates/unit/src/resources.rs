@@ -117,23 +117,13 @@ impl Resources {
     pub fn from_bytes(bytes: &[u8], options: OptionFiles<'_>) -> Result<Self> {
         let model = TrainedModel::from_json(text(bytes)?)?;
         check_sampling(&model)?;
-        let force = options
-            .force
-            .map(|options| {
-                ForceOptions::from_json(text(options)?).map_err(|e| e.within(FORCE_FILE))
-            })
-            .transpose()?;
-        let gusts = options
-            .gusts
-            .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.within(GUST_FILE)))
-            .transpose()?;
+        let force = beside_model(FORCE_FILE, options.force, ForceOptions::from_json)?;
+        let gusts = |text: &str| gust_force(text, &model);
+        let gusts = beside_model(GUST_FILE, options.gusts, gusts)?;
         for further in force.iter().flat_map(|f| &f.further) {
             check_further(further, gusts.is_some()).map_err(|e| e.within(FORCE_FILE))?;
         }
-        let bounds = options
-            .bounds
-            .map(|bounds| OnsetBounds::from_json(text(bounds)?).map_err(|e| e.within(BOUNDS_FILE)))
-            .transpose()?;
+        let bounds = beside_model(BOUNDS_FILE, options.bounds, OnsetBounds::from_json)?;
         let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref(), bounds)?;
         let of_options = [options.force, options.gusts, options.bounds];
         let files = std::iter::once(bytes);
@@ -258,6 +248,17 @@ fn check_further(further: &FurtherModel, gusts: bool) -> Result<()> {
             ))
         }
     }
+}
+
+/// What stands in a file beside the model, where it is there.
+fn beside_model<T>(
+    file: &str,
+    bytes: Option<&[u8]>,
+    read: impl Fn(&str) -> Result<T>,
+) -> Result<Option<T>> {
+    let text = bytes.map(text).transpose()?;
+    text.map(|text| read(text).map_err(|e| e.within(file)))
+        .transpose()
 }
 
 fn gust_force(text: &str, model: &TrainedModel) -> Result<GustForce> {

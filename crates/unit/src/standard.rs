@@ -1,7 +1,5 @@
 //! Versions of the FMI standard, and its words that describe a variable, as both the exported description and the importer use them.
 
-use serde::Serialize;
-
 /// Version of the standard; the runtime speaks all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FmiVersion {
@@ -34,8 +32,7 @@ pub fn each_once<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// Role of a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Causality {
     /// Set by the user, constant during a run unless tunable.
     Parameter,
@@ -52,8 +49,7 @@ pub enum Causality {
 }
 
 /// When a variable may change.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Variability {
     /// Never.
     Constant,
@@ -68,8 +64,7 @@ pub enum Variability {
 }
 
 /// How a variable gets its first value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Initial {
     /// It is the start value.
     Exact,

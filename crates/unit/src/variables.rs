@@ -27,11 +27,9 @@ pub(crate) use computed_rows::{LINEAR_ROTATION_RAD, fill_computed_dependencies};
 pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
 pub use listing::Listing;
-pub use parameters::{ModeParameter, SectionParameter};
+pub use parameters::SectionParameter;
 pub use response::Response;
-pub use variable::{
-    Dependency, DependencyKind, ForceOutput, ModeOutput, Role, StartValue, StripParameter, Variable,
-};
+pub use variable::{Dependency, DependencyKind, Role, StartValue, StripParameter, Variable};
 
 use super::bridge_options::BridgeOptions;
 use super::force_options::ForceOptions;

@@ -4,7 +4,7 @@
 use crate::aerodynamics::GustComponent;
 use crate::fmu::groups::array_of;
 use crate::fmu::standard::{Causality, FmiVersion};
-use crate::fmu::variables::{ForceOutput, Response, Role, VariableTable};
+use crate::fmu::variables::{Response, Role, VariableTable};
 use crate::fmu::xml::Element;
 use crate::section::Dof;
 use std::collections::BTreeSet;
@@ -93,8 +93,8 @@ fn member(role: Role) -> Option<(Option<Dof>, &'static str)> {
             motion(of, dof)
         }
         Role::ExternalForce(dof) | Role::NodeForce(_, dof) => Some((Some(dof), "external_force")),
-        Role::Force(_, ForceOutput::PerLength, dof) => Some((Some(dof), "force_per_length")),
-        Role::Force(_, ForceOutput::Total, dof) => Some((Some(dof), "force")),
+        Role::Force(_, dof) => Some((Some(dof), "force_per_length")),
+        Role::TotalForce(_, dof) => Some((Some(dof), "force")),
         _ => None,
     }
 }

@@ -1,7 +1,6 @@
 //! Every rule on a description that breaks it and no other.
 
-use super::super::findings::FmuSeverity;
-use super::super::reading::read;
+use super::super::findings::{FmuFindings, FmuSeverity};
 use super::check;
 use crate::xml::Element;
 
@@ -37,10 +36,11 @@ const GOOD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 "#;
 
 fn errors(text: &str) -> Vec<String> {
-    let (description, reading) = read(&Element::parse(text).unwrap());
-    let mut all = reading.0;
-    all.extend(check(&description).0);
-    all.iter()
+    let mut all = FmuFindings::default();
+    let description = all.description(&Element::parse(text).unwrap());
+    check(&description, &mut all);
+    all.0
+        .iter()
         .filter(|f| f.severity == FmuSeverity::Error)
         .map(ToString::to_string)
         .collect()
@@ -48,9 +48,10 @@ fn errors(text: &str) -> Vec<String> {
 
 #[test]
 fn a_flawless_description_gives_no_finding() {
-    let (description, reading) = read(&Element::parse(GOOD).unwrap());
-    assert_eq!(reading.0, []);
-    assert_eq!(check(&description).0, []);
+    let mut findings = FmuFindings::default();
+    let description = findings.description(&Element::parse(GOOD).unwrap());
+    check(&description, &mut findings);
+    assert_eq!(findings.0, []);
     assert_eq!(description.variables.len(), 8);
     assert_eq!(description.outputs[0].dependencies, Some(vec![]));
     assert_eq!(description.outputs[1].dependencies, None);

@@ -14,11 +14,11 @@ pub(super) fn definitions(d: &ModelDescription, f: &mut FmuFindings) {
         {
             f.error(&place, "a factor to the base unit other than 0", "0");
         }
-        let names = unit.display_units.iter().map(|u| u.name.as_str());
+        let names = unit.display_units.iter().map(|(name, ..)| name.as_str());
         f.each_once(&place, "each display unit once", names);
-        for display in unit.display_units.iter().filter(|u| u.factor == 0.0) {
+        for (display, ..) in unit.display_units.iter().filter(|u| u.1 == 0.0) {
             f.error(
-                format!("{place}, display unit `{}`", display.name),
+                format!("{place}, display unit `{display}`"),
                 "a factor other than 0",
                 "0",
             );
@@ -57,7 +57,7 @@ pub(super) fn uses(d: &ModelDescription, f: &mut FmuFindings) {
             continue;
         };
         if let Some(display) = &attributes.display_unit
-            && !unit.display_units.iter().any(|u| u.name == *display)
+            && !unit.display_units.iter().any(|(name, ..)| name == display)
         {
             f.error(
                 place,

@@ -7,6 +7,7 @@
 //! eigenvalues `μ` with energy at the end the largest counts: growth rate `ln|μ|/T`. Its frequency is known up to multiples of `2π/T` from `arg μ`, and the multiple from the
 //! eigenvector, in which rate and displacement stand in the ratio `λ`.
 
+use super::GrowthPoint;
 use crate::error::{Error, Result};
 use crate::state_space::{eigenvalues, eigenvector};
 use nalgebra::{Complex, DMatrix, DVector, SVD};
@@ -19,17 +20,6 @@ const LAG_PERIODS: f64 = 2.0;
 /// An eigenvalue counts if at the end its part of the motion is at least this part of the largest: above what the filters
 /// and rounding leave.
 const HEARD: f64 = 1e-4;
-
-/// The dominant mode of a motion.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Growth {
-    /// Real part of its eigenvalue, 1/s.
-    pub rate_per_s: f64,
-    /// Imaginary part, rad/s; 0 when it does not oscillate.
-    pub frequency_rad_s: f64,
-    /// Complex amplitudes of the displacements, one for each motion.
-    pub shape: Vec<Complex<f64>>,
-}
 
 /// Period in s from the size of rates against displacements, by the slowest motion.
 pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
@@ -48,11 +38,11 @@ pub(super) fn before_rest(samples: &[f64], width: usize, rest: f64) -> &[f64] {
 }
 
 /// Growth of the dominant mode in samples a step of `step_s` apart: rows of `width` values, displacement and rate of each
-/// motion in turn.
+/// motion in turn. The wind speed is left at zero.
 ///
 /// # Errors
 /// [`Error::Numerical`] when there are too few samples for two periods, or they are not finite or all zero.
-pub(crate) fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<Growth> {
+pub(super) fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<GrowthPoint> {
     let unclear = |why: &str| Error::Numerical(format!("growth rate: {why}"));
     if width == 0 || !width.is_multiple_of(2) || !samples.len().is_multiple_of(width) {
         return Err(unclear("rows must hold pairs of displacement and rate"));
@@ -85,8 +75,9 @@ pub(crate) fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> R
     let vector = basis.map(|x| Complex::new(x, 0.0)) * vector;
     let physical: Vec<_> = vector.iter().zip(&scale).map(|(v, s)| v * *s).collect();
     let time = lag as f64 * step_s;
-    Ok(Growth {
-        rate_per_s: mu.norm().ln() / time,
+    Ok(GrowthPoint {
+        speed_m_s: 0.0,
+        growth_rate_per_s: mu.norm().ln() / time,
         frequency_rad_s: frequency(mu, &physical, time),
         shape: forward_displacements(&physical),
     })
@@ -205,7 +196,7 @@ mod tests {
         ];
         for step in [0.005, 0.05] {
             let found = growth_of_samples(&motion(&modes, step, 30.0), 4, step).unwrap();
-            assert!((found.rate_per_s - 0.013).abs() < 1e-8, "{found:?}");
+            assert!((found.growth_rate_per_s - 0.013).abs() < 1e-8, "{found:?}");
             assert!((found.frequency_rad_s - 22.3).abs() < 1e-7, "{found:?}");
             let ratio = found.shape[0] / found.shape[1];
             let expected = c(0.3, 0.2);
@@ -220,7 +211,7 @@ mod tests {
             (c(-0.095, 31.4), [c(0.01, 0.0), c(1.0, 0.0)]),
         ];
         let found = growth_of_samples(&motion(&modes, 0.02, 10.0), 4, 0.02).unwrap();
-        assert!((found.rate_per_s + 0.040).abs() < 1e-10, "{found:?}");
+        assert!((found.growth_rate_per_s + 0.040).abs() < 1e-10, "{found:?}");
         assert!((found.frequency_rad_s - 12.6).abs() < 1e-9);
     }
 
@@ -231,7 +222,7 @@ mod tests {
         let large: Vec<_> = small.iter().map(|x| x * 1e200).collect();
         for samples in [small, large] {
             let found = growth_of_samples(&samples, 4, 0.02).unwrap();
-            assert!((found.rate_per_s - 0.5).abs() < 1e-8, "{found:?}");
+            assert!((found.growth_rate_per_s - 0.5).abs() < 1e-8, "{found:?}");
             assert!((rough_period(&samples, 4) - TAU / 12.6).abs() < 0.01);
         }
     }
@@ -242,7 +233,7 @@ mod tests {
         let samples = motion(&modes, 0.02, 60.0);
         assert!(growth_of_samples(&samples, 4, 0.02).is_err());
         let found = growth_of_samples(before_rest(&samples, 4, 1e-250), 4, 0.02).unwrap();
-        assert!((found.rate_per_s + 60.0).abs() < 1e-6, "{found:?}");
+        assert!((found.growth_rate_per_s + 60.0).abs() < 1e-6, "{found:?}");
         assert!(before_rest(&[0.0; 8], 4, 1e-250).is_empty());
     }
 

@@ -1,61 +1,18 @@
-//! What differs in FMI 3.0: values of whole arrays, and derivatives along them.
+//! What differs in FMI 3.0: values are those of whole arrays.
 //!
 //! References are places in the list of variables, where each element of an array is one.
 
 use super::Slave;
 use crate::description::ArrayElement;
 use crate::error::{Error, Result};
-use crate::library::{Fmi3Functions, OwnFunctions, Text};
+use crate::library::{OwnFunctions, Text};
 use crate::log::text;
 use crate::reading_fmi3::NUMERIC;
-use crate::status::Status;
-
-/// Arrays that hold some elements, as one call reads them.
-struct WholeArrays {
-    references: Vec<u32>,
-    /// Place of each element among all values.
-    places: Vec<usize>,
-    /// Values of all arrays.
-    count: usize,
-}
+use std::collections::HashMap;
 
 impl Slave {
-    /// The functions of an instance of FMI 3.0.
-    pub(super) fn three(&self) -> Option<&Fmi3Functions> {
-        match &self.functions().own {
-            OwnFunctions::Two(_) => None,
-            OwnFunctions::Three(own) => Some(own),
-        }
-    }
-
-    /// `fmi3EnterInitializationMode`, with what FMI 2.0 is told before.
-    pub(super) fn initialization_of_three(&self, own: &Fmi3Functions) -> Status {
-        let stated = |number: Option<f64>| (u8::from(number.is_some()), number.unwrap_or(0.0));
-        let (start_s, stop_s, tolerance) = self.experiment;
-        let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop_s));
-        // SAFETY: the component lives; plain values
-        self.status(|_, c| unsafe {
-            (own.enter_initialization_mode)(c, with_tolerance, tolerance, start_s, with_stop, stop)
-        })
-    }
-
-    /// A step; one that ends early or asks for the end of the run was not done.
-    pub(super) fn step_of_three(&self, own: &Fmi3Functions, time_s: f64, step_s: f64) -> Status {
-        let (mut event, mut end, mut early, mut last) = (0, 0, 0, time_s);
-        // SAFETY: the component lives; all four outlive the call
-        let status = self.status(|_, c| unsafe {
-            (own.do_step)(
-                c, time_s, step_s, 1, &mut event, &mut end, &mut early, &mut last,
-            )
-        });
-        match status.is_good() && (end != 0 || early != 0) {
-            true => Status::Discard,
-            false => status,
-        }
-    }
-
     pub(super) fn set_numbers(&mut self, places: &[u32], values: &[f64]) -> Result<()> {
-        let elements = &self.core.loaded.description.elements;
+        let elements = &self.core.binary.description.elements;
         let element = |place: u32| elements[place as usize];
         let first = |place: u32| place as usize - element(place).element;
         if self.begun && places.iter().any(|p| element(*p).size > places.len()) {
@@ -85,35 +42,32 @@ impl Slave {
     }
 
     fn element(&self, place: u32) -> Result<ArrayElement> {
-        let all = &self.core.loaded.description.elements;
+        let all = &self.core.binary.description.elements;
         all.get(place as usize).copied().ok_or_else(|| {
             let expected = format!("a place below {}", all.len());
             Error::input("variable", expected, place.to_string())
         })
     }
 
-    fn whole(&self, places: &[u32]) -> Result<WholeArrays> {
-        let mut whole = WholeArrays {
-            references: Vec::new(),
-            places: Vec::with_capacity(places.len()),
-            count: 0,
-        };
-        let mut begins: Vec<(u32, usize)> = Vec::new();
+    /// Arrays that hold some elements, as one call reads them: their references, the place of each element among all their values, and
+    /// how many these are. In FMI 2.0 each is a variable of its own.
+    pub(super) fn whole(&self, places: &[u32]) -> Result<(Vec<u32>, Vec<usize>, usize)> {
+        if !self.model_description().is_fmi3() {
+            return Ok((places.to_vec(), (0..places.len()).collect(), places.len()));
+        }
+        let (mut references, mut count) = (Vec::new(), 0);
+        let mut begins: HashMap<u32, usize> = HashMap::new();
+        let mut all = Vec::with_capacity(places.len());
         for place in places {
             let e = self.element(*place)?;
-            let known = begins
-                .iter()
-                .rev()
-                .find(|(reference, _)| *reference == e.reference);
-            let begin = known.map_or(whole.count, |(_, begin)| *begin);
-            if known.is_none() {
-                begins.push((e.reference, begin));
-                whole.references.push(e.reference);
-                whole.count += e.size;
-            }
-            whole.places.push(begin + e.element);
+            let begin = *begins.entry(e.reference).or_insert_with(|| {
+                references.push(e.reference);
+                count += e.size;
+                count - e.size
+            });
+            all.push(begin + e.element);
         }
-        Ok(whole)
+        Ok((references, all, count))
     }
 
     /// Numbers of any types.
@@ -129,24 +83,16 @@ impl Slave {
                 continue;
             }
             let own: Vec<u32> = chosen.iter().map(|i| places[*i]).collect();
-            let whole = self.whole(&own)?;
-            let mut bytes = vec![0_u64; whole.count];
-            let get = self.functions().getters[function];
+            let (references, own, count) = self.whole(&own)?;
+            let mut bytes = vec![0_u64; count];
+            let (of, to) = (references.as_ptr(), bytes.as_mut_ptr().cast());
             // SAFETY: the component lives; eight bytes are enough for every type
-            let status = self.status(|_, c| unsafe {
-                let to = bytes.as_mut_ptr().cast();
-                get(
-                    c,
-                    whole.references.as_ptr(),
-                    whole.references.len(),
-                    to,
-                    whole.count,
-                )
-            });
-            self.answered(&format!("Get{name}"), status)?;
+            self.good(&format!("Get{name}"), |f, c| unsafe {
+                (f.getters[function])(c, of, references.len(), to, count)
+            })?;
             let numbers = read_numbers(function, &bytes);
-            for (at, place) in chosen.iter().zip(&whole.places) {
-                values[*at] = numbers[*place];
+            for (at, place) in chosen.iter().zip(own) {
+                values[*at] = numbers[place];
             }
         }
         Ok(values)
@@ -157,94 +103,40 @@ impl Slave {
             return Err(Error::input("variable", "a number", "a string"));
         };
         let bytes = written_numbers(function, values);
-        let set = self.functions().setters[function];
+        let from = bytes.as_ptr().cast();
         // SAFETY: the component lives, and the array has the length that is passed
-        let status = self.status(|_, c| unsafe {
-            set(
-                c,
-                &element.reference,
-                1,
-                bytes.as_ptr().cast(),
-                values.len(),
-            )
-        });
-        self.answered(&format!("Set{}", NUMERIC[function].0), status)
+        self.good(&format!("Set{}", NUMERIC[function].0), |f, c| unsafe {
+            (f.setters[function])(c, &element.reference, 1, from, values.len())
+        })
     }
 
-    /// A string.
-    pub(super) fn text_at(&self, own: &Fmi3Functions, place: u32) -> Result<String> {
-        let whole = self.whole(&[place])?;
-        let mut values: Vec<Text> = vec![std::ptr::null(); whole.count];
+    /// A string, in either version.
+    pub(super) fn text_at(&self, place: u32) -> Result<String> {
+        let (references, places, count) = self.whole(&[place])?;
+        let mut values: Vec<Text> = vec![std::ptr::null(); count];
+        let (of, n, to) = (references.as_ptr(), references.len(), values.as_mut_ptr());
         // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.status(|_, c| unsafe {
-            let (references, to) = (whole.references.as_ptr(), values.as_mut_ptr());
-            (own.get_string)(c, references, whole.references.len(), to, whole.count)
-        });
-        self.answered("GetString", status)?;
+        self.good("GetString", |f, c| unsafe {
+            match &f.own {
+                OwnFunctions::Two(own) => (own.get_string)(c, of, n, to),
+                OwnFunctions::Three(own) => (own.get_string)(c, of, n, to, count),
+            }
+        })?;
         // SAFETY: a string of the FMU, copied before the next call, which may free it
-        Ok(unsafe { text(values[whole.places[0]]) })
+        Ok(unsafe { text(values[places[0]]) })
     }
 
     /// Sets a string that is no element of an array.
-    pub(super) fn set_text(&self, own: &Fmi3Functions, place: u32, value: Text) -> Result<()> {
-        let reference = self.element(place)?.reference;
+    pub(super) fn set_text(&self, place: u32, value: Text) -> Result<()> {
+        let (references, ..) = self.whole(&[place])?;
+        let of = references.as_ptr();
         // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.status(|_, c| unsafe { (own.set_string)(c, &reference, 1, &value, 1) });
-        self.answered("SetString", status)
-    }
-
-    pub(super) fn derivative_of_three(
-        &self,
-        own: &Fmi3Functions,
-        unknowns: &[u32],
-        knowns: &[u32],
-        seed: &[f64],
-    ) -> Result<Vec<f64>> {
-        let (of, along) = (self.whole(unknowns)?, self.whole(knowns)?);
-        let mut seeds = vec![0.0; along.count];
-        for (place, seed) in along.places.iter().zip(seed) {
-            seeds[*place] = *seed;
-        }
-        let mut values = vec![0.0; of.count];
-        // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.status(|_, c| unsafe {
-            (own.get_directional_derivative)(
-                c,
-                of.references.as_ptr(),
-                of.references.len(),
-                along.references.as_ptr(),
-                along.references.len(),
-                seeds.as_ptr(),
-                seeds.len(),
-                values.as_mut_ptr(),
-                of.count,
-            )
-        });
-        self.answered("GetDirectionalDerivative", status)?;
-        Ok(of.places.iter().map(|p| values[*p]).collect())
-    }
-
-    pub(super) fn output_derivatives_of_three(
-        &self,
-        own: &Fmi3Functions,
-        places: &[u32],
-    ) -> Result<Vec<f64>> {
-        let whole = self.whole(places)?;
-        let orders = vec![1; whole.references.len()];
-        let mut values = vec![0.0; whole.count];
-        // SAFETY: the component lives, and the arrays have the length that is passed
-        let status = self.status(|_, c| unsafe {
-            (own.get_output_derivatives)(
-                c,
-                whole.references.as_ptr(),
-                whole.references.len(),
-                orders.as_ptr(),
-                values.as_mut_ptr(),
-                whole.count,
-            )
-        });
-        self.answered("GetOutputDerivatives", status)?;
-        Ok(whole.places.iter().map(|p| values[*p]).collect())
+        self.good("SetString", |f, c| unsafe {
+            match &f.own {
+                OwnFunctions::Two(own) => (own.set_string)(c, of, 1, &value),
+                OwnFunctions::Three(own) => (own.set_string)(c, of, 1, &value, 1),
+            }
+        })
     }
 }
 

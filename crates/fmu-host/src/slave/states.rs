@@ -16,10 +16,7 @@ impl Drop for FmuState {
         if !self.core.fatal.get() {
             // SAFETY: a state of this component, which still lives
             unsafe {
-                (self.core.functions().shared.free_fmu_state)(
-                    self.core.component,
-                    &mut self.pointer,
-                );
+                (self.core.binary.shared.free_fmu_state)(self.core.component, &mut self.pointer);
             }
         }
     }
@@ -31,7 +28,7 @@ impl Slave {
         let mut pointer: StatePointer = std::ptr::null_mut();
         // SAFETY: the component lives, and the state is its own
         self.good("GetFMUstate", |f, c| unsafe {
-            (f.get_fmu_state)(c, &mut pointer)
+            (f.shared.get_fmu_state)(c, &mut pointer)
         })?;
         Ok(self.state(pointer))
     }
@@ -51,7 +48,7 @@ impl Slave {
         self.own(state)?;
         // SAFETY: the component lives, and the state is its own
         self.good("SetFMUstate", |f, c| unsafe {
-            (f.set_fmu_state)(c, state.pointer)
+            (f.shared.set_fmu_state)(c, state.pointer)
         })
     }
 
@@ -70,12 +67,12 @@ impl Slave {
         let mut size = 0;
         // SAFETY: the component lives, and the state is its own
         self.good("SerializedFMUstateSize", |f, c| unsafe {
-            (f.serialized_fmu_state_size)(c, state.pointer, &mut size)
+            (f.shared.serialized_fmu_state_size)(c, state.pointer, &mut size)
         })?;
         let mut bytes = vec![0; size];
         // SAFETY: the component lives, and the state is its own
         self.good("SerializeFMUstate", |f, c| unsafe {
-            (f.serialize_fmu_state)(c, state.pointer, bytes.as_mut_ptr(), size)
+            (f.shared.serialize_fmu_state)(c, state.pointer, bytes.as_mut_ptr(), size)
         })?;
         Ok(bytes)
     }
@@ -85,7 +82,7 @@ impl Slave {
         let mut pointer: StatePointer = std::ptr::null_mut();
         // SAFETY: the component lives, and the state is its own
         self.good("DeSerializeFMUstate", |f, c| unsafe {
-            (f.de_serialize_fmu_state)(c, bytes.as_ptr(), bytes.len(), &mut pointer)
+            (f.shared.de_serialize_fmu_state)(c, bytes.as_ptr(), bytes.len(), &mut pointer)
         })?;
         Ok(self.state(pointer))
     }

@@ -3,8 +3,7 @@
 use super::{Slave, find};
 use crate::description::{Value, VariableType};
 use crate::error::{Error, Result, ensure};
-use crate::library::{Component, Fmi2Functions, Int, ValueReference};
-use crate::log::text;
+use crate::library::{Component, Int, OwnFunctions, ValueReference};
 use std::ffi::CString;
 
 /// A function of FMI 2.0 that reads values of one type.
@@ -13,35 +12,25 @@ type Reader<T> = unsafe extern "C" fn(Component, *const ValueReference, usize, *
 type Writer<T> = unsafe extern "C" fn(Component, *const ValueReference, usize, *const T) -> Int;
 
 impl Slave {
+    /// Reads one value of FMI 2.0.
     fn read<T>(
         &self,
         suffix: &str,
-        references: &[u32],
-        values: &mut [T],
-        function: fn(&Fmi2Functions) -> Reader<T>,
-    ) -> Result<()> {
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two(suffix, |f, c| unsafe {
-            function(f)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_mut_ptr(),
-            )
-        })
+        function: Reader<T>,
+        reference: u32,
+        mut value: T,
+    ) -> Result<T> {
+        // SAFETY: the component lives, and so do reference and value
+        self.good(suffix, |_, c| unsafe {
+            function(c, &reference, 1, &mut value)
+        })?;
+        Ok(value)
     }
 
-    fn write<T>(
-        &self,
-        suffix: &str,
-        references: &[u32],
-        values: &[T],
-        function: fn(&Fmi2Functions) -> Writer<T>,
-    ) -> Result<()> {
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two(suffix, |f, c| unsafe {
-            function(f)(c, references.as_ptr(), references.len(), values.as_ptr())
-        })
+    /// Sets one.
+    fn write<T>(&self, suffix: &str, function: Writer<T>, reference: u32, value: T) -> Result<()> {
+        // SAFETY: as in `read`
+        self.good(suffix, |_, c| unsafe { function(c, &reference, 1, &value) })
     }
 
     /// `fmi2GetReal`.
@@ -57,11 +46,22 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
-        if self.three().is_some() {
-            values.copy_from_slice(&self.numbers(references)?);
-            return Ok(());
-        }
-        self.read("GetReal", references, values, |f| f.get_real)
+        let own = match &self.core.binary.own {
+            OwnFunctions::Two(own) => own,
+            OwnFunctions::Three(_) => {
+                values.copy_from_slice(&self.numbers(references)?);
+                return Ok(());
+            }
+        };
+        // SAFETY: the component lives, and the slices have the length that is passed
+        self.good("GetReal", |_, c| unsafe {
+            (own.get_real)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        })
     }
 
     /// Value of the variable of that name, whatever its type.
@@ -75,33 +75,23 @@ impl Slave {
 
     /// Value of a variable of that type: `fmi2GetInteger`, `fmi2GetBoolean`, `fmi2GetString`.
     pub(crate) fn get_by_reference(&self, kind: VariableType, reference: u32) -> Result<Value> {
-        let one = &[reference];
-        let is_fmi3 = self.three().is_some();
-        Ok(match kind {
-            VariableType::Real => Value::Real(self.get_real(one)?[0]),
-            VariableType::Integer | VariableType::Enumeration if is_fmi3 => {
-                Value::Integer(self.numbers(one)?[0] as i32)
-            }
-            VariableType::Integer | VariableType::Enumeration => {
-                let mut value = [0];
-                self.read("GetInteger", one, &mut value, |f| f.get_integer)?;
-                Value::Integer(value[0])
-            }
-            VariableType::Boolean if is_fmi3 => Value::Boolean(self.numbers(one)?[0] != 0.0),
-            VariableType::Boolean => {
-                let mut value = [0];
-                self.read("GetBoolean", one, &mut value, |f| f.get_boolean)?;
-                Value::Boolean(value[0] != 0)
-            }
-            VariableType::String => Value::String(match self.three() {
-                Some(three) => self.text_at(three, reference)?,
-                None => {
-                    let mut value = [std::ptr::null()];
-                    self.read("GetString", one, &mut value, |f| f.get_string)?;
-                    // SAFETY: a string of the FMU, copied before the next call, which may free it
-                    unsafe { text(value[0]) }
+        if kind == VariableType::String {
+            return self.text_at(reference).map(Value::String);
+        }
+        let number = match &self.core.binary.own {
+            OwnFunctions::Three(_) => self.numbers(&[reference])?[0],
+            OwnFunctions::Two(own) => match kind {
+                VariableType::Real => self.read("GetReal", own.get_real, reference, 0.0)?,
+                VariableType::Boolean => {
+                    f64::from(self.read("GetBoolean", own.get_boolean, reference, 0)?)
                 }
-            }),
+                _ => f64::from(self.read("GetInteger", own.get_integer, reference, 0)?),
+            },
+        };
+        Ok(match kind {
+            VariableType::Real => Value::Real(number),
+            VariableType::Boolean => Value::Boolean(number != 0.0),
+            _ => Value::Integer(number as i32),
         })
     }
 
@@ -111,10 +101,14 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
         same_length(references, values.len())?;
-        if self.three().is_some() {
-            return self.set_numbers(references, values);
-        }
-        self.write("SetReal", references, values, |f| f.set_real)
+        let own = match &self.core.binary.own {
+            OwnFunctions::Two(own) => own,
+            OwnFunctions::Three(_) => return self.set_numbers(references, values),
+        };
+        // SAFETY: the component lives, and the slices have the length that is passed
+        self.good("SetReal", |_, c| unsafe {
+            (own.set_real)(c, references.as_ptr(), references.len(), values.as_ptr())
+        })
     }
 
     /// Sets the variable of that name; a whole number also sets a Real.
@@ -124,33 +118,35 @@ impl Slave {
     pub fn set(&mut self, name: &str, value: &Value) -> Result<()> {
         let v = find(self.model_description(), name)?;
         let (kind, reference) = (v.kind, v.value_reference);
-        let one = &[reference];
-        let is_fmi3 = self.three().is_some();
-        match (kind, value) {
-            (VariableType::Real, Value::Real(v)) => self.set_real(one, &[*v]),
-            (VariableType::Real, Value::Integer(v)) => self.set_real(one, &[f64::from(*v)]),
-            (VariableType::Integer | VariableType::Enumeration, Value::Integer(v)) => match is_fmi3
-            {
-                true => self.set_numbers(one, &[f64::from(*v)]),
-                false => self.write("SetInteger", one, &[*v], |f| f.set_integer),
-            },
-            (VariableType::Boolean, Value::Boolean(v)) => match is_fmi3 {
-                true => self.set_numbers(one, &[f64::from(u8::from(*v))]),
-                false => self.write("SetBoolean", one, &[Int::from(*v)], |f| f.set_boolean),
-            },
+        let number = match (kind, value) {
+            (VariableType::Real, Value::Real(v)) => *v,
+            (
+                VariableType::Real | VariableType::Integer | VariableType::Enumeration,
+                Value::Integer(v),
+            ) => f64::from(*v),
+            (VariableType::Boolean, Value::Boolean(v)) => f64::from(u8::from(*v)),
             (VariableType::String, Value::String(v)) => {
                 let wrong = |_| Error::input("fmi2SetString", "text without a zero byte", v);
                 let owned = CString::new(v.as_str()).map_err(wrong)?;
-                match self.three() {
-                    Some(three) => self.set_text(three, reference, owned.as_ptr()),
-                    None => self.write("SetString", one, &[owned.as_ptr()], |f| f.set_string),
-                }
+                return self.set_text(reference, owned.as_ptr());
             }
-            _ => Err(Error::input(
-                format!("variable `{name}`"),
-                format!("a value of type {kind:?}"),
-                format!("`{value}`"),
-            )),
+            _ => {
+                return Err(Error::input(
+                    format!("variable `{name}`"),
+                    format!("a value of type {kind:?}"),
+                    format!("`{value}`"),
+                ));
+            }
+        };
+        match &self.core.binary.own {
+            OwnFunctions::Three(_) => self.set_numbers(&[reference], &[number]),
+            OwnFunctions::Two(own) => match kind {
+                VariableType::Real => self.write("SetReal", own.set_real, reference, number),
+                VariableType::Boolean => {
+                    self.write("SetBoolean", own.set_boolean, reference, number as Int)
+                }
+                _ => self.write("SetInteger", own.set_integer, reference, number as Int),
+            },
         }
     }
 
@@ -162,43 +158,59 @@ impl Slave {
         seed: &[f64],
     ) -> Result<Vec<f64>> {
         same_length(knowns, seed.len())?;
-        if let Some(three) = self.three() {
-            return self.derivative_of_three(three, unknowns, knowns, seed);
+        let (of, of_places, of_count) = self.whole(unknowns)?;
+        let (along, along_places, along_count) = self.whole(knowns)?;
+        let mut seeds = vec![0.0; along_count];
+        for (place, seed) in along_places.iter().zip(seed) {
+            seeds[*place] = *seed;
         }
-        let mut values = vec![0.0; unknowns.len()];
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("GetDirectionalDerivative", |f, c| unsafe {
-            (f.get_directional_derivative)(
-                c,
-                unknowns.as_ptr(),
-                unknowns.len(),
-                knowns.as_ptr(),
-                knowns.len(),
-                seed.as_ptr(),
-                values.as_mut_ptr(),
-            )
+        let mut values = vec![0.0; of_count];
+        let (seeds, found) = (seeds.as_ptr(), values.as_mut_ptr());
+        let (of, n, along, m) = (of.as_ptr(), of.len(), along.as_ptr(), along.len());
+        // SAFETY: the component lives, and the arrays have the length that is passed
+        self.good("GetDirectionalDerivative", |f, c| unsafe {
+            match &f.own {
+                OwnFunctions::Two(own) => {
+                    (own.get_directional_derivative)(c, of, n, along, m, seeds, found)
+                }
+                OwnFunctions::Three(own) => (own.get_directional_derivative)(
+                    c,
+                    of,
+                    n,
+                    along,
+                    m,
+                    seeds,
+                    along_count,
+                    found,
+                    of_count,
+                ),
+            }
         })?;
-        Ok(values)
+        Ok(of_places.iter().map(|place| values[*place]).collect())
     }
 
     /// `fmi2GetRealOutputDerivatives` of the first order.
     pub(crate) fn output_derivatives(&self, references: &[u32]) -> Result<Vec<f64>> {
-        if let Some(three) = self.three() {
-            return self.output_derivatives_of_three(three, references);
-        }
-        let orders = vec![1; references.len()];
-        let mut values = vec![0.0; references.len()];
-        // SAFETY: the component lives, and the slices have the length that is passed
-        self.good_two("GetRealOutputDerivatives", |f, c| unsafe {
-            (f.get_real_output_derivatives)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                orders.as_ptr(),
-                values.as_mut_ptr(),
-            )
+        let (of, places, count) = self.whole(references)?;
+        let (orders, mut values) = (vec![1; of.len()], vec![0.0; count]);
+        let (orders, found) = (orders.as_ptr(), values.as_mut_ptr());
+        let (of, n) = (of.as_ptr(), of.len());
+        let suffix = match self.model_description().is_fmi3() {
+            false => "GetRealOutputDerivatives",
+            true => "GetOutputDerivatives",
+        };
+        // SAFETY: the component lives, and the arrays have the length that is passed
+        self.good(suffix, |f, c| unsafe {
+            match &f.own {
+                OwnFunctions::Two(own) => {
+                    (own.get_real_output_derivatives)(c, of, n, orders, found)
+                }
+                OwnFunctions::Three(own) => {
+                    (own.get_output_derivatives)(c, of, n, orders, found, count)
+                }
+            }
         })?;
-        Ok(values)
+        Ok(places.iter().map(|place| values[*place]).collect())
     }
 }
 

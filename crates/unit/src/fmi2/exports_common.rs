@@ -10,6 +10,7 @@ use super::types::{
 };
 use crate::instance::Instance;
 use crate::lifecycle::Call;
+use crate::log_categories::LOG_CATEGORIES;
 use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
 use std::ffi::{CStr, c_char};
@@ -53,8 +54,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let component = made("Instantiate", logger, make);
     if let Some(component) = &component {
         let message = "fmi2Instantiate: instantiated";
-        let status = fmi2Status::fmi2OK;
-        component.logger.log(status, Category::Events, message);
+        component.logger.log(Category::Events, message);
     }
     handle(component)
 }
@@ -72,7 +72,7 @@ pub(crate) fn made(
         Ok(Err(refusal)) => refusal.message,
         Err(panic) => format!("internal error ({})", panic_text(&*panic)),
     };
-    logger.say(fmi2Status::fmi2Error, Category::Error, function, why);
+    logger.say(Category::Error, function, why);
     None
 }
 
@@ -87,27 +87,17 @@ pub(crate) fn instantiate(
     guid: Option<&CStr>,
     location: Option<&CStr>,
 ) -> CallResult<Instance> {
-    let wrong = |place: &str, expected: &str, found: String| {
-        Refusal::from(crate::Error::input(place, expected, found))
-    };
     check_name(name)?;
     if ![fmi2CoSimulation, fmi2ModelExchange].contains(&kind) {
-        return Err(wrong(
-            "type of the unit",
-            "model exchange (0) or co-simulation (1)",
-            kind.to_string(),
-        ));
+        let expected = "model exchange (0) or co-simulation (1)";
+        return Err(crate::Error::input("type of the unit", expected, kind.to_string()).into());
     }
     let utf8 = |place: &str, text: Option<&CStr>| {
-        text.and_then(|t| t.to_str().ok())
-            .map(str::to_owned)
-            .ok_or_else(|| {
-                wrong(
-                    place,
-                    "a UTF-8 text",
-                    text.map_or("NULL".into(), |t| t.to_string_lossy().into_owned()),
-                )
-            })
+        let utf8 = text.and_then(|t| t.to_str().ok()).map(str::to_owned);
+        utf8.ok_or_else(|| {
+            let found = text.map_or("NULL".into(), CStr::to_string_lossy);
+            Refusal::from(crate::Error::input(place, "a UTF-8 text", found))
+        })
     };
     let guid = utf8("GUID", guid)?;
     // NULL as an empty text: the archive is looked for around the library itself
@@ -174,15 +164,16 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
         for name in names {
             // SAFETY: as above
             let name = unsafe { text(*name) };
-            let category = name.and_then(Category::named).ok_or_else(|| {
+            let mut known = LOG_CATEGORIES.into_iter().map(|(known, _)| known);
+            let known = known.find(|known| Some(*known) == name);
+            selected.push(known.ok_or_else(|| {
                 let name = name.map_or("NULL".to_owned(), |n| format!("`{}`", n.to_string_lossy()));
                 Refusal::call(format!(
                     "log category: expected one of the description, found {name}"
                 ))
-            })?;
-            selected.push(category);
+            })?);
         }
-        component.logger.select(loggingOn != 0, &selected);
+        component.logger.select(loggingOn != 0, selected);
         Ok(())
     };
     // SAFETY: by the contract of the interface
@@ -205,7 +196,7 @@ exported! {
     fmi2ExitInitializationMode() Call::ExitInitializationMode => |component| {
         component.instance.exit_initialization()?;
         let message = format!("released at {} s", component.instance.time_s());
-        component.logger.log(fmi2Status::fmi2OK, Category::Events, &message);
+        component.logger.log(Category::Events, &message);
         Ok(())
     };
     /// Ends the run.
@@ -217,7 +208,7 @@ exported! {
     fmi2Reset() Call::Reset => |component| {
         component.instance.reset();
         let message = "every default restored";
-        component.logger.log(fmi2Status::fmi2OK, Category::Events, message);
+        component.logger.log(Category::Events, message);
         Ok(())
     };
 }

@@ -4,18 +4,18 @@
 
 use super::guard::{array, array_mut, exported, target};
 use super::types::{fmi2Byte, fmi2FMUstate, fmi2Real, fmi2ValueReference};
-use crate::instance::Snapshot;
+use crate::instance::Memory;
 use crate::lifecycle::Call;
 use crate::refusal::{CallResult, Refusal};
 
 /// # Safety
 /// NULL, or a saved state made here and not freed.
-unsafe fn snapshot<'a>(state: fmi2FMUstate) -> CallResult<&'a mut Snapshot> {
+unsafe fn snapshot<'a>(state: fmi2FMUstate) -> CallResult<&'a mut Memory> {
     // SAFETY: by the contract of this function
-    unsafe { target(state.cast::<Snapshot>(), "FMUstate") }
+    unsafe { target(state.cast::<Memory>(), "FMUstate") }
 }
 
-fn handle(snapshot: Snapshot) -> fmi2FMUstate {
+fn handle(snapshot: Memory) -> fmi2FMUstate {
     Box::into_raw(Box::new(snapshot)).cast()
 }
 
@@ -26,7 +26,7 @@ exported! {
         if state.is_null() {
             *state = handle(component.instance.snapshot());
         } else {
-            component.instance.snapshot_into(snapshot(*state)?);
+            *snapshot(*state)? = component.instance.snapshot();
         }
         Ok(())
     };
@@ -38,7 +38,7 @@ exported! {
         if let Some(state) = FMUstate.as_mut()
             && !state.is_null()
         {
-            drop(Box::from_raw(state.cast::<Snapshot>()));
+            drop(Box::from_raw(state.cast::<Memory>()));
             *state = std::ptr::null_mut();
         }
         Ok(())

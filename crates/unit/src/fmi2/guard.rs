@@ -51,12 +51,12 @@ impl Component {
     #[cold]
     fn refuse(&mut self, function: &str, refusal: &Refusal) -> fmi2Status {
         self.instance.note(refusal);
-        let (status, category) = match refusal.severity {
-            RefusalEffect::Discard => (fmi2Status::fmi2Discard, Category::Discard),
-            RefusalEffect::Call | RefusalEffect::Error => (fmi2Status::fmi2Error, Category::Error),
+        let category = match refusal.severity {
+            RefusalEffect::Discard => Category::Discard,
+            RefusalEffect::Call | RefusalEffect::Error => Category::Error,
         };
-        self.logger.say(status, category, function, refusal);
-        status
+        self.logger.say(category, function, refusal);
+        category.status()
     }
 
     #[cold]
@@ -64,16 +64,14 @@ impl Component {
         self.poisoned = true;
         let why = panic_text(panic);
         let why = format_args!("internal error ({why}); this instance cannot be used any more");
-        let status = fmi2Status::fmi2Error;
-        self.logger.say(status, Category::Fatal, function, why);
-        status
+        self.logger.say(Category::Fatal, function, why);
+        fmi2Status::fmi2Error
     }
 
     #[cold]
     fn report_notices(&mut self) {
         for notice in self.instance.take_notices() {
-            self.logger
-                .log(fmi2Status::fmi2Warning, Category::Warning, &notice);
+            self.logger.log(Category::Warning, &notice);
         }
     }
 }
@@ -151,10 +149,8 @@ pub(crate) use exported;
 #[cold]
 fn poisoned(component: &Component, function: &str) -> fmi2Status {
     let why = "an earlier internal error has made this instance unusable; free it";
-    let status = fmi2Status::fmi2Error;
-    let logger = &component.logger;
-    logger.say(status, Category::Fatal, function, why);
-    status
+    component.logger.say(Category::Fatal, function, why);
+    fmi2Status::fmi2Error
 }
 
 /// Answers a function that is not offered: an error with a reason, the run is not touched.
@@ -164,8 +160,7 @@ fn poisoned(component: &Component, function: &str) -> fmi2Status {
 pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &str) -> fmi2Status {
     // SAFETY: by the contract of this function
     if let Some(component) = unsafe { handle.cast::<Component>().as_ref() } {
-        let status = fmi2Status::fmi2Error;
-        component.logger.say(status, Category::Error, function, why);
+        component.logger.say(Category::Error, function, why);
     }
     fmi2Status::fmi2Error
 }

@@ -16,26 +16,24 @@ pub(crate) enum Category {
     Discard,
     Error,
     Fatal,
-    All,
 }
 
-impl Category {
-    const EVERY: [Self; 6] = [
-        Self::Events,
-        Self::Warning,
-        Self::Discard,
-        Self::Error,
-        Self::Fatal,
-        Self::All,
-    ];
+/// Name of the category of all messages.
+const ALL: &CStr = c"logAll";
 
+impl Category {
     fn name(self) -> &'static CStr {
         LOG_CATEGORIES[self as usize].0
     }
 
-    /// The category of this name.
-    pub(crate) fn named(name: &CStr) -> Option<Self> {
-        Self::EVERY.into_iter().find(|c| c.name() == name)
+    /// With which messages of this category are written.
+    pub(crate) fn status(self) -> fmi2Status {
+        match self {
+            Self::Events => fmi2Status::fmi2OK,
+            Self::Warning => fmi2Status::fmi2Warning,
+            Self::Discard => fmi2Status::fmi2Discard,
+            Self::Error | Self::Fatal => fmi2Status::fmi2Error,
+        }
     }
 
     /// Refusals are always written.
@@ -60,7 +58,8 @@ pub(crate) struct Logger {
     callback: Callback,
     environment: *mut c_void,
     instance_name: CString,
-    wanted: Vec<Category>,
+    /// Names of categories.
+    wanted: Vec<&'static CStr>,
 }
 
 impl Logger {
@@ -70,26 +69,30 @@ impl Logger {
         instance_name: &CStr,
         logging_on: bool,
     ) -> Option<Self> {
-        let mut logger = Self {
-            callback: Callback::Printf(functions.logger?),
-            environment: functions.componentEnvironment,
-            instance_name: instance_name.to_owned(),
-            wanted: Vec::new(),
-        };
-        logger.select(logging_on, &[]);
-        Some(logger)
+        let callback = Callback::Printf(functions.logger?);
+        let name = instance_name.to_owned();
+        let environment = functions.componentEnvironment;
+        Some(Self::with(callback, environment, name, logging_on))
     }
 
     /// The logger of an importer of FMI 3.0.
     pub(crate) fn plain(callback: PlainLogger, environment: *mut c_void, logging_on: bool) -> Self {
-        let mut logger = Self {
-            callback: Callback::Plain(callback),
+        let name = CString::default();
+        Self::with(Callback::Plain(callback), environment, name, logging_on)
+    }
+
+    fn with(
+        callback: Callback,
+        environment: *mut c_void,
+        instance_name: CString,
+        logging_on: bool,
+    ) -> Self {
+        Self {
+            callback,
             environment,
-            instance_name: CString::default(),
-            wanted: Vec::new(),
-        };
-        logger.select(logging_on, &[]);
-        logger
+            instance_name,
+            wanted: if logging_on { vec![ALL] } else { Vec::new() },
+        }
     }
 
     /// A function of the interface, of which `name` is that of FMI 2.0 without prefix where there is one.
@@ -104,30 +107,25 @@ impl Logger {
         }
     }
 
-    /// Switches categories on; none named means all.
-    pub(crate) fn select(&mut self, on: bool, categories: &[Category]) {
-        self.wanted = match (on, categories) {
+    /// Switches categories of these names on; none named means all.
+    pub(crate) fn select(&mut self, on: bool, names: Vec<&'static CStr>) {
+        self.wanted = match (on, names.is_empty()) {
             (false, _) => Vec::new(),
-            (true, []) => vec![Category::All],
-            (true, some) => some.to_vec(),
+            (true, true) => vec![ALL],
+            (true, false) => names,
         };
     }
 
     /// Writes what a function of the interface has to say.
-    pub(crate) fn say(
-        &self,
-        status: fmi2Status,
-        category: Category,
-        function: &str,
-        what: impl Display,
-    ) {
+    pub(crate) fn say(&self, category: Category, function: &str, what: impl Display) {
         let message = format!("{}: {what}", self.function(function));
-        self.log(status, category, &message);
+        self.log(category, &message);
     }
 
     /// Writes a message.
-    pub(crate) fn log(&self, status: fmi2Status, category: Category, message: &str) {
-        let wanted = |c: &Category| *c == category || *c == Category::All;
+    pub(crate) fn log(&self, category: Category, message: &str) {
+        let status = category.status();
+        let wanted = |name: &&CStr| [category.name(), ALL].contains(name);
         if !category.is_refusal() && !self.wanted.iter().any(wanted) {
             return;
         }

@@ -107,15 +107,11 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     // SAFETY: by the contract of the interface; the handle is new
     unsafe {
         let handle = made_of_texts("InstantiateCoSimulation", fmi2CoSimulation, texts, logger);
-        if let Some(component) = handle
-            .cast::<Component>()
-            .as_ref()
-            .filter(|_| eventModeUsed != 0)
-        {
+        let component = handle.cast::<Component>().as_ref();
+        if let Some(component) = component.filter(|_| eventModeUsed != 0) {
             let message = "fmi3InstantiateCoSimulation: eventModeUsed: expected false, as hasEventMode of the description, found \
                            true: steps follow the initialisation at once";
-            let status = fmi2Status::fmi2Warning;
-            component.logger.log(status, Category::Warning, message);
+            component.logger.log(Category::Warning, message);
         }
         handle
     }
@@ -155,7 +151,7 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     if let Some(log) = logMessage {
         let logger = Logger::plain(log, instanceEnvironment, loggingOn != 0);
         let message = "fmi3InstantiateScheduledExecution: scheduled execution is not offered";
-        logger.log(fmi2Status::fmi2Error, Category::Error, message);
+        logger.log(Category::Error, message);
     }
     std::ptr::null_mut()
 }

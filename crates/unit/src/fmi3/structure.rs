@@ -8,14 +8,6 @@ use crate::lifecycle::{Call, State};
 use crate::refusal::{CallResult, Refusal};
 use crate::variables::DependencyKind;
 
-/// A number that depends on an input, a state or a parameter of an instant at once, as an importer is told.
-struct ElementDependency {
-    dependent: usize,
-    reference: fmi2ValueReference,
-    element: usize,
-    kind: DependencyKind,
-}
-
 /// A kind of dependency in the words of the interface.
 fn fmi3_kind(kind: DependencyKind) -> i32 {
     match kind {
@@ -94,8 +86,11 @@ exported! {
     };
 }
 
-/// What the numbers of a variable depend on: while initialising on what has been set for it, later on inputs and states at once.
-fn dependencies(c: &mut Component, reference: u32) -> CallResult<Vec<ElementDependency>> {
+/// What the numbers of a variable depend on, each by its element, the value reference of the other and its element: while initialising on what has been set for it, later on inputs and states at once.
+fn dependencies(
+    c: &mut Component,
+    reference: u32,
+) -> CallResult<Vec<(usize, u32, usize, DependencyKind)>> {
     let Some(indices) = c.groups.all().get(reference as usize) else {
         return match c.groups.is_known(reference) {
             true => Ok(Vec::new()),
@@ -118,12 +113,7 @@ fn dependencies(c: &mut Component, reference: u32) -> CallResult<Vec<ElementDepe
         };
         all.extend(on.iter().filter_map(|dependency| {
             let (reference, element) = c.groups.element_of(dependency.on)?;
-            Some(ElementDependency {
-                dependent: i + 1,
-                reference,
-                element: element + 1,
-                kind: dependency.kind,
-            })
+            Some((i + 1, reference, element + 1, dependency.kind))
         }));
     }
     Ok(all)
@@ -151,9 +141,9 @@ exported! {
         let of = elementIndicesOfIndependents;
         let elements = array_mut(of, n, "elementIndicesOfIndependents")?;
         let kinds = array_mut(dependencyKinds, n, "dependencyKinds")?;
-        for (i, d) in all.iter().enumerate() {
-            (own[i], on[i]) = (d.dependent, d.reference);
-            (elements[i], kinds[i]) = (d.element, fmi3_kind(d.kind));
+        for (i, (dependent, reference, element, kind)) in all.into_iter().enumerate() {
+            (own[i], on[i]) = (dependent, reference);
+            (elements[i], kinds[i]) = (element, fmi3_kind(kind));
         }
         Ok(())
     };

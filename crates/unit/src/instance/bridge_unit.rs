@@ -17,7 +17,7 @@ use crate::resources::Resources;
 use crate::response::{Outputs, SectionState};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::variables::{ModeOutput, Response, Role};
+use crate::variables::{Response, Role};
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
 
@@ -209,9 +209,8 @@ impl CoupledKind for ModalBridge {
             }
             Role::Damper(d, response) => product(&own.strokes, d, modal.lists()[response as usize]),
             // modes are mass-normalised in the state
-            Role::Mode(m, ModeOutput::Coordinate) => modal.displacement[m] / roots[m],
-            Role::Mode(m, ModeOutput::Rate) => modal.rate[m] / roots[m],
-            Role::Mode(m, ModeOutput::Force) => modal.self_excited_force[m] * roots[m],
+            Role::Mode(m, Response::SelfExcitedForce) => modal.self_excited_force[m] * roots[m],
+            Role::Mode(m, response) => modal.lists()[response as usize][m] / roots[m],
             _ => 0.0,
         }
     }

@@ -3,7 +3,6 @@
 //! parameters are differenced.
 
 use super::coupled::{Coupled, CoupledKind};
-use super::coupled_present::PresentSlopes;
 use super::layout::Source;
 use super::memory::Memory;
 use super::sensitivity::{SectionValues, add, central_difference, check_finite, parameter_step};
@@ -15,7 +14,7 @@ use crate::resources::Resources;
 use crate::variables::{ComputedNumber, Role};
 
 impl<S: CoupledKind> Prepared for Coupled<S> {
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
+    fn advance(&mut self, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_inputs_once(memory);
         let factor = self.indices.turbulence_factor;
         match factor.map_or(0.0, |index| memory.values[index]) {
@@ -35,7 +34,7 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
         check_finite(&*rates)
     }
 
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
+    fn outputs(&mut self, memory: &mut Memory) -> CallResult<()> {
         self.load_inputs_once(memory);
         let stepper = &mut self.built.stepper;
         stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
@@ -77,13 +76,11 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
         stepper.outputs(&velocity, inputs, &mut rates.outputs)?;
         add(&mut rates.outputs, &by_wind.outputs, wind_rate);
         check_finite(rates.outputs.lists().into_iter().flatten())?;
-        let by = PresentSlopes {
-            wind: wind_rate,
-            outputs: Some(&rates.outputs),
-            ..PresentSlopes::default()
-        };
+        let by_outputs = Some(&rates.outputs);
         let rate = |role: &Role| match role {
-            Role::Computed(number) => Ok(self.slope(resources, memory, number, by, notices)?),
+            Role::Computed(number) => {
+                Ok(self.slope(resources, memory, number, wind_rate, by_outputs, notices)?)
+            }
             response => Ok(self.pick(&rates, *response)),
         };
         outputs.iter().map(rate).collect()
@@ -114,13 +111,12 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
             }
             _ => Some(by_unit(self, memory, known)?),
         };
-        let by = PresentSlopes {
-            wind: f64::from(u8::from(role == Role::WindSpeed)),
-            outputs: instant.as_ref().map(|i| &i.outputs),
-            limit: f64::from(u8::from(instant.is_none())),
-        };
+        let by_wind = f64::from(u8::from(role == Role::WindSpeed));
+        let outputs = instant.as_ref().map(|i| &i.outputs);
         let derivative = |unknown: &Role| match unknown {
-            Role::Computed(number) => self.slope(resources, memory, number, by, notices),
+            Role::Computed(number) => {
+                self.slope(resources, memory, number, by_wind, outputs, notices)
+            }
             other => Ok(instant.as_ref().map_or(0.0, |i| self.pick(i, *other))),
         };
         Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)

@@ -32,16 +32,6 @@ fn damping_slope(section: &CoupledSection, wind: f64) -> Option<f64> {
         .map(|rise| rise / (wind + step - low))
 }
 
-/// How the present changes with what is asked for.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct PresentSlopes<'a> {
-    pub wind: f64,
-    /// Of the coordinates.
-    pub outputs: Option<&'a Outputs>,
-    /// Of the upper end of the search for the onset.
-    pub limit: f64,
-}
-
 impl<S: CoupledKind> Coupled<S> {
     /// Whether the wind is below, in or above the tested range; `None` where that is not known.
     #[inline]
@@ -99,7 +89,7 @@ impl<S: CoupledKind> Coupled<S> {
                     present.wind_is_tested = S::wind_is_tested(self, resources, memory, notices);
                 }
                 Known::Rotation => present.rotation_rad = S::rotation(self, memory).into(),
-                Known::Motion(response, dof) => match self.outputs(resources, memory) {
+                Known::Motion(response, dof) => match self.outputs(memory) {
                     Ok(()) => {
                         let value = S::motion(self, &memory.system, &self.outputs, *response, *dof);
                         *present.motion_mut(*response, *dof) = value.into();
@@ -122,23 +112,25 @@ impl<S: CoupledKind> Coupled<S> {
         })
     }
 
-    /// Derivative of such a number.
+    /// Derivative of such a number, as the wind and the outputs of the coordinates change with what is asked for; without outputs that is
+    /// the upper end of the search for the onset.
     pub(super) fn slope(
         &mut self,
         resources: &Resources,
         memory: &mut Memory,
         number: &ComputedNumber,
-        by: PresentSlopes<'_>,
+        by_wind: f64,
+        by_outputs: Option<&Outputs>,
         notices: &mut Vec<String>,
     ) -> Result<f64> {
         if number.is_flag() {
             return Ok(0.0);
         }
         let mut present = self.read(resources, memory, number, notices);
-        present.wind_m_s.slope = by.wind;
+        present.wind_m_s.slope = by_wind;
         let slope = |response, dof| {
             let found = |outputs| S::motion(self, &memory.system, outputs, response, dof);
-            by.outputs.map_or(0.0, found)
+            by_outputs.map_or(0.0, found)
         };
         for known in number.reads {
             match known {
@@ -151,11 +143,13 @@ impl<S: CoupledKind> Coupled<S> {
                 _ => {}
             }
         }
-        present.onset.follow_limit(by.limit);
-        if by.wind != 0.0 && number.reads(Known::Damping) {
+        if by_outputs.is_none() {
+            present.onset.follow_limit();
+        }
+        if by_wind != 0.0 && number.reads(Known::Damping) {
             let wind = self.indices.wind_speed(memory);
             let slope = damping_slope(self.section(), wind);
-            present.damping_ratio.slope = by.wind * slope.unwrap_or(0.0);
+            present.damping_ratio.slope = by_wind * slope.unwrap_or(0.0);
         }
         Ok(number.evaluate(&present).slope)
     }

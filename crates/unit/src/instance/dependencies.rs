@@ -13,8 +13,8 @@ use crate::error::Result;
 use crate::resources::Resources;
 use crate::section::Dof;
 use crate::variables::{
-    Dependency, DependencyKind, ModeParameter, Response, Role, SectionParameter, Variable,
-    VariableTable, fill_computed_dependencies,
+    Dependency, DependencyKind, Response, Role, SectionParameter, Variable, VariableTable,
+    fill_computed_dependencies,
 };
 use pattern::Pattern;
 use std::collections::BTreeMap;
@@ -208,10 +208,7 @@ fn columns_of(
             | SectionParameter::Frequency(dof)
             | SectionParameter::DampingRatio(dof) => forces(&[dof]),
         },
-        Role::ModeParameter(mode, parameter) => match parameter {
-            ModeParameter::Frequency => vec![pattern.forces + mode],
-            ModeParameter::DampingRatio => Vec::new(),
-        },
+        Role::ModeFrequency(mode) => vec![pattern.forces + mode],
         // springs and dashpots of dampers are at rest
         Role::DamperParameter(i) if variable.quantity == Some("Mass") => {
             vec![pattern.unit.indices.initial.len() + i / 3]

@@ -11,7 +11,7 @@ use crate::refusal::{CallResult, Refusal};
 use crate::resources::Resources;
 use crate::response::wind_at_rest;
 use crate::section::Dof;
-use crate::variables::{ForceOutput, Role};
+use crate::variables::Role;
 
 /// Relative step of the differences with respect to wind and parameters.
 const RELATIVE_STEP: f64 = 1e-5;
@@ -36,7 +36,7 @@ impl Prepared for ForceUnit {
         self.work.rates.get(number).copied()
     }
 
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
+    fn advance(&mut self, memory: &mut Memory, step: f64) -> CallResult<bool> {
         let wind = memory.values[self.inputs[0]];
         let end = wind + memory.input_rates[0] * step;
         if wind_at_rest(end, wind) < 0.0 {
@@ -62,7 +62,7 @@ impl Prepared for ForceUnit {
         Ok(true)
     }
 
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
+    fn outputs(&mut self, memory: &mut Memory) -> CallResult<()> {
         let renewed = self.renewed(memory);
         let found = self.present(memory, renewed);
         found.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
@@ -96,7 +96,7 @@ impl Prepared for ForceUnit {
             let Role::OfStrip(s, number) = *unknown else {
                 continue;
             };
-            let forces = Dof::THREE.map(|dof| Role::Force(s, ForceOutput::PerLength, dof));
+            let forces = Dof::THREE.map(|dof| Role::Force(s, dof));
             let slopes = self.base_derivatives(resources, memory, known, &forces)?;
             self.present(memory, self.renewed(memory))?;
             let slope = |of: Role| match forces.iter().position(|force| *force == of) {
@@ -155,7 +155,7 @@ impl ForceUnit {
             self.enter_steady_flow(memory)?;
         }
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
-        if wants(|role| matches!(role, Role::Force(..))) {
+        if wants(|role| matches!(role, Role::Force(..) | Role::TotalForce(..))) {
             self.present(memory, renewed)?;
         }
         let mut rates = vec![0.0; self.entries.len()];
@@ -163,7 +163,7 @@ impl ForceUnit {
             self.rates_now(memory, &mut rates);
         }
         let value = |role: &Role| match role {
-            Role::Force(..) => self.entry(memory, &self.work.forces, *role).force,
+            Role::Force(..) | Role::TotalForce(..) => self.entry(memory, *role).force,
             Role::FilterRate(i) => rates.get(*i).copied().unwrap_or(0.0),
             other => {
                 let entry = self.entry_of(*other);

@@ -4,9 +4,7 @@ use super::force_parts::{StripsUnderModel, coordinate};
 use super::force_unit::ForceUnit;
 use super::memory::Memory;
 use crate::section::Dof;
-use crate::variables::{
-    ComputedNumber, Dual, ForceOutput, Known, Present, Response, Role, StripParameter,
-};
+use crate::variables::{ComputedNumber, Dual, Known, Present, Response, Role, StripParameter};
 
 impl ForceUnit {
     /// Writes the outputs of all strips.
@@ -43,8 +41,7 @@ impl ForceUnit {
         let motion = |response, dof| match (response, coordinate(&self.parts, s, dof)) {
             _ if !dofs.contains(&dof) => Dual::default(),
             (Response::SelfExcitedForce, i) => {
-                let role = Role::Force(s, ForceOutput::PerLength, dof);
-                Dual::new(self.work.forces[i].force, slope(role))
+                Dual::new(self.work.forces[i].force, slope(Role::Force(s, dof)))
             }
             (response, i) => {
                 let index = self.inputs[1 + 3 * i + response as usize];
@@ -83,7 +80,7 @@ impl ForceUnit {
             Role::Motion(s, response, dof) => {
                 of_input(1 + 3 * coordinate(&self.parts, s, dof) + response as usize)
             }
-            force => self.entry(memory, &self.work.forces, force).rate,
+            force => self.entry(memory, force).rate,
         }
     }
 }

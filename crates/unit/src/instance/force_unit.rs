@@ -15,8 +15,8 @@ use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow};
 use crate::variables::{
-    ComputedNumber, ForceOutput, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState,
-    VariableTable, strip_states,
+    ComputedNumber, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
+    strip_states,
 };
 
 /// How a number of the motion has been set since the last step.
@@ -101,7 +101,8 @@ impl ForceUnit {
                 Role::Motion(s, response, dof) => {
                     inputs[1 + 3 * coordinate(s, dof) + response as usize] = index;
                 }
-                Role::Force(s, kind, dof) => outputs[coordinate(s, dof)][kind as usize] = index,
+                Role::Force(s, dof) => outputs[coordinate(s, dof)][0] = index,
+                Role::TotalForce(s, dof) => outputs[coordinate(s, dof)][1] = index,
                 Role::OfStrip(s, number) => rows.push((index, s, number)),
                 Role::Strip(s, which) => strips[s][which as usize] = index,
                 Role::Gust(s, which) => gusts[s][which as usize] = index,
@@ -201,15 +202,14 @@ impl ForceUnit {
         values[self.density]
     }
 
-    pub(super) fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
-        let Role::Force(s, kind, dof) = role else {
-            return ForceAhead::default();
+    /// A force that was found last, with its rate; zero for what is none.
+    pub(super) fn entry(&self, memory: &Memory, role: Role) -> ForceAhead {
+        let (s, dof, factor) = match role {
+            Role::Force(s, dof) => (s, dof, 1.0),
+            Role::TotalForce(s, dof) => (s, dof, memory.values[self.strips[s][1]]),
+            _ => return ForceAhead::default(),
         };
-        let found = forces[coordinate(&self.parts, s, dof)];
-        let factor = match kind {
-            ForceOutput::PerLength => 1.0,
-            ForceOutput::Total => memory.values[self.strips[s][1]],
-        };
+        let found = self.work.forces[coordinate(&self.parts, s, dof)];
         ForceAhead {
             force: factor * found.force,
             rate: factor * found.rate,

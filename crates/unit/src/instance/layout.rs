@@ -61,34 +61,21 @@ impl Source {
     /// Where the value of a variable with this role comes from.
     pub(super) fn from_role(role: Role) -> Self {
         match role {
-            Role::WindSpeed
-            | Role::ExternalForce(_)
-            | Role::Gust(..)
-            | Role::Motion(..)
-            | Role::NodeForce(..) => Self::Input,
-            Role::Section(_)
-            | Role::Strip(..)
-            | Role::Prediction
-            | Role::MotionDerivatives
-            | Role::ModeParameter(..)
-            | Role::DamperParameter(_) => Self::Section,
             Role::TurbulenceFactor => Self::Turbulence,
             Role::InitialDisplacement(_) | Role::InitialRate(_) | Role::InitialMode(_) => {
                 Self::Release
             }
             Role::OnsetSearchLimit => Self::Limit,
-            Role::Constant => Self::Constant,
-            Role::Response(..)
-            | Role::Force(..)
-            | Role::OfStrip(..)
-            | Role::NodeMotion(..)
-            | Role::Mode(..)
-            | Role::Damper(..) => Self::Response,
             Role::Filter(_) => Self::State,
             Role::FilterRate(_) => Self::Rate,
-            Role::Computed(number) => match number.causality {
-                Causality::Output => Self::Status,
-                _ => Self::Calculated,
+            Role::Computed(number) if number.causality == Causality::Output => Self::Status,
+            Role::OfStrip(..) => Self::Response,
+            other => match other.kind().0 {
+                Causality::Input => Self::Input,
+                Causality::Parameter => Self::Section,
+                Causality::CalculatedParameter => Self::Calculated,
+                Causality::Output => Self::Response,
+                Causality::Local | Causality::Independent => Self::Constant,
             },
         }
     }

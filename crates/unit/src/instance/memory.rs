@@ -1,33 +1,38 @@
 //! Everything that changes in an instance.
 
 use crate::lifecycle::State;
+use crate::resources::Resources;
 use crate::response::SectionState;
 use crate::variables::{StartValue, VariableTable};
+use uuid::Uuid;
 
-/// A snapshot is a clone of this, a reset the clone of the first one.
+/// A saved state is a clone of this, a reset the clone of the first one.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Memory {
-    pub state: State,
+pub struct Memory {
+    /// Identity of the export whose memory it is.
+    pub(super) guid: Uuid,
+    pub(super) state: State,
     /// Start and stop of the run, s, set by the set-up of the experiment.
-    pub experiment: Option<(f64, Option<f64>)>,
+    pub(super) experiment: Option<(f64, Option<f64>)>,
     /// Point of time of `system`, s.
-    pub time: f64,
+    pub(super) time: f64,
     /// One number per variable, as in [`starts`].
-    pub values: Vec<f64>,
+    pub(super) values: Vec<f64>,
     /// Rates of the inputs: wind speed, then the others.
-    pub input_rates: Vec<f64>,
+    pub(super) input_rates: Vec<f64>,
     /// State of what is simulated.
-    pub system: SectionState,
+    pub(super) system: SectionState,
 }
 
 impl Memory {
-    /// The start values of the table, with so many inputs and what is simulated in the state `system`.
-    pub(super) fn new(table: &VariableTable, inputs: usize, system: SectionState) -> Self {
+    /// The start values of the variables, with so many inputs and what is simulated in the state `system`.
+    pub(super) fn new(resources: &Resources, inputs: usize, system: SectionState) -> Self {
         Self {
+            guid: resources.guid,
             state: State::Instantiated,
             experiment: None,
             time: 0.0,
-            values: starts(table),
+            values: starts(&resources.table),
             input_rates: vec![0.0; inputs],
             system,
         }

@@ -1,44 +1,27 @@
-//! Snapshots of an instance: plain clones of its memory, and the same as bytes.
+//! Saved states of an instance: plain clones of its memory, and the same as bytes.
 
 use super::layout::Source;
 use super::memory::Memory;
 use super::{Instance, serialized};
 use crate::refusal::{CallResult, Refusal};
-use uuid::Uuid;
-
-/// A saved state of an instance.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Snapshot {
-    guid: Uuid,
-    memory: Memory,
-}
 
 impl Instance {
     /// A copy of everything that changes.
-    pub fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            guid: self.resources.guid,
-            memory: self.memory.clone(),
-        }
-    }
-
-    /// Copies everything that changes into an existing snapshot.
-    pub(crate) fn snapshot_into(&self, snapshot: &mut Snapshot) {
-        snapshot.guid = self.resources.guid;
-        snapshot.memory.clone_from(&self.memory);
+    pub fn snapshot(&self) -> Memory {
+        self.memory.clone()
     }
 
     /// Goes back to a snapshot.
     ///
     /// # Errors
     /// A snapshot of another model.
-    pub fn restore(&mut self, snapshot: &Snapshot) -> CallResult<()> {
+    pub fn restore(&mut self, snapshot: &Memory) -> CallResult<()> {
         self.check_owner(snapshot)?;
-        self.replace_memory(snapshot.memory.clone());
+        self.replace_memory(snapshot.clone());
         Ok(())
     }
 
-    pub(super) fn check_owner(&self, snapshot: &Snapshot) -> CallResult<()> {
+    pub(super) fn check_owner(&self, snapshot: &Memory) -> CallResult<()> {
         let own = self.resources.guid;
         if snapshot.guid != own {
             return Err(Refusal::error(format!(
@@ -46,14 +29,14 @@ impl Instance {
                 snapshot.guid
             )));
         }
-        let numbers = [&self.memory, &snapshot.memory].map(|m| m.values.len());
+        let numbers = [&self.memory, snapshot].map(|m| m.values.len());
         if numbers[0] != numbers[1] {
             return Err(Refusal::error(format!(
                 "saved state: expected one of as many strips, {} numbers, found {}",
                 numbers[0], numbers[1]
             )));
         }
-        let of = snapshot.memory.state.interface();
+        let of = snapshot.state.interface();
         match of.filter(|of| *of != self.interface) {
             None => Ok(()),
             Some(of) => Err(Refusal::error(format!(
@@ -85,19 +68,18 @@ impl Instance {
     ///
     /// # Errors
     /// A snapshot of another model.
-    pub fn serialize(&self, snapshot: &Snapshot) -> CallResult<Vec<u8>> {
+    pub fn serialize(&self, snapshot: &Memory) -> CallResult<Vec<u8>> {
         self.check_owner(snapshot)?;
-        Ok(serialized::write(&snapshot.memory, &snapshot.guid))
+        Ok(serialized::write(snapshot))
     }
 
     /// A snapshot from bytes.
     ///
     /// # Errors
     /// Bytes that are no state of this export, or hold a value outside the limits of its variable.
-    pub fn deserialize(&self, bytes: &[u8]) -> CallResult<Snapshot> {
-        let guid = self.resources.guid;
-        let mut memory = serialized::read(bytes, &guid, &self.fresh)
-            .map_err(|e| Refusal::call(e.to_string()))?;
+    pub fn deserialize(&self, bytes: &[u8]) -> CallResult<Memory> {
+        let mut memory =
+            serialized::read(bytes, &self.fresh).map_err(|e| Refusal::call(e.to_string()))?;
         for (index, value) in memory.values.iter_mut().enumerate() {
             let access = self.layout.access[index];
             if access.source == Source::Constant {
@@ -107,6 +89,6 @@ impl Instance {
             within_limits
                 .map_err(|why| Refusal::call(format!("serialised state: {}", why.message)))?;
         }
-        Ok(Snapshot { guid, memory })
+        Ok(memory)
     }
 }

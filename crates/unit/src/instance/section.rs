@@ -191,7 +191,7 @@ impl OnsetCard {
         limit: f64,
     ) -> std::result::Result<Self, Self> {
         let speed = divergence_with_forces(structure, forces).map_err(|why| Self::unknown(&why))?;
-        let mut card = Self::nothing_found(limit, Vec::new());
+        let mut card = Self::nothing_found(limit);
         if let Some(speed) = speed.filter(|v| *v <= limit) {
             card.numbers.divergence_m_s = speed.into();
             card.numbers.divergence_found = true;
@@ -281,13 +281,16 @@ impl OnsetCard {
         }
     }
 
-    pub(super) fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
+    pub(super) fn nothing_found(limit: f64) -> Self {
         let numbers = OnsetNumbers {
             speed_m_s: limit.into(),
             divergence_m_s: limit.into(),
             ..OnsetNumbers::default()
         };
-        Self { numbers, warnings }
+        Self {
+            numbers,
+            warnings: Vec::new(),
+        }
     }
 
     /// Enters the answer of a search up to `limit` m/s. Growth from the lowest speed on is an onset at that speed or lower; what

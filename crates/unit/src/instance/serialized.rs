@@ -40,11 +40,11 @@ fn counts(memory: &Memory) -> [usize; 4] {
 }
 
 /// The bytes of a saved state.
-pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
+pub(super) fn write(memory: &Memory) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(length(memory));
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&VERSION.to_le_bytes());
-    bytes.extend_from_slice(guid.as_bytes());
+    bytes.extend_from_slice(memory.guid.as_bytes());
     for count in counts(memory) {
         bytes.extend_from_slice(&(count as u32).to_le_bytes());
     }
@@ -67,13 +67,13 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
     for number in numbers {
         bytes.extend_from_slice(&number.to_le_bytes());
     }
-    let digest = digest(&bytes, guid);
+    let digest = digest(&bytes, &memory.guid);
     bytes.extend_from_slice(&digest);
     bytes
 }
 
 /// What stands behind a header that is that of `like`, an instance of the same export.
-fn behind_header<'a>(bytes: &'a [u8], guid: &Uuid, like: &Memory) -> Result<&'a [u8]> {
+fn behind_header<'a>(bytes: &'a [u8], like: &Memory) -> Result<&'a [u8]> {
     let rest = bytes.strip_prefix(MAGIC);
     let mut rest =
         rest.ok_or_else(|| refused("magic", String::from_utf8_lossy(MAGIC), "other bytes"))?;
@@ -82,8 +82,12 @@ fn behind_header<'a>(bytes: &'a [u8], guid: &Uuid, like: &Memory) -> Result<&'a 
         return Err(refused("version", VERSION.to_string(), version.to_string()));
     }
     let found = Uuid::from_bytes(take(&mut rest, "identity")?);
-    if found != *guid {
-        return Err(refused("identity", guid.to_string(), found.to_string()));
+    if found != like.guid {
+        return Err(refused(
+            "identity",
+            like.guid.to_string(),
+            found.to_string(),
+        ));
     }
     for (place, count) in ["values", "inputs", "states", "lagging gusts"]
         .into_iter()
@@ -99,14 +103,15 @@ fn behind_header<'a>(bytes: &'a [u8], guid: &Uuid, like: &Memory) -> Result<&'a 
 
 /// Reads a saved state that fits `like`, an instance of the same export. Bytes come from files: everything is checked
 /// but the limits of single variables.
-pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
-    let mut rest = behind_header(bytes, guid, like)?;
+pub(super) fn read(bytes: &[u8], like: &Memory) -> Result<Memory> {
+    let mut rest = behind_header(bytes, like)?;
     let [state] = take(&mut rest, "state")?;
     let state = State::from_code(state)
         .ok_or_else(|| refused("state", "the code of a state", state.to_string()))?;
     let [set_up] = take(&mut rest, "experiment")?;
     let [start, stop, time] = [number(&mut rest)?, number(&mut rest)?, number(&mut rest)?];
     let memory = Memory {
+        guid: like.guid,
         state,
         experiment: match set_up {
             0 => None,
@@ -128,7 +133,7 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
         let found = memory.system.phase.to_string();
         return Err(refused("phase", "a number in [0, 1)", found));
     }
-    let expected = digest(&bytes[..bytes.len() - rest.len()], guid);
+    let expected = digest(&bytes[..bytes.len() - rest.len()], &like.guid);
     if take(&mut rest, "digest")? != expected {
         return Err(refused("digest", "that of the bytes before", "another"));
     }

@@ -46,7 +46,7 @@ impl Instance {
         let prepared = self.unit.prepared(resources, memory);
         let advanced = prepared
             .map_err(Refusal::from)
-            .and_then(|unit| unit.advance(resources, memory, step));
+            .and_then(|unit| unit.advance(memory, step));
         self.outputs_current = advanced.map_err(|refusal| {
             memory.state = State::StepFailed;
             Refusal::discard(refusal.message)

@@ -103,12 +103,7 @@ pub(super) trait Prepared: Unit {
     ///
     /// # Errors
     /// When the step cannot be computed.
-    fn advance(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        step: f64,
-    ) -> CallResult<bool>;
+    fn advance(&mut self, memory: &mut Memory, step: f64) -> CallResult<bool>;
 
     /// Writes the rates of the state, per second, where an importer may integrate it.
     ///
@@ -125,7 +120,7 @@ pub(super) trait Prepared: Unit {
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn outputs(&mut self, resources: &Resources, memory: &mut Memory) -> CallResult<()>;
+    fn outputs(&mut self, memory: &mut Memory) -> CallResult<()>;
 
     /// Writes what is calculated from the parameters into the memory.
     fn calculate(

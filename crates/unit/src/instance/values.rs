@@ -85,7 +85,7 @@ impl Instance {
                     return state_number(memory, entry);
                 }
                 if !self.outputs_current {
-                    unit.outputs(resources, memory)?;
+                    unit.outputs(memory)?;
                     self.outputs_current = true;
                 }
             }

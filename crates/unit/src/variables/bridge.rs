@@ -2,11 +2,9 @@
 
 use super::computed_rows::{OF_THE_PRESENT, SEARCHED};
 use super::dof_names::names_of;
-use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
-use super::section::{
-    air_density, capitalized, gust_inputs, onset_bounds, search_limit, wind_speed,
-};
-use super::{ComputedNumber, ModeOutput, ModeParameter, Response, Role, StartValue, Variable};
+use super::real::{SMALLEST, constants, real};
+use super::section::{air_density, gust_inputs, onset_bounds, search_limit, wind_speed};
+use super::{ComputedNumber, Response, Role, StartValue, Variable};
 use super::{bridge_states, dampers};
 use crate::bridge_options::BridgeOptions;
 use crate::error::Result;
@@ -60,8 +58,9 @@ fn is_of_structure(role: Role) -> bool {
         role,
         Role::NodeForce(..)
             | Role::NodeMotion(..)
-            | Role::Mode(_, ModeOutput::Coordinate | ModeOutput::Rate)
-            | Role::ModeParameter(..)
+            | Role::Mode(_, Response::Displacement | Response::Rate)
+            | Role::ModeFrequency(_)
+            | Role::ModeDamping(_)
             | Role::Damper(..)
             | Role::DamperParameter(_)
             | Role::InitialMode(_)
@@ -95,27 +94,21 @@ fn parameters(options: &BridgeOptions, turbulence: bool) -> Vec<Variable> {
     let factor = real(
         "turbulence_factor",
         Role::TurbulenceFactor,
-        TUNABLE,
         "Factor on the turbulence in the archive, which begins at the time zero and repeats itself",
     )
     .start(1.0);
     let modes = options.modes.iter().enumerate().flat_map(|(m, mode)| {
-        let parameter = |of, which, text: &str| {
-            let name = format!("mode[{}].{of}", mode.number);
-            real(name, Role::ModeParameter(m, which), TUNABLE, text)
-        };
+        let parameter =
+            |of, role, text: &str| real(format!("mode[{}].{of}", mode.number), role, text);
+        let (frequency, damping) = (Role::ModeFrequency(m), Role::ModeDamping(m));
         [
-            parameter(
-                "frequency",
-                ModeParameter::Frequency,
-                "Natural frequency without wind",
-            )
-            .quantity("Frequency", Some(&si::HERTZ))
-            .min(SMALLEST)
-            .start(mode.frequency_hz),
+            parameter("frequency", frequency, "Natural frequency without wind")
+                .quantity("Frequency", Some(&si::HERTZ))
+                .min(SMALLEST)
+                .start(mode.frequency_hz),
             parameter(
                 "damping_ratio",
-                ModeParameter::DampingRatio,
+                damping,
                 "Structural damping as a ratio to critical",
             )
             .quantity("DampingRatio", None)
@@ -143,12 +136,12 @@ fn force(options: &BridgeOptions, named: usize, dof: Dof) -> Variable {
         Dof::Torsion => (&si::NEWTON_METRE, "Torque", "moment, positive nose-up"),
     };
     let name = format!(
-        "node[{}].{}",
+        "node[{}].external_{}",
         options.node_name(named),
-        names_of(dof).external
+        names_of(dof).force_name
     );
     let text = format!("External {what}, {}", location(options, named));
-    real(name, Role::NodeForce(named, dof), INPUT, text)
+    real(name, Role::NodeForce(named, dof), text)
         .start(0.0)
         .quantity(quantity, Some(unit))
 }
@@ -158,17 +151,10 @@ fn motions(options: &BridgeOptions, named: usize) -> impl Iterator<Item = Variab
         .into_iter()
         .flat_map(|dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
-        let (w, i) = (names_of(dof), response as usize);
-        let what = match response {
-            Response::Displacement => capitalized(w.motion),
-            Response::Rate => format!("Rate of the {}", w.motion),
-            _ => format!("Second rate of the {}", w.motion),
-        };
-        let name = format!("node[{}].{}", options.node_name(named), w.responses[i]);
-        let text = format!("{what}, {}", location(options, named));
-        real(name, Role::NodeMotion(named, response, dof), OUTPUT, text)
-            .quantity(w.quantities[i], Some(w.units[i]))
-            .shown_if(dof == Dof::Torsion)
+        let w = names_of(dof);
+        let name = format!("node[{}].{}", options.node_name(named), w.name(response));
+        let text = format!("{}, {}", w.describe(response), location(options, named));
+        real(name, Role::NodeMotion(named, response, dof), text).measured_as(response, dof)
     })
 }
 
@@ -176,27 +162,22 @@ fn mode(options: &BridgeOptions, m: usize) -> [Variable; 3] {
     let of = &options.modes[m];
     let number = of.number;
     let output = |name: &str, which, text: String| {
-        real(
-            format!("mode[{number}].{name}"),
-            Role::Mode(m, which),
-            OUTPUT,
-            text,
-        )
+        real(format!("mode[{number}].{name}"), Role::Mode(m, which), text)
     };
     let coordinate = format!(
         "Coordinate of mode {number} ({} Hz, generalised mass {} kg)",
         of.frequency_hz, of.generalised_mass
     );
     [
-        output("coordinate", ModeOutput::Coordinate, coordinate),
+        output("coordinate", Response::Displacement, coordinate),
         output(
             "rate",
-            ModeOutput::Rate,
+            Response::Rate,
             format!("Rate of the coordinate of mode {number}, per second"),
         ),
         output(
             "force",
-            ModeOutput::Force,
+            Response::SelfExcitedForce,
             format!(
                 "Self-excited generalised force on mode {number}: work per unit of its coordinate, added mass included"
             ),
@@ -208,5 +189,5 @@ fn initial(options: &BridgeOptions, m: usize) -> Variable {
     let number = options.modes[m].number;
     let name = format!("mode[{number}].initial_coordinate");
     let text = format!("At release: coordinate of mode {number}");
-    real(name, Role::InitialMode(m), FIXED, text).start(options.initial[m])
+    real(name, Role::InitialMode(m), text).start(options.initial[m])
 }

@@ -1,7 +1,7 @@
 //! The continuous states of a whole bridge, for importers that integrate and for linear state spaces: mass-normalised modes, filters
 //! of the self-excited forces, gusts behind the lags of their admittance.
 
-use super::real::{INNER, real};
+use super::real::real;
 use super::section::{filter, gust_filter};
 use super::{Role, Variable};
 use crate::bridge_options::BridgeOptions;
@@ -46,8 +46,6 @@ pub(super) fn add(table: &mut Vec<Variable>, options: &BridgeOptions, stepper: &
 
 /// Mass-normalised coordinate of a mode, its rate or its second rate.
 fn normalised(options: &BridgeOptions, m: usize, order: usize) -> Variable {
-    let mode = options.modes.get(m);
-    let damper = m.checked_sub(options.modes.len());
     let (name, text) = [
         ("coordinate", "Coordinate"),
         ("rate", "Rate of the coordinate"),
@@ -58,20 +56,17 @@ fn normalised(options: &BridgeOptions, m: usize, order: usize) -> Variable {
         2 => Role::FilterRate(n + m),
         _ => Role::Filter(order * n + m),
     };
-    let (whose, of_mass) = match (mode, damper) {
-        (Some(mode), _) => (
-            format!("mode[{}]", mode.number),
-            format!(
-                "mode {} times the root of its generalised mass",
-                mode.number
-            ),
-        ),
-        (None, damper) => {
-            let number = damper.unwrap_or(0) + 1;
-            (
-                format!("damper[{number}]"),
-                format!("damper {number}, its displacement, times the root of its mass"),
-            )
+    let (whose, of_mass, hertz) = match options.modes.get(m) {
+        Some(mode) => {
+            let number = mode.number;
+            let of_mass = format!("mode {number} times the root of its generalised mass");
+            (format!("mode[{number}]"), of_mass, mode.frequency_hz)
+        }
+        None => {
+            let d = m - options.modes.len();
+            let (number, hertz) = (d + 1, options.dampers.masses[d].frequency_hz);
+            let of_mass = format!("damper {number}, its displacement, times the root of its mass");
+            (format!("damper[{number}]"), of_mass, hertz)
         }
     };
     let text = format!("{text} of {of_mass}, in SI units");
@@ -79,11 +74,6 @@ fn normalised(options: &BridgeOptions, m: usize, order: usize) -> Variable {
     let sizes = released.map(|(mode, start)| (start * mode.generalised_mass.sqrt()).abs());
     let size = sizes.fold(0.0, f64::max);
     let size = if size > 0.0 { size } else { 1.0 };
-    let masses = damper.and_then(|d| options.dampers.masses.get(d));
-    let hertz = mode
-        .map(|m| m.frequency_hz)
-        .or(masses.map(|d| d.frequency_hz));
-    let omega = TAU * hertz.unwrap_or(1.0);
-    real(format!("{whose}.normalised_{name}"), role, INNER, text)
-        .nominal(size * omega.powi(order as i32))
+    real(format!("{whose}.normalised_{name}"), role, text)
+        .nominal(size * (TAU * hertz).powi(order as i32))
 }

@@ -49,16 +49,16 @@ pub struct OnsetNumbers {
 }
 
 impl OnsetNumbers {
-    /// Enters the slope of the search's limit: what is found below does not depend on it; what is not found is the limit, or zero where
+    /// Enters the slopes over the search's limit: what is found below does not depend on it; what is not found is the limit, or zero where
     /// it is not known.
-    pub(crate) fn follow_limit(&mut self, slope: f64) {
+    pub(crate) fn follow_limit(&mut self) {
         let searched = [
             (&mut self.speed_m_s, self.found),
             (&mut self.divergence_m_s, self.divergence_found),
         ];
         for (speed, found) in searched {
             if !found && speed.value != 0.0 {
-                speed.slope = slope;
+                speed.slope = 1.0;
             }
         }
     }

@@ -3,10 +3,10 @@
 
 use super::computed::Formula::{Flag, Real};
 use super::computed::{ComputedNumber, Known};
-use super::real::{CALCULATED, DISCRETE, OUTPUT, SPEED, real};
+use super::real::{SPEED, real};
 use super::{
-    Causality, Dependency, ForceOutput, Formula, Response, Role, SectionParameter, StartValue,
-    StripParameter, Variable,
+    Causality, Dependency, Formula, Response, Role, SectionParameter, StartValue, StripParameter,
+    Variable,
 };
 use crate::section::Dof;
 use crate::si;
@@ -138,22 +138,17 @@ impl ComputedNumber {
 
     /// Its variable, without what it depends on.
     pub(super) fn variable(&'static self) -> Variable {
-        let kind = match (self.causality, self.is_flag()) {
-            (Causality::Output, false) => OUTPUT,
-            (Causality::Output, true) => DISCRETE,
-            _ => CALCULATED,
-        };
         let variable = Variable {
             quantity: self.quantity,
             unit: self.unit,
-            ..real(self.name, Role::Computed(self), kind, self.text)
+            ..real(self.name, Role::Computed(self), self.text)
         };
         match self.is_flag() {
             true => Variable {
                 value: StartValue::Boolean(None),
                 ..variable
             },
-            false => variable.shown_if(self.unit == Some(&si::HERTZ)),
+            false => variable,
         }
     }
 }
@@ -184,7 +179,7 @@ pub(crate) fn fill_computed_dependencies(table: &mut [Variable]) {
                 Role::Response(response, dof) | Role::NodeMotion(_, response, dof) => {
                     Some([Known::Motion(response, dof), turns(response, dof)])
                 }
-                Role::Force(s, ForceOutput::PerLength, dof) if strip == Some(s) => {
+                Role::Force(s, dof) if strip == Some(s) => {
                     Some([Known::Motion(Response::SelfExcitedForce, dof); 2])
                 }
                 _ => None,

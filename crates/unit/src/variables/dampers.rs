@@ -1,6 +1,6 @@
 //! The dampers of a bridge as variables: strokes, and what may be tuned.
 
-use super::real::{OUTPUT, SMALLEST, TUNABLE, real};
+use super::real::{SMALLEST, real};
 use super::{Response, Role, Variable};
 use crate::bridge::Dampers;
 use crate::section::Dof;
@@ -34,7 +34,6 @@ pub(super) fn strokes(dampers: &Dampers) -> impl Iterator<Item = Variable> {
             real(
                 format!("damper[{}].{name}", d + 1),
                 Role::Damper(d, response),
-                OUTPUT,
                 text,
             )
             .quantity(quantity, Some(unit))
@@ -44,63 +43,53 @@ pub(super) fn strokes(dampers: &Dampers) -> impl Iterator<Item = Variable> {
 
 /// What may be tuned, in the order of [`Bridge::tunable`](crate::bridge::Bridge::tunable).
 pub(super) fn parameters(dampers: &Dampers) -> Vec<Variable> {
-    let masses = dampers.masses.iter().enumerate().flat_map(|(d, damper)| {
-        let of = |what: &str, text: &str| {
-            (
-                format!("damper[{}].{what}", d + 1),
-                format!("{text} of {}", damper.name),
-            )
-        };
-        [
-            (
-                of("mass", "Mass"),
-                damper.mass_kg,
-                SMALLEST,
-                "Mass",
-                Some(&si::KILOGRAM),
-            ),
-            (
-                of("frequency", "Natural frequency, while the girder is held,"),
-                damper.frequency_hz,
-                SMALLEST,
-                "Frequency",
-                Some(&si::HERTZ),
-            ),
-            (
-                of(
-                    "damping_ratio",
-                    "Ratio to critical damping, while the girder is held,",
-                ),
-                damper.damping_ratio,
-                0.0,
-                "DampingRatio",
-                None,
-            ),
-        ]
-    });
-    let links = dampers.links.iter().enumerate().map(|(l, link)| {
+    let mut table: Vec<Variable> = Vec::new();
+    let mut add = |name: String, text: String, start, min, quantity, unit| {
+        let role = Role::DamperParameter(table.len());
+        let variable = real(name, role, text).quantity(quantity, unit);
+        table.push(variable.min(min).start(start));
+    };
+    for (d, damper) in dampers.masses.iter().enumerate() {
+        let name = |what: &str| format!("damper[{}].{what}", d + 1);
+        let text = |what: &str| format!("{what} of {}", damper.name);
+        add(
+            name("mass"),
+            text("Mass"),
+            damper.mass_kg,
+            SMALLEST,
+            "Mass",
+            Some(&si::KILOGRAM),
+        );
+        add(
+            name("frequency"),
+            text("Natural frequency, while the girder is held,"),
+            damper.frequency_hz,
+            SMALLEST,
+            "Frequency",
+            Some(&si::HERTZ),
+        );
+        add(
+            name("damping_ratio"),
+            text("Ratio to critical damping, while the girder is held,"),
+            damper.damping_ratio,
+            0.0,
+            "DampingRatio",
+            None,
+        );
+    }
+    for (l, link) in dampers.links.iter().enumerate() {
         let unit = match link.at.motion {
             Dof::Torsion => &si::NEWTON_METRE_SECOND_PER_RADIAN,
             _ => &si::NEWTON_SECOND_PER_METRE,
         };
-        let named = (
+        add(
             format!("link[{}].coefficient", l + 1),
             format!("Force over speed of {}", link.name),
-        );
-        (
-            named,
             link.coefficient,
             0.0,
             "DampingCoefficient",
             Some(unit),
-        )
-    });
-    let all = masses.chain(links).enumerate();
-    let variable = |(i, ((name, text), start, min, quantity, unit))| {
-        real(name, Role::DamperParameter(i), TUNABLE, text)
-            .quantity(quantity, unit)
-            .min(min)
-            .start(start)
-    };
-    all.map(variable).collect()
+        );
+    }
+    table
 }

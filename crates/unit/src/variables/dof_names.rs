@@ -1,82 +1,79 @@
 //! Names, units and words of the degrees of freedom.
 
+use super::{Response, Variable};
 use crate::section::Dof;
 use crate::si::{self, SiUnit};
 
 /// Names, units and words of one degree of freedom.
 pub(super) struct DofNames {
-    /// Displacement, rate, acceleration, force.
-    pub responses: [&'static str; 4],
-    /// Units of the same.
+    /// Displacement, with which the names of its rates begin.
+    pub displacement: &'static str,
+    /// Self-excited force.
+    pub force_name: &'static str,
+    /// Inertia.
+    pub inertia: &'static str,
+    /// With what the names of frequency and damping ratio begin.
+    pub support: &'static str,
+    /// Units and quantities of displacement, rate, acceleration, force.
     pub units: [&'static SiUnit; 4],
-    /// External force.
-    pub external: &'static str,
-    /// Displacement and rate at release.
-    pub initial: [&'static str; 2],
-    /// Inertia, frequency, damping ratio.
-    pub support: [&'static str; 3],
+    pub quantities: [&'static str; 4],
     pub inertia_unit: &'static SiUnit,
     pub inertia_quantity: &'static str,
     /// The motion and its sign.
     pub motion: &'static str,
     /// The force and its sign.
     pub force: &'static str,
-    pub force_quantity: &'static str,
-    /// Quantities of displacement, rate, acceleration.
-    pub quantities: [&'static str; 3],
 }
 
 const HEAVE: DofNames = DofNames {
-    responses: ["heave", "heave_rate", "heave_acceleration", "lift"],
+    displacement: "heave",
+    force_name: "lift",
+    inertia: "mass",
+    support: "heave",
     units: [
         &si::METRE,
         &si::METRE_PER_SECOND,
         &si::METRE_PER_SECOND2,
         &si::NEWTON_PER_METRE,
     ],
-    external: "external_lift",
-    initial: ["initial_heave", "initial_heave_rate"],
-    support: ["mass", "heave_frequency", "heave_damping_ratio"],
+    quantities: ["Length", "Velocity", "Acceleration", "ForcePerLength"],
     inertia_unit: &si::KILOGRAM_PER_METRE,
     inertia_quantity: "MassPerLength",
     motion: "vertical displacement, positive up",
     force: "vertical force per unit length of span, positive up",
-    force_quantity: "ForcePerLength",
-    quantities: ["Length", "Velocity", "Acceleration"],
 };
 
 static SWAY: DofNames = DofNames {
-    responses: ["sway", "sway_rate", "sway_acceleration", "drag"],
-    external: "external_drag",
-    initial: ["initial_sway", "initial_sway_rate"],
-    support: ["sway_mass", "sway_frequency", "sway_damping_ratio"],
+    displacement: "sway",
+    force_name: "drag",
+    inertia: "sway_mass",
+    support: "sway",
     motion: "lateral displacement, positive downwind",
     force: "lateral force per unit length of span, positive downwind",
     ..HEAVE
 };
 
 static ROTATION: DofNames = DofNames {
-    responses: [
-        "rotation",
-        "rotation_rate",
-        "rotation_acceleration",
-        "moment",
-    ],
+    displacement: "rotation",
+    force_name: "moment",
+    inertia: "inertia",
+    support: "torsion",
     units: [
         &si::RADIAN,
         &si::RADIAN_PER_SECOND,
         &si::RADIAN_PER_SECOND2,
         &si::NEWTON_METRE_PER_METRE,
     ],
-    external: "external_moment",
-    initial: ["initial_rotation", "initial_rotation_rate"],
-    support: ["inertia", "torsion_frequency", "torsion_damping_ratio"],
+    quantities: [
+        "Angle",
+        "AngularVelocity",
+        "AngularAcceleration",
+        "MomentPerLength",
+    ],
     inertia_unit: &si::KILOGRAM_METRE2_PER_METRE,
     inertia_quantity: "MomentOfInertiaPerLength",
     motion: "rotation, positive nose-up",
     force: "moment per unit length of span about the reference point, positive nose-up",
-    force_quantity: "MomentPerLength",
-    quantities: ["Angle", "AngularVelocity", "AngularAcceleration"],
 };
 
 pub(super) fn names_of(dof: Dof) -> &'static DofNames {
@@ -87,10 +84,41 @@ pub(super) fn names_of(dof: Dof) -> &'static DofNames {
     }
 }
 
-/// The kind of motion, as an adjective.
-pub(super) fn motion(dof: Dof) -> &'static str {
-    match dof {
-        Dof::Torsion => "torsional",
-        other => other.name(),
+impl DofNames {
+    /// Name of a motion, a rate of it, or its force.
+    pub(super) fn name(&self, response: Response) -> String {
+        let displacement = self.displacement;
+        match response {
+            Response::Displacement => displacement.to_owned(),
+            Response::Rate => format!("{displacement}_rate"),
+            Response::Acceleration => format!("{displacement}_acceleration"),
+            Response::SelfExcitedForce => self.force_name.to_owned(),
+        }
     }
+
+    /// The same in words.
+    pub(super) fn describe(&self, response: Response) -> String {
+        match response {
+            Response::Displacement => capitalized(self.motion),
+            Response::Rate => format!("Rate of the {}", self.motion),
+            Response::Acceleration => format!("Second rate of the {}", self.motion),
+            Response::SelfExcitedForce => format!("Self-excited {}", self.force),
+        }
+    }
+}
+
+impl Variable {
+    /// With unit and quantity of a motion, a rate of it, or its force: degrees help.
+    pub(super) fn measured_as(self, response: Response, dof: Dof) -> Self {
+        let (w, i) = (names_of(dof), response as usize);
+        self.quantity(w.quantities[i], Some(w.units[i]))
+            .shown_if(dof == Dof::Torsion)
+    }
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }

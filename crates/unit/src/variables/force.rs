@@ -2,9 +2,9 @@
 
 use super::computed_rows::{OF_A_STRIP, fill_computed_dependencies};
 use super::dof_names::names_of;
-use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
-use super::section::{air_density, capitalized, filter, gust_filter, gust_inputs, wind_speed};
-use super::{Dependency, ForceOutput, Response, Role, StripParameter, Variable};
+use super::real::{SMALLEST, constants, force_scale, nominal, real};
+use super::section::{air_density, filter, gust_filter, gust_inputs, wind_speed};
+use super::{Dependency, Response, Role, StripParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::force_options::{ForceOptions, MAX_PREDICTION, StripsOfModel};
@@ -123,28 +123,16 @@ fn motion<'a>(
     let dofs = model.section.dofs().into_iter();
     let each = dofs.flat_map(|dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
-        let (w, i) = (names_of(dof), response as usize);
-        let text = match response {
-            Response::Displacement => {
-                format!(
-                    "{} of the deck, at the reference point of the forces",
-                    capitalized(w.motion)
-                )
-            }
-            Response::Rate => format!(
-                "Rate of the {}; need not be connected in co-simulation",
-                w.motion
-            ),
-            _ => format!(
-                "Second rate of the {}; need not be connected in co-simulation",
-                w.motion
-            ),
+        let w = names_of(dof);
+        let more = match response {
+            Response::Displacement => " of the deck, at the reference point of the forces",
+            _ => "; need not be connected in co-simulation",
         };
         let role = Role::Motion(s, response, dof);
-        real(name(options, s, w.responses[i]), role, INPUT, text)
+        let text = w.describe(response) + more;
+        real(name(options, s, &w.name(response)), role, text)
             .start(0.0)
-            .quantity(w.quantities[i], Some(w.units[i]))
-            .shown_if(dof == Dof::Torsion)
+            .measured_as(response, dof)
             .nominal(nominal(model, dof, response))
     })
 }
@@ -165,19 +153,16 @@ fn forces<'a>(
             Dof::Torsion => (&si::NEWTON_METRE, "Torque"),
             _ => (&si::NEWTON, "Force"),
         };
-        let of = w.responses[3];
+        let of = w.force_name;
         let ahead = "at the instant at which it acts (see prediction)";
         let per_length = format!("{kind} {}, {ahead}", w.force);
         let total = format!("{kind} {of} on the length of the strip, {ahead}");
-        let output = |of: String, kind, text| {
-            let role = Role::Force(s, kind, dof);
-            real(name(options, s, &of), role, OUTPUT, text)
-        };
+        let output = |of: &str, role, text| real(name(options, s, of), role, text);
         [
-            output(of.to_owned(), ForceOutput::PerLength, per_length)
-                .quantity(w.force_quantity, Some(w.units[3]))
+            output(of, Role::Force(s, dof), per_length)
+                .measured_as(Response::SelfExcitedForce, dof)
                 .nominal(force_scale(model, dof)),
-            output(format!("total_{of}"), ForceOutput::Total, total)
+            output(&format!("total_{of}"), Role::TotalForce(s, dof), total)
                 .quantity(total_quantity, Some(total_unit)),
         ]
     })
@@ -187,7 +172,7 @@ fn strip(s: usize, options: &ForceOptions) -> [Variable; 3] {
     let of = &options.strips[s];
     let parameter = |of, which, text: &str| {
         let role = Role::Strip(s, which);
-        real(name(options, s, of), role, TUNABLE, text)
+        real(name(options, s, of), role, text)
     };
     let metre: Option<&SiUnit> = Some(&si::METRE);
     [
@@ -219,7 +204,6 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
         real(
             "prediction",
             Role::Prediction,
-            TUNABLE,
             "The forces put out are those of this many communication steps after the motion that was set for the last \
              step: 1.5 for an explicit importer that holds them over its next step (the default), 1 for one that \
              extrapolates them from the end of the step, 0.5 for one that steps the structure first and sets the motion of \
@@ -231,7 +215,6 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
         real(
             "motion_derivatives",
             Role::MotionDerivatives,
-            FIXED,
             "Derivatives of the motion that are set: 0 none, 1 rates, 2 rates and accelerations, -1 those that have \
              been set since the last step",
         )
@@ -241,41 +224,32 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
     ]
 }
 
-/// What the forces and states of a strip depend on.
-#[derive(Clone, Default)]
-struct StripDependencies {
-    /// Inputs and parameters.
-    known: Vec<usize>,
-    filters: Vec<usize>,
-    lags: Vec<usize>,
-}
-
 /// Forces follow the wind and the motion of their strip, its states, and everything that is stated of it; a filter's rate
 /// the displacements and all filters, that of a lagging gust the gusts and itself.
 fn fill_dependencies(table: &mut [Variable], strips: usize, states: &[StripState]) {
-    let (mut shared, mut of_strip) = (Vec::new(), vec![StripDependencies::default(); strips]);
+    let mut shared = Vec::new();
+    // inputs and parameters, filters, lagging gusts of each strip
+    let [mut of_strip, mut filters, mut lags] = [(); 3].map(|()| vec![Vec::new(); strips]);
     for (index, variable) in table.iter().enumerate() {
         match variable.role {
             Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(index),
-            Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => {
-                of_strip[s].known.push(index);
-            }
-            Role::Filter(i) if is_lag(variable) => of_strip[states[i].strip].lags.push(index),
-            Role::Filter(i) => of_strip[states[i].strip].filters.push(index),
+            Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => of_strip[s].push(index),
+            Role::Filter(i) if is_lag(variable) => lags[states[i].strip].push(index),
+            Role::Filter(i) => filters[states[i].strip].push(index),
             _ => {}
         }
     }
     let roles: Vec<Role> = table.iter().map(|v| v.role).collect();
     for (index, variable) in table.iter_mut().enumerate() {
-        let (strip, inner) = match variable.role {
-            Role::Force(s, ..) => (s, [&of_strip[s].filters[..], &of_strip[s].lags].concat()),
+        let (strip, inner): (usize, Vec<usize>) = match variable.role {
+            Role::Force(s, _) | Role::TotalForce(s, _) => (s, [&filters[s][..], &lags[s]].concat()),
             Role::Filter(i) => (states[i].strip, vec![index]),
             // behind its state
             Role::FilterRate(i) if is_lag(variable) => (states[i].strip, vec![index - 1]),
-            Role::FilterRate(i) => (states[i].strip, of_strip[states[i].strip].filters.clone()),
+            Role::FilterRate(i) => (states[i].strip, filters[states[i].strip].clone()),
             _ => continue,
         };
-        let known = shared.iter().chain(&of_strip[strip].known).copied();
+        let known = shared.iter().chain(&of_strip[strip]).copied();
         let mut known: Vec<usize> = known.filter(|on| follows(variable, roles[*on])).collect();
         known.sort_unstable();
         let input = |index: &usize| {
@@ -307,10 +281,8 @@ fn follows(variable: &Variable, on: Role) -> bool {
     let wind = on == Role::WindSpeed || matches!(on, Role::Strip(_, StripParameter::WindFactor));
     let gust = matches!(on, Role::Gust(..));
     match variable.role {
-        Role::Force(_, ForceOutput::PerLength, _) => {
-            !matches!(on, Role::Strip(_, StripParameter::Length))
-        }
-        Role::Force(..) => true,
+        Role::Force(..) => !matches!(on, Role::Strip(_, StripParameter::Length)),
+        Role::TotalForce(..) => true,
         Role::Filter(_) if is_lag(variable) => gust,
         Role::Filter(_) => displacement || width,
         _ if is_lag(variable) => gust || width || wind,

@@ -1,4 +1,4 @@
-//! The properties of the section and of the modes of a bridge as parameters.
+//! The properties of the section as parameters.
 
 use crate::section::{Dof, SectionModel};
 use std::f64::consts::TAU;
@@ -20,15 +20,6 @@ pub enum SectionParameter {
     Frequency(Dof),
     /// Ratio to critical damping.
     DampingRatio(Dof),
-}
-
-/// A tunable property of a mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ModeParameter {
-    /// Natural frequency without wind, Hz.
-    Frequency,
-    /// Ratio to critical damping.
-    DampingRatio,
 }
 
 impl SectionParameter {

@@ -1,7 +1,7 @@
 //! Real variables, and the constants that every exported unit has.
 
 use super::parameters::SectionParameter;
-use super::{Causality, Initial, Response, Role, StartValue, Variability, Variable};
+use super::{Causality, Initial, Response, Role, StartValue, Variable};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::si::{self, SiUnit};
@@ -12,33 +12,13 @@ use std::f64::consts::TAU;
 /// Smallest width, density and mass: positive, and small enough for any model deck.
 pub(super) const SMALLEST: f64 = 1e-6;
 
-/// How a variable is set, and when it changes.
-#[derive(Clone, Copy)]
-pub(super) struct VariableKind {
-    causality: Causality,
-    variability: Variability,
-}
-
-impl VariableKind {
-    const fn new(causality: Causality, variability: Variability) -> Self {
-        Self {
-            causality,
-            variability,
-        }
-    }
-}
-
 /// A real variable without start, unit or limits.
 pub(super) fn real(
     name: impl Into<String>,
     role: Role,
-    kind: VariableKind,
     description: impl Into<String>,
 ) -> Variable {
-    let VariableKind {
-        causality,
-        variability,
-    } = kind;
+    let (causality, variability) = role.kind();
     let initial = match causality {
         Causality::Input => None,
         Causality::Parameter => Some(Initial::Exact),
@@ -80,16 +60,12 @@ impl Variable {
         self
     }
 
-    /// Shown in the first display unit of its unit, if there is one.
-    pub(super) fn shown(mut self) -> Self {
+    /// Shown in the first display unit of its unit, if there is one and where that is wanted: degrees help, kilometres per hour of a
+    /// vibrating deck do not.
+    pub(super) fn shown_if(mut self, wanted: bool) -> Self {
         let display = self.unit.and_then(|u| u.display.first());
-        self.display_unit = display.map(|(name, _)| *name);
+        self.display_unit = display.filter(|_| wanted).map(|(name, _)| *name);
         self
-    }
-
-    /// Degrees help, kilometres per hour of a vibrating deck do not.
-    pub(super) fn shown_if(self, wanted: bool) -> Self {
-        if wanted { self.shown() } else { self }
     }
 
     pub(super) fn min(mut self, min: f64) -> Self {
@@ -108,19 +84,6 @@ impl Variable {
     }
 }
 
-pub(super) const INPUT: VariableKind = VariableKind::new(Causality::Input, Variability::Continuous);
-pub(super) const OUTPUT: VariableKind =
-    VariableKind::new(Causality::Output, Variability::Continuous);
-pub(super) const DISCRETE: VariableKind =
-    VariableKind::new(Causality::Output, Variability::Discrete);
-pub(super) const TUNABLE: VariableKind =
-    VariableKind::new(Causality::Parameter, Variability::Tunable);
-pub(super) const FIXED: VariableKind = VariableKind::new(Causality::Parameter, Variability::Fixed);
-pub(super) const CALCULATED: VariableKind =
-    VariableKind::new(Causality::CalculatedParameter, Variability::Tunable);
-pub(super) const LOCAL: VariableKind = VariableKind::new(Causality::Local, Variability::Constant);
-/// A state or its rate.
-pub(super) const INNER: VariableKind = VariableKind::new(Causality::Local, Variability::Continuous);
 pub(super) const SPEED: Option<&SiUnit> = Some(&si::METRE_PER_SECOND);
 
 /// `filters` is the number of the states of the forces, the largest of several models.
@@ -128,7 +91,7 @@ pub(super) fn constants(models: &[&TrainedModel], filters: usize) -> Result<Vec<
     let constant = |name, value, text: &str| Variable {
         initial: Some(Initial::Exact),
         value,
-        ..real(name, Role::Constant, LOCAL, text)
+        ..real(name, Role::Constant, text)
     };
     // as the description can say it
     let text = |text: &str| StartValue::String(printable(text));

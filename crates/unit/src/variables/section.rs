@@ -1,12 +1,9 @@
 //! The variables of the coupled section, in the order of the table.
 
 use super::computed_rows::{OF_THE_PRESENT, SEARCHED};
-use super::dof_names::{DofNames, motion, names_of};
+use super::dof_names::names_of;
 use super::parameters::SectionParameter;
-use super::real::{
-    FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale, nominal,
-    real,
-};
+use super::real::{SMALLEST, SPEED, constants, force_scale, nominal, real};
 use super::{ComputedNumber, Initial, Response, Role, Variable};
 use crate::aerodynamics::{GustComponent, GustForce, Realizable, Realization};
 use crate::error::Result;
@@ -68,7 +65,7 @@ pub(super) fn onset_bounds(bounds: &OnsetBounds, of: &str) -> [Variable; 2] {
         );
         Variable {
             initial: Some(Initial::Exact),
-            ..real(name, Role::Constant, LOCAL, text)
+            ..real(name, Role::Constant, text)
         }
         .start(value)
         .quantity("Velocity", SPEED)
@@ -81,20 +78,17 @@ pub(super) fn onset_bounds(bounds: &OnsetBounds, of: &str) -> [Variable; 2] {
 
 /// The gusts at a strip.
 pub(super) fn gust_inputs(strip: usize, name: impl Fn(&str) -> String) -> [Variable; 2] {
-    let gust = |of, text| {
-        let (plain, text) = text;
-        real(name(plain), Role::Gust(strip, of), INPUT, text)
+    let along = "Turbulence along the mean wind, on top of it";
+    [
+        (GustComponent::Along, "gust_u", along),
+        (GustComponent::Vertical, "gust_w", "Turbulence upwards"),
+    ]
+    .map(|(of, plain, text)| {
+        real(name(plain), Role::Gust(strip, of), text)
             .start(0.0)
             .quantity("Velocity", SPEED)
             .nominal(1.0)
-    };
-    [
-        gust(
-            GustComponent::Along,
-            ("gust_u", "Turbulence along the mean wind, on top of it"),
-        ),
-        gust(GustComponent::Vertical, ("gust_w", "Turbulence upwards")),
-    ]
+    })
 }
 
 /// A filter state and its rate: for importers that integrate, and for linear state spaces.
@@ -119,11 +113,10 @@ pub(super) fn gust_filter(i: usize, name: &str) -> [Variable; 2] {
 
 fn inner_state(i: usize, name: &str, text: &str) -> [Variable; 2] {
     [
-        real(name, Role::Filter(i), INNER, text),
+        real(name, Role::Filter(i), text),
         real(
             format!("der({name})"),
             Role::FilterRate(i),
-            INNER,
             "Rate of that state",
         ),
     ]
@@ -142,7 +135,7 @@ fn name_rates(table: &mut [Variable]) {
 
 pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
     let text = "Mean wind speed V, normal to the span";
-    real("wind_speed", Role::WindSpeed, INPUT, text)
+    real("wind_speed", Role::WindSpeed, text)
         .start(model.experiment.wind_speed_m_s)
         .quantity("Velocity", SPEED)
         .min(0.0)
@@ -163,10 +156,14 @@ fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
     let external = dofs.iter().map(|&dof| {
         let w = names_of(dof);
         let text = format!("External {}", force_words(model, w));
-        real(w.external, Role::ExternalForce(dof), INPUT, text)
-            .start(0.0)
-            .quantity(w.force_quantity, Some(w.units[3]))
-            .nominal(force_scale(model, dof))
+        real(
+            format!("external_{}", w.force_name),
+            Role::ExternalForce(dof),
+            text,
+        )
+        .start(0.0)
+        .measured_as(Response::SelfExcitedForce, dof)
+        .nominal(force_scale(model, dof))
     });
     std::iter::once(wind_speed(model)).chain(external).collect()
 }
@@ -179,24 +176,19 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
         ),
         _ => String::new(),
     };
-    let describe = |response: Response, w: &DofNames| match response {
-        Response::Displacement => capitalized(w.motion),
-        Response::Rate => format!("Rate of the {}", w.motion),
-        Response::Acceleration => format!("Second rate of the {}", w.motion),
-        Response::SelfExcitedForce => {
-            let force = force_words(model, w);
-            format!("Self-excited {force}, added mass included{sampling}")
-        }
-    };
     dofs.iter()
         .flat_map(|&dof| Response::ALL.map(|response| (dof, response)))
         .map(|(dof, response)| {
-            let (w, i) = (names_of(dof), response as usize);
-            let quantity = w.quantities.get(i).copied().unwrap_or(w.force_quantity);
-            let role = Role::Response(response, dof);
-            real(w.responses[i], role, OUTPUT, describe(response, w))
-                .quantity(quantity, Some(w.units[i]))
-                .shown_if(dof == Dof::Torsion)
+            let w = names_of(dof);
+            let text = match response {
+                Response::SelfExcitedForce => {
+                    let force = force_words(model, w);
+                    format!("Self-excited {force}, added mass included{sampling}")
+                }
+                motion => w.describe(motion),
+            };
+            real(w.name(response), Role::Response(response, dof), text)
+                .measured_as(response, dof)
                 .nominal(nominal(model, dof, response))
         })
         .collect()
@@ -207,7 +199,6 @@ pub(super) fn air_density() -> Variable {
     real(
         "air_density",
         Role::Section(SectionParameter::AirDensity),
-        TUNABLE,
         "Air density rho",
     )
     .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
@@ -215,30 +206,31 @@ pub(super) fn air_density() -> Variable {
 }
 
 fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Variable {
-    let variable = |name, text: &str| real(name, Role::Section(parameter), TUNABLE, text);
-    let of_support = |dof, i: usize, text: &str| {
-        let text = format!("{text}, {} motion", motion(dof));
-        real(
-            names_of(dof).support[i],
-            Role::Section(parameter),
-            TUNABLE,
-            text,
+    let variable = |name: String, text: &str| real(name, Role::Section(parameter), text);
+    let of_support = |dof: Dof, of: &str, text: &str| {
+        let motion = match dof {
+            Dof::Torsion => "torsional",
+            other => other.name(),
+        };
+        variable(
+            format!("{}_{of}", names_of(dof).support),
+            &format!("{text}, {motion} motion"),
         )
         .min(0.0)
     };
     let metre: Option<&SiUnit> = Some(&si::METRE);
     match parameter {
         SectionParameter::AxisOffset => variable(
-            "axis_offset",
+            "axis_offset".into(),
             "Axis about which the section turns, to which heave, lift and moment belong: distance from the reference point of the aerodynamic forces, positive downwind",
         )
         .quantity("Length", metre),
         SectionParameter::MassOffset => variable(
-            "mass_offset",
+            "mass_offset".into(),
             "Centre of mass: distance from the axis, positive downwind",
         )
         .quantity("Length", metre),
-        SectionParameter::Width => variable("width", "Full deck width B")
+        SectionParameter::Width => variable("width".into(), "Full deck width B")
             .quantity("Length", metre)
             .min(SMALLEST),
         SectionParameter::AirDensity => air_density(),
@@ -249,14 +241,14 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
                 Dof::Torsion => (SMALLEST_INERTIA, "Mass moment of inertia per unit length of span"),
             };
             let w = names_of(dof);
-            variable(w.support[0], text)
+            variable(w.inertia.into(), text)
                 .quantity(w.inertia_quantity, Some(w.inertia_unit))
                 .min(min)
         }
-        SectionParameter::Frequency(dof) => of_support(dof, 1, "Natural frequency in still air")
+        SectionParameter::Frequency(dof) => of_support(dof, "frequency", "Natural frequency in still air")
             .quantity("Frequency", Some(&si::HERTZ)),
         SectionParameter::DampingRatio(dof) => {
-            of_support(dof, 2, "Structural damping as a ratio to critical")
+            of_support(dof, "damping_ratio", "Structural damping as a ratio to critical")
                 .quantity("DampingRatio", None)
         }
     }
@@ -271,30 +263,23 @@ fn initial_values(dof: Dof, model: &TrainedModel) -> [Variable; 2] {
         Dof::Lateral => 0.0,
         Dof::Torsion => model.experiment.initial_rotation_rad,
     };
-    let variable = |i: usize, start: f64, role: Role, what: &str| {
+    let variable = |response, start: f64, role: Role, what: &str| {
         let text = format!("At release: {what}{}", w.motion);
-        real(w.initial[i], role, FIXED, text)
+        real(format!("initial_{}", w.name(response)), role, text)
             .start(start)
-            .quantity(w.quantities[i], Some(w.units[i]))
-            .shown_if(dof == Dof::Torsion)
+            .measured_as(response, dof)
     };
+    let displacement = Role::InitialDisplacement(dof);
     [
-        variable(0, release, Role::InitialDisplacement(dof), ""),
-        variable(1, 0.0, Role::InitialRate(dof), "rate of the "),
+        variable(Response::Displacement, release, displacement, ""),
+        variable(Response::Rate, 0.0, Role::InitialRate(dof), "rate of the "),
     ]
 }
 
 pub(super) fn search_limit(model: &TrainedModel) -> Variable {
     let text = "Flutter onset and divergence are searched up to this wind speed";
-    real("onset_search_limit", Role::OnsetSearchLimit, FIXED, text)
+    real("onset_search_limit", Role::OnsetSearchLimit, text)
         .start(model.experiment.onset_search_limit_m_s)
         .quantity("Velocity", SPEED)
         .min(SMALLEST)
-}
-
-pub(super) fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }

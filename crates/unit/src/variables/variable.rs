@@ -1,7 +1,7 @@
 //! One variable of the table: what it stands for, its type, its limits and what it depends on.
 
 use super::computed::ComputedNumber;
-use super::parameters::{ModeParameter, SectionParameter};
+use super::parameters::SectionParameter;
 use super::response::Response;
 use crate::aerodynamics::GustComponent;
 use crate::section::Dof;
@@ -63,8 +63,10 @@ pub enum Role {
     Constant,
     /// Motion of a degree of freedom of a strip, counted from zero.
     Motion(usize, Response, Dof),
-    /// Self-excited force on a strip.
-    Force(usize, ForceOutput, Dof),
+    /// Self-excited force on a strip, per unit length of span.
+    Force(usize, Dof),
+    /// The same on the whole strip.
+    TotalForce(usize, Dof),
     /// A property of a strip.
     Strip(usize, StripParameter),
     /// Computed from wind, motion and forces of a strip.
@@ -77,12 +79,14 @@ pub enum Role {
     NodeForce(usize, Dof),
     /// Motion of a node of a bridge.
     NodeMotion(usize, Response, Dof),
-    /// A number of a mode of a bridge.
-    Mode(usize, ModeOutput),
+    /// Coordinate of a mode of a bridge, its rate, or the self-excited force on it.
+    Mode(usize, Response),
     /// Modal coordinate at release.
     InitialMode(usize),
-    /// A property of a mode of a bridge.
-    ModeParameter(usize, ModeParameter),
+    /// Natural frequency of a mode of a bridge without wind, Hz.
+    ModeFrequency(usize),
+    /// Ratio of its damping to critical.
+    ModeDamping(usize),
     /// Stroke of a mass damper, or a rate of it.
     Damper(usize, Response),
     /// A property of the dampers, in the order of [`Bridge::tunable`](crate::bridge::Bridge::tunable).
@@ -97,30 +101,50 @@ impl Role {
         matches!(
             self,
             Self::Section(SectionParameter::AirDensity)
-                | Self::ModeParameter(..)
+                | Self::ModeFrequency(_)
+                | Self::ModeDamping(_)
                 | Self::DamperParameter(_)
         )
     }
-}
 
-/// A number of a mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ModeOutput {
-    /// Its coordinate.
-    Coordinate,
-    /// The rate of it.
-    Rate,
-    /// The self-excited force on it.
-    Force,
-}
-
-/// A force on a strip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ForceOutput {
-    /// Per unit length of span.
-    PerLength,
-    /// On the whole strip.
-    Total,
+    /// What it is to the importer, and when it changes.
+    pub(crate) fn kind(self) -> (Causality, Variability) {
+        match self {
+            Self::WindSpeed
+            | Self::ExternalForce(_)
+            | Self::Gust(..)
+            | Self::Motion(..)
+            | Self::NodeForce(..) => (Causality::Input, Variability::Continuous),
+            Self::Response(..)
+            | Self::Force(..)
+            | Self::TotalForce(..)
+            | Self::NodeMotion(..)
+            | Self::Mode(..)
+            | Self::Damper(..) => (Causality::Output, Variability::Continuous),
+            Self::Section(_)
+            | Self::Strip(..)
+            | Self::Prediction
+            | Self::ModeFrequency(_)
+            | Self::ModeDamping(_)
+            | Self::DamperParameter(_)
+            | Self::TurbulenceFactor => (Causality::Parameter, Variability::Tunable),
+            Self::InitialDisplacement(_)
+            | Self::InitialRate(_)
+            | Self::InitialMode(_)
+            | Self::OnsetSearchLimit
+            | Self::MotionDerivatives => (Causality::Parameter, Variability::Fixed),
+            Self::Constant => (Causality::Local, Variability::Constant),
+            Self::Filter(_) | Self::FilterRate(_) => (Causality::Local, Variability::Continuous),
+            Self::Computed(number) | Self::OfStrip(_, number) => {
+                let variability = match (number.causality, number.is_flag()) {
+                    (Causality::Output, false) => Variability::Continuous,
+                    (Causality::Output, true) => Variability::Discrete,
+                    _ => Variability::Tunable,
+                };
+                (number.causality, variability)
+            }
+        }
+    }
 }
 
 /// A property of a strip.

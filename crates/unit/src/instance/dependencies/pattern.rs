@@ -41,7 +41,7 @@ pub(super) struct Pattern<S: CoupledKind> {
 impl<S: CoupledKind> Pattern<S> {
     pub(super) fn new(mut unit: Coupled<S>, resources: &Resources) -> Result<Self> {
         let table = resources.table.variables();
-        let start = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
+        let start = Memory::new(resources, unit.inputs().len(), unit.at_rest());
         let with = |value: fn(usize, &Variable) -> f64| {
             let mut memory = start.clone();
             for (i, (own, variable)) in memory.values.iter_mut().zip(table).enumerate() {

@@ -2,7 +2,7 @@
 
 use super::{Exported, KINDS, driven, index, instance, start};
 use crate::instance::layout::{DataType, Source};
-use crate::instance::{Instance, Snapshot};
+use crate::instance::{Instance, Memory};
 use crate::lifecycle::{State, gettable_in, settable_in};
 
 /// Indices of the parameters that may be set in a state, with other values for them.
@@ -92,7 +92,7 @@ fn judge_made(kind: Exported, integrated: bool, state: State, made: &dyn Fn() ->
     begin(&mut unit);
     let indices = computed(&unit, state);
     let before = unit.snapshot();
-    let shown = |unit: &mut Instance, snapshot: &Snapshot| {
+    let shown = |unit: &mut Instance, snapshot: &Memory| {
         unit.restore(snapshot).unwrap();
         read_from(unit, &indices, 0)
     };

@@ -90,7 +90,7 @@ fn an_onset_below_the_lowest_speed_of_a_sampled_model_is_told() {
     let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
     let structure = model.section.structure().unwrap();
     let section = CoupledSection::with_model(&structure, &model.model).unwrap();
-    let mut card = OnsetCard::nothing_found(0.1, Vec::new());
+    let mut card = OnsetCard::nothing_found(0.1);
     card.numbers.stable_below = true;
     card.look_beside_tests(&section, Some(model.tested_range));
     assert!(!card.numbers.stable_below);

@@ -97,7 +97,7 @@ fn derivatives_of_forces_after_a_step_are_differences() {
                 .collect()
         };
         let motions = of(|role| matches!(role, Role::Motion(..)));
-        let forces = of(|role| matches!(role, Role::Force(..)));
+        let forces = of(|role| matches!(role, Role::Force(..) | Role::TotalForce(..)));
         for step in 0..4 {
             let motion = |i: &u32| 1e-3 * f64::from(*i + 3 * step).sin();
             let now: Vec<f64> = motions.iter().map(motion).collect();

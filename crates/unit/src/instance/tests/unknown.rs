@@ -36,7 +36,7 @@ fn an_onset_that_is_not_there_is_the_limit() {
 /// Nothing is stable below an onset that is not known, whatever has been judged before its search.
 #[test]
 fn an_onset_that_is_not_known_is_no_stable_one() {
-    let mut card = OnsetCard::nothing_found(1.0, Vec::new());
+    let mut card = OnsetCard::nothing_found(1.0);
     card.numbers.stable_below = true;
     card.onset_unknown(&Error::Numerical("no search".into()));
     card.judge(None);
