@@ -1,7 +1,7 @@
 //! The variables of the coupled section, in the order of the table.
 
 use super::computed_rows::{OF_THE_PRESENT, SEARCHED};
-use super::dof_names::names_of;
+use super::dof_names::{DofNames, names_of};
 use super::parameters::SectionParameter;
 use super::real::{SMALLEST, SPEED, constants, force_scale, nominal, real};
 use super::{ComputedNumber, Initial, Response, Role, Variable};
