@@ -6,7 +6,7 @@
 
 use aerodeck::aerodynamics::derivatives::TableHeader;
 use aerodeck::files::derivatives::ReadOptions;
-use aerodeck::files::derivatives::read_workbook;
+use aerodeck::files::derivatives::read_table_with;
 use aerodeck::files::derivatives::write_csv;
 use std::error::Error;
 use std::fs::File;
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         header,
         ..ReadOptions::default()
     };
-    let table = read_workbook(workbook, &options)?;
+    let (table, _) = read_table_with(workbook, &options)?;
     let mut file = BufWriter::new(File::create_new(out)?);
     write_csv(&table, &mut file)?;
     file.flush()?;

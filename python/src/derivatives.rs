@@ -63,8 +63,8 @@ impl Derivatives {
                 .transpose()?,
             ..ReadOptions::default()
         };
-        let read = read_table_with(path, &options).map_err(raised)?;
-        Self::judged(py, read.table, &read.convention)
+        let (table, convention) = read_table_with(path, &options).map_err(raised)?;
+        Self::judged(py, table, &convention)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
@@ -77,8 +77,8 @@ impl Derivatives {
     #[staticmethod]
     fn _from_state(state: &str) -> PyResult<Self> {
         let (text, findings): (String, _) = restored(state)?;
-        let read = parse_csv_in(&text, &ReadOptions::default()).map_err(raised)?;
-        Ok(Self(read.table, findings))
+        let (table, _) = parse_csv_in(&text, &ReadOptions::default()).map_err(raised)?;
+        Ok(Self(table, findings))
     }
 
     /// A measured deck that comes with the package: one of `Derivatives.decks()`.

@@ -6,7 +6,10 @@ use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
 use crate::cli::text::to_tenths_of_mm;
 use crate::error::{Result, counted};
-use crate::wind_tunnel::campaign::{Campaign, CampaignReading, RecordingSummary};
+use crate::section::Dof;
+use crate::wind_tunnel::RawRecording;
+use crate::wind_tunnel::campaign::{Campaign, CampaignReading};
+use serde_json::json;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -36,15 +39,31 @@ pub(crate) fn run(command: &CampaignCommand, progress: &Progress) -> Result<Answ
 fn check(file: &Path, progress: &Progress) -> Result<Answer> {
     let campaign = Campaign::read(file)?;
     let reading = progress.during("reading the recordings", || campaign.load())?;
-    Answer::new(
-        text(&reading),
-        &serde_json::json!({
-            "section": reading.raw.section,
-            "rig": reading.raw.rig,
-            "runs": reading.runs,
-            "findings": reading.findings,
-        }),
-    )
+    let recording = |r: &RawRecording| {
+        json!({
+            "source": r.source,
+            "samples": r.sample_count(),
+            "sampling_hz": r.sampling_hz,
+            "channels": r.channels,
+        })
+    };
+    let runs = reading.raw.runs.iter().map(|run| {
+        json!({
+            "name": run.name,
+            "motion": run.motion,
+            "mean_speed_m_s": run.mean_speed_m_s,
+            "air_density_kg_m3": run.air_density_kg_m3,
+            "in_wind": recording(&run.in_wind),
+            "still_air": run.still_air.as_ref().map(recording),
+        })
+    });
+    let value = json!({
+        "section": reading.raw.section,
+        "rig": reading.raw.rig,
+        "runs": runs.collect::<Vec<_>>(),
+        "findings": reading.findings,
+    });
+    Answer::new(text(&reading), &value)
 }
 
 fn text(reading: &CampaignReading) -> String {
@@ -57,13 +76,12 @@ fn text(reading: &CampaignReading) -> String {
         to_tenths_of_mm(rig.model_width_m),
         cells.join(", ")
     );
-    for run in &reading.runs {
-        let motion: Vec<&str> = run.motion.iter().map(|d| d.name()).collect();
+    for run in &reading.raw.runs {
         let _ = writeln!(
             text,
             "  {}: {} motion, {:.3} m/s, {:.4} kg/m³",
             run.name,
-            motion.join(", "),
+            Dof::names(&run.motion),
             run.mean_speed_m_s,
             run.air_density_kg_m3
         );
@@ -72,7 +90,7 @@ fn text(reading: &CampaignReading) -> String {
             let _ = writeln!(text, "    {what:<9} {}", described(recording));
         }
     }
-    if let Some(run) = reading.runs.first() {
+    if let Some(run) = reading.raw.runs.first() {
         let _ = writeln!(text, "  channels: {}", run.in_wind.channels.join(", "));
     }
     match reading.findings.len() {
@@ -87,12 +105,11 @@ fn text(reading: &CampaignReading) -> String {
     text
 }
 
-fn described(recording: &RecordingSummary) -> String {
+fn described(recording: &RawRecording) -> String {
+    let (samples, rate) = (recording.sample_count(), recording.sampling_hz);
+    let seconds = samples as f64 / rate;
     format!(
-        "{}: {} samples at {} Hz ({:.1} s)",
-        recording.source,
-        recording.samples,
-        recording.sampling_hz,
-        recording.samples as f64 / recording.sampling_hz
+        "{}: {samples} samples at {rate} Hz ({seconds:.1} s)",
+        recording.source
     )
 }

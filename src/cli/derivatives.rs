@@ -11,8 +11,8 @@ use crate::aerodynamics::derivatives::notation::{
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
 use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
-    ReadOptions, TableInConvention, embedded, file_and_sheet, is_table_file, named_sheet,
-    read_table_with, template_bytes, workbook_bytes_in, write_csv_in,
+    ReadOptions, embedded, file_and_sheet, is_table_file, named_sheet, read_table_with,
+    template_bytes, workbook_bytes_in, write_csv_in,
 };
 use crate::plausibility::{of_table, sentences};
 use crate::report::axes_sketch;
@@ -136,7 +136,7 @@ impl TableArgs {
     }
 
     /// The table and the convention it was in.
-    fn read(&self) -> Result<TableInConvention> {
+    fn read(&self) -> Result<(DerivativeTable, Convention)> {
         let stated = StatedConvention {
             notation: self.from,
             argument: self.from_argument,
@@ -155,7 +155,7 @@ impl TableArgs {
         }
         let table = embedded::deck_where_files_are_taken(&self.table)?;
         let convention = stated.with_file(Convention::default().into())?;
-        Ok(TableInConvention { table, convention })
+        Ok((table, convention))
     }
 }
 
@@ -172,10 +172,7 @@ fn named<'a>(path: &'a Path, endings: &[&str]) -> Result<&'a OsStr> {
 
 fn convert(args: &TableArgs, result: &Path) -> Result<Answer> {
     let name = named(result, &["csv", "xlsx"])?;
-    let TableInConvention {
-        table,
-        convention: from,
-    } = args.read()?;
+    let (table, from) = args.read()?;
     let to = args.target();
     refuse_own_input(args, result)?;
     let bytes = if named(result, &["xlsx"]).is_ok() {
@@ -222,10 +219,7 @@ fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Ve
 }
 
 fn show(args: &TableArgs, each_point: bool) -> Result<Answer> {
-    let TableInConvention {
-        table,
-        convention: from,
-    } = args.read()?;
+    let (table, from) = args.read()?;
     let expressed = args.target().express(&table);
     let mut text = head(&table, &from, &expressed.convention);
     let warnings = warnings(&table, &from, &mut text);

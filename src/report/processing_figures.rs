@@ -8,7 +8,7 @@ use super::scene::Figure;
 use super::style::{BLACK, Ink, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::wind_tunnel::processing::{RunReport, StageSignals};
+use crate::wind_tunnel::processing::{RunReport, SectionSignals, StageLevels};
 use std::ops::Range;
 
 const PLACE: &str = "processing of a run";
@@ -22,19 +22,19 @@ const PERIODS: f64 = 3.0;
 /// [`Error::Input`] for a run without stages or numbers that are not finite.
 pub(crate) fn processing_figure(
     run: &RunReport,
-    stages: &[StageSignals],
+    stages: &[SectionSignals],
     dof: Dof,
 ) -> Result<Figure> {
     let Some(last) = stages.last() else {
         return Err(Error::input(PLACE, "stages", "none"));
     };
     let (force, motion) = (dof as usize, run.dof as usize);
-    let rate = last.signals.sampling_hz;
+    let rate = last.sampling_hz;
     let points = |x: &[f64]| -> Vec<(f64, f64)> {
         let samples = x.iter().enumerate();
         samples.map(|(k, v)| (k as f64 / rate, *v)).collect()
     };
-    let whole = 0.0..last.signals.force[force].len() as f64 / rate;
+    let whole = 0.0..last.force[force].len() as f64 / rate;
     let windows = [whole.clone(), close_up(run, whole)];
     let shaded: Vec<(f64, f64)> = run
         .replaced
@@ -44,15 +44,15 @@ pub(crate) fn processing_figure(
     let force_ink = Ink::stroke(colour(PLACE, 0)?, None, 1.1);
     let motion_ink = Ink::stroke(colour(PLACE, 1)?, None, 1.1);
     let mut panels = Vec::with_capacity(2 * stages.len() + 2);
-    for stage in stages {
+    for (levels, signals) in run.levels.iter().zip(stages) {
         let signal = Series {
-            name: stage.stage.clone(),
-            points: points(&stage.signals.force[force]),
+            name: levels.stage.clone(),
+            points: points(&signals.force[force]),
             ink: force_ink,
         };
         let axes = [Axis::new(""), Axis::new(force_label(dof))];
         let [mut left, right] = pair(&windows, &shaded, axes, signal);
-        left.title = Some(stage_title(run, &stage.stage, dof));
+        left.title = Some(stage_title(levels, dof));
         panels.extend([left, right]);
     }
     let motion_name = format!("{} motion", run.dof.name());
@@ -60,7 +60,7 @@ pub(crate) fn processing_figure(
     let label = format!("{} ({unit})", run.dof.symbol());
     let signal = Series {
         name: "motion".into(),
-        points: points(&last.signals.motion[motion]),
+        points: points(&last.motion[motion]),
         ink: motion_ink,
     };
     let axes = [Axis::new("t (s)"), Axis::new(label)];
@@ -110,13 +110,10 @@ fn pair(
 }
 
 /// The stage with what is left of the force after it.
-fn stage_title(run: &RunReport, stage: &str, dof: Dof) -> String {
-    let force = dof as usize;
-    let Some(l) = run.levels.iter().find(|l| l.stage == stage) else {
-        return stage.to_owned();
-    };
-    let (peak, rms, unit) = (l.peak[force], l.rms[force], force_unit(dof));
-    format!("{stage}: peak {peak:.4}, RMS {rms:.4} {unit}")
+fn stage_title(levels: &StageLevels, dof: Dof) -> String {
+    let (peak, rms) = (levels.peak[dof as usize], levels.rms[dof as usize]);
+    let unit = force_unit(dof);
+    format!("{}: peak {peak:.4}, RMS {rms:.4} {unit}", levels.stage)
 }
 
 fn force_unit(dof: Dof) -> &'static str {

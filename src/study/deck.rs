@@ -88,9 +88,8 @@ impl Deck {
                 missing: study.deck.missing,
                 ..ReadOptions::default()
             };
-            let read = read_table_with(study.directory.join(name), &options)?;
-            convention = read.convention;
-            let mut table = read.table;
+            let (mut table, of_file) = read_table_with(study.directory.join(name), &options)?;
+            convention = of_file;
             table
                 .header
                 .state_angle("deck.angle_deg", study.deck.angle_deg)?;

@@ -6,7 +6,7 @@ use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::aerodynamics::derivatives::notation::*;
 use aerodeck::aerodynamics::derivatives::{Derivative, Part};
 use aerodeck::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
-use aerodeck::files::derivatives::{ReadOptions, TableInConvention, parse_csv_in, write_csv_in};
+use aerodeck::files::derivatives::{ReadOptions, parse_csv_in, write_csv_in};
 use aerodeck::section::Dof;
 use aerodeck::units::ReducedFrequency;
 use rand::{Rng, SeedableRng};
@@ -170,10 +170,7 @@ fn every_pair_of_conventions_round_trips() {
             let mut text = Vec::new();
             write_csv_in(&table, &from, &mut text).unwrap();
             let text = String::from_utf8(text).unwrap();
-            let TableInConvention {
-                table: read,
-                convention: said,
-            } = parse_csv_in(&text, &ReadOptions::default()).unwrap();
+            let (read, said) = parse_csv_in(&text, &ReadOptions::default()).unwrap();
             assert_eq!(said, from);
             assert_same(&table, &read, &from.to_string());
             for to in all_conventions() {
@@ -296,10 +293,10 @@ fn contradictions_are_refused() {
         .collect();
     assert!(says(&silent, nothing).starts_with("notation: expected it stated in the file or"));
     let stated = StatedConvention::notation(Notation::Polimi);
-    let table = parse_csv_in(&silent, &stating(stated)).unwrap().table;
+    let (table, _) = parse_csv_in(&silent, &stating(stated)).unwrap();
     assert_same(
         &table,
-        &parse_csv_in(&polimi, &stating(nothing)).unwrap().table,
+        &parse_csv_in(&polimi, &stating(nothing)).unwrap().0,
         "stated",
     );
     let over_k = written(&Convention::usual(Notation::Starossek));

@@ -79,7 +79,7 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
         width_m: Some(table.width_m),
         ..Default::default()
     };
-    let book = aerodeck::files::derivatives::read_workbook(
+    let (book, _) = aerodeck::files::derivatives::read_table_with(
         out.join("AerodynamicDerivatives_LN21-5200.xlsx"),
         &options,
     )

@@ -1,7 +1,7 @@
 //! How bridges are written down: `bridge.toml` ([`BridgeFile`]) and the modes of finite-element programs.
 //!
-//! Every reader of modes ends in `ModalData`: nodes, and for every mode three displacements and three rotations a node along
-//! the axes of the program. [`WindAxes`] says which way is up and downwind, and nothing is assumed about either. Files that know
+//! Files of programs have for every mode three displacements and three rotations a node along axes of their own. [`WindAxes`] says
+//! which way is up and downwind, and nothing is assumed about either. Files that know
 //! vertical, lateral and rotation themselves (our own single file, MATLAB `phi`) are in those axes already.
 
 mod abaqus;
@@ -24,7 +24,7 @@ mod wind_block;
 pub use axes::{Direction, WindAxes};
 pub use dampers::DamperBlock;
 pub use field::FieldTable;
-pub use modal_data::{BridgeModes, RawMode};
+pub use modal_data::BridgeModes;
 pub use section_block::{BridgeSectionBlock, StaticBlock};
 pub use section_forces::{ElementForces, ModalSectionForces, read_section_forces};
 pub use single_file::write_modes;

@@ -8,14 +8,15 @@ pub use csv_file::write_coefficients;
 use crate::aerodynamics::quasi_steady::StaticCoefficients;
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::error::{Error, Result};
+use crate::files::text::parsed;
 use crate::section::Dof;
-use csv_file::read_coefficients;
+use csv_file::parse_coefficients;
 use std::path::Path;
 
 /// The static coefficients of that name: an embedded table, or a file (`.csv`) whose path is read against `directory`.
 pub fn named_coefficients(name: &str, directory: &Path) -> Result<StaticCoefficients> {
     if name.to_lowercase().ends_with(".csv") {
-        read_coefficients(directory.join(name))
+        parsed(&directory.join(name), parse_coefficients)
     } else {
         embedded::coefficients(name)
     }

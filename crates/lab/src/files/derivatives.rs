@@ -10,13 +10,13 @@ mod workbook_writer;
 mod xlsx_cells;
 
 pub(crate) use csv_file::{parse_csv, read_csv_with};
-pub use csv_file::{parse_csv_in, read_csv, write_csv, write_csv_in, write_points};
-pub use csv_header::{ReadOptions, TableInConvention, WIDTH_ASSUMED};
+pub use csv_file::{parse_csv_in, write_csv, write_csv_in, write_points};
+pub use csv_header::{ReadOptions, WIDTH_ASSUMED};
 pub use workbook::TABLE_3_2_FREQUENCIES_HZ;
 pub use workbook_writer::{template_bytes, workbook_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::aerodynamics::derivatives::notation::{Convention, StatedConvention};
 use crate::error::{Error, Result, ensure};
 use std::path::Path;
 
@@ -80,7 +80,7 @@ pub fn named_table_in(
             convention,
             ..ReadOptions::default()
         };
-        return Ok(read_table_with(directory.join(name), &options)?.table);
+        return read_table_with(directory.join(name), &options).map(|(table, _)| table);
     }
     ensure(
         convention.is_empty(),
@@ -107,14 +107,20 @@ pub fn named_table_in(
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 pub fn read_table(path: impl AsRef<Path>) -> Result<DerivativeTable> {
-    read_table_with(path, &ReadOptions::default()).map(|read| read.table)
+    read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
 }
 
-/// The same with what the caller states.
+/// The same with what the caller states, and the convention that the file is in. A workbook is in the layout of NTNU, or has one row
+/// per reduced velocity: where a sheet is named, or where the three sheets of that layout are not there.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Input`] with file and place, also where the caller contradicts the file.
-pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TableInConvention> {
+/// [`Error::Io`]; [`Error::Input`] with file and place, also where the caller contradicts the file: of a workbook with sheet and cell
+/// for one that is none, a missing sheet or column, an empty cell or text in place of a number, sheets of unequal length, no common
+/// width, points out of order or twice.
+pub fn read_table_with(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+) -> Result<(DerivativeTable, Convention)> {
     let path = path.as_ref();
     let name = path.to_string_lossy();
     let (file, sheet) = match path.exists() {
@@ -124,26 +130,7 @@ pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<
     if !is_workbook(file) {
         return read_csv_with(path, options);
     }
-    read_workbook_in(file, sheet, options)
-}
-
-/// Reads a workbook of derivatives in the layout of NTNU, or with one row per reduced velocity.
-///
-/// # Errors
-/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
-/// of a number, sheets of unequal length, no common width, points out of order or twice.
-pub fn read_workbook(path: impl AsRef<Path>, options: &ReadOptions) -> Result<DerivativeTable> {
-    read_workbook_in(path, None, options).map(|read| read.table)
-}
-
-/// The same, with the convention that the workbook is in; by one sheet with one row per reduced velocity where a sheet is named, or
-/// where the three sheets of NTNU's layout are not there.
-pub(crate) fn read_workbook_in(
-    path: impl AsRef<Path>,
-    sheet: Option<&str>,
-    options: &ReadOptions,
-) -> Result<TableInConvention> {
-    let path = path.as_ref();
+    let path = Path::new(file);
     let read = || {
         let mut book = xlsx_cells::open(path)?;
         if sheet.is_none() && workbook::has_three_sheets(&book) {

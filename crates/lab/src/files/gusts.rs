@@ -15,7 +15,7 @@
 use crate::aerodynamics::GustSeries;
 use crate::error::{Place, Result, ensure, finite};
 use crate::files::header_csv::{CommentHeader, number_rows};
-use crate::files::text::read_text;
+use crate::files::text::parsed;
 use std::io::Write;
 use std::path::Path;
 
@@ -36,9 +36,7 @@ pub(crate) const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
 /// # Errors
 /// [`Error::Io`](crate::error::Error::Io) when the file cannot be read; [`Error::Input`](crate::error::Error::Input) with file and line, what was expected and what was found.
 pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
-    let path = path.as_ref();
-    let text = read_text(path)?;
-    parse_gusts(&text).map_err(|e| e.in_file(path))
+    parsed(path.as_ref(), parse_gusts)
 }
 
 /// The series in `text`, the content of such a file.
@@ -61,20 +59,18 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
             step = crate::error::positive(Place::line(line).column("time_s"), time)?;
         }
         let expected = step * along.len() as f64;
-        ensure(
-            (time - expected).abs() <= JITTER * step,
-            Place::line(line).column("time_s"),
-            format_args!("{expected} (equal steps from zero)"),
-            time,
-        )?;
+        let in_step = (time - expected).abs() <= JITTER * step;
+        let expected = format_args!("{expected} (equal steps from zero)");
+        ensure(in_step, Place::line(line).column("time_s"), expected, time)?;
         along.push(u);
         vertical.push(w);
     }
+    let (samples, end) = (along.len(), header.lines() + 1 + along.len());
     ensure(
-        along.len() >= 2,
-        Place::line(header.lines() + 1 + along.len()),
+        samples >= 2,
+        Place::line(end),
         "at least 2 samples",
-        along.len(),
+        samples,
     )?;
     GustSeries::new(step, along, vertical)
 }

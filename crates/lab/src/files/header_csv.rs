@@ -98,23 +98,16 @@ impl CommentHeader {
         let place = Place::line(self.lines);
         without_control_characters(&place, comment)?;
         let (key, value) = comment.split_once(':').ok_or_else(|| {
-            Error::input(
-                &place,
-                "a header line `# key: value`",
-                format!("`{}`", line.trim()),
-            )
+            let found = format!("`{}`", line.trim());
+            Error::input(&place, "a header line `# key: value`", found)
         })?;
         let known = self.keys.iter().find(|k| **k == key.trim());
         let key = *known.ok_or_else(|| {
             let expected = format!("one of the header keys {}", self.keys.join(", "));
             Error::input(&place, expected, format!("`{}`", key.trim()))
         })?;
-        ensure(
-            self.optional(key).is_none() || self.repeated.contains(&key),
-            place,
-            format_args!("`{key}` once"),
-            "it twice",
-        )?;
+        let may_stand = self.optional(key).is_none() || self.repeated.contains(&key);
+        ensure(may_stand, place, format_args!("`{key}` once"), "it twice")?;
         self.entries.push(HeaderLine {
             line: self.lines,
             key,
@@ -153,11 +146,10 @@ impl CommentHeader {
 
     /// Checks that the line with this key, which must be there, says `expected`.
     pub(crate) fn must_say(&self, key: &str, expected: &str) -> Result<()> {
-        let entry = self.required(key)?;
-        if entry.value == expected {
-            return Ok(());
+        match self.required(key)? {
+            entry if entry.value == expected => Ok(()),
+            entry => Err(entry.wrong(&format!("`{expected}`"))),
         }
-        Err(entry.wrong(&format!("`{expected}`")))
     }
 
     /// Writes the first line of a file and one for each key.
@@ -205,6 +197,13 @@ impl HeaderLine {
         crate::error::positive(self.place(), self.number()?)
     }
 }
+
+/// What the text of a file that comes with the program calls itself.
+pub(crate) fn embedded_name(text: &str) -> &str {
+    let name = text.lines().find_map(|line| line.strip_prefix("# name: "));
+    name.unwrap_or_default()
+}
+
 /// Positions of the `wanted` columns among `names`, which may stand in any order.
 pub(crate) fn find_columns<const N: usize>(
     names: &csv::StringRecord,
@@ -222,12 +221,8 @@ pub(crate) fn find_columns<const N: usize>(
 }
 
 pub(crate) fn missing_column(names: &csv::StringRecord, line: usize, wanted: &str) -> Error {
-    let found = names.iter().collect::<Vec<_>>().join(",");
-    Error::input(
-        Place::line(line),
-        format!("a column `{wanted}`"),
-        format!("`{found}`"),
-    )
+    let found = format!("`{}`", names.iter().collect::<Vec<_>>().join(","));
+    Error::input(Place::line(line), format!("a column `{wanted}`"), found)
 }
 
 /// The number in one cell.
@@ -238,17 +233,12 @@ pub(crate) fn number(place: impl Into<Place>, text: &str) -> Result<f64> {
 
 /// An error of the CSV reader as one of ours, with the line.
 pub(crate) fn csv_error(error: csv::Error) -> Error {
-    let place = error
-        .position()
-        .map_or_else(Place::default, |p| Place::line(p.line()));
-    match error.kind() {
+    let place = error.position().map(|p| Place::line(p.line()));
+    let (expected, found) = match error.kind() {
         csv::ErrorKind::UnequalLengths {
             expected_len, len, ..
-        } => Error::input(
-            place,
-            counted(*expected_len as usize, "column"),
-            len.to_string(),
-        ),
-        _ => Error::input(place, "a CSV row", error.to_string()),
-    }
+        } => (counted(*expected_len as usize, "column"), len.to_string()),
+        _ => ("a CSV row".to_owned(), error.to_string()),
+    };
+    Error::input(place.unwrap_or_default(), expected, found)
 }

@@ -39,9 +39,8 @@ impl ChannelSet {
     /// without the group.
     pub fn read(path: impl AsRef<Path>, group: Option<&str>) -> Result<Self> {
         let path = path.as_ref();
-        let length = std::fs::metadata(path)
-            .map_err(|e| Error::io(path, e))?
-            .len();
+        let about = std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
+        let length = about.len();
         let expected = format_args!("a file of at most {BYTES_AT_MOST} bytes");
         ensure(length <= BYTES_AT_MOST, "", expected, length).map_err(|e| e.in_file(path))?;
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
@@ -55,12 +54,8 @@ impl ChannelSet {
     /// The kind is told by the first bytes; CSV, which has none of its own, by the end of the name.
     fn parse(bytes: Vec<u8>, extension: &str, group: Option<&str>) -> Result<Self> {
         let is_mat = extension == "mat";
-        ensure(
-            !bytes.is_empty(),
-            "",
-            "a file with samples",
-            "an empty file",
-        )?;
+        let any = !bytes.is_empty();
+        ensure(any, "", "a file with samples", "an empty file")?;
         if hdf5_file::is_hdf5(&bytes) {
             hdf5_file::parse(bytes, group, if is_mat { "." } else { "/" })
         } else if bytes.starts_with(b"TDSm") {

@@ -25,6 +25,23 @@ pub fn read_text(path: &Path) -> Result<String> {
     })
 }
 
+/// What `parse` makes of the text of a file; errors name the file.
+pub(crate) fn parsed<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T>) -> Result<T> {
+    let text = read_text(path)?;
+    parse(&text).map_err(|e| e.in_file(path))
+}
+
+/// Refuses a file, in words, of more bytes than these.
+pub(crate) fn check_mebibytes(what: &str, bytes: u64, at_most: u64) -> Result<()> {
+    let expected = format_args!("{what} of at most {} MiB", at_most >> 20);
+    ensure(
+        bytes <= at_most,
+        "",
+        expected,
+        format_args!("{} MiB", bytes >> 20),
+    )
+}
+
 /// Whether a line of a table is empty, or has only the separators that a spreadsheet leaves of empty cells.
 pub(crate) fn is_blank(line: &str) -> bool {
     line.trim_matches([',', ';', '\t', ' ', '\r', '"'])

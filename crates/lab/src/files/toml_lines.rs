@@ -1,7 +1,7 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
 use crate::error::{Error, Place, PlaceStep, Result, has_control_characters};
-use crate::files::text::read_text;
+use crate::files::text::{parsed, read_text};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -16,9 +16,8 @@ fn line_of(text: &str, offset: usize) -> usize {
 
 /// The file at `path` by `parse`, which is given its text and its directory.
 pub fn read<T>(path: &Path, parse: impl FnOnce(&str, PathBuf) -> Result<T>) -> Result<T> {
-    let text = read_text(path)?;
     let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
-    parse(&text, directory).map_err(|e| e.in_file(path))
+    parsed(path, |text| parse(text, directory))
 }
 
 /// The value in `text`, completed and checked by `check`; `what` it is in words: `a study file`.

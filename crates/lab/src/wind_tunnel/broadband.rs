@@ -62,9 +62,9 @@ impl TunnelPlan {
         let on_time = self.run_of_lines(&lines, duration_s, 0.0);
         let largest = largest_magnitude(&on_time[0]);
         let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
-        let run = self.run_of_lines(&lines, duration_s, delay_s);
-        let [displacement, velocity, acceleration] =
-            run.map(|x| x.into_iter().map(|x| scale * x).collect::<Vec<f64>>());
+        let mut run = self.run_of_lines(&lines, duration_s, delay_s);
+        run.iter_mut().flatten().for_each(|x| *x *= scale);
+        let [displacement, velocity, acceleration] = run;
         UnitMotion {
             segments: Vec::new(),
             segment_of: vec![None; displacement.len()],

@@ -28,22 +28,15 @@ pub fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<Vec<Vec
     let sampling = positive(place("sampling_hz"), h.sampling_hz)?;
     let density = positive(place("air_density_kg_m3"), h.air_density_kg_m3)?;
     let samples = record.motion.first().map_or(0, Vec::len);
-    for channel in &record.motion {
-        let (found, expected) = (
-            channel.len(),
-            format_args!("{samples} samples in every channel"),
-        );
+    let expected = format_args!("{samples} samples in every channel");
+    for found in record.motion.iter().map(Vec::len) {
         ensure(found == samples, place("motion"), expected, found)?;
     }
     let dimensionless = |(d, m): (&Dof, &Vec<f64>)| -> Vec<f64> {
         m.iter().map(|x| d.motion_scale(width) * x).collect()
     };
-    let motion: Vec<_> = h
-        .dofs
-        .iter()
-        .zip(&record.motion)
-        .map(dimensionless)
-        .collect();
+    let channels = h.dofs.iter().zip(&record.motion);
+    let motion: Vec<_> = channels.map(dimensionless).collect();
     let mut forces = response(model, &motion, sampling, width / speed)?;
     for (d, force) in h.dofs.iter().zip(&mut forces) {
         let scale = 0.5 * density * speed * speed * d.force_scale(width);

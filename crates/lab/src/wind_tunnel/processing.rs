@@ -37,7 +37,6 @@ pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, Spik
 pub use report::{
     DimensionlessFactors, ProcessingReport, RemovedDrift, RunReport, SignalToNoise, StageLevels,
 };
-pub use run::StageSignals;
 pub use signals::{HarmonicSegment, SectionSignals, index};
 
 use super::{RawCampaign, Record};
@@ -54,8 +53,8 @@ pub struct Processed {
     pub records: Vec<Record>,
     /// What was done.
     pub report: ProcessingReport,
-    /// Signals after each stage, one list per run, for figures.
-    pub stages: Vec<Vec<StageSignals>>,
+    /// Signals after each stage of [`RunReport::levels`], one list per run, for figures.
+    pub stages: Vec<Vec<SectionSignals>>,
 }
 
 /// Processes every run of a campaign; `progress` is called with the number of runs done.
@@ -70,21 +69,17 @@ pub fn process(
 ) -> Result<Processed> {
     options.validate()?;
     campaign.rig.validate()?;
-    ensure(
-        !campaign.runs.is_empty(),
-        "campaign",
-        "at least one run",
-        "none",
-    )?;
-    let prepared = campaign
-        .runs
-        .par_iter()
-        .map(|run| PreparedRun::new(run, &campaign.rig, options))
-        .collect();
-    let mut prepared = all_or_errors(prepared)?;
+    let any = !campaign.runs.is_empty();
+    ensure(any, "campaign", "at least one run", "none")?;
+    let prepared = campaign.runs.par_iter();
+    let prepared = prepared.map(|run| PreparedRun::new(run, &campaign.rig, options));
+    let mut prepared = all_or_errors(prepared.collect())?;
     let mut judged = Vec::new();
     for dof in Dof::THREE {
-        let mut of_dof: Vec<_> = prepared.iter_mut().filter(|p| p.dof == dof).collect();
+        let mut of_dof: Vec<_> = prepared
+            .iter_mut()
+            .filter(|p| p.report.dof == dof)
+            .collect();
         judged.extend(prepare::judge_still_air(dof, &campaign.rig, &mut of_dof));
     }
     all_or_errors(judged)?;
@@ -93,14 +88,12 @@ pub fn process(
     let dofs = stated.unwrap_or_else(|| dofs_of(campaign, &prepared));
     let (lag_s, lag_standard_error_s) = prepare::common_lag(&mut prepared, options);
     let done = AtomicUsize::new(0);
-    let runs = prepared
-        .into_par_iter()
-        .map(|p| {
-            let run = run::process_run(&p, campaign, &dofs, lag_s, options)?;
-            progress(1 + done.fetch_add(1, Ordering::Relaxed));
-            Ok(run)
-        })
-        .collect();
+    let process = |p: PreparedRun<'_>| {
+        let run = run::process_run(p, campaign, &dofs, lag_s, options)?;
+        progress(1 + done.fetch_add(1, Ordering::Relaxed));
+        Ok(run)
+    };
+    let runs = prepared.into_par_iter().map(process).collect();
     let mut report = ProcessingReport {
         section: campaign.section.clone(),
         options: options.clone(),
@@ -125,10 +118,9 @@ pub fn process(
 
 /// Heave and rotation, and sway when a run moves it; of these the forces that there are.
 fn dofs_of(campaign: &RawCampaign, prepared: &[PreparedRun<'_>]) -> Vec<Dof> {
-    let all: &[Dof] = if prepared.iter().any(|p| p.dof == Dof::Lateral) {
-        &Dof::THREE
-    } else {
-        &Dof::TWO
+    let all: &[Dof] = match prepared.iter().any(|p| p.report.dof == Dof::Lateral) {
+        true => &Dof::THREE,
+        false => &Dof::TWO,
     };
     let measured = |d: &&Dof| campaign.forces.as_ref().is_none_or(|f| f.contains(d));
     all.iter().filter(measured).copied().collect()

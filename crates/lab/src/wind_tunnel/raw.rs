@@ -67,17 +67,10 @@ impl Rig {
         ] {
             stated.map_or(Ok(0.0), |x| positive(key, x))?;
         }
-        finite_numbers(
-            "rig.centre_of_mass_m",
-            &self.centre_of_mass_m.unwrap_or_default(),
-            3,
-        )?;
-        ensure(
-            !self.cells.is_empty(),
-            "rig.cells",
-            "at least one load cell",
-            "none",
-        )?;
+        let centre = self.centre_of_mass_m.unwrap_or_default();
+        finite_numbers("rig.centre_of_mass_m", &centre, 3)?;
+        let any = !self.cells.is_empty();
+        ensure(any, "rig.cells", "at least one load cell", "none")?;
         self.cells.iter().try_for_each(LoadCell::validate)
     }
 }
@@ -96,10 +89,9 @@ impl LoadCell {
 
     /// Nose-up is a turn about −z; a cell that does not turn with the model does not notice.
     fn turn(&self, theta_rad: f64) -> Rotation3<f64> {
-        let angle = if self.turns_with_model {
-            -theta_rad
-        } else {
-            0.0
+        let angle = match self.turns_with_model {
+            true => -theta_rad,
+            false => 0.0,
         };
         Rotation3::from_axis_angle(&Vector3::z_axis(), angle)
     }
@@ -133,6 +125,8 @@ pub struct RawRecording {
     pub cells: Vec<[Vec<f64>; 6]>,
     /// Wind speed, m/s; empty when there was no channel.
     pub wind_speed_m_s: Vec<f64>,
+    /// Channels that were taken, as the file names them; empty where there is no file.
+    pub channels: Vec<String>,
 }
 
 impl RawRecording {
@@ -147,6 +141,7 @@ impl RawRecording {
             motion: self.motion.each_ref().map(one),
             cells: self.cells.iter().map(|c| c.each_ref().map(one)).collect(),
             wind_speed_m_s: one(&self.wind_speed_m_s),
+            channels: self.channels.clone(),
         }
     }
 
@@ -161,6 +156,8 @@ impl RawRecording {
 pub struct RawRun {
     /// Name of the run, for messages.
     pub name: String,
+    /// What is said to move.
+    pub motion: Vec<Dof>,
     /// Recording in wind.
     pub in_wind: RawRecording,
     /// Recording of the same motion in still air; `None` where the forces are those of the wind alone, without inertia,

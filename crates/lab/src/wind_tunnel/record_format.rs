@@ -83,22 +83,17 @@ pub(super) fn write_head(header: &RecordHeader, out: &mut dyn Write) -> std::io:
 }
 
 /// `time_s`, then the motions, then the forces.
-fn column_names(dofs: &[Dof]) -> Vec<&'static str> {
-    let motion = |d: &Dof| match d {
-        Dof::Vertical => "vertical_m",
-        Dof::Lateral => "lateral_m",
-        Dof::Torsion => "torsion_rad",
+fn column_names(dofs: &[Dof]) -> Vec<String> {
+    let column = |name: &str, dof: &Dof, unit: &str, unit_of_rotation: &str| match dof {
+        Dof::Torsion => format!("{name}_{unit_of_rotation}"),
+        _ => format!("{name}_{unit}"),
     };
-    let force = |d: &Dof| match d {
-        Dof::Vertical => "lift_n_m",
-        Dof::Lateral => "drag_n_m",
-        Dof::Torsion => "moment_n_m_m",
-    };
-    let motions = dofs.iter().map(motion);
-    std::iter::once("time_s")
-        .chain(motions)
-        .chain(dofs.iter().map(force))
-        .collect()
+    let motions = dofs.iter().map(|d| column(d.name(), d, "m", "rad"));
+    let forces = dofs
+        .iter()
+        .map(|d| column(d.force_name(), d, "n_m", "n_m_m"));
+    let time = std::iter::once("time_s".to_owned());
+    time.chain(motions).chain(forces).collect()
 }
 
 /// Reads everything above the samples.
@@ -193,11 +188,11 @@ fn find_channels(names: &[String], dofs: &[Dof], line: usize) -> Result<Vec<Opti
         let columns = format!("the columns {}, each once", expected.join(","));
         Error::input(&place, columns, found)
     };
-    if let Some(missing) = expected.iter().find(|e| !names.iter().any(|n| n == *e)) {
+    if let Some(missing) = expected.iter().find(|e| !names.contains(e)) {
         return Err(wrong(format!("no column `{missing}`")));
     }
     if names.len() > expected.len() {
-        let unknown = names.iter().find(|n| !expected.contains(&n.as_str()));
+        let unknown = names.iter().find(|n| !expected.contains(n));
         return Err(wrong(match unknown {
             Some(name) => format!("a column `{name}`"),
             None => "a column twice".to_owned(),

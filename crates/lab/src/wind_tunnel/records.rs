@@ -68,9 +68,7 @@ impl RecordHeader {
         let expected = format_args!("{width_m} m, as {where_it_stands}");
         ensure(same, place, expected, format_args!("{} m", self.width_m))
     }
-}
 
-impl RecordHeader {
     /// Refuses segments that do not lie one after the other within `samples`.
     ///
     /// # Errors

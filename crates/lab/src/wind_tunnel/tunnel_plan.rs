@@ -1,6 +1,6 @@
 //! The plan of the virtual tunnel: what is moved how, what it must be, and what of it was likely meant otherwise.
 
-use crate::error::{Error, Result, ensure, non_negative, positive};
+use crate::error::{Result, ensure, non_negative, positive};
 use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::plausibility::{Finding, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond, unusual_air};
 use serde::{Deserialize, Serialize};
@@ -159,12 +159,8 @@ impl TunnelPlan {
             ("speeds_m_s", &self.speeds_m_s),
         ] {
             ensure(!list.is_empty(), key, "at least one number", "none")?;
-            ensure(
-                list.len() <= MOST_TESTS,
-                key,
-                format_args!("at most {MOST_TESTS} numbers"),
-                list.len(),
-            )?;
+            let expected = format_args!("at most {MOST_TESTS} numbers");
+            ensure(list.len() <= MOST_TESTS, key, expected, list.len())?;
             list.iter().try_for_each(|x| positive(key, *x).map(drop))?;
         }
         self.check_size()?;
@@ -178,47 +174,36 @@ impl TunnelPlan {
         non_negative("noise_fraction", self.noise_fraction)?;
         non_negative("noise_correlation_s", self.noise_correlation_s)?;
         self.check_motion()?;
-        ensure(
-            2.0 * self.ramp_s <= self.segment_s,
-            "ramp_s",
-            format_args!("at most half of segment_s ({} s)", self.segment_s),
-            self.ramp_s,
-        )?;
+        let (ramp, segment) = (self.ramp_s, self.segment_s);
+        let expected = format_args!("at most half of segment_s ({segment} s)");
+        ensure(2.0 * ramp <= segment, "ramp_s", expected, ramp)?;
         self.check_sampling(&self.frequencies_hz)
     }
 
     /// Numbers that were likely meant in another unit; the plan can be carried out all the same.
     pub fn findings(&self) -> Vec<Finding> {
-        let frequencies = self.frequencies_hz.iter();
-        let speeds = self.speeds_m_s.iter();
-        frequencies
-            .map(|f| beyond("tunnel.frequencies_hz", *f, &MOTION_FREQUENCY))
-            .chain(speeds.map(|v| beyond("tunnel.speeds_m_s", *v, &WIND_SPEED)))
-            .chain([beyond("tunnel.sampling_hz", self.sampling_hz, &SAMPLING)])
-            .chain([unusual_air(
-                "tunnel.air_density_kg_m3",
-                self.air_density_kg_m3,
-            )])
-            .flatten()
-            .collect()
+        let frequency = |f: &f64| beyond("tunnel.frequencies_hz", *f, &MOTION_FREQUENCY);
+        let speed = |v: &f64| beyond("tunnel.speeds_m_s", *v, &WIND_SPEED);
+        let sampling = beyond("tunnel.sampling_hz", self.sampling_hz, &SAMPLING);
+        let air = unusual_air("tunnel.air_density_kg_m3", self.air_density_kg_m3);
+        let frequencies = self.frequencies_hz.iter().filter_map(frequency);
+        let speeds = self.speeds_m_s.iter().filter_map(speed);
+        let stated = frequencies.chain(speeds);
+        stated.chain(sampling).chain(air).collect()
     }
 
     /// Refuses plans that no tunnel carries out and no memory holds.
     fn check_size(&self) -> Result<()> {
         positive("sampling_hz", self.sampling_hz)?;
-        ensure(
-            self.sampling_hz <= MOST_HERTZ,
-            "sampling_hz",
-            format_args!("at most {MOST_HERTZ} Hz"),
-            self.sampling_hz,
-        )?;
+        let (rate, expected) = (self.sampling_hz, format_args!("at most {MOST_HERTZ} Hz"));
+        ensure(rate <= MOST_HERTZ, "sampling_hz", expected, rate)?;
         let seconds = self.still_s + self.segment_s * self.frequencies_hz.len() as f64;
-        let samples = self.sampling_hz * seconds;
+        let samples = rate * seconds;
         ensure(
             samples <= MOST_SAMPLES,
             "segment_s",
             format_args!("records of at most {MOST_SAMPLES:e} samples"),
-            format_args!("{samples:e}: {seconds} s at {} Hz", self.sampling_hz),
+            format_args!("{samples:e}: {seconds} s at {rate} Hz"),
         )
     }
 
@@ -238,23 +223,16 @@ impl TunnelPlan {
             )?;
         }
         positive("motion.duration_s", duration)?;
-        ensure(
-            2.0 * self.ramp_s <= duration,
-            "motion.duration_s",
-            format_args!("at least two ramps ({} s)", 2.0 * self.ramp_s),
-            duration,
-        )
+        let ramps = 2.0 * self.ramp_s;
+        let expected = format_args!("at least two ramps ({ramps} s)");
+        ensure(ramps <= duration, "motion.duration_s", expected, duration)
     }
 
     /// A fifth of the sampling frequency leaves room for the ramps' side bands.
     pub(super) fn check_sampling(&self, frequencies_hz: &[f64]) -> Result<()> {
         let limit = 0.2 * self.sampling_hz;
-        match frequencies_hz.iter().find(|f| **f > limit) {
-            None => Ok(()),
-            Some(f) => {
-                let expected = format!("at most a fifth of sampling_hz ({limit} Hz)");
-                Err(Error::input("frequencies_hz", expected, f.to_string()))
-            }
-        }
+        let expected = format_args!("at most a fifth of sampling_hz ({limit} Hz)");
+        let check = |f: &f64| ensure(*f <= limit, "frequencies_hz", expected, f);
+        frequencies_hz.iter().try_for_each(check)
     }
 }

@@ -109,19 +109,17 @@ pub(super) fn unit_response(
     sampling_hz: f64,
     scale_s: f64,
 ) -> Result<Vec<Vec<Vec<f64>>>> {
-    let transforms = Transforms::new(unit.displacement.len());
-    let spectrum = transforms.spectrum(&unit.displacement);
-    let n = model.dofs().len();
-    let mut forces = vec![vec![transforms.nothing(); n]; n];
-    transforms.for_each_bin(model, sampling_hz, scale_s, &mut |bin, g| {
-        for (i, row) in forces.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                transforms.set(entry, bin, g[(i, j)] * spectrum[bin]);
-            }
-        }
-    })?;
-    let in_time = |row: Vec<Vec<_>>| row.into_iter().map(|q| transforms.in_time(q)).collect();
-    Ok(forces.into_iter().map(in_time).collect())
+    let samples = unit.displacement.len();
+    let fourier = padded(samples);
+    let spectrum = fourier.spectrum(unit.displacement.iter().copied());
+    let transfers = transfers(model, fourier.length(), sampling_hz, scale_s)?;
+    let entry = |i: usize, j: usize| {
+        let half = transfers.iter().zip(&spectrum);
+        in_time(&fourier, half.map(|(g, r)| g[(i, j)] * r), samples)
+    };
+    let all = 0..model.dofs().len();
+    let row = |i: usize| all.clone().map(|j| entry(i, j)).collect();
+    Ok(all.clone().map(row).collect())
 }
 
 /// Dimensionless force of each row, `[row][sample]`, to dimensionless motions that were zero before their first sample:
@@ -132,67 +130,53 @@ pub(super) fn response(
     sampling_hz: f64,
     scale_s: f64,
 ) -> Result<Vec<Vec<f64>>> {
-    let transforms = Transforms::new(motion.first().map_or(0, Vec::len));
-    let spectra: Vec<_> = motion.iter().map(|r| transforms.spectrum(r)).collect();
-    let mut forces = vec![transforms.nothing(); model.dofs().len()];
-    transforms.for_each_bin(model, sampling_hz, scale_s, &mut |bin, g| {
-        for (i, force) in forces.iter_mut().enumerate() {
-            let q = spectra.iter().enumerate().map(|(j, r)| g[(i, j)] * r[bin]);
-            transforms.set(force, bin, q.sum());
-        }
-    })?;
-    Ok(forces.into_iter().map(|q| transforms.in_time(q)).collect())
+    let samples = motion.first().map_or(0, Vec::len);
+    let fourier = padded(samples);
+    let spectra = motion.iter().map(|r| fourier.spectrum(r.iter().copied()));
+    let spectra: Vec<_> = spectra.collect();
+    let transfers = transfers(model, fourier.length(), sampling_hz, scale_s)?;
+    let row = |i: usize| {
+        let half = transfers.iter().enumerate().map(|(bin, g)| {
+            let columns = spectra.iter().enumerate();
+            columns.map(|(j, r)| g[(i, j)] * r[bin]).sum()
+        });
+        in_time(&fourier, half, samples)
+    };
+    Ok((0..model.dofs().len()).map(row).collect())
 }
 
-/// Fourier transforms of records of one length, padded with at least as many zeros.
-struct Transforms {
+/// Transforms of records of so many samples, padded with at least as many zeros.
+fn padded(samples: usize) -> Fourier {
+    Fourier::new((2 * samples.max(1)).next_power_of_two())
+}
+
+/// `G` at every bin of a transform of this length, from zero to half the sampling frequency.
+fn transfers(
+    model: &dyn Transfer,
+    length: usize,
+    sampling_hz: f64,
+    scale_s: f64,
+) -> Result<Vec<TransferMatrix>> {
+    let at = |bin: usize| {
+        let omega = TAU * sampling_hz * bin as f64 / length as f64;
+        model.transfer(ReducedFrequency::from_full_width(omega * scale_s))
+    };
+    (0..=length / 2).map(at).collect()
+}
+
+/// The samples of a force whose spectrum has this half; real motions give real forces: the other half is the conjugate.
+fn in_time(
+    fourier: &Fourier,
+    half: impl Iterator<Item = Complex<f64>>,
     samples: usize,
-    fourier: Fourier,
-}
-
-impl Transforms {
-    fn new(samples: usize) -> Self {
-        let fourier = Fourier::new((2 * samples.max(1)).next_power_of_two());
-        Self { samples, fourier }
-    }
-
-    fn nothing(&self) -> Vec<Complex<f64>> {
-        vec![Complex::default(); self.fourier.length()]
-    }
-
-    fn spectrum(&self, samples: &[f64]) -> Vec<Complex<f64>> {
-        self.fourier.spectrum(samples.iter().copied())
-    }
-
-    /// Calls `f` with every bin from zero to half the sampling frequency and `G` there.
-    fn for_each_bin(
-        &self,
-        model: &dyn Transfer,
-        sampling_hz: f64,
-        scale_s: f64,
-        f: &mut dyn FnMut(usize, &TransferMatrix),
-    ) -> Result<()> {
-        let length = self.fourier.length();
-        for bin in 0..=length / 2 {
-            let omega = TAU * sampling_hz * bin as f64 / length as f64;
-            f(
-                bin,
-                &model.transfer(ReducedFrequency::from_full_width(omega * scale_s))?,
-            );
-        }
-        Ok(())
-    }
-
-    /// Real motions give real forces: the other half of the spectrum is the conjugate.
-    fn set(&self, spectrum: &mut [Complex<f64>], bin: usize, q: Complex<f64>) {
-        let length = self.fourier.length();
+) -> Vec<f64> {
+    let length = fourier.length();
+    let mut spectrum = vec![Complex::default(); length];
+    for (bin, q) in half.enumerate() {
         spectrum[(length - bin) % length] = q.conj();
         spectrum[bin] = q;
     }
-
-    fn in_time(&self, spectrum: Vec<Complex<f64>>) -> Vec<f64> {
-        let scale = 1.0 / self.fourier.length() as f64;
-        let sums = self.fourier.sums(spectrum).into_iter();
-        sums.take(self.samples).map(|x| scale * x).collect()
-    }
+    let scale = 1.0 / length as f64;
+    let sums = fourier.sums(spectrum).into_iter();
+    sums.take(samples).map(|x| scale * x).collect()
 }

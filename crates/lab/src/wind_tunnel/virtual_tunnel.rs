@@ -24,6 +24,7 @@ use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Result, positive};
 use crate::section::Dof;
 use crate::signal::{random_stream, root_mean_square};
+use crate::units::ReducedFrequency;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
@@ -56,9 +57,7 @@ impl TunnelPlan {
                 continue;
             }
             for motion in dofs {
-                let points = TransferColumn::new(&group, dofs, *motion)?;
-                records
-                    .push(self.record_at_points(&group, &points, dofs, *motion, *speed, delay_s)?);
+                records.push(self.record_at_points(&group, dofs, *motion, *speed, delay_s)?);
             }
         }
         Ok(records)
@@ -122,11 +121,9 @@ impl TunnelPlan {
     /// Mean speeds of the records of a table, m/s. For a table without speeds the first of the plan is taken: its
     /// dimensionless forces are the same at every speed.
     fn speeds_of(&self, table: &DerivativeTable) -> Vec<f64> {
-        let speeds = table.speed_groups();
-        if speeds.is_empty() {
-            self.speeds_m_s.first().copied().into_iter().collect()
-        } else {
-            speeds
+        match table.speed_groups() {
+            none if none.is_empty() => self.speeds_m_s.iter().copied().take(1).collect(),
+            speeds => speeds,
         }
     }
 
@@ -183,22 +180,16 @@ impl TunnelPlan {
         unit_force: impl Fn(usize, usize) -> f64,
     ) -> Record {
         let amplitude = self.amplitude(motion);
-        let still = vec![0.0; unit.displacement.len()];
-        let moving = || unit.displacement.iter().map(|x| amplitude * x).collect();
-        let channel = |d: &Dof| {
-            if *d == motion {
-                moving()
-            } else {
-                still.clone()
-            }
+        let samples = unit.displacement.len();
+        let channel = |d: &Dof| match *d == motion {
+            true => unit.displacement.iter().map(|x| amplitude * x).collect(),
+            false => vec![0.0; samples],
         };
         let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
         let dimensionless = amplitude * motion.motion_scale(header.width_m);
         let force = |(i, d): (usize, &Dof)| {
             let factor = pressure * d.force_scale(header.width_m) * dimensionless;
-            (0..still.len())
-                .map(|k| factor * unit_force(i, k))
-                .collect()
+            (0..samples).map(|k| factor * unit_force(i, k)).collect()
         };
         Record {
             motion: header.dofs.iter().map(channel).collect(),
@@ -210,31 +201,27 @@ impl TunnelPlan {
     fn record_at_points(
         &self,
         group: &DerivativeTable,
-        points: &TransferColumn,
         dofs: &[Dof],
         motion: Dof,
         speed_m_s: f64,
         delay_s: f64,
     ) -> Result<Record> {
-        let frequencies: Vec<f64> = points
-            .k
-            .iter()
-            .map(|k| k.circular(group.width_m, speed_m_s) / TAU)
-            .collect();
+        let points = TransferColumn::new(group, dofs, motion)?;
+        let frequency = |k: &ReducedFrequency| k.circular(group.width_m, speed_m_s) / TAU;
+        let frequencies: Vec<f64> = points.k.iter().map(frequency).collect();
         self.check_sampling(&frequencies)?;
         let unit = self.unit_motion(&frequencies, delay_s);
+        let at = match points.interpolated {
+            true => "the test points of the first, the others interpolated",
+            false => "their test points",
+        };
+        let assumption = self.assumption(group).map(|a| format!("; {a}"));
         let header = RecordHeader {
             source: format!(
-                "virtual tunnel: derivatives of {} at {} ({}){}",
+                "virtual tunnel: derivatives of {} at {at} ({}){}",
                 group.name,
-                if points.interpolated {
-                    "the test points of the first, the others interpolated"
-                } else {
-                    "their test points"
-                },
                 group.header.source,
-                self.assumption(group)
-                    .map_or_else(String::new, |a| format!("; {a}"))
+                assumption.unwrap_or_default()
             ),
             licence: group.header.licence.clone(),
             ..self.header(&group.name, dofs, motion, group.width_m, speed_m_s, &unit)
@@ -264,10 +251,9 @@ impl TunnelPlan {
         }
         let mut random = random_stream(self.seed, index as u64);
         // e[k] = a e[k−1] + √(1 − a²) n[k], the samples of noise with an exponential correlation
-        let memory = if self.noise_correlation_s > 0.0 {
-            (-1.0 / (self.sampling_hz * self.noise_correlation_s)).exp()
-        } else {
-            0.0
+        let memory = match self.noise_correlation_s > 0.0 {
+            true => (-1.0 / (self.sampling_hz * self.noise_correlation_s)).exp(),
+            false => 0.0,
         };
         let fresh = (1.0 - memory * memory).sqrt();
         for force in &mut record.force {

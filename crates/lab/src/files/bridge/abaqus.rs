@@ -8,39 +8,36 @@
 //!
 //! `examples/export_modes_abaqus.py` writes them from an output database.
 
-use super::modal_data::{ModalData, RawMode};
+use super::axes::MotionDirections;
+use super::modal_data::PlacedNodes;
 use super::table::{Table, TableRow};
 use super::tables;
+use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Reads the folder.
-pub(super) fn read(folder: &Path) -> Result<ModalData> {
+pub(super) fn read(
+    folder: &Path,
+    frame: &MotionDirections,
+) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let nodes = Table::read(&folder.join("nodes.csv"), tables::nodes)?;
     let frequencies = Table::read(&folder.join("eigenfrequencies.csv"), |table| {
         column(table, "a positive frequency in Hz")
     })?;
     let path = folder.join("generalised_masses.csv");
     let masses = Table::read(&path, |table| column(table, "a positive generalised mass"))?;
-    ensure(
-        masses.len() == frequencies.len(),
-        "",
-        format_args!("{} masses, one per frequency", frequencies.len()),
-        masses.len(),
-    )
-    .map_err(|e| e.in_file(path))?;
+    let (found, wanted) = (masses.len(), frequencies.len());
+    let expected = format_args!("{wanted} masses, one per frequency");
+    ensure(found == wanted, "", expected, found).map_err(|e| e.in_file(path))?;
     let mut modes = Vec::with_capacity(masses.len());
-    for (i, (frequency_hz, generalised_mass)) in frequencies.into_iter().zip(masses).enumerate() {
-        let path = folder.join(format!("mode_{}.csv", i + 1));
-        modes.push(RawMode {
-            number: i + 1,
-            frequency_hz,
-            generalised_mass,
-            shape: Table::read(&path, |table| shape(table, &nodes))?,
-        });
+    for (number, (frequency_hz, mass)) in (1..).zip(frequencies.into_iter().zip(masses)) {
+        let path = folder.join(format!("mode_{number}.csv"));
+        let shape = Table::read(&path, |table| shape(table, &nodes))?;
+        modes.push(frame.mode(number, frequency_hz, mass, &shape));
     }
-    Ok(ModalData { nodes, modes })
+    Ok((nodes, modes))
 }
 
 /// The last number of every row, which are those of the modes 1, 2, ….
@@ -52,11 +49,13 @@ fn column(table: &Table, expected: &str) -> Result<Vec<f64>> {
     let one = |(i, row): (usize, &TableRow)| {
         let last = row.cells.len() - 1;
         if let Some(mode) = mode.filter(|mode| *mode < last) {
+            let (is_next, found) = (row.count(mode)? == i + 1, &row.cells[mode]);
+            let expected = format_args!("mode {}, in the order of the modes", i + 1);
             ensure(
-                row.count(mode)? == i + 1,
+                is_next,
                 Place::line(row.line),
-                format_args!("mode {}, in the order of the modes", i + 1),
-                format_args!("`{}`", row.cells[mode]),
+                expected,
+                format_args!("`{found}`"),
             )?;
         }
         row.positive(last, expected)
@@ -79,11 +78,13 @@ fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {
     table.each_once(names.iter().map(String::as_str))?;
     let known: HashSet<&str> = nodes.iter().map(|n| n.0.as_str()).collect();
     for (row, name) in table.rows.iter().zip(names) {
+        let found = format_args!("node {name}");
+        let is_known = known.contains(name.as_str());
         ensure(
-            known.contains(name.as_str()),
+            is_known,
             Place::line(row.line),
             "a node of nodes.csv",
-            format_args!("node {name}"),
+            found,
         )?;
         at.insert(name, row.numbers(columns)?);
     }
@@ -99,6 +100,7 @@ fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::bridge::{Direction, WindAxes};
 
     /// What is said of a folder of two nodes and modes after a change of one file.
     fn said(file: &str, text: &str) -> String {
@@ -114,10 +116,12 @@ mod tests {
         ] {
             std::fs::write(folder.path().join(name), content).unwrap();
         }
-        let read = read(folder.path());
+        let [up, downwind] = ["z", "y"].map(|axis| Direction::Axis(axis.to_owned()));
+        let frame = WindAxes { up, downwind }.frame().unwrap();
+        let read = read(folder.path(), &frame);
         read.map_or_else(
             |e| e.to_string(),
-            |data| format!("{} modes", data.modes.len()),
+            |(_, modes)| format!("{} modes", modes.len()),
         )
     }
 

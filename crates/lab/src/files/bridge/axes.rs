@@ -1,6 +1,8 @@
 //! Which way is up and which way the wind blows, in the axes of a finite-element model.
 
+use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, ensure};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Directions closer to one line than this (cosine) are no two axes.
@@ -32,13 +34,13 @@ pub struct WindAxes {
 /// Unit vectors of vertical and lateral motion, and the axis about which a right-handed rotation lifts the windward edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MotionDirections {
-    up: [f64; 3],
-    downwind: [f64; 3],
-    pub(super) nose_up: [f64; 3],
+    up: Vector3<f64>,
+    downwind: Vector3<f64>,
+    nose_up: Vector3<f64>,
 }
 
 impl Direction {
-    fn unit(&self, place: &str) -> Result<[f64; 3]> {
+    fn unit(&self, place: &str) -> Result<Vector3<f64>> {
         let vector = match self {
             Self::Vector(v) => *v,
             Self::Axis(name) => {
@@ -55,14 +57,11 @@ impl Direction {
                 v
             }
         };
-        let length = dot(vector, vector).sqrt();
-        ensure(
-            length > 0.0 && length.is_finite(),
-            place,
-            "a direction of three finite numbers, not all zero",
-            format_args!("{vector:?}"),
-        )?;
-        Ok(vector.map(|x| x / length))
+        let length = Vector3::from(vector).norm();
+        let is_one = length > 0.0 && length.is_finite();
+        let expected = "a direction of three finite numbers, not all zero";
+        ensure(is_one, place, expected, format_args!("{vector:?}"))?;
+        Ok(Vector3::from(vector) / length)
     }
 }
 
@@ -74,23 +73,15 @@ impl WindAxes {
     pub(super) fn frame(&self) -> Result<MotionDirections> {
         let up = self.up.unit("modes.axes.up")?;
         let downwind = self.downwind.unit("modes.axes.downwind")?;
-        let cosine = dot(up, downwind);
-        ensure(
-            cosine.abs() <= SQUARE,
-            "modes.axes.downwind",
-            "a direction square to `up`",
-            format_args!("an angle with the cosine {cosine:.4}"),
-        )?;
+        let cosine = up.dot(&downwind);
+        let (place, expected) = ("modes.axes.downwind", "a direction square to `up`");
+        let found = format_args!("an angle with the cosine {cosine:.4}");
+        ensure(cosine.abs() <= SQUARE, place, expected, found)?;
         // about a, the windward edge -d moves along a × (-d); that is up for a = up × d
-        let nose_up = [
-            up[1] * downwind[2] - up[2] * downwind[1],
-            up[2] * downwind[0] - up[0] * downwind[2],
-            up[0] * downwind[1] - up[1] * downwind[0],
-        ];
         Ok(MotionDirections {
             up,
             downwind,
-            nose_up,
+            nose_up: up.cross(&downwind),
         })
     }
 }
@@ -98,28 +89,42 @@ impl WindAxes {
 impl MotionDirections {
     /// Vertical, lateral displacement and rotation of displacements and rotations along the axes of the model.
     pub(super) fn motion(&self, u: &[f64; 6]) -> [f64; 3] {
-        let translation = [u[0], u[1], u[2]];
-        let rotation = [u[3], u[4], u[5]];
+        let [x, y, z, rotation @ ..] = *u;
+        let translation = Vector3::new(x, y, z);
         [
-            dot(self.up, translation),
-            dot(self.downwind, translation),
-            dot(self.nose_up, rotation),
+            self.up.dot(&translation),
+            self.downwind.dot(&translation),
+            self.nose_up.dot(&Vector3::from(rotation)),
         ]
+    }
+
+    /// A mode with displacements and rotations along the axes of the model; its damping is not known.
+    pub(super) fn mode(
+        &self,
+        number: usize,
+        frequency_hz: f64,
+        generalised_mass: f64,
+        shape: &[[f64; 6]],
+    ) -> BridgeMode {
+        BridgeMode {
+            number,
+            frequency_hz,
+            generalised_mass,
+            damping_ratio: 0.0,
+            shape: shape.iter().map(|u| self.motion(u)).collect(),
+        }
     }
 
     /// Place of a point along the girder, m.
     pub(super) fn along(&self, point: &[f64; 3]) -> f64 {
-        dot(self.nose_up, *point)
+        self.nose_up.dot(&Vector3::from(*point))
     }
 
     /// Place of a point downwind and up, m.
     pub(super) fn across(&self, point: &[f64; 3]) -> [f64; 2] {
-        [dot(self.downwind, *point), dot(self.up, *point)]
+        let point = Vector3::from(*point);
+        [self.downwind.dot(&point), self.up.dot(&point)]
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]
@@ -137,7 +142,7 @@ mod tests {
     #[test]
     fn the_windward_edge_rises() {
         let frame = axes("z", "-y").frame().unwrap();
-        assert_eq!(frame.nose_up, [1.0, 0.0, 0.0]);
+        assert_eq!(frame.nose_up, Vector3::x());
         assert_eq!(
             frame.motion(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             [3.0, -2.0, 4.0]

@@ -49,11 +49,8 @@ impl DamperBlock {
             return refused(key, expected, value.is_some());
         }
         if self.to.is_some() && !is_link {
-            return refused(
-                "to",
-                "none: only links, of a `coefficient`, have two ends",
-                true,
-            );
+            let expected = "none: only links, of a `coefficient`, have two ends";
+            return refused("to", expected, true);
         }
         if self.arm_m.is_some() != is_pair {
             let expected = match is_pair {
@@ -83,21 +80,14 @@ impl DamperBlock {
             })
         };
         if let Some(coefficient) = self.coefficient {
-            let to = self.to.as_ref();
-            let to = to
-                .map(|name| point("to", name, self.motion, 0.0))
-                .transpose()?;
-            let end = self
-                .to
-                .as_ref()
-                .map_or("the ground".to_owned(), |n| format!("node {n}"));
+            let other = self.to.as_ref();
+            let to = other.map(|name| point("to", name, self.motion, 0.0));
+            let to = to.transpose()?;
+            let end = other.map_or("the ground".to_owned(), |n| format!("node {n}"));
+            let (number, node) = (all.links.len() + 1, &self.node);
             all.links.push(ViscousLink {
-                name: format!(
-                    "link {} from node {} to {end}",
-                    all.links.len() + 1,
-                    self.node
-                ),
-                at: point("node", &self.node, self.motion, 0.0)?,
+                name: format!("link {number} from node {node} to {end}"),
+                at: point("node", node, self.motion, 0.0)?,
                 to,
                 coefficient,
             });

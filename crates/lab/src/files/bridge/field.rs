@@ -81,10 +81,9 @@ impl FieldTable {
         let (Some(first), Some(last)) = ends else {
             return Err(Error::input("places", "one or more", "none"));
         };
-        let shift = if self.from_middle {
-            0.5 * (first + last)
-        } else {
-            0.0
+        let shift = match self.from_middle {
+            true => 0.5 * (first + last),
+            false => 0.0,
         };
         let own: Vec<f64> = self.along_m.iter().map(|x| x + shift).collect();
         for (x, along) in own.windows(2).zip(self.along_m.windows(2)) {
@@ -148,15 +147,11 @@ fn parse(table: &Table) -> Result<FieldTable> {
         "columns u[x] and w[x] at the same places",
         format_args!("{} columns u[…] and {} columns w[…]", u.len(), w.len()),
     )?;
-    let times: Vec<f64> = table
-        .rows
-        .iter()
-        .map(|r| r.number(time))
-        .collect::<Result<_>>()?;
-    let step_s = step(&times, table)?;
+    let column =
+        |c: usize| -> Result<Vec<f64>> { table.rows.iter().map(|r| r.number(c)).collect() };
+    let step_s = step(&column(time)?, table)?;
     let samples = |columns: &[(usize, f64)]| -> Result<Vec<Vec<f64>>> {
-        let row = |c: &(usize, f64)| table.rows.iter().map(|r| r.number(c.0)).collect();
-        columns.iter().map(row).collect()
+        columns.iter().map(|c| column(c.0)).collect()
     };
     Ok(FieldTable {
         step_s,
@@ -177,12 +172,10 @@ fn step(times: &[f64], table: &Table) -> Result<f64> {
     match times.windows(2).position(wrong) {
         None if usual > 0.0 => Ok((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64),
         at => {
-            let place = Place::line(table.rows[at.unwrap_or(0) + 1].line).column("time_s");
-            Err(Error::input(
-                place,
-                format!("times that rise by {} s", significant(usual)),
-                times[at.unwrap_or(0) + 1].to_string(),
-            ))
+            let wrong = at.unwrap_or(0) + 1;
+            let place = Place::line(table.rows[wrong].line).column("time_s");
+            let expected = format!("times that rise by {} s", significant(usual));
+            Err(Error::input(place, expected, times[wrong].to_string()))
         }
     }
 }

@@ -39,35 +39,31 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
         let found = format!("wn {wn_size:?}, phi {phi_size:?}");
         return Err(Error::input("", "wn (3×m) and phi (3×m×n)", found));
     };
-    ensure(
-        of_phi == modes && points >= 2,
-        "phi",
-        format_args!("phi of {modes} modes at two points or more"),
-        format_args!("{of_phi} modes at {points} points"),
-    )?;
-    let along: Vec<f64> = (0..points)
-        .map(|i| span.span_m * i as f64 / (points as f64 - 1.0))
-        .collect();
+    let expected = format_args!("phi of {modes} modes at two points or more");
+    let found = format_args!("{of_phi} modes at {points} points");
+    ensure(of_phi == modes && points >= 2, "phi", expected, found)?;
+    let at = |i: usize| span.span_m * i as f64 / (points as f64 - 1.0);
+    let along: Vec<f64> = (0..points).map(at).collect();
     let lengths = tributary_lengths(&along);
     let mut all = Vec::with_capacity(3 * modes);
     for mode in 0..modes {
         for (row, motion) in ROWS.into_iter().enumerate() {
             let at = row + 3 * mode;
             let omega = wn[at];
+            let is_positive = |x: f64| x > 0.0 && x.is_finite();
+            let place = format_args!("wn({}, {})", row + 1, mode + 1);
             ensure(
-                omega > 0.0 && omega.is_finite(),
-                format_args!("wn({}, {})", row + 1, mode + 1),
+                is_positive(omega),
+                place,
                 "a positive frequency, rad/s",
                 omega,
             )?;
             let values = phi.iter().skip(at).step_by(3 * modes).take(points);
             let found = mode_of(omega, motion, values.copied().collect(), &lengths, span);
-            ensure(
-                found.generalised_mass > 0.0 && found.generalised_mass.is_finite(),
-                format_args!("phi({}, {}, :)", row + 1, mode + 1),
-                "a shape with a finite mass, m ∫φ² dx > 0",
-                found.generalised_mass,
-            )?;
+            let mass = found.generalised_mass;
+            let place = format_args!("phi({}, {}, :)", row + 1, mode + 1);
+            let expected = "a shape with a finite mass, m ∫φ² dx > 0";
+            ensure(is_positive(mass), place, expected, mass)?;
             all.push(found);
         }
     }
@@ -99,10 +95,9 @@ fn mode_of(
     lengths: &[f64],
     span: &SpanBlock,
 ) -> BridgeMode {
-    let per_length = if motion == 2 {
-        span.inertia_kg_m2_m
-    } else {
-        span.mass_kg_m
+    let per_length = match motion {
+        2 => span.inertia_kg_m2_m,
+        _ => span.mass_kg_m,
     };
     let square: f64 = values.iter().zip(lengths).map(|(x, w)| w * x * x).sum();
     let at_node = |x: f64| std::array::from_fn(|m| if m == motion { x } else { 0.0 });

@@ -5,26 +5,8 @@ use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{Finding, FindingKind, Girder, of_modes};
 
-/// A mode with displacements and rotations along the axes of its program.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RawMode {
-    /// Its number.
-    pub number: usize,
-    /// Natural frequency, Hz.
-    pub frequency_hz: f64,
-    /// Generalised mass that belongs to the shape.
-    pub generalised_mass: f64,
-    /// `ux, uy, uz, rx, ry, rz` at each node.
-    pub shape: Vec<[f64; 6]>,
-}
-
-/// Nodes and modes in the axes of a program.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct ModalData {
-    /// Name, and place in x, y, z, m.
-    pub(super) nodes: Vec<(String, [f64; 3])>,
-    pub(super) modes: Vec<RawMode>,
-}
+/// Name of each node, and its place in x, y, z of the program, m.
+pub(super) type PlacedNodes = Vec<(String, [f64; 3])>;
 
 /// Nodes and modes of a bridge, in vertical, lateral and rotation, before its sections and its damping are known.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,44 +25,37 @@ pub struct BridgeModes {
     pub reversed: bool,
 }
 
-impl ModalData {
-    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule. Nodes that all run against
-    /// up × downwind, since the wind blows from the other side, are taken in the opposite order.
+impl BridgeModes {
+    /// Nodes and modes of a program, with tributary lengths by the trapezoidal rule. Nodes that all run against up × downwind, since
+    /// the wind blows from the other side, are taken in the opposite order.
     pub(super) fn in_frame(
-        mut self,
         frame: &MotionDirections,
+        mut placed: PlacedNodes,
+        mut modes: Vec<BridgeMode>,
         source: String,
-    ) -> Result<BridgeModes> {
-        let mut pairs = self.nodes.windows(2);
-        let reversed = self.nodes.len() > 1
-            && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
+    ) -> Result<Self> {
+        let mut pairs = placed.windows(2);
+        let reversed =
+            placed.len() > 1 && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
         if reversed {
-            self.nodes.reverse();
-            self.modes.iter_mut().for_each(|m| m.shape.reverse());
+            placed.reverse();
+            modes.iter_mut().for_each(|m| m.shape.reverse());
         }
-        let along: Vec<f64> = self.nodes.iter().map(|(_, p)| frame.along(p)).collect();
+        let along: Vec<f64> = placed.iter().map(|(_, p)| frame.along(p)).collect();
+        let offsets_m = placed.iter().map(|(_, p)| frame.across(p)).collect();
         let lengths = tributary_lengths(&along);
-        let nodes = self.nodes.iter().zip(along.iter().zip(lengths));
-        let nodes: Vec<Node> = nodes
-            .map(|((name, _), (along_m, length_m))| Node {
-                name: name.clone(),
-                along_m: *along_m,
-                length_m,
-            })
-            .collect();
-        check_order(&nodes)?;
-        let offsets_m = self.nodes.iter().map(|(_, p)| frame.across(p)).collect();
-        let modes = self.modes.into_iter().map(|m| BridgeMode {
-            number: m.number,
-            frequency_hz: m.frequency_hz,
-            generalised_mass: m.generalised_mass,
-            damping_ratio: 0.0,
-            shape: m.shape.iter().map(|u| frame.motion(u)).collect(),
+        let nodes = placed.into_iter().zip(along.into_iter().zip(lengths));
+        let nodes = nodes.map(|((name, _), (along_m, length_m))| Node {
+            name,
+            along_m,
+            length_m,
         });
-        Ok(BridgeModes {
+        let nodes: Vec<Node> = nodes.collect();
+        check_order(&nodes)?;
+        Ok(Self {
             source,
             left_out: Vec::new(),
-            modes: modes.collect(),
+            modes,
             nodes,
             offsets_m,
             reversed,

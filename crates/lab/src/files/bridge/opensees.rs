@@ -8,39 +8,37 @@
 //!
 //! `examples/export_modes_opensees.py` writes them.
 
-use super::modal_data::{ModalData, RawMode};
+use super::axes::MotionDirections;
+use super::modal_data::PlacedNodes;
 use super::table::{Table, TableRow};
+use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};
+use crate::signal::extremes;
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Reads the folder.
-pub(super) fn read(folder: &Path) -> Result<ModalData> {
+pub(super) fn read(
+    folder: &Path,
+    frame: &MotionDirections,
+) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let nodes = Table::read(&folder.join("nodes.out"), nodes)?;
     let path = folder.join("eigenvalues.out");
     let eigenvalues = Table::read(&path, Table::all_numbers)?;
     let masses = masses(&folder.join("masses.out"), eigenvalues.len())?;
     let mut modes = Vec::with_capacity(masses.len());
-    for (i, (square, generalised_mass)) in eigenvalues.into_iter().zip(masses).enumerate() {
-        ensure(
-            square > 0.0,
-            format_args!("eigenvalue {}", i + 1),
-            "a positive square of a frequency, rad²/s²",
-            square,
-        )
-        .map_err(|e| e.in_file(&path))?;
-        let path = folder.join(format!("mode_{}.out", i + 1));
-        modes.push(RawMode {
-            number: i + 1,
-            frequency_hz: square.sqrt() / TAU,
-            generalised_mass,
-            shape: Table::read(&path, |table| shape(table, nodes.len()))?,
-        });
+    for (number, (square, mass)) in (1..).zip(eigenvalues.into_iter().zip(masses)) {
+        let expected = "a positive square of a frequency, rad²/s²";
+        let place = format_args!("eigenvalue {number}");
+        ensure(square > 0.0, place, expected, square).map_err(|e| e.in_file(&path))?;
+        let path = folder.join(format!("mode_{number}.out"));
+        let shape = Table::read(&path, |table| shape(table, nodes.len()))?;
+        modes.push(frame.mode(number, square.sqrt() / TAU, mass, &shape));
     }
-    Ok(ModalData { nodes, modes })
+    Ok((nodes, modes))
 }
 
-fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
+fn nodes(table: &Table) -> Result<PlacedNodes> {
     let one = |row: &TableRow| Ok((row.name(0), row.numbers([1, 2, 3])?));
     table.rows.iter().map(one).collect()
 }
@@ -51,15 +49,12 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
     }
     Table::read(path, |table| {
         let masses = table.all_numbers()?;
+        let (count, least) = (masses.len(), extremes(masses.iter().copied()).0);
         ensure(
-            masses.len() == modes && masses.iter().all(|m| *m > 0.0),
+            count == modes && masses.iter().all(|m| *m > 0.0),
             "",
             format_args!("{modes} positive masses, one per eigenvalue"),
-            format_args!(
-                "{} numbers, the least {}",
-                masses.len(),
-                masses.iter().copied().fold(f64::INFINITY, f64::min)
-            ),
+            format_args!("{count} numbers, the least {least}"),
         )?;
         Ok(masses)
     })
@@ -68,16 +63,13 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
 fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {
     let wanted = 6 * nodes;
     let row = &table.rows[table.rows.len() - 1];
-    let leading = row
-        .cells
-        .len()
-        .checked_sub(wanted)
-        .filter(|time| *time <= 1);
-    let Some(leading) = leading else {
+    let found = row.cells.len();
+    let Some(leading) = found.checked_sub(wanted).filter(|time| *time <= 1) else {
+        let expected = format!("{wanted} numbers, six for each of the {nodes} nodes of nodes.out");
         return Err(Error::input(
             Place::line(row.line),
-            format!("{wanted} numbers, six for each of the {nodes} nodes of nodes.out"),
-            row.cells.len().to_string(),
+            expected,
+            found.to_string(),
         ));
     };
     let part = |n: usize| row.numbers(std::array::from_fn(|d| leading + 6 * n + d));

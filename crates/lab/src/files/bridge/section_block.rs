@@ -91,12 +91,9 @@ impl StaticBlock {
 impl BridgeSectionBlock {
     pub(super) fn validate(&self, place: &str) -> Result<()> {
         positive(format!("{place}.width_m"), self.width_m)?;
-        ensure(
-            self.derivatives.is_some() || self.model.is_some() || self.statics.is_some(),
-            place,
-            "one of `derivatives`, `model`, `static`",
-            "none",
-        )?;
+        let any = self.derivatives.is_some() || self.model.is_some() || self.statics.is_some();
+        let expected = "one of `derivatives`, `model`, `static`";
+        ensure(any, place, expected, "none")?;
         ensure(
             self.motions == Dof::TWO || self.motions == Dof::THREE,
             format_args!("{place}.motions"),

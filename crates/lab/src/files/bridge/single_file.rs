@@ -18,12 +18,11 @@
 use super::modal_data::{BridgeModes, check_order};
 use super::table::{Table, TableRow};
 use crate::bridge::{BridgeMode, Node};
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::{Result, ensure, positive};
 use crate::files::header_csv::CommentHeader;
-use crate::files::text::{csv_cell, of_csv_cell, read_text};
+use crate::files::text::{csv_cell, of_csv_cell};
 use std::collections::HashSet;
 use std::io::Write;
-use std::path::Path;
 
 const FORMAT: &str = "aerodeck bridge modes 1";
 const AXES: &str = "vertical up, lateral downwind, rotation nose-up";
@@ -34,11 +33,6 @@ const PARTS: [&str; 3] = ["vertical", "lateral", "rotation"];
 /// Columns of the places across the girder.
 const OFFSETS: [&str; 2] = ["downwind_m", "up_m"];
 const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
-
-pub(super) fn read(path: &Path) -> Result<BridgeModes> {
-    let text = read_text(path)?;
-    parse(&text).map_err(|e| e.in_file(path))
-}
 
 pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     ensure(
@@ -100,20 +94,14 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
 fn refuse_unstated(table: &Table, modes: &[BridgeMode]) -> Result<()> {
     let number = |column: &str| {
         let (part, number) = column.rsplit_once('_')?;
-        number
-            .parse()
-            .ok()
-            .filter(|_: &usize| PARTS.contains(&part))
+        number.parse().ok().filter(|_| PARTS.contains(&part))
     };
-    let stated = |n| modes.iter().any(|mode| mode.number == n);
-    let unstated = |column: &&String| number(column).is_some_and(|n| !stated(n));
-    match table.heading.iter().find(unstated) {
-        None => Ok(()),
-        Some(column) => {
-            let expected = format!("a line `# mode: …` for the column `{column}`");
-            Err(Error::input("header", expected, "none"))
-        }
-    }
+    let stated = |n: usize| modes.iter().any(|mode| mode.number == n);
+    table.heading.iter().try_for_each(|column| {
+        let is_stated = number(column).is_none_or(stated);
+        let expected = format_args!("a line `# mode: …` for the column `{column}`");
+        ensure(is_stated, "header", expected, "none")
+    })
 }
 
 /// Places downwind and up, of a file that knows them.

@@ -2,7 +2,7 @@
 //! in front. Where no comma stands between, numbers may have decimal commas.
 
 use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
-use crate::files::text::{is_blank, read_text};
+use crate::files::text::{is_blank, parsed};
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -58,9 +58,7 @@ fn are_names(cells: &[String]) -> bool {
 impl Table {
     /// What `make` makes of the table in a file; errors name the file.
     pub(super) fn read<T>(path: &Path, make: impl FnOnce(&Self) -> Result<T>) -> Result<T> {
-        let text = read_text(path)?;
-        let made = Self::parse(&text).and_then(|table| make(&table));
-        made.map_err(|e| e.in_file(path))
+        parsed(path, |text| make(&Self::parse(text)?))
     }
 
     pub(super) fn parse(text: &str) -> Result<Self> {
@@ -84,13 +82,9 @@ impl Table {
             table
                 .fit(&mut cells, between)
                 .map_err(|e| e.at(Place::line(i + 1)))?;
-            ensure(
-                table.rows.len() != ROWS_AT_MOST,
-                Place::line(i + 1),
-                format_args!("at most {ROWS_AT_MOST} rows"),
-                "more",
-            )?;
-            let line = i + 1;
+            let (line, expected) = (i + 1, format_args!("at most {ROWS_AT_MOST} rows"));
+            let is_room = table.rows.len() != ROWS_AT_MOST;
+            ensure(is_room, Place::line(line), expected, "more")?;
             table.rows.push(TableRow { line, cells });
         }
         ensure(!table.rows.is_empty(), "", "rows of numbers", "none")?;
@@ -106,12 +100,8 @@ impl Table {
         while cells.len() > columns && cells.last().is_some_and(String::is_empty) {
             cells.pop();
         }
-        ensure(
-            cells.len() == columns,
-            "",
-            counted(columns, "column"),
-            cells.len(),
-        )
+        let expected = counted(columns, "column");
+        ensure(cells.len() == columns, "", expected, cells.len())
     }
 
     /// Place of the column with one of these names, in any case.
@@ -124,11 +114,8 @@ impl Table {
     /// The same, which must be there.
     pub(super) fn required(&self, names: &[&str]) -> Result<usize> {
         self.column(names).ok_or_else(|| {
-            Error::input(
-                "heading",
-                format!("a column `{}`", names[0]),
-                format!("`{}`", self.heading.join(",")),
-            )
+            let expected = format!("a column `{}`", names[0]);
+            Error::input("heading", expected, format!("`{}`", self.heading.join(",")))
         })
     }
 
@@ -145,12 +132,8 @@ impl Table {
     pub(super) fn each_once<'n>(&self, names: impl Iterator<Item = &'n str>) -> Result<()> {
         let mut known = HashSet::new();
         for (row, name) in self.rows.iter().zip(names) {
-            ensure(
-                known.insert(name),
-                Place::line(row.line),
-                "each node once",
-                format_args!("node {name} twice"),
-            )?;
+            let (is_new, found) = (known.insert(name), format_args!("node {name} twice"));
+            ensure(is_new, Place::line(row.line), "each node once", found)?;
         }
         Ok(())
     }
@@ -199,13 +182,9 @@ impl TableRow {
 
     /// The whole number in a cell.
     pub(super) fn count(&self, column: usize) -> Result<usize> {
-        let x = self.number(column)?;
-        ensure(
-            x >= 0.0 && x.fract() == 0.0,
-            self.place(column),
-            "a whole number",
-            format_args!("`{}`", self.cell(column)),
-        )?;
+        let (x, found) = (self.number(column)?, self.cell(column));
+        let (is_whole, found) = (x >= 0.0 && x.fract() == 0.0, format_args!("`{found}`"));
+        ensure(is_whole, self.place(column), "a whole number", found)?;
         Ok(x as usize)
     }
 

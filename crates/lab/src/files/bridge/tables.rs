@@ -6,8 +6,10 @@
 //!
 //! Lines that begin with `#` are comments; columns stand in any order and others are ignored.
 
-use super::modal_data::{ModalData, RawMode};
+use super::axes::MotionDirections;
+use super::modal_data::PlacedNodes;
 use super::table::{Table, TableRow};
+use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};
 use std::collections::HashMap;
 use std::path::Path;
@@ -17,17 +19,20 @@ const MODES: &str = "modes.csv";
 const SHAPES: &str = "shapes.csv";
 
 /// Reads the folder.
-pub(super) fn read(folder: &Path) -> Result<ModalData> {
+pub(super) fn read(
+    folder: &Path,
+    frame: &MotionDirections,
+) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let nodes = Table::read(&folder.join(NODES), nodes)?;
     let mut modes = Table::read(&folder.join(MODES), |table| modes(table, nodes.len()))?;
     Table::read(&folder.join(SHAPES), |table| {
-        fill(table, &nodes, &mut modes)
+        fill(table, frame, &nodes, &mut modes)
     })?;
-    Ok(ModalData { nodes, modes })
+    Ok((nodes, modes))
 }
 
 /// Nodes with their places.
-pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
+pub(super) fn nodes(table: &Table) -> Result<PlacedNodes> {
     let [node, x, y, z] = table.columns([
         &["node", "tag", "label"],
         &["x_m", "x"],
@@ -35,67 +40,62 @@ pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
         &["z_m", "z"],
     ])?;
     let one = |row: &TableRow| Ok((row.name(node), row.numbers([x, y, z])?));
-    let nodes: Vec<(String, [f64; 3])> = table.rows.iter().map(one).collect::<Result<_>>()?;
+    let nodes: PlacedNodes = table.rows.iter().map(one).collect::<Result<_>>()?;
     table.each_once(nodes.iter().map(|n| n.0.as_str()))?;
     Ok(nodes)
 }
 
-fn modes(table: &Table, nodes: usize) -> Result<Vec<RawMode>> {
+fn modes(table: &Table, nodes: usize) -> Result<Vec<BridgeMode>> {
     let [mode, frequency, mass] = table.columns([
         &["mode"],
         &["frequency_hz"],
         &["generalised_mass_kg", "generalised_mass"],
     ])?;
     let one = |row: &TableRow| {
-        Ok(RawMode {
+        Ok(BridgeMode {
             number: row.count(mode)?,
             frequency_hz: row.positive(frequency, "a positive frequency in Hz")?,
             generalised_mass: row.positive(mass, "a positive generalised mass")?,
-            shape: vec![[f64::NAN; 6]; nodes],
+            damping_ratio: 0.0,
+            shape: vec![[f64::NAN; 3]; nodes],
         })
     };
-    let modes: Vec<RawMode> = table.rows.iter().map(one).collect::<Result<_>>()?;
-    for (i, m) in modes.iter().enumerate() {
+    let modes: Vec<BridgeMode> = table.rows.iter().map(one).collect::<Result<_>>()?;
+    for (i, BridgeMode { number, .. }) in modes.iter().enumerate() {
+        let is_new = modes[..i].iter().all(|before| before.number != *number);
+        let found = format_args!("mode {number} twice");
         ensure(
-            modes[..i].iter().all(|before| before.number != m.number),
+            is_new,
             Place::line(table.rows[i].line),
             "each mode once",
-            format_args!("mode {} twice", m.number),
+            found,
         )?;
     }
     Ok(modes)
 }
 
-fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> Result<()> {
+fn fill(
+    table: &Table,
+    frame: &MotionDirections,
+    nodes: &PlacedNodes,
+    modes: &mut [BridgeMode],
+) -> Result<()> {
     let [mode, node] = table.columns([&["mode"], &["node"]])?;
     let parts = table.columns([&["ux"], &["uy"], &["uz"], &["rx"], &["ry"], &["rz"]])?;
-    let place_of: HashMap<&str, usize> = nodes
-        .iter()
-        .enumerate()
-        .map(|(i, n)| (n.0.as_str(), i))
-        .collect();
-    let mode_of: HashMap<usize, usize> = modes
-        .iter()
-        .enumerate()
-        .map(|(i, m)| (m.number, i))
-        .collect();
+    let places = nodes.iter().enumerate().map(|(i, n)| (n.0.as_str(), i));
+    let place_of: HashMap<&str, usize> = places.collect();
+    let numbers = modes.iter().enumerate().map(|(i, m)| (m.number, i));
+    let mode_of: HashMap<usize, usize> = numbers.collect();
     for row in &table.rows {
         let number = row.count(mode)?;
-        let of_mode = mode_of.get(&number).ok_or_else(|| {
-            Error::input(
-                Place::line(row.line),
-                format!("a mode of {MODES}"),
-                format!("mode {number}"),
-            )
-        })?;
+        let unknown =
+            |expected: String, found: String| Error::input(Place::line(row.line), expected, found);
+        let of_mode = mode_of.get(&number);
+        let of_mode = of_mode
+            .ok_or_else(|| unknown(format!("a mode of {MODES}"), format!("mode {number}")))?;
         let name = row.name(node);
-        let at = place_of.get(name.as_str()).ok_or_else(|| {
-            Error::input(
-                Place::line(row.line),
-                format!("a node of {NODES}"),
-                format!("node {name}"),
-            )
-        })?;
+        let at = place_of.get(name.as_str());
+        let at = at.ok_or_else(|| unknown(format!("a node of {NODES}"), format!("node {name}")))?;
         let values = &mut modes[*of_mode].shape[*at];
         ensure(
             values[0].is_nan(),
@@ -103,7 +103,7 @@ fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> R
             "each node once in a mode",
             format_args!("node {name} of mode {number} twice"),
         )?;
-        *values = row.numbers(parts)?;
+        *values = frame.motion(&row.numbers(parts)?);
     }
     for m in modes {
         if let Some(missing) = m.shape.iter().position(|u| u[0].is_nan()) {

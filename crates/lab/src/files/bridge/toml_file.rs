@@ -9,6 +9,7 @@ use super::{WindAxes, abaqus, embedded, matlab, opensees, single_file, tables, w
 use crate::bridge::{BridgeMode, Dampers};
 use crate::error::{Error, Result, ensure, non_negative, of_schema, positive};
 use crate::files::report_block::ReportBlock;
+use crate::files::text::parsed;
 use crate::files::toml_lines;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -196,13 +197,10 @@ impl BridgeFile {
         ensure(any, "section", "at least one [[section]]", "none")?;
         for (i, section) in self.sections.iter().enumerate() {
             section.validate(&format!("section[{i}]"))?;
-            let same = self.sections[..i].iter().any(|s| s.name == section.name);
-            ensure(
-                !same,
-                format_args!("section[{i}].name"),
-                "a name that no section before it has",
-                format_args!("`{}`", section.name),
-            )?;
+            let (name, place) = (&section.name, format!("section[{i}].name"));
+            let is_new = self.sections[..i].iter().all(|s| s.name != *name);
+            let expected = "a name that no section before it has";
+            ensure(is_new, place, expected, format_args!("`{name}`"))?;
         }
         for (i, damper) in self.dampers.iter().enumerate() {
             damper.validate(&format!("damper[{i}]"))?;
@@ -210,11 +208,8 @@ impl BridgeFile {
         self.wind.validate()?;
         match (self.modes.format, &self.modes.axes, &self.modes.span) {
             (ModesFormat::Matlab, _, None) => {
-                return Err(Error::input(
-                    "modes.span",
-                    "span_m, mass_kg_m and inertia_kg_m2_m for MATLAB files",
-                    "none",
-                ));
+                let expected = "span_m, mass_kg_m and inertia_kg_m2_m for MATLAB files";
+                return Err(Error::input("modes.span", expected, "none"));
             }
             (ModesFormat::Wawi | ModesFormat::Abaqus | ModesFormat::Opensees, None, _) => {
                 let expected = "up and downwind in the axes of the files, e.g. { up = \"z\", downwind = \"-y\" }";
@@ -266,7 +261,7 @@ impl BridgeFile {
         let path = self.directory.join(&block.path);
         let mut modes = match block.format {
             ModesFormat::Embedded => embedded::modes(&block.path.to_string_lossy())?,
-            ModesFormat::Csv if !path.is_dir() => single_file::read(&path)?,
+            ModesFormat::Csv if !path.is_dir() => parsed(&path, single_file::parse)?,
             ModesFormat::Matlab => {
                 let span = block.span.as_ref();
                 let span = span.ok_or_else(|| Error::input("modes.span", "the span", "none"))?;
@@ -278,14 +273,14 @@ impl BridgeFile {
                     Error::input("modes.axes", expected, "none")
                 })?;
                 let frame = axes.frame()?;
-                let data = match program {
-                    ModesFormat::Wawi => wawi::read(&path)?,
-                    ModesFormat::Abaqus => abaqus::read(&path)?,
-                    ModesFormat::Opensees => opensees::read(&path)?,
-                    _ => tables::read(&path)?,
+                let (nodes, modes) = match program {
+                    ModesFormat::Wawi => wawi::read(&path, &frame)?,
+                    ModesFormat::Abaqus => abaqus::read(&path, &frame)?,
+                    ModesFormat::Opensees => opensees::read(&path, &frame)?,
+                    _ => tables::read(&path, &frame)?,
                 };
-                data.in_frame(&frame, path.display().to_string())
-                    .map_err(|e| e.in_file(&path))?
+                let source = path.display().to_string();
+                BridgeModes::in_frame(&frame, nodes, modes, source).map_err(|e| e.in_file(&path))?
             }
         };
         block.damping_ratio.apply(&mut modes.modes)?;

@@ -68,12 +68,8 @@ impl TurbSimHeader {
     fn read(all: &[u8]) -> Result<Self> {
         let at = &mut 0;
         let kind = i16::from_le_bytes(take(all, at, "the kind of file")?);
-        ensure(
-            KINDS.contains(&kind),
-            "byte 0",
-            "7 or 8, a full-field file of TurbSim",
-            kind,
-        )?;
+        let expected = "7 or 8, a full-field file of TurbSim";
+        ensure(KINDS.contains(&kind), "byte 0", expected, kind)?;
         let counts = [
             count(all, at, "points upwards", 1)?,
             count(all, at, "points across", 2)?,
@@ -107,10 +103,7 @@ impl TurbSimHeader {
     }
 
     fn check(&self, length: usize) -> Result<()> {
-        let positive = |what: &str, x: f64| match x > 0.0 {
-            true => Ok(()),
-            false => Err(Error::input(what, "a number above 0", x.to_string())),
-        };
+        let positive = |what: &str, x: f64| ensure(x > 0.0, what, "a number above 0", x);
         positive("distance across", self.steps[1])?;
         positive("time step", self.steps[2])?;
         positive("mean wind", self.mean_speed_m_s)?;
@@ -123,21 +116,15 @@ impl TurbSimHeader {
             format_args!("{} m", self.hub_height_m),
         )?;
         for c in ALONG_AND_UP {
-            ensure(
-                self.scales[c][0] != 0.0,
-                format_args!("slope of component {}", c + 1),
-                "a number other than 0",
-                "0",
-            )?;
+            let place = format_args!("slope of component {}", c + 1);
+            let is_any = self.scales[c][0] != 0.0;
+            ensure(is_any, place, "a number other than 0", "0")?;
         }
         let samples = self.record().saturating_mul(self.counts[3]);
         let expected = self.end.saturating_add(samples);
-        ensure(
-            length == expected,
-            "",
-            format_args!("{expected} bytes, as the head of the file says"),
-            length,
-        )
+        let holds = length == expected;
+        let expected = format_args!("{expected} bytes, as the head of the file says");
+        ensure(holds, "", expected, length)
     }
 
     /// Bytes of one time.
@@ -176,27 +163,23 @@ fn parse(bytes: &[u8]) -> Result<FieldTable> {
         let [slope, intercept] = head.scales[component];
         (f64::from(i16::from_le_bytes([bytes[at], bytes[at + 1]])) - intercept) / slope
     };
-    let at_hub = |point: usize, component: usize| -> Vec<f64> {
-        (0..times)
-            .map(|t| {
-                let low = sample(t, below, point, component);
-                match share {
-                    0.0 => low,
-                    share => low + share * (sample(t, below + 1, point, component) - low),
-                }
-            })
-            .collect()
+    let at_hub = |time: usize, point: usize, component: usize| {
+        let low = sample(time, below, point, component);
+        match share {
+            0.0 => low,
+            share => low + share * (sample(time, below + 1, point, component) - low),
+        }
     };
-    let middle = 0.5 * (across - 1) as f64;
     let gusts = ALONG_AND_UP.map(|component| {
-        let rows = (0..across).map(|p| without_mean(at_hub(p, component)));
+        let row = |point| (0..times).map(move |time| at_hub(time, point, component));
+        let rows = (0..across).map(|point| without_mean(row(point).collect()));
         rows.collect::<Vec<_>>()
     });
+    let middle = 0.5 * (across - 1) as f64;
+    let along = |point: usize| (point as f64 - middle) * head.steps[1];
     Ok(FieldTable {
         step_s: head.steps[2],
-        along_m: (0..across)
-            .map(|p| (p as f64 - middle) * head.steps[1])
-            .collect(),
+        along_m: (0..across).map(along).collect(),
         from_middle: true,
         mean_speed_m_s: Some(head.mean_speed_m_s),
         gusts,

@@ -2,9 +2,11 @@
 //!
 //! `phi.full` has six rows per node, in the order of `node_matrix`, and one column per mode; axes are those of the nodes.
 
-use super::modal_data::{ModalData, RawMode};
+use super::axes::MotionDirections;
+use super::modal_data::PlacedNodes;
+use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, counted, ensure};
-use crate::files::text::read_text;
+use crate::files::text::parsed;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::f64::consts::TAU;
@@ -31,50 +33,43 @@ struct WawiElement {
 }
 
 /// Reads the folder.
-pub(super) fn read(folder: &Path) -> Result<ModalData> {
+pub(super) fn read(
+    folder: &Path,
+    frame: &MotionDirections,
+) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let element: WawiElement = json(&folder.join("element.json"))?;
     let path = folder.join("modal.json");
     let modal: Modal = json(&path)?;
-    data(element, modal).map_err(|e| e.in_file(path))
+    data(element, modal, frame).map_err(|e| e.in_file(path))
 }
 
 fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
-    let text = read_text(path)?;
-    serde_json::from_str(&text)
-        .map_err(|e| Error::json("a file of wawi's model folder", &e).in_file(path))
+    let wrong = |e| Error::json("a file of wawi's model folder", &e);
+    parsed(path, |text| serde_json::from_str(text).map_err(wrong))
 }
 
-fn data(element: WawiElement, modal: Modal) -> Result<ModalData> {
-    ensure(
-        !modal.local,
-        "local",
-        "shapes along global axes (`false`)",
-        "`true`",
-    )?;
+fn data(
+    element: WawiElement,
+    modal: Modal,
+    frame: &MotionDirections,
+) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
+    let expected = "shapes along global axes (`false`)";
+    ensure(!modal.local, "local", expected, "`true`")?;
     let mut nodes = Vec::new();
     for (i, row) in element.node_matrix.iter().enumerate() {
         let [name, x, y, z] = row[..] else {
             let place = format!("element.json: node_matrix[{i}]");
-            return Err(Error::input(
-                place,
-                "node, x, y, z",
-                format!("{} numbers", row.len()),
-            ));
+            let found = format!("{} numbers", row.len());
+            return Err(Error::input(place, "node, x, y, z", found));
         };
         nodes.push((format!("{name:.0}"), [x, y, z]));
     }
     let omega = frequencies(&modal)?;
     let rows = modal.phi.full;
-    ensure(
-        rows.len() == 6 * nodes.len(),
-        "phi.full",
-        format_args!(
-            "{} rows, six for each of the {} nodes",
-            6 * nodes.len(),
-            nodes.len()
-        ),
-        counted(rows.len(), "row"),
-    )?;
+    let (count, wanted) = (nodes.len(), 6 * nodes.len());
+    let expected = format_args!("{wanted} rows, six for each of the {count} nodes");
+    let found = counted(rows.len(), "row");
+    ensure(rows.len() == wanted, "phi.full", expected, found)?;
     if let Some(i) = rows.iter().position(|r| r.len() != modal.m.len()) {
         return Err(Error::input(
             format!("phi.full[{i}]"),
@@ -82,27 +77,20 @@ fn data(element: WawiElement, modal: Modal) -> Result<ModalData> {
             counted(rows[i].len(), "column"),
         ));
     }
-    let mode = |(m, omega): (usize, f64)| RawMode {
-        number: m + 1,
-        frequency_hz: omega / TAU,
-        generalised_mass: modal.m[m],
-        shape: (0..nodes.len())
-            .map(|n| std::array::from_fn(|d| rows[6 * n + d][m]))
-            .collect(),
+    let mode = |(m, omega): (usize, f64)| {
+        let at = |n: usize| std::array::from_fn(|d| rows[6 * n + d][m]);
+        let shape: Vec<[f64; 6]> = (0..nodes.len()).map(at).collect();
+        frame.mode(m + 1, omega / TAU, modal.m[m], &shape)
     };
     let modes = omega.into_iter().enumerate().map(mode).collect();
-    Ok(ModalData { nodes, modes })
+    Ok((nodes, modes))
 }
 
 fn frequencies(modal: &Modal) -> Result<Vec<f64>> {
     let count = modal.m.len();
     let of = |name: &str, values: &[f64], square: bool| {
-        ensure(
-            values.len() == count,
-            name,
-            format_args!("{count} values, one per mode of `m`"),
-            values.len(),
-        )?;
+        let expected = format_args!("{count} values, one per mode of `m`");
+        ensure(values.len() == count, name, expected, values.len())?;
         let one = |(i, x): (usize, &f64)| {
             let omega = if square { (x / modal.m[i]).sqrt() } else { *x };
             ensure(

@@ -1,7 +1,7 @@
 //! The wind along the span in a bridge file.
 
 use crate::bridge::MOST_WIND_FACTOR;
-use crate::error::{Error, Result, ensure, finite, non_negative};
+use crate::error::{Result, ensure, finite, non_negative};
 use serde::{Deserialize, Serialize};
 
 /// Wind along the span.
@@ -45,24 +45,19 @@ impl WindBlock {
             let place = format!("wind.profile[{i}]");
             finite(format!("{place}.along_m"), point.along_m)?;
             non_negative(format!("{place}.factor"), point.factor)?;
-            ensure(
-                point.factor <= MOST_WIND_FACTOR,
-                format_args!("{place}.factor"),
-                format_args!(
-                    "at most {MOST_WIND_FACTOR} times the wind speed of the bridge (a factor, not per cent)"
-                ),
-                point.factor,
-            )?;
-            if i > 0 && points[i - 1].along_m >= point.along_m {
-                let expected = format!("a place beyond {} m", points[i - 1].along_m);
-                return Err(Error::input(place, expected, point.along_m.to_string()));
+            let expected = format_args!(
+                "at most {MOST_WIND_FACTOR} times the wind speed of the bridge (a factor, not per cent)"
+            );
+            let (fits, key) = (point.factor <= MOST_WIND_FACTOR, format!("{place}.factor"));
+            ensure(fits, key, expected, point.factor)?;
+            if let Some(before) = points[..i].last() {
+                let expected = format_args!("a place beyond {} m", before.along_m);
+                let rises = point.along_m > before.along_m;
+                ensure(rises, place, expected, point.along_m)?;
             }
         }
-        ensure(
-            points.is_empty() || points.iter().any(|p| p.factor != 0.0),
-            "wind.profile",
-            "wind somewhere along the bridge",
-            "zero everywhere",
-        )
+        let blows = points.is_empty() || points.iter().any(|p| p.factor != 0.0);
+        let expected = "wind somewhere along the bridge";
+        ensure(blows, "wind.profile", expected, "zero everywhere")
     }
 }

@@ -20,9 +20,7 @@ use crate::aerodynamics::quasi_steady::{
 };
 use crate::error::{Place, Result};
 use crate::files::header_csv::{CommentHeader, number_rows};
-use crate::files::text::read_text;
 use std::io::Write;
-use std::path::Path;
 
 /// First line of the file.
 const FORMAT: &str = "aerodeck static coefficients 1";
@@ -39,13 +37,6 @@ const KEYS: [&str; 6] = [
     "sign_convention",
     "generator",
 ];
-
-/// Reads a table of static coefficients.
-pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
-    let path = path.as_ref();
-    let text = read_text(path)?;
-    parse_coefficients(&text).map_err(|e| e.in_file(path))
-}
 
 /// The table in `text`, the content of such a file.
 ///
@@ -102,6 +93,8 @@ pub fn write_coefficients(table: &StaticCoefficients, out: &mut dyn Write) -> st
 mod tests {
     use super::*;
     use crate::files::coefficients::embedded;
+    use crate::files::text::parsed;
+    use std::path::Path;
 
     fn written(table: &StaticCoefficients) -> String {
         let mut out = Vec::new();
@@ -189,7 +182,9 @@ mod tests {
 
     #[test]
     fn a_missing_file_is_named() {
-        let message = read_coefficients("no/such.csv").unwrap_err().to_string();
+        let message = parsed(Path::new("no/such.csv"), parse_coefficients)
+            .unwrap_err()
+            .to_string();
         assert!(message.starts_with("no/such.csv: "), "{message}");
     }
 }

@@ -6,22 +6,17 @@
 use crate::aerodynamics::quasi_steady::StaticCoefficients;
 use crate::error::{Error, Result};
 use crate::files::coefficients::csv_file::parse_coefficients;
+use crate::files::header_csv::embedded_name;
 
-/// Name and content of each file.
-const TABLES: [(&str, &str); 2] = [
-    (
-        "flat plate",
-        include_str!("../../../../../data/coefficients/flat_plate.csv"),
-    ),
-    (
-        "synthetic box girder",
-        include_str!("../../../../../data/coefficients/synthetic_box_girder.csv"),
-    ),
+/// Content of each file.
+const TABLES: [&str; 2] = [
+    include_str!("../../../../../data/coefficients/flat_plate.csv"),
+    include_str!("../../../../../data/coefficients/synthetic_box_girder.csv"),
 ];
 
 /// Names of the embedded tables.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    TABLES.iter().map(|(name, _)| *name)
+    TABLES.into_iter().map(embedded_name)
 }
 
 /// An embedded table by name; case does not matter.
@@ -29,17 +24,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// [`Error::Input`] listing the names when there is no such table.
 pub fn coefficients(name: &str) -> Result<StaticCoefficients> {
-    let (_, text) = TABLES
-        .iter()
-        .find(|(n, _)| n.eq_ignore_ascii_case(name.trim()))
-        .ok_or_else(|| {
-            let all: Vec<_> = names().collect();
-            let expected = format!(
-                "one of the embedded tables {}, or a table (.csv)",
-                all.join(", ")
-            );
-            Error::input("static coefficients", expected, format!("`{name}`"))
-        })?;
+    let named = |text: &&str| embedded_name(text).eq_ignore_ascii_case(name.trim());
+    let text = TABLES.into_iter().find(named).ok_or_else(|| {
+        let all = names().collect::<Vec<_>>().join(", ");
+        let expected = format!("one of the embedded tables {all}, or a table (.csv)");
+        Error::input("static coefficients", expected, format!("`{name}`"))
+    })?;
     parse_coefficients(text)
 }
 

@@ -28,11 +28,11 @@ use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result, ensure};
 use crate::files::derivatives::csv_header::{
-    ReadOptions, TableInConvention, provenance, read_head, stated, width_m, write_head,
+    ReadOptions, provenance, read_head, stated, width_m, write_head,
 };
 use crate::files::derivatives::csv_wide::{self, Rows};
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
-use crate::files::text::read_text;
+use crate::files::text::{check_mebibytes, parsed};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -46,39 +46,20 @@ const ARGUMENT: usize = 3;
 /// A file of tables, bytes: 18 derivatives at ten thousand points in full precision.
 const BYTES_AT_MOST: u64 = 100 << 20;
 
-/// Reads a table in this project's CSV, in whatever convention its header states.
-///
-/// # Errors
-/// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
-pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
-    read_csv_with(path, &ReadOptions::default()).map(|read| read.table)
-}
-
 /// Reads a CSV table, this project's or a wide one (one row per reduced velocity, one column per derivative), with what the
 /// caller states.
 pub(crate) fn read_csv_with(
     path: impl AsRef<Path>,
     options: &ReadOptions,
-) -> Result<TableInConvention> {
+) -> Result<(DerivativeTable, Convention)> {
     let path = path.as_ref();
-    let size = std::fs::metadata(path)
-        .map_err(|e| Error::io(path, e))?
-        .len();
-    ensure(
-        size <= BYTES_AT_MOST,
-        "",
-        format_args!("a table of at most {} MiB", BYTES_AT_MOST >> 20),
-        format_args!("{} MiB", size >> 20),
-    )
-    .map_err(|e| e.in_file(path))?;
-    let text = read_text(path)?;
+    let about = std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
+    check_mebibytes("a table", about.len(), BYTES_AT_MOST).map_err(|e| e.in_file(path))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let table = if csv_wide::is_wide(&text) {
-        csv_wide::parse(&text, &stem, options)
-    } else {
-        parse_csv_in(&text, options)
-    };
-    table.map_err(|e| e.in_file(path))
+    parsed(path, |text| match csv_wide::is_wide(text) {
+        true => csv_wide::parse(text, &stem, options),
+        false => parse_csv_in(text, options),
+    })
 }
 
 /// The table in `text`, which is the content of a file in this project's CSV.
@@ -88,14 +69,14 @@ pub(crate) fn read_csv_with(
 /// is not stated or contradicts itself, text in numbers, points out of order or twice, `V̂` not positive or not monotone
 /// in a speed group, missing derivatives.
 pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
-    parse_csv_in(text, &ReadOptions::default()).map(|read| read.table)
+    parse_csv_in(text, &ReadOptions::default()).map(|(table, _)| table)
 }
 
-/// A table from text in our own format, with what the caller states.
+/// A table from text in our own format, with what the caller states, and its convention.
 ///
 /// # Errors
-/// As [`read_csv`]; a stated convention that contradicts the text.
-pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
+/// As [`read_table`](super::read_table); a stated convention that contradicts the text.
+pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Convention)> {
     let head = read_head(text)?;
     let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();
@@ -103,12 +84,9 @@ pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<TableInConventi
     let mut in_file = stated(&head)?;
     let column = find_argument(&names, line)?;
     let said = in_file.argument.unwrap_or(column);
-    ensure(
-        said == column,
-        Place::line(line),
-        format_args!("a column `{said}` as the header says"),
-        format_args!("`{column}`"),
-    )?;
+    let expected = format_args!("a column `{said}` as the header says");
+    let found = format_args!("`{column}`");
+    ensure(said == column, Place::line(line), expected, found)?;
     in_file.argument = Some(column);
     let convention = options.convention.with_file(in_file)?;
     let mut wanted = CSV_COLUMNS;
@@ -120,7 +98,7 @@ pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<TableInConventi
     header.notes.extend(fill_in(&mut points, options.missing));
     let width = width_m(&head, options.width_m)?;
     let table = DerivativeTable::new(head.required("name")?.value.clone(), width, header, points)?;
-    Ok(TableInConvention { table, convention })
+    Ok((table, convention))
 }
 
 /// Writes a table in this project's CSV and convention; `parse_csv` gives the same table back, bit for bit.
@@ -193,25 +171,18 @@ fn read_rows(
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |column: usize| record.get(columns[column]).unwrap_or("");
         let place = |column: usize| {
-            let name = if column == ARGUMENT {
-                convention.argument.name()
-            } else {
-                CSV_COLUMNS[column]
-            };
-            Place::line(line).column(name)
+            Place::line(line).column(match column {
+                ARGUMENT => convention.argument.name(),
+                other => CSV_COLUMNS[other],
+            })
         };
-        let derivative = convention
-            .notation
-            .derivative(cell(0))
-            .map_err(|e| e.at(place(0)))?;
+        let derivative = convention.notation.derivative(cell(0));
+        let derivative = derivative.map_err(|e| e.at(place(0)))?;
         let (points, lines) = rows.entry(derivative).or_default();
-        let expected = (points.len() + 1).to_string();
-        ensure(
-            cell(1) == expected,
-            place(1),
-            format_args!("point {expected} of {}", cell(0)),
-            format_args!("`{}`", cell(1)),
-        )?;
+        let (name, point, next) = (cell(0), cell(1), points.len() + 1);
+        let expected = format_args!("point {next} of {name}");
+        let is_next = point == next.to_string();
+        ensure(is_next, place(1), expected, format_args!("`{point}`"))?;
         let mean_speed_m_s = match cell(2) {
             "" => None,
             text => Some(number(place(2), text)?),
@@ -226,7 +197,7 @@ fn read_rows(
             argument,
             value,
         };
-        check_point_count(place(0), points.len() + 1)?;
+        check_point_count(place(0), next)?;
         points.push(convention.read_point(derivative, &point));
         lines.push(line as usize);
     }
@@ -241,11 +212,11 @@ fn find_argument(names: &csv::StringRecord, line: usize) -> Result<Argument> {
     match (found.next(), found.next()) {
         (Some(argument), None) => Ok(argument),
         (None, _) => Err(missing_column(names, line, Argument::VHat.name())),
-        (Some(first), Some(second)) => Err(Error::input(
-            Place::line(line),
-            "one column of reduced velocities or frequencies",
-            format!("`{first}` and `{second}`"),
-        )),
+        (Some(first), Some(second)) => {
+            let expected = "one column of reduced velocities or frequencies";
+            let found = format!("`{first}` and `{second}`");
+            Err(Error::input(Place::line(line), expected, found))
+        }
     }
 }
 

@@ -3,21 +3,10 @@
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, Notation, StatedConvention,
 };
-use crate::aerodynamics::derivatives::{
-    DerivativeTable, Missing, SIGN_CONVENTION, TableHeader, UNITS,
-};
+use crate::aerodynamics::derivatives::{Missing, SIGN_CONVENTION, TableHeader, UNITS};
 use crate::error::{Error, Result};
 use crate::files::header_csv::{CommentHeader, HeaderLine};
 use std::io::Write;
-
-/// A table with the convention that its file is in.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TableInConvention {
-    /// The table, in the convention of this project.
-    pub table: DerivativeTable,
-    /// The convention of the file.
-    pub convention: Convention,
-}
 
 /// What a file of derivatives does not say of itself.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -18,7 +18,7 @@ use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use crate::error::{Error, Place, Result, counted, ensure, positive};
 use crate::files::derivatives::csv_header::{
-    ReadOptions, TableInConvention, WIDTH_ASSUMED, provenance, read_head, stated, width_stated,
+    ReadOptions, WIDTH_ASSUMED, provenance, read_head, stated, width_stated,
 };
 use crate::files::header_csv::CommentHeader;
 use crate::files::header_csv::number;
@@ -31,13 +31,16 @@ type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 /// Points of one derivative and the lines they stand on.
 pub(super) type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<usize>)>;
 
-/// Where the numbers stand.
-struct WideColumns {
+/// Where the numbers stand, and how they are written.
+struct WideColumns<'a> {
+    names: Vec<&'a str>,
     argument: usize,
     speed: Option<usize>,
     derivatives: Vec<(usize, Derivative)>,
     /// Names of columns that mean nothing here.
     others: Vec<String>,
+    /// Whether numbers of the file have decimal commas.
+    decimal_comma: bool,
 }
 
 /// The separator that the first row uses.
@@ -66,7 +69,11 @@ pub(super) fn is_wide(text: &str) -> bool {
 ///
 /// # Errors
 /// [`Error::Input`] naming line, column, expectation and finding.
-pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<TableInConvention> {
+pub(super) fn parse(
+    text: &str,
+    stem: &str,
+    options: &ReadOptions,
+) -> Result<(DerivativeTable, Convention)> {
     let text = text.trim_start_matches('\u{feff}');
     let head = read_head(text)?;
     let mut lines = (1..)
@@ -83,24 +90,17 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
     in_file.argument =
         argument_of(&names, said, in_file.argument).map_err(|e| e.at(Place::line(line)))?;
     let convention = options.convention.with_file(in_file)?;
-    let columns = find_columns(&names, line, &convention)?;
+    let mut columns = find_columns(names, line, &convention)?;
+    let is_one = |c: &str| c.contains(',') && c.replace(',', ".").parse::<f64>().is_ok();
+    let mut numbers = lines.clone().flat_map(|(_, row)| cells(row, between));
+    columns.decimal_comma = between != ',' && numbers.any(is_one);
     let mut rows = Rows::new();
-    let decimal_comma = between != ','
-        && lines
-            .clone()
-            .any(|(_, row)| has_decimal_comma(row, between));
     for (line, text) in lines {
-        let row = WideRow {
-            line,
-            cells: cells(text, between),
-            names: &names,
-            decimal_comma,
-        };
-        row.enter(&columns, &convention, &mut rows)?;
+        columns.enter(line, &cells(text, between), &convention, &mut rows)?;
     }
     let points = checked(rows, &convention)?;
     let table = finished(&head, points, columns.others, stem, options)?;
-    Ok(TableInConvention { table, convention })
+    Ok((table, convention))
 }
 
 /// What the columns and the head say of the argument, where `stated` is what the caller says; of several columns the one is meant that
@@ -122,28 +122,14 @@ fn argument_of(
     Ok(Some(column))
 }
 
-fn has_decimal_comma(row: &str, between: char) -> bool {
-    let is_one = |c: &str| c.contains(',') && c.replace(',', ".").parse::<f64>().is_ok();
-    cells(row, between).into_iter().any(is_one)
-}
-
-/// One line of numbers.
-struct WideRow<'a> {
-    line: usize,
-    cells: Vec<&'a str>,
-    names: &'a [&'a str],
-    /// Whether numbers of the file have one.
-    decimal_comma: bool,
-}
-
-impl WideRow<'_> {
-    fn place(&self, column: usize) -> Place {
-        Place::line(self.line).column(self.names[column])
+impl WideColumns<'_> {
+    fn place(&self, line: usize, column: usize) -> Place {
+        Place::line(line).column(self.names[column])
     }
 
-    /// The number in a column; `None` for an empty cell.
-    fn number(&self, column: usize) -> Result<Option<f64>> {
-        let (text, place) = (self.cells[column], self.place(column));
+    /// The number in a cell; `None` for an empty one.
+    fn number(&self, line: usize, column: usize, text: &str) -> Result<Option<f64>> {
+        let place = self.place(line, column);
         if text.is_empty() {
             return Ok(None);
         }
@@ -161,20 +147,23 @@ impl WideRow<'_> {
         number(place, &text).map(Some)
     }
 
-    /// Adds the points of this line.
-    fn enter(&self, columns: &WideColumns, convention: &Convention, rows: &mut Rows) -> Result<()> {
-        ensure(
-            self.cells.len() == self.names.len(),
-            Place::line(self.line),
-            counted(self.names.len(), "column"),
-            self.cells.len(),
-        )?;
-        let argument = self.number(columns.argument)?.unwrap_or(f64::NAN);
-        positive(self.place(columns.argument), argument)?;
-        let speed = columns.speed.map(|column| self.number(column));
-        let mean_speed_m_s = speed.transpose()?.flatten();
-        for (column, derivative) in &columns.derivatives {
-            let Some(value) = self.number(*column)? else {
+    /// Adds the points of a line.
+    fn enter(
+        &self,
+        line: usize,
+        cells: &[&str],
+        convention: &Convention,
+        rows: &mut Rows,
+    ) -> Result<()> {
+        let columns = counted(self.names.len(), "column");
+        let is_whole = cells.len() == self.names.len();
+        ensure(is_whole, Place::line(line), columns, cells.len())?;
+        let number = |column: usize| self.number(line, column, cells[column]);
+        let argument = number(self.argument)?.unwrap_or(f64::NAN);
+        positive(self.place(line, self.argument), argument)?;
+        let mean_speed_m_s = self.speed.map(number).transpose()?.flatten();
+        for (column, derivative) in &self.derivatives {
+            let Some(value) = number(*column)? else {
                 continue;
             };
             let point = ExpressedPoint {
@@ -184,7 +173,7 @@ impl WideRow<'_> {
             };
             let (points, lines) = rows.entry(*derivative).or_default();
             points.push(convention.read_point(*derivative, &point));
-            lines.push(self.line);
+            lines.push(line);
             check_point_count(self.names[*column], points.len())?;
         }
         Ok(())
@@ -267,13 +256,20 @@ fn is_argument(name: &str, argument: Argument) -> bool {
         || words.contains(&said.as_str())
 }
 
-fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<WideColumns> {
+fn find_columns<'a>(
+    names: Vec<&'a str>,
+    line: usize,
+    convention: &Convention,
+) -> Result<WideColumns<'a>> {
     let mut columns = WideColumns {
         argument: usize::MAX,
         speed: None,
         derivatives: Vec::new(),
         others: Vec::new(),
+        decimal_comma: false,
+        names,
     };
+    let names = &columns.names;
     let mut unnamed = Vec::new();
     for (i, name) in names.iter().enumerate() {
         let plain = plain_name(name, convention.notation);

@@ -7,32 +7,18 @@
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Error, Result};
 use crate::files::derivatives::parse_csv;
+use crate::files::header_csv::embedded_name;
 
 /// Licence text of the embedded figures.
 pub const LICENCE: &str = include_str!("../../../../../data/decks/LICENSE");
 
-/// Name and content of each file.
-const DECKS: [(&str, &str); 5] = [
-    (
-        "LN20-5500",
-        include_str!("../../../../../data/decks/LN20-5500.csv"),
-    ),
-    (
-        "LN21-5200",
-        include_str!("../../../../../data/decks/LN21-5200.csv"),
-    ),
-    (
-        "LN21-5500",
-        include_str!("../../../../../data/decks/LN21-5500.csv"),
-    ),
-    (
-        "LN21-5800",
-        include_str!("../../../../../data/decks/LN21-5800.csv"),
-    ),
-    (
-        "LN21-6100",
-        include_str!("../../../../../data/decks/LN21-6100.csv"),
-    ),
+/// Content of each file.
+const DECKS: [&str; 5] = [
+    include_str!("../../../../../data/decks/LN20-5500.csv"),
+    include_str!("../../../../../data/decks/LN21-5200.csv"),
+    include_str!("../../../../../data/decks/LN21-5500.csv"),
+    include_str!("../../../../../data/decks/LN21-5800.csv"),
+    include_str!("../../../../../data/decks/LN21-6100.csv"),
 ];
 
 /// Endings of files that hold tables for other programs.
@@ -40,7 +26,7 @@ const OTHER_TABLES: [&str; 8] = ["xls", "xlsm", "xlsb", "ods", "txt", "dat", "ts
 
 /// Names of the embedded decks.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    DECKS.iter().map(|(name, _)| *name)
+    DECKS.into_iter().map(embedded_name)
 }
 
 /// An embedded deck by name; case and the kind of dash do not matter (`ln21_5200`).
@@ -49,8 +35,8 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// [`Error::Input`] listing the names when there is no such deck.
 pub fn deck(name: &str) -> Result<DerivativeTable> {
     let wanted = name.trim().replace('_', "-");
-    let named = |(n, _): &&(&str, &str)| n.eq_ignore_ascii_case(&wanted);
-    let (_, text) = DECKS.iter().find(named).ok_or_else(|| {
+    let named = |text: &&str| embedded_name(text).eq_ignore_ascii_case(&wanted);
+    let text = DECKS.into_iter().find(named).ok_or_else(|| {
         let all: Vec<_> = names().collect();
         let expected = format!("one of the embedded decks {}", all.join(", "));
         Error::input("deck", expected, format!("`{name}`"))

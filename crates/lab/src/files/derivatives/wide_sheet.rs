@@ -4,12 +4,13 @@
 //! Titles, units and merged cells may stand above the row of names, which is the first with two derivatives in it; a row without numbers
 //! under it (units) is passed over. Which sheet is meant needs to be said only where several hold such a row.
 
-use super::csv_header::{ReadOptions, TableInConvention};
+use super::csv_header::ReadOptions;
 use super::csv_wide::{self, plain_name};
 use super::workbook::{convention_in, notes_of, number_in};
 use super::xlsx_cells::{DATE, OpenWorkbook, Sheet, cell_name, sheet_of};
-use crate::aerodynamics::derivatives::notation::Notation;
-use crate::error::{Error, Result, positive};
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::aerodynamics::derivatives::notation::{Convention, Notation};
+use crate::error::{Error, Result, ensure, positive};
 use crate::files::lab::Attribute;
 use calamine::Reader;
 
@@ -25,7 +26,7 @@ pub(super) fn read(
     sheet: Option<&str>,
     stem: &str,
     options: &ReadOptions,
-) -> Result<TableInConvention> {
+) -> Result<(DerivativeTable, Convention)> {
     let stated = options.convention.notation;
     let (name, cells, names) = chosen(book, sheet, stated)?;
     let notes = notes_of(book)?;
@@ -66,38 +67,27 @@ fn chosen(
         match row {
             Some(row) => found.push((name.clone(), cells, row)),
             None if wanted.is_some() => {
-                let words = cells.title_words();
-                return Err(Error::input(
-                    format!("sheet {name}"),
-                    EXAMPLE,
-                    format!("{words} in its first row"),
-                ));
+                let found = format!("{} in its first row", cells.title_words());
+                return Err(Error::input(format!("sheet {name}"), EXAMPLE, found));
             }
             None => {}
         }
     }
-    let listed = |names: &[&str]| format!("`{}`", names.join("`, `"));
-    let all: Vec<&str> = names.iter().map(String::as_str).collect();
-    if found.len() > 1 {
-        let several: Vec<&str> = found.iter().map(|(name, ..)| name.as_str()).collect();
-        let expected = "the sheet that is meant, as `--sheet` or behind the name of the file (`table.xlsx#SHEET`)";
-        return Err(Error::input(
-            "workbook",
-            expected,
-            format!("derivatives in {}", listed(&several)),
-        ));
-    }
-    found.pop().ok_or_else(|| match wanted {
-        Some(sheet) => Error::input("workbook", format!("a sheet `{sheet}`"), listed(&all)),
-        None => {
-            let expected =
-                format!("a sheet with {EXAMPLE} (or the three sheets of NTNU's workbooks)");
-            Error::input(
-                "workbook",
-                expected,
-                format!("the sheets {} without", listed(&all)),
-            )
-        }
+    let several: Vec<&str> = found.iter().map(|(name, ..)| name.as_str()).collect();
+    let expected =
+        "the sheet that is meant, as `--sheet` or behind the name of the file (`table.xlsx#SHEET`)";
+    let several_of = format_args!("derivatives in `{}`", several.join("`, `"));
+    ensure(several.len() <= 1, "workbook", expected, several_of)?;
+    found.pop().ok_or_else(|| {
+        let all = format!("`{}`", names.join("`, `"));
+        let (expected, found) = match wanted {
+            Some(sheet) => (format!("a sheet `{sheet}`"), all),
+            None => (
+                format!("a sheet with {EXAMPLE} (or the three sheets of NTNU's workbooks)"),
+                format!("the sheets {all} without"),
+            ),
+        };
+        Error::input("workbook", expected, found)
     })
 }
 
@@ -136,11 +126,11 @@ fn refuse_two_marks(sheet: &Sheet, names: u32) -> Result<()> {
         })
     };
     match (first(','), first('.')) {
-        (Some((comma, number)), Some((point, other))) => Err(Error::input(
-            format!("cell {comma}"),
-            format!("a point in the number, as in `{other}` of cell {point}"),
-            format!("`{number}`"),
-        )),
+        (Some((comma, number)), Some((point, other))) => {
+            let expected = format!("a point in the number, as in `{other}` of cell {point}");
+            let found = format!("`{number}`");
+            Err(Error::input(format!("cell {comma}"), expected, found))
+        }
         _ => Ok(()),
     }
 }
@@ -152,16 +142,9 @@ fn text_of(sheet: &Sheet, names: u32) -> String {
     let last = sheet.last_row(&columns);
     let mut text = "\n".repeat(names as usize);
     for row in names..=last {
-        let cells: Vec<String> = columns
-            .iter()
-            .map(|c| {
-                sheet
-                    .cells
-                    .get(&(row, *c))
-                    .map(cell_text)
-                    .unwrap_or_default()
-            })
-            .collect();
+        let cell = |c: &u32| sheet.cells.get(&(row, *c)).map(cell_text);
+        let cells = columns.iter().map(|c| cell(c).unwrap_or_default());
+        let cells: Vec<String> = cells.collect();
         let numbers = cells.iter().any(|c| is_number(c) || c == DATE);
         if row == names || row > names + 1 || numbers {
             text.push_str(&cells.join("\t"));

@@ -16,8 +16,9 @@ use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, Sta
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result, ensure, positive};
-use crate::files::derivatives::csv_header::{ReadOptions, TableInConvention, WIDTH_ASSUMED};
+use crate::files::derivatives::csv_header::{ReadOptions, WIDTH_ASSUMED};
 use crate::files::derivatives::xlsx_cells::{OpenWorkbook, Sheet, cell_name, sheet_of};
+use crate::files::header_csv;
 use crate::files::lab::Attribute;
 use calamine::Reader;
 use std::collections::BTreeMap;
@@ -56,7 +57,7 @@ pub(super) fn read_three_sheets(
     book: &mut OpenWorkbook,
     path: &Path,
     options: &ReadOptions,
-) -> Result<TableInConvention> {
+) -> Result<(DerivativeTable, Convention)> {
     let notes = notes_of(book)?;
     let convention = convention_of(options.convention, &notes)?;
     let mut points = read_sheets(book, &convention)?;
@@ -65,8 +66,10 @@ pub(super) fn read_three_sheets(
     let doubts = notes.get(DOUBTS).into_iter().flat_map(|d| d.lines());
     header.doubts.extend(doubts.map(str::to_owned));
     let stated = width_in_book(book, &notes)?;
-    let table = table_from(path, options, header, points, stated)?;
-    Ok(TableInConvention { table, convention })
+    Ok((
+        table_from(path, options, header, points, stated)?,
+        convention,
+    ))
 }
 
 /// Keys and values of the sheet `Notes`, the first two columns.
@@ -92,13 +95,8 @@ pub(super) fn convention_in(notes: &Notes) -> Result<StatedConvention> {
 
 /// A number of the notes.
 pub(super) fn number_in(notes: &Notes, key: &str) -> Result<Option<f64>> {
-    let parse = |text: &String| {
-        let number = text.parse();
-        number.map_err(|_| {
-            let place = format!("sheet {NOTES}, {key}");
-            Error::input(place, "a number", format!("`{text}`"))
-        })
-    };
+    let place = format_args!("sheet {NOTES}, {key}");
+    let parse = |text: &String| header_csv::number(place, text);
     notes.get(key).map(parse).transpose()
 }
 
@@ -160,10 +158,12 @@ fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Point
         sheets.iter().any(|s| column(s).is_some())
     };
     let given: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_given).collect();
+    let place = format_args!("sheet {}, first row", DERIVATIVES.0);
+    let expected = format_args!("columns named {}", convention.notation.names());
     ensure(
         !given.is_empty(),
-        format_args!("sheet {}, first row", DERIVATIVES.0),
-        format_args!("columns named {}", convention.notation.names()),
+        place,
+        expected,
         sheets[2].0.title_words(),
     )?;
     let columns = |i: usize| {
@@ -173,12 +173,15 @@ fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Point
     let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);
     let points = given.iter().enumerate().map(|(i, &d)| {
         let (speeds, arguments, values) = (&speeds[i], &arguments[i], &values[i]);
-        for (sheet, column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
+        let (count, of) = (speeds.len(), SPEEDS.0);
+        let expected = format_args!("{count} test points as in sheet {of}");
+        for ((sheet, _), column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
+            let found = column.len();
             ensure(
-                column.len() == speeds.len(),
-                format_args!("sheet {}", sheet.0),
-                format_args!("{} test points as in sheet {}", speeds.len(), SPEEDS.0),
-                column.len(),
+                found == count,
+                format_args!("sheet {sheet}"),
+                expected,
+                found,
             )?;
         }
         let point = |((speed, argument), value): ((&f64, &f64), &f64)| {
@@ -259,10 +262,11 @@ fn table_from(
     in_book: Option<(f64, String)>,
 ) -> Result<DerivativeTable> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let name = options.name.clone().unwrap_or_else(|| {
-        let bare = stem.trim_start_matches("AerodynamicDerivatives_");
-        bare.replace('_', "-")
-    });
+    let bare = stem.trim_start_matches("AerodynamicDerivatives_");
+    let name = options
+        .name
+        .clone()
+        .unwrap_or_else(|| bare.replace('_', "-"));
     if header.source.is_empty() {
         header.source = format!("workbook {stem}.xlsx");
     }
@@ -293,15 +297,11 @@ fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Re
     let mut widths = Vec::new();
     for derivative in table.derivatives() {
         let points = table.points(derivative);
-        ensure(
-            !frequencies_hz.is_empty() && points.len().is_multiple_of(frequencies_hz.len()),
-            derivative.name(),
-            format_args!(
-                "{} test points per speed, one per frequency (or the width stated)",
-                frequencies_hz.len()
-            ),
-            points.len(),
-        )?;
+        let (count, found) = (frequencies_hz.len(), points.len());
+        let expected =
+            format_args!("{count} test points per speed, one per frequency (or the width stated)");
+        let fits = count > 0 && found.is_multiple_of(count);
+        ensure(fits, derivative.name(), expected, found)?;
         for (p, f) in points.iter().zip(frequencies_hz.iter().cycle()) {
             let speed = p.mean_speed_m_s.unwrap_or(f64::NAN);
             widths.push(speed / (TAU * f * p.v_hat));
@@ -310,15 +310,12 @@ fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Re
     widths.sort_by(f64::total_cmp);
     let median = widths[widths.len() / 2];
     let (low, high) = (widths[0], widths[widths.len() - 1]);
-    ensure(
-        low > median * (1.0 - WIDTH_TOLERANCE) && high < median * (1.0 + WIDTH_TOLERANCE),
-        "width B = V/(2πf V̂)",
-        format_args!(
-            "one width from all points at the frequencies {frequencies_hz:?} Hz (or the width or other frequencies stated)"
-        ),
-        format_args!("{low:.4} m to {high:.4} m"),
-    )?;
-    Ok(median)
+    let is_one = low > median * (1.0 - WIDTH_TOLERANCE) && high < median * (1.0 + WIDTH_TOLERANCE);
+    let expected = format_args!(
+        "one width from all points at the frequencies {frequencies_hz:?} Hz (or the width or other frequencies stated)"
+    );
+    let found = format_args!("{low:.4} m to {high:.4} m");
+    ensure(is_one, "width B = V/(2πf V̂)", expected, found).map(|()| median)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Workbooks of derivatives written as NTNU keeps them; [`super::read_workbook`] reads them.
+//! Workbooks of derivatives written as NTNU keeps them; [`super::read_table_with`] reads them.
 //!
 //! Three sheets, each with a row of names and one row per test point; see [`super::workbook`] for the layout. Derivatives that the
 //! table does not hold have no columns. A fourth sheet, `Notes`, which other readers of the layout do not look at, says where
@@ -26,12 +26,9 @@ pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
 pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Result<Vec<u8>> {
     let place = |d: Derivative| format!("table {}, {d}", table.name);
     for d in table.derivatives() {
-        ensure(
-            table.points(d).iter().all(|p| p.mean_speed_m_s.is_some()),
-            place(d),
-            "the mean speed of every point, as workbooks have it (a .csv needs none)",
-            "a point without",
-        )?;
+        let all_stated = table.points(d).iter().all(|p| p.mean_speed_m_s.is_some());
+        let expected = "the mean speed of every point, as workbooks have it (a .csv needs none)";
+        ensure(all_stated, place(d), expected, "a point without")?;
     }
     let failed = |e: XlsxError| Error::Numerical(format!("workbook: {e}"));
     let mut book = Workbook::new();
@@ -141,7 +138,7 @@ fn template(convention: &Convention) -> std::result::Result<Vec<u8>, XlsxError> 
 mod tests {
     use crate::files::derivatives::ReadOptions;
     use crate::files::derivatives::embedded;
-    use crate::files::derivatives::read_workbook;
+    use crate::files::derivatives::read_table_with;
     use crate::files::derivatives::workbook_writer::*;
     use std::collections::BTreeMap;
 
@@ -153,7 +150,7 @@ mod tests {
             width_m: Some(table.width_m),
             ..ReadOptions::default()
         };
-        read_workbook(&path, &options).unwrap()
+        read_table_with(&path, &options).unwrap().0
     }
 
     fn same(a: &DerivativeTable, b: &DerivativeTable) {
@@ -181,7 +178,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");
         std::fs::write(&path, workbook_bytes(&table).unwrap()).unwrap();
-        let again = read_workbook(&path, &ReadOptions::default()).unwrap();
+        let (again, _) = read_table_with(&path, &ReadOptions::default()).unwrap();
         assert!((again.width_m / table.width_m - 1.0).abs() < 1e-12);
     }
 
@@ -214,17 +211,13 @@ mod tests {
     fn notes_state_the_convention() {
         use crate::aerodynamics::derivatives::notation::Notation;
         use crate::aerodynamics::derivatives::notation::StatedConvention;
-        use crate::files::derivatives::{TableInConvention, read_workbook_in};
         let table = embedded::deck("LN21-5200").unwrap();
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");
         for notation in Notation::ALL {
             let convention = Convention::usual(notation);
             std::fs::write(&path, workbook_bytes_in(&table, &convention).unwrap()).unwrap();
-            let TableInConvention {
-                table: again,
-                convention: said,
-            } = read_workbook_in(&path, None, &ReadOptions::default()).unwrap();
+            let (again, said) = read_table_with(&path, &ReadOptions::default()).unwrap();
             assert_eq!(said, convention);
             same(&table, &again);
         }
@@ -232,7 +225,7 @@ mod tests {
             convention: StatedConvention::notation(Notation::Polimi),
             ..ReadOptions::default()
         };
-        let message = read_workbook(&path, &options).unwrap_err().to_string();
+        let message = read_table_with(&path, &options).unwrap_err().to_string();
         let expected = "notation: expected `polimi` as stated on import, found `starossek`";
         assert!(message.contains(expected), "{message}");
     }

@@ -3,7 +3,8 @@
 
 use crate::error::{Error, Result, ensure};
 use crate::files::lab::Attribute;
-use calamine::{Data, DataRef, Reader, Sheets, Xlsx, XlsxError, open_workbook_auto};
+use crate::files::text::check_mebibytes;
+use calamine::{Data, Reader, Sheets, Xlsx, XlsxError, open_workbook_auto};
 use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -56,34 +57,29 @@ impl Sheet {
         place: &dyn Fn() -> String,
         row: u32,
         column: u32,
-        value: &DataRef<'_>,
+        value: Data,
     ) -> Result<()> {
         let content = match value {
-            DataRef::Empty => return Ok(()),
-            DataRef::Float(x) => Attribute::Number(*x),
+            Data::Empty => return Ok(()),
+            Data::Float(x) => Attribute::Number(x),
             #[expect(
                 clippy::cast_precision_loss,
                 reason = "no measured figure has 16 digits before the point"
             )]
-            DataRef::Int(x) => Attribute::Number(*x as f64),
-            DataRef::String(text) => Attribute::Text(text.clone()),
-            DataRef::SharedString(text) => Attribute::Text((*text).to_owned()),
-            DataRef::DateTime(_) | DataRef::DateTimeIso(_) | DataRef::DurationIso(_) => {
+            Data::Int(x) => Attribute::Number(x as f64),
+            Data::String(text) => Attribute::Text(text),
+            Data::DateTime(_) | Data::DateTimeIso(_) | Data::DurationIso(_) => {
                 Attribute::Text(DATE.to_owned())
             }
-            other => Attribute::Text(Data::from(other.clone()).to_string()),
+            other => Attribute::Text(other.to_string()),
         };
         if matches!(&content, Attribute::Text(text) if text.trim().is_empty()) {
             return Ok(());
         }
         self.cells.insert((row, column), content);
-        ensure(
-            self.cells.len() <= CELLS_AT_MOST,
-            "",
-            format_args!("at most {CELLS_AT_MOST} cells with a content"),
-            "more",
-        )
-        .map_err(|e| e.at(place()))
+        let expected = format_args!("at most {CELLS_AT_MOST} cells with a content");
+        let fits = self.cells.len() <= CELLS_AT_MOST;
+        ensure(fits, "", expected, "more").map_err(|e| e.at(place()))
     }
 
     /// The last row in which one of `columns` holds something.
@@ -103,17 +99,10 @@ pub(super) type OpenWorkbook = Sheets<BufReader<File>>;
 /// table of derivatives needs.
 pub(super) fn open(path: &Path) -> Result<OpenWorkbook> {
     let file = File::open(path).map_err(|e| Error::io(path, e))?;
-    let is_old = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("xls"));
-    if is_old {
+    let ending = path.extension().unwrap_or_default();
+    if ending.eq_ignore_ascii_case("xls") {
         let size = file.metadata().map_err(|e| Error::io(path, e))?.len();
-        ensure(
-            size <= OLD_BYTES_AT_MOST,
-            "",
-            format_args!("a workbook of at most {} MiB", OLD_BYTES_AT_MOST >> 20),
-            format_args!("{} MiB", size >> 20),
-        )?;
+        check_mebibytes("a workbook", size, OLD_BYTES_AT_MOST)?;
     } else {
         check_size(file)?;
     }
@@ -136,7 +125,7 @@ pub(super) fn sheet_of(book: &mut OpenWorkbook, wanted: &str) -> Result<Option<S
             let (row, column) = range.start().unwrap_or_default();
             for (r, c, value) in range.used_cells() {
                 let (row, column) = (row + index(r), column + index(c));
-                sheet.insert(&place, row, column, &as_reference(value))?;
+                sheet.insert(&place, row, column, value.clone())?;
             }
         }
     }
@@ -155,18 +144,18 @@ fn read_xlsx(
     let mut reader = book.worksheet_cells_reader(name).map_err(unreadable)?;
     while let Some(cell) = reader.next_cell().map_err(unreadable)? {
         let (row, column) = cell.get_position();
-        if !matches!(cell.get_value(), DataRef::Empty) {
+        let value = Data::from(cell.get_value().clone());
+        if value != Data::Empty {
             stored.insert((row, column));
         }
-        sheet.insert(place, row, column, cell.get_value())?;
+        sheet.insert(place, row, column, value)?;
     }
     drop(reader);
     let mut formulas = book.worksheet_cells_reader(name).map_err(unreadable)?;
     while let Some(formula) = formulas.next_formula().map_err(unreadable)? {
         let (row, column) = formula.get_position();
         if !formula.get_value().is_empty() && !stored.contains(&(row, column)) {
-            let value = DataRef::String(NO_VALUE.to_owned());
-            sheet.insert(place, row, column, &value)?;
+            sheet.insert(place, row, column, Data::String(NO_VALUE.to_owned()))?;
         }
     }
     Ok(())
@@ -189,18 +178,6 @@ fn index(i: usize) -> u32 {
     u32::try_from(i).unwrap_or(u32::MAX)
 }
 
-fn as_reference(value: &Data) -> DataRef<'_> {
-    match value {
-        Data::Empty => DataRef::Empty,
-        Data::Float(x) => DataRef::Float(*x),
-        Data::Int(x) => DataRef::Int(*x),
-        Data::DateTime(date) => DataRef::DateTime(*date),
-        Data::DateTimeIso(date) => DataRef::DateTimeIso(date.clone()),
-        Data::DurationIso(duration) => DataRef::DurationIso(duration.clone()),
-        other => DataRef::String(other.to_string()),
-    }
-}
-
 fn no_workbook(error: &dyn std::fmt::Display) -> Error {
     Error::input("", "a workbook (.xlsx, .xls, .ods)", error.to_string())
 }
@@ -208,14 +185,11 @@ fn no_workbook(error: &dyn std::fmt::Display) -> Error {
 /// Unpacks every part into nothing, up to the bounds: what the directory of the file says about sizes may be wrong.
 fn check_size(file: File) -> Result<()> {
     let mut archive = zip::ZipArchive::new(BufReader::new(file)).map_err(|e| no_workbook(&e))?;
-    ensure(
-        archive.len() <= PARTS_AT_MOST,
-        "",
-        format_args!("a workbook of at most {PARTS_AT_MOST} parts"),
-        archive.len(),
-    )?;
+    let parts = archive.len();
+    let expected = format_args!("a workbook of at most {PARTS_AT_MOST} parts");
+    ensure(parts <= PARTS_AT_MOST, "", expected, parts)?;
     let mut total = 0;
-    for i in 0..archive.len() {
+    for i in 0..parts {
         let part = archive.by_index(i).map_err(|e| no_workbook(&e))?;
         let name = part.name().map_err(|e| no_workbook(&e))?.into_owned();
         let bytes = std::io::copy(&mut part.take(PART_BYTES_AT_MOST + 1), &mut std::io::sink())

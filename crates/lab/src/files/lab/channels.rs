@@ -37,6 +37,14 @@ pub enum Attribute {
 }
 
 impl Attribute {
+    /// The number, if it is one.
+    pub(super) fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(x) => Some(*x),
+            Self::Text(_) => None,
+        }
+    }
+
     /// The value as text.
     pub(crate) fn text(&self) -> String {
         match self {
@@ -54,14 +62,10 @@ const NAMES_AT_MOST: usize = 60;
 
 /// Refuses more numbers than a recording has.
 pub(super) fn check_count(place: impl Into<Place>, numbers: u64) -> Result<()> {
-    ensure(
-        numbers <= NUMBERS_AT_MOST,
-        place,
-        format_args!(
-            "at most {NUMBERS_AT_MOST} numbers in a file or group (cut the recording, or give each run a group)"
-        ),
-        numbers,
-    )
+    let expected = format_args!(
+        "at most {NUMBERS_AT_MOST} numbers in a file or group (cut the recording, or give each run a group)"
+    );
+    ensure(numbers <= NUMBERS_AT_MOST, place, expected, numbers)
 }
 
 /// Names under which files state their sampling frequency in Hz, in lower case.
@@ -99,26 +103,19 @@ impl ChannelSet {
 
     /// The attribute of this name as a number.
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
-        match self.attributes.get(name) {
-            Some(Attribute::Number(x)) => Some(*x),
-            _ => None,
-        }
+        self.attributes.get(name)?.number()
     }
 
     /// Everything that is there, in words, for a message.
     pub fn listing(&self) -> String {
         let names: Vec<&str> = self.channels.iter().map(|c| c.name.as_str()).collect();
-        let mut text = if names.is_empty() {
-            "no channel".to_owned()
-        } else {
-            format!("the channels {}", shortened(&names))
+        let mut text = match names.is_empty() {
+            true => "no channel".to_owned(),
+            false => format!("the channels {}", shortened(&names)),
         };
-        let numbers: Vec<&str> = self
-            .attributes
-            .iter()
-            .filter(|(_, a)| matches!(a, Attribute::Number(_)))
-            .map(|(name, _)| name.as_str())
-            .collect();
+        let numbers = self.attributes.iter();
+        let numbers = numbers.filter_map(|(name, a)| a.number().map(|_| name.as_str()));
+        let numbers: Vec<&str> = numbers.collect();
         if !numbers.is_empty() {
             text.push_str(&format!("; the numbers {}", shortened(&numbers)));
         }
@@ -133,14 +130,8 @@ impl ChannelSet {
         if self.sampling_hz.is_none() {
             let found = self.attributes.iter().find_map(|(name, value)| {
                 let last = name.rsplit(['/', '.']).next().unwrap_or(name);
-                match value {
-                    Attribute::Number(hz)
-                        if SAMPLING_NAMES.contains(&last.to_lowercase().as_str()) =>
-                    {
-                        Some(*hz)
-                    }
-                    _ => None,
-                }
+                let is_named = SAMPLING_NAMES.contains(&last.to_lowercase().as_str());
+                value.number().filter(|_| is_named)
             });
             self.sampling_hz = found.filter(|hz| hz.is_finite() && *hz > 0.0);
         }
@@ -176,10 +167,9 @@ fn shortened(names: &[&str]) -> String {
 /// The error that there is no such group.
 pub(super) fn no_group(wanted: &str, groups: &[String]) -> Error {
     let groups: Vec<&str> = groups.iter().map(String::as_str).collect();
-    let expected = if groups.is_empty() {
-        "no group: the file has none".to_owned()
-    } else {
-        format!("one of the groups {}", shortened(&groups))
+    let expected = match groups.is_empty() {
+        true => "no group: the file has none".to_owned(),
+        false => format!("one of the groups {}", shortened(&groups)),
     };
     Error::input("group", expected, format!("`{wanted}`"))
 }

@@ -86,22 +86,13 @@ fn take_comments(bytes: &[u8], set: &mut ChannelSet) -> usize {
 
 /// Refuses lines that are no rows of samples, before anything is made of them.
 fn check_lines(bytes: &[u8], skipped: usize) -> Result<()> {
-    let long = bytes
-        .split(|b| *b == b'\n')
-        .enumerate()
-        .find(|(_, line)| line.len() > LINE_BYTES_AT_MOST);
-    match long {
-        None => Ok(()),
-        Some((i, line)) => {
-            let expected = format!("a row of at most {LINE_BYTES_AT_MOST} bytes");
-            let place = Place::line(skipped + i + 1);
-            Err(Error::input(
-                place,
-                expected,
-                format!("{} bytes", line.len()),
-            ))
-        }
-    }
+    let mut lines = bytes.split(|b| *b == b'\n').map(<[u8]>::len).enumerate();
+    let Some((i, length)) = lines.find(|(_, length)| *length > LINE_BYTES_AT_MOST) else {
+        return Ok(());
+    };
+    let expected = format!("a row of at most {LINE_BYTES_AT_MOST} bytes");
+    let place = Place::line(skipped + i + 1);
+    Err(Error::input(place, expected, format!("{length} bytes")))
 }
 
 fn count_lines(bytes: &[u8]) -> usize {
@@ -127,12 +118,10 @@ fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
     if text.is_empty() {
         return Some(f64::NAN);
     }
-    let text = if decimal_comma && text.contains(',') {
-        Cow::Owned(text.replacen(',', ".", 1))
-    } else {
-        Cow::Borrowed(text)
-    };
-    text.parse().ok()
+    match decimal_comma && text.contains(',') {
+        true => text.replacen(',', ".", 1).parse().ok(),
+        false => text.parse().ok(),
+    }
 }
 
 /// Columns being filled.
@@ -178,9 +167,10 @@ impl ChannelTable {
         // a separator at the end of every line gives an empty cell more
         let mut surplus = self.names.len()..row.len();
         if row.len() < self.names.len() || surplus.any(|c| !row[c].trim_ascii().is_empty()) {
+            let expected = format!("{} as in the header", counted(self.names.len(), "column"));
             return Err(Error::input(
                 Place::line(line),
-                format!("{} as in the header", counted(self.names.len(), "column")),
+                expected,
                 row.len().to_string(),
             ));
         }
@@ -241,16 +231,15 @@ impl ChannelTable {
 
 /// Refuses a number with a point beside others with a comma, and the other way round: it may be a thousand.
 fn one_mark(first: &mut Option<u8>, cell: &[u8], place: impl FnOnce() -> Place) -> Result<()> {
-    let Some(mark) = cell.iter().find(|byte| matches!(byte, b',' | b'.')) else {
-        return Ok(());
-    };
-    let first = *first.get_or_insert(*mark);
-    if first == *mark {
-        return Ok(());
+    let mark = cell.iter().find(|byte| matches!(byte, b',' | b'.'));
+    match mark.map(|mark| (*mark, *first.get_or_insert(*mark))) {
+        Some((mark, first)) if mark != first => {
+            let expected = format!("decimals behind `{}` as above", char::from(first));
+            let found = format!("`{}`", String::from_utf8_lossy(cell));
+            Err(Error::input(place(), expected, found))
+        }
+        _ => Ok(()),
     }
-    let expected = format!("decimals behind `{}` as above", char::from(first));
-    let found = format!("`{}`", String::from_utf8_lossy(cell));
-    Err(Error::input(place(), expected, found))
 }
 
 /// `y [mm]` and `y (mm)` are the channel `y` in mm.

@@ -37,7 +37,7 @@ pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSet> {
     let corrupt = || Error::input("", expected, "a part that cannot be read");
     let file = variables(bytes)?;
     ensure(
-        file.is_empty() || file.iter().any(|v| v.value.is_some()),
+        file.is_empty() || file.iter().any(|(_, value)| value.is_some()),
         "",
         expected,
         "no variable that can be read",
@@ -58,8 +58,10 @@ pub(crate) fn matlab_array(bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>, Ve
         )
     };
     let file = variables(bytes)?;
-    let variable = file.iter().find(|v| v.name == name);
-    let value = variable.and_then(|v| v.value.as_ref()).map(uncompressed);
+    let variable = file.iter().find(|(own, _)| own == name);
+    let value = variable
+        .and_then(|(_, value)| value.as_ref())
+        .map(uncompressed);
     let Some(MatVariable::NumericArray(array)) = value else {
         return Err(missing());
     };
@@ -70,15 +72,8 @@ pub(crate) fn matlab_array(bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>, Ve
     }
 }
 
-/// A variable of the file.
-struct MatlabVariable {
-    name: String,
-    /// None where `matrw` cannot read it.
-    value: Option<MatVariable>,
-}
-
-/// Reads each variable by itself, so that one that cannot be read costs only itself.
-fn variables(mut bytes: Vec<u8>) -> Result<Vec<MatlabVariable>> {
+/// Reads each variable by itself, so that one that cannot be read costs only itself: its name, and `None` where `matrw` cannot.
+fn variables(mut bytes: Vec<u8>) -> Result<Vec<(String, Option<MatVariable>)>> {
     let elements = check_elements(&bytes)?;
     bytes[..HEADER.len()].copy_from_slice(HEADER);
     let header = bytes[..HEADER_BYTES].to_vec();
@@ -109,7 +104,7 @@ fn variables(mut bytes: Vec<u8>) -> Result<Vec<MatlabVariable>> {
             let named = MatlabElement { bytes, little }.with_long_names(DEPTH_AT_MOST)?;
             alone(&[&header[..], &named].concat())
         });
-        read.push(MatlabVariable { name, value });
+        read.push((name, value));
     }
     Ok(read)
 }
@@ -137,10 +132,9 @@ fn check_elements(bytes: &[u8]) -> Result<Vec<Range<usize>>> {
         Some([1, 0, b'M', b'I']) => false,
         _ => {
             let expected = "a MATLAB file of version 5 to 7 (save it with `-v7`)";
-            let found = if bytes.len() < HEADER_BYTES {
-                format!("{} bytes", bytes.len())
-            } else {
-                "another header".to_owned()
+            let found = match bytes.len() {
+                few if few < HEADER_BYTES => format!("{few} bytes"),
+                _ => "another header".to_owned(),
             };
             return Err(Error::input("header", expected, found));
         }
@@ -160,14 +154,9 @@ fn check_elements(bytes: &[u8]) -> Result<Vec<Range<usize>>> {
                 at += 8 + size;
             }
             _ => {
-                let expected = match size {
-                    Some(size) => format!("{size} bytes"),
-                    None => "an element".to_owned(),
-                };
-                let found = format!(
-                    "the end of the file after {} (truncated?)",
-                    bytes.len() - at
-                );
+                let expected = size.map_or("an element".to_owned(), |size| format!("{size} bytes"));
+                let left = bytes.len() - at;
+                let found = format!("the end of the file after {left} (truncated?)");
                 return Err(Error::input(format!("byte {at}"), expected, found));
             }
         }
@@ -184,10 +173,9 @@ struct MatlabElement<'a> {
 impl MatlabElement<'_> {
     fn word(&self, at: usize) -> Option<u32> {
         let four: [u8; 4] = self.bytes.get(at..at + 4)?.try_into().ok()?;
-        Some(if self.little {
-            u32::from_le_bytes(four)
-        } else {
-            u32::from_be_bytes(four)
+        Some(match self.little {
+            true => u32::from_le_bytes(four),
+            false => u32::from_be_bytes(four),
         })
     }
 
@@ -228,13 +216,9 @@ impl MatlabElement<'_> {
         if self.word(0) != Some(MATRIX) || !(is_struct || class? & 0xff == CELL) {
             return Some(self.bytes.to_vec());
         }
-        let word = |x: usize| {
-            let x = x as u32;
-            if self.little {
-                x.to_le_bytes()
-            } else {
-                x.to_be_bytes()
-            }
+        let word = |x: usize| match self.little {
+            true => (x as u32).to_le_bytes(),
+            false => (x as u32).to_be_bytes(),
         };
         let mut at = self.name()?.end.next_multiple_of(8);
         let mut out = self.bytes.get(..at)?.to_vec();
@@ -258,19 +242,18 @@ impl MatlabElement<'_> {
     }
 }
 
-fn channels(file: &[MatlabVariable], group: Option<&str>) -> Result<ChannelSet> {
+fn channels(file: &[(String, Option<MatVariable>)], group: Option<&str>) -> Result<ChannelSet> {
     let mut set = ChannelSet::default();
     let mut readable = Vec::new();
-    for variable in file {
-        match &variable.value {
-            Some(value) => readable.push((&variable.name, value)),
-            None => set.leave_out(&variable.name, UNREADABLE),
+    for (name, value) in file {
+        match value {
+            Some(value) => readable.push((name, value)),
+            None if Some(&name[..]) == group => {
+                let found = format!("`{name}` ({UNREADABLE})");
+                return Err(Error::input("group", "a struct that can be read", found));
+            }
+            None => set.leave_out(name, UNREADABLE),
         }
-    }
-    let of_group = |v: &&MatlabVariable| v.value.is_none() && Some(&v.name[..]) == group;
-    if let Some(lost) = file.iter().find(of_group) {
-        let found = format!("`{}` ({UNREADABLE})", lost.name);
-        return Err(Error::input("group", "a struct that can be read", found));
     }
     check_count("", readable.iter().map(|(_, v)| count(v)).sum())?;
     let Some(group) = group else {
@@ -282,11 +265,8 @@ fn channels(file: &[MatlabVariable], group: Option<&str>) -> Result<ChannelSet> 
     let found = readable.iter().find(|(name, _)| *name == group);
     let Some(MatVariable::Structure(inner)) = found.map(|(_, v)| uncompressed(v)) else {
         let is_struct = |v: &MatVariable| matches!(uncompressed(v), MatVariable::Structure(_));
-        let structs: Vec<String> = readable
-            .iter()
-            .filter(|(_, v)| is_struct(v))
-            .map(|(name, _)| (*name).clone())
-            .collect();
+        let structs = readable.iter().filter(|(_, v)| is_struct(v));
+        let structs: Vec<String> = structs.map(|(name, _)| (*name).clone()).collect();
         return Err(no_group(group, &structs));
     };
     for name in inner.fieldnames() {

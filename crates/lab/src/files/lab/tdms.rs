@@ -168,12 +168,8 @@ impl TdmsFile {
         if let Some(place) = self.places.get(&path) {
             return Ok(*place);
         }
-        ensure(
-            self.objects.len() != OBJECTS_AT_MOST,
-            at,
-            format_args!("at most {OBJECTS_AT_MOST} channels and groups"),
-            "more",
-        )?;
+        let expected = format_args!("at most {OBJECTS_AT_MOST} channels and groups");
+        ensure(self.objects.len() != OBJECTS_AT_MOST, at, expected, "more")?;
         self.objects.push(Object {
             path: path.clone(),
             ..Object::default()
@@ -194,12 +190,10 @@ impl TdmsFile {
             return Ok(());
         }
         self.looks += self.active.len();
-        ensure(
-            self.looks <= LOOKS_AT_MOST,
-            format_args!("byte {}", bytes.at),
-            "fewer segments of so many channels (have the file defragmented)",
-            "more",
-        )?;
+        let at = bytes.at;
+        let place = format_args!("byte {at}");
+        let expected = "fewer segments of so many channels (have the file defragmented)";
+        ensure(self.looks <= LOOKS_AT_MOST, place, expected, "more")?;
         let layout = |place: &usize| Some((*place, self.objects[*place].layout?));
         let layouts: Vec<(usize, SampleLayout)> = self.active.iter().filter_map(layout).collect();
         if layouts.is_empty() {
@@ -207,25 +201,19 @@ impl TdmsFile {
         }
         let blocks = self.count_blocks(&layouts, raw, bytes.at)?;
         let rows = layouts[0].1.count;
-        ensure(
-            !is_interleaved
-                || layouts
-                    .iter()
-                    .all(|(_, l)| l.count == rows && l.kind != STRING),
-            format_args!("byte {}", bytes.at),
-            "interleaved channels of numbers, of one length",
-            "others",
-        )?;
+        let alike = |l: &SampleLayout| l.count == rows && l.kind != STRING;
+        let fits = !is_interleaved || layouts.iter().all(|(_, l)| alike(l));
+        let expected = "interleaved channels of numbers, of one length";
+        ensure(fits, place, expected, "others")?;
         // row by row, or channel by channel
-        let (rows, each) = if is_interleaved {
-            (rows, 1)
-        } else {
-            (1, usize::MAX)
+        let (rows, each) = match is_interleaved {
+            true => (rows, 1),
+            false => (1, usize::MAX),
         };
         for _ in 0..blocks * rows {
             for (place, layout) in &layouts {
                 if no_number(layout.kind).is_some() {
-                    bytes.take(layout.size / if is_interleaved { rows } else { 1 })?;
+                    bytes.take(layout.size / rows)?;
                     continue;
                 }
                 let samples = &mut self.objects[*place].samples;
@@ -249,10 +237,12 @@ impl TdmsFile {
             samples = samples.saturating_add(layout.count.max(usize::from(layout.size > 0)));
         }
         let place = format_args!("byte {at}");
+        let expected = format_args!("whole blocks of {block} bytes");
+        let is_whole = block != 0 && raw.is_multiple_of(block);
         ensure(
-            block != 0 && raw.is_multiple_of(block),
+            is_whole,
             place,
-            format_args!("whole blocks of {block} bytes"),
+            expected,
             format_args!("{raw} bytes of samples"),
         )?;
         let blocks = raw / block;
@@ -266,10 +256,8 @@ impl TdmsFile {
         let parts = |object: Object| (path_parts(&object.path), object);
         let objects: Vec<(Vec<String>, Object)> = self.objects.into_iter().map(parts).collect();
         if let Some(wanted) = group {
-            let mut groups: Vec<String> = objects
-                .iter()
-                .filter_map(|(p, _)| p.first().cloned())
-                .collect();
+            let groups = objects.iter().filter_map(|(p, _)| p.first().cloned());
+            let mut groups: Vec<String> = groups.collect();
             if !groups.iter().any(|g| g == wanted) {
                 groups.dedup();
                 return Err(no_group(wanted, &groups));
@@ -290,14 +278,13 @@ impl TdmsFile {
                 _ => parts.join("/"),
             };
             if parts.len() < 2 {
-                let prefix = if inside.is_empty() {
-                    String::new()
-                } else {
-                    format!("{inside}/")
+                let prefix = match inside.is_empty() {
+                    true => String::new(),
+                    false => format!("{inside}/"),
                 };
-                for (name, value) in object.properties {
-                    set.attributes.insert(format!("{prefix}{name}"), value);
-                }
+                let named = object.properties.into_iter();
+                let named = named.map(|(name, value)| (format!("{prefix}{name}"), value));
+                set.attributes.extend(named);
             } else if let Some(rate) = push_channel(&mut set, &inside, object, is_raw) {
                 rates.push(rate);
             }
@@ -309,10 +296,7 @@ impl TdmsFile {
 
 impl Object {
     fn number(&self, key: &str) -> Option<f64> {
-        match self.properties.get(key) {
-            Some(Attribute::Number(x)) => Some(*x),
-            _ => None,
-        }
+        self.properties.get(key)?.number()
     }
 
     fn text(&self, key: &str) -> Option<&str> {

@@ -24,15 +24,10 @@ impl<'a> Bytes<'a> {
         let end = self.at.checked_add(count);
         let taken = end.and_then(|end| self.data.get(self.at..end));
         let Some(taken) = taken else {
-            let found = format!(
-                "the end of the file after {}",
-                self.data.len().saturating_sub(self.at)
-            );
-            return Err(Error::input(
-                format!("byte {}", self.at),
-                format!("{count} bytes"),
-                found,
-            ));
+            let left = self.data.len().saturating_sub(self.at);
+            let (place, expected) = (format!("byte {}", self.at), format!("{count} bytes"));
+            let found = format!("the end of the file after {left}");
+            return Err(Error::input(place, expected, found));
         };
         self.at += count;
         Ok(taken)
@@ -98,11 +93,10 @@ pub(super) fn size_of(kind: u32, path: &str) -> Result<usize> {
         3 | 7 | 9 | 0x19 => Ok(4),
         4 | 8 | 10 | 0x1a | COMPLEX_SINGLE => Ok(8),
         TIME_STAMP | COMPLEX_DOUBLE => Ok(16),
-        other => Err(Error::input(
-            path,
-            "samples that are numbers",
-            format!("type {other:#x}"),
-        )),
+        other => {
+            let found = format!("type {other:#x}");
+            Err(Error::input(path, "samples that are numbers", found))
+        }
     }
 }
 

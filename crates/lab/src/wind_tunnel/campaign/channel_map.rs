@@ -7,7 +7,7 @@ use crate::error::{Error, Result, ensure};
 use crate::files::lab::{Channel, ChannelSet};
 use crate::section::Dof;
 use crate::signal::median;
-use crate::wind_tunnel::{CELL_CHANNELS, Rig};
+use crate::wind_tunnel::{CELL_CHANNELS, LoadCell, Rig};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -60,12 +60,29 @@ impl ChannelMap {
             ("temperature", &self.temperature, Quantity::Temperature),
             ("pressure", &self.pressure, Quantity::Pressure),
         ];
-        let stated = all.into_iter();
+        let mut stated = Vec::new();
+        for (key, channel, quantity) in all {
+            stated.extend(
+                channel
+                    .as_ref()
+                    .map(|c| (format!("channels.{key}"), c, quantity)),
+            );
+        }
         stated
-            .filter_map(|(key, c, quantity)| {
-                Some((format!("channels.{key}"), c.as_ref()?, quantity))
-            })
-            .collect()
+    }
+
+    /// Cells of which all is measured, each channel by the numbers of cell and channel.
+    pub(super) fn measured_cells(
+        rig: &Rig,
+        channel: impl Fn(usize, usize) -> ChannelRef,
+    ) -> BTreeMap<String, BTreeMap<String, CellChannel>> {
+        let cell = |(c, cell): (usize, &LoadCell)| {
+            let keys = CELL_CHANNELS.iter().enumerate();
+            let measured = |k| CellChannel::Measured(channel(c, k));
+            let channels = keys.map(|(k, key)| ((*key).to_owned(), measured(k)));
+            (cell.name.clone(), channels.collect())
+        };
+        rig.cells.iter().enumerate().map(cell).collect()
     }
 
     /// The key of a channel of a cell.
@@ -95,11 +112,8 @@ impl ChannelMap {
         let names: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
         if let Some(unknown) = self.cells.keys().find(|n| !names.contains(&n.as_str())) {
             let expected = format!("one of the cells of the rig: {}", names.join(", "));
-            return Err(Error::input(
-                "channels.cells",
-                expected,
-                format!("`{unknown}`"),
-            ));
+            let found = format!("`{unknown}`");
+            return Err(Error::input("channels.cells", expected, found));
         }
         names.iter().try_for_each(|cell| self.validate_cell(cell))
     }
@@ -107,23 +121,19 @@ impl ChannelMap {
     /// Refuses a channel of the files that is said to be two things.
     fn each_once(&self) -> Result<()> {
         let single = self.single().into_iter();
-        let single = single.map(|(key, channel, _)| (key, channel.name.as_str()));
-        let of_cells = self.cells.iter().flat_map(|(cell, channels)| {
-            channels
-                .iter()
-                .filter_map(move |(key, channel)| match channel {
-                    CellChannel::Measured(c) => Some((self.cell_key(cell, key), c.name.as_str())),
-                    CellChannel::NotMeasured => None,
-                })
-        });
+        let mut all: Vec<_> = single.map(|(key, channel, _)| (key, channel)).collect();
+        for (cell, channels) in &self.cells {
+            for (key, channel) in channels {
+                if let CellChannel::Measured(channel) = channel {
+                    all.push((self.cell_key(cell, key), channel));
+                }
+            }
+        }
         let mut used = BTreeMap::new();
-        for (key, name) in single.chain(of_cells) {
+        for (key, ChannelRef { name, .. }) in all {
             if let Some(other) = used.insert(name, key.clone()) {
-                return Err(Error::input(
-                    key,
-                    "a channel of its own",
-                    format!("`{name}`, which is `{other}` too"),
-                ));
+                let found = format!("`{name}`, which is `{other}` too");
+                return Err(Error::input(key, "a channel of its own", found));
             }
         }
         Ok(())
@@ -131,29 +141,19 @@ impl ChannelMap {
 
     fn validate_cell(&self, cell: &str) -> Result<()> {
         let place = format!("channels.cells.{cell}");
-        let Some(map) = self.cells.get(cell) else {
-            return Err(Error::input(
-                "channels.cells",
-                format!("a table `{cell}`"),
-                "none",
-            ));
-        };
-        let all = || {
-            format!(
-                "{} (`\"none\"` for one not measured)",
-                CELL_CHANNELS.join(", ")
-            )
-        };
+        let map = self
+            .cells
+            .get(cell)
+            .ok_or_else(|| Error::input("channels.cells", format!("a table `{cell}`"), "none"))?;
+        let all = CELL_CHANNELS.join(", ");
+        let all = format!("{all} (`\"none\"` for one not measured)");
         if let Some(unknown) = map.keys().find(|k| !CELL_CHANNELS.contains(&k.as_str())) {
-            return Err(Error::input(
-                format!("{place}.{unknown}"),
-                all(),
-                format!("`{unknown}`"),
-            ));
+            let found = format!("`{unknown}`");
+            return Err(Error::input(format!("{place}.{unknown}"), all, found));
         }
         for key in CELL_CHANNELS {
             match map.get(key) {
-                None => return Err(Error::input(&place, all(), format!("no `{key}`"))),
+                None => return Err(Error::input(&place, all, format!("no `{key}`"))),
                 Some(CellChannel::NotMeasured) => {}
                 Some(CellChannel::Measured(channel)) => {
                     channel.validate(&self.cell_key(cell, key), cell_quantity(key))?;

@@ -161,35 +161,23 @@ impl Campaign {
 
     /// The channel map, that of a layout filled in.
     pub(crate) fn channel_map(&self) -> ChannelMap {
-        let own = &self.channels;
-        if let Some(section) = &own.section {
-            let mut map = own.clone();
+        let mut map = self.channels.clone();
+        if let Some(section) = &self.channels.section {
             let cell = (section_forces::CELL.to_owned(), section.channels());
             map.cells.extend([cell]);
-            return map;
+        } else if let (Some(RecordingLayout::Ntnu), Some(rig)) = (self.recording.layout, &self.rig)
+        {
+            let preset = ntnu::channel_map(rig);
+            map.vertical = map.vertical.or(preset.vertical);
+            map.lateral = map.lateral.or(preset.lateral);
+            map.torsion = map.torsion.or(preset.torsion);
+            map.wind_speed = map.wind_speed.or(preset.wind_speed);
+            map.air_density = map.air_density.or_else(|| self.density_of_layout());
+            for (name, channels) in preset.cells {
+                map.cells.entry(name).or_insert(channels);
+            }
         }
-        let Some(RecordingLayout::Ntnu) = self.recording.layout else {
-            return own.clone();
-        };
-        let Some(rig) = &self.rig else {
-            return own.clone();
-        };
-        let preset = ntnu::channel_map(rig);
-        let first = |own: &Option<ChannelRef>, preset: Option<ChannelRef>| own.clone().or(preset);
-        let mut cells = preset.cells;
-        cells.extend(own.cells.clone());
-        ChannelMap {
-            time: first(&own.time, preset.time),
-            vertical: first(&own.vertical, preset.vertical),
-            lateral: first(&own.lateral, preset.lateral),
-            torsion: first(&own.torsion, preset.torsion),
-            wind_speed: first(&own.wind_speed, preset.wind_speed),
-            air_density: own.air_density.clone().or_else(|| self.density_of_layout()),
-            temperature: own.temperature.clone(),
-            pressure: own.pressure.clone(),
-            section: None,
-            cells,
-        }
+        map
     }
 
     /// The rig of the file, or what stands for it where the forces are those on the whole section: one cell in global axes
@@ -201,24 +189,18 @@ impl Campaign {
         match (&self.rig, &self.channels.section) {
             (Some(rig), None) => {
                 rig.validate()?;
-                match (self.section.width_m, self.section.length_m) {
-                    (None, None) => Ok(rig.clone()),
-                    _ => Err(Error::input(
-                        "section",
-                        "width and length of the model in `rig` alone",
-                        "`width_m` or `length_m` besides",
-                    )),
-                }
+                let alone = self.section.width_m.is_none() && self.section.length_m.is_none();
+                let expected = "width and length of the model in `rig` alone";
+                let found = "`width_m` or `length_m` besides";
+                ensure(alone, "section", expected, found).map(|()| rig.clone())
             }
             (None, Some(_)) => {
                 let width = self.section.width_m.ok_or_else(|| {
                     Error::input("section.width_m", "the width B of the section, m", "none")
                 })?;
+                let length = self.section.length_m.unwrap_or(1.0);
                 Ok(Rig {
-                    model_length_m: positive(
-                        "section.length_m",
-                        self.section.length_m.unwrap_or(1.0),
-                    )?,
+                    model_length_m: positive("section.length_m", length)?,
                     model_width_m: positive("section.width_m", width)?,
                     model_mass_kg: None,
                     model_inertia_kg_m2: None,
@@ -244,12 +226,8 @@ impl Campaign {
 
     fn validate(&self) -> Result<()> {
         of_schema(CAMPAIGN_SCHEMA, self.schema)?;
-        ensure(
-            !self.section.name.trim().is_empty(),
-            "section.name",
-            "a name",
-            "none",
-        )?;
+        let is_named = !self.section.name.trim().is_empty();
+        ensure(is_named, "section.name", "a name", "none")?;
         let rig = self.rig()?;
         self.validate_cells(&rig)?;
         if let Some(hz) = self.recording.sampling_hz {
@@ -290,12 +268,9 @@ impl Campaign {
                 return Err(second_time(&key, "cell", &cell.name));
             }
         }
-        ensure(
-            self.recording.layout.is_none() || cells.len() <= ntnu::CELLS,
-            "rig.cells",
-            format_args!("at most {} cells in this layout", ntnu::CELLS),
-            cells.len(),
-        )
+        let fit = self.recording.layout.is_none() || cells.len() <= ntnu::CELLS;
+        let expected = format_args!("at most {} cells in this layout", ntnu::CELLS);
+        ensure(fit, "rig.cells", expected, cells.len())
     }
 }
 
@@ -309,7 +284,7 @@ impl RunBlock {
     fn validate_motion(&self, dof: Dof, map: &ChannelMap) -> std::result::Result<(), String> {
         let section = map.section.as_ref();
         if section.is_some_and(|s| !s.dofs().contains(&dof)) {
-            let force = SectionForces::name(dof);
+            let force = dof.force_name();
             return Err(format!("its force too: `channels.section.{force}`"));
         }
         if map.motion(dof).is_none() {

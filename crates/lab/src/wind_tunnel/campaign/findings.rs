@@ -78,6 +78,24 @@ impl RunFinding {
             what,
         }
     }
+
+    /// A note about a channel of a recording, of whose samples a stretch may be meant: the first, and how many.
+    pub(super) fn of_channel(
+        run: &str,
+        recording: &str,
+        channel: &str,
+        stretch: Option<(usize, usize)>,
+        what: String,
+    ) -> Self {
+        let (sample, samples) = stretch.unzip();
+        Self {
+            recording: recording.to_owned(),
+            channel: Some(channel.to_owned()),
+            sample,
+            samples,
+            ..Self::of_run(run, FindingSeverity::Note, what)
+        }
+    }
 }
 
 /// First stretch of samples that are no numbers: where it begins and how long it is.
@@ -98,20 +116,12 @@ pub(super) fn channel_findings(
     samples: &[f64],
     must_change: bool,
 ) -> Vec<RunFinding> {
-    let finding = |sample, samples, what| RunFinding {
-        run: run.to_owned(),
-        recording: recording.to_owned(),
-        channel: Some(name.to_owned()),
-        sample,
-        samples,
-        severity: FindingSeverity::Note,
-        what,
-    };
+    let finding = |stretch, what| RunFinding::of_channel(run, recording, name, stretch, what);
     let (low, high) = extremes(samples.iter().copied());
     if low == high {
         let what = format!("is {low} all the time");
         return if must_change {
-            vec![finding(None, None, what)]
+            vec![finding(None, what)]
         } else {
             Vec::new()
         };
@@ -126,15 +136,16 @@ pub(super) fn channel_findings(
     let what = format!(
         "stays at its {word} value {limit:.6} for {longest} samples (clipped? {total} such samples in all)"
     );
-    vec![finding(Some(first), Some(longest), what)]
+    vec![finding(Some((first, longest)), what)]
 }
 
 /// What is odd about a run: lengths, speeds, motions.
 ///
 /// # Errors
 /// [`Error::Input`] when another motion than those stated moves most: then motion channels are exchanged, or the run is.
-pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<RunFinding>> {
+pub(super) fn run_findings(run: &RawRun, width_m: f64) -> Result<Vec<RunFinding>> {
     use FindingSeverity::{Doubt, Note};
+    let motion = &run.motion[..];
     let mut found = Vec::new();
     let mut say = |severity, what| found.push(RunFinding::of_run(&run.name, severity, what));
     let measured = &run.in_wind.wind_speed_m_s;
@@ -185,13 +196,8 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
         for dof in Dof::THREE {
             let is_stated = motion.contains(&dof);
             if !is_stated && spread(dof) > stated && spread(dof) > 0.0 {
-                return Err(exchanged(
-                    &run.name,
-                    name,
-                    motion,
-                    dof,
-                    spread(dof) / stated,
-                ));
+                let ratio = spread(dof) / stated;
+                return Err(exchanged(&run.name, name, motion, dof, ratio));
             } else if is_stated && spread(dof) == 0.0 {
                 say(Doubt, format!("{name}: no {} motion", dof.name()));
             } else if !is_stated && spread(dof) > OTHER_MOTION_AT_MOST * stated {
@@ -212,19 +218,17 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
 }
 
 fn exchanged(run: &str, recording: &str, stated: &[Dof], found: Dof, ratio: f64) -> Error {
-    let stated: Vec<&str> = stated.iter().map(|d| d.name()).collect();
-    let moves = if ratio.is_finite() {
-        format!(
-            "a {} motion of {ratio:.1} times that, both over the width",
-            found.name()
-        )
-    } else {
-        format!("a {} motion alone", found.name())
+    let part = match ratio.is_finite() {
+        true => format!("of {ratio:.1} times that, both over the width"),
+        false => "alone".to_owned(),
     };
     Error::input(
         format!("run `{run}`, {recording}"),
-        format!("{} motion, as `motion` states", stated.join(", ")),
-        format!("{moves}: are the motion channels exchanged, or their units wrong?"),
+        format!("{} motion, as `motion` states", Dof::names(stated)),
+        format!(
+            "a {} motion {part}: are the motion channels exchanged, or their units wrong?",
+            found.name()
+        ),
     )
 }
 
@@ -241,26 +245,17 @@ const AMPLITUDES: [(f64, f64); 2] = [(1e-3, 0.5), (5e-4, 0.6)];
 /// Hints about the numbers of the campaign file.
 pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
     let mut said = Vec::new();
-    match &campaign.rig {
-        Some(rig) => {
-            said.push(beyond("rig.model_width_m", rig.model_width_m, &MODEL_WIDTH));
-            said.push(beyond(
-                "rig.model_length_m",
-                rig.model_length_m,
-                &MODEL_LENGTH,
-            ));
-            for (i, cell) in rig.cells.iter().enumerate() {
-                let farthest = largest_magnitude(&cell.position_m);
-                let key = format!("rig.cells[{i}].position_m");
-                said.push(beyond(&key, farthest, &MODEL_LENGTH).filter(|_| farthest > 1.0));
-            }
+    if let Some(rig) = &campaign.rig {
+        let (width, length) = (rig.model_width_m, rig.model_length_m);
+        said.push(beyond("rig.model_width_m", width, &MODEL_WIDTH));
+        said.push(beyond("rig.model_length_m", length, &MODEL_LENGTH));
+        for (i, cell) in rig.cells.iter().enumerate() {
+            let farthest = largest_magnitude(&cell.position_m);
+            let key = format!("rig.cells[{i}].position_m");
+            said.push(beyond(&key, farthest, &MODEL_LENGTH).filter(|_| farthest > 1.0));
         }
-        None => said.extend(
-            campaign
-                .section
-                .width_m
-                .map(|b| beyond("section.width_m", b, &DECK_WIDTH)),
-        ),
+    } else if let Some(width) = campaign.section.width_m {
+        said.push(beyond("section.width_m", width, &DECK_WIDTH));
     }
     let sampling = campaign.recording.sampling_hz;
     said.extend(sampling.map(|hz| beyond("recording.sampling_hz", hz, &SAMPLING)));

@@ -1,46 +1,23 @@
 //! Reading the recordings that a campaign file names.
 
 use super::air::Air;
-use super::channel_map::ChannelMap;
-use super::channel_map::SAME_RATE;
+use super::channel_map::{ChannelMap, SAME_RATE};
 use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
-use super::recording::RecordingSummary;
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, ensure, positive};
 use crate::plausibility::FindingSeverity;
-use crate::section::Dof;
 use crate::signal::mean;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
 use aerodeck_core::threads;
-use serde::Serialize;
 
 /// A campaign with all its recordings, and what is odd about them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CampaignReading {
     /// The runs.
     pub raw: RawCampaign,
-    /// What each run is, in the order of the runs.
-    pub runs: Vec<RunSummary>,
     /// What did not stop reading.
     pub findings: Vec<RunFinding>,
-}
-
-/// What a run is.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RunSummary {
-    /// Name.
-    pub name: String,
-    /// What moves.
-    pub motion: Vec<Dof>,
-    /// Mean wind speed, m/s.
-    pub mean_speed_m_s: f64,
-    /// Air density, kg/m³.
-    pub air_density_kg_m3: f64,
-    /// Recording in wind.
-    pub in_wind: RecordingSummary,
-    /// Recording in still air, if there is one.
-    pub still_air: Option<RecordingSummary>,
 }
 
 impl CampaignReading {
@@ -66,74 +43,53 @@ impl Campaign {
             self.load_run(&rig, &map, run).map_err(|e| e.in_file(path))
         };
         let read = all_or_errors(threads::each(&self.runs, true, load))?;
-        let mut reading = CampaignReading {
-            raw: RawCampaign {
-                section: self.section.name.clone(),
-                source: self.section.source.clone(),
-                licence: self.section.licence.clone(),
-                forces: map.section.as_ref().map(SectionForces::dofs),
-                rig,
-                runs: Vec::new(),
-            },
-            runs: Vec::new(),
-            findings: file_hints(self),
+        let (runs, found): (Vec<_>, Vec<_>) = read.into_iter().unzip();
+        each_once(&runs)?;
+        let mut findings = file_hints(self);
+        findings.extend(found.into_iter().flatten());
+        let raw = RawCampaign {
+            section: self.section.name.clone(),
+            source: self.section.source.clone(),
+            licence: self.section.licence.clone(),
+            forces: map.section.as_ref().map(SectionForces::dofs),
+            rig,
+            runs,
         };
-        for (run, summary, findings) in read {
-            reading.raw.runs.push(run);
-            reading.runs.push(summary);
-            reading.findings.extend(findings);
-        }
-        each_once(&reading.raw.runs)?;
-        Ok(reading)
+        Ok(CampaignReading { raw, findings })
     }
 
+    /// Reads both recordings of a run; what is odd in them.
     fn load_run(
         &self,
         rig: &Rig,
         map: &ChannelMap,
         run: &RunBlock,
-    ) -> Result<(RawRun, RunSummary, Vec<RunFinding>)> {
-        let place = format!("run `{}`", run.name);
-        let mut read = Vec::new();
-        let (wind, in_wind, air) =
-            self.read_recording(rig, map, run, &run.in_wind, "in wind", &mut read)?;
-        let still = run.still_air.as_ref();
-        let still =
-            still.map(|file| self.read_recording(rig, map, run, file, "still air", &mut read));
-        let (still, in_still_air) = still
-            .transpose()?
-            .map(|(s, summary, _)| (s, summary))
-            .unzip();
-        let wind_hz = wind.sampling_hz;
-        let still_hz = still
-            .as_ref()
-            .map_or(wind_hz, |s: &RawRecording| s.sampling_hz);
+    ) -> Result<(RawRun, Vec<RunFinding>)> {
+        let mut of_channels = Vec::new();
+        let mut read =
+            |file, what| self.read_recording(rig, map, run, file, what, &mut of_channels);
+        let (in_wind, air) = read(&run.in_wind, "in wind")?;
+        let still_air = run.still_air.as_ref().map(|file| read(file, "still air"));
+        let still_air = still_air.transpose()?.map(|(recording, _)| recording);
+        let wind_hz = in_wind.sampling_hz;
+        let still_hz = still_air.as_ref().map_or(wind_hz, |s| s.sampling_hz);
         ensure(
             (wind_hz / still_hz - 1.0).abs() <= SAME_RATE,
-            place,
+            format_args!("run `{}`", run.name),
             "one sampling frequency in wind and in still air",
             format_args!("{wind_hz} Hz and {still_hz} Hz"),
         )?;
-        let mean_speed_m_s = mean_speed(run, &wind)?;
-        let air_density_kg_m3 = self.density(map, run, air)?;
-        let summary = RunSummary {
-            name: run.name.clone(),
-            motion: run.motion.clone(),
-            mean_speed_m_s,
-            air_density_kg_m3,
-            in_wind,
-            still_air: in_still_air,
-        };
         let raw = RawRun {
             name: run.name.clone(),
-            in_wind: wind,
-            still_air: still,
-            mean_speed_m_s,
-            air_density_kg_m3,
+            motion: run.motion.clone(),
+            mean_speed_m_s: mean_speed(run, &in_wind)?,
+            air_density_kg_m3: self.density(map, run, air)?,
+            in_wind,
+            still_air,
         };
-        let mut findings = run_findings(&raw, &run.motion, rig.model_width_m)?;
-        findings.extend(read);
-        Ok((raw, summary, findings))
+        let mut findings = run_findings(&raw, rig.model_width_m)?;
+        findings.extend(of_channels);
+        Ok((raw, findings))
     }
 
     /// The air: what the run states, else what its file in wind holds, else what holds for all.

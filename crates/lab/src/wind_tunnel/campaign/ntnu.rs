@@ -8,7 +8,7 @@
 //! frequency` and the datasets `temperature`, `air_density`, `wind_velocity`, `motion`, `forces_global_coord` and
 //! `forces_global_coord_center` of a group; units and descriptions are those that its import of TDMS files writes.
 
-use super::channel::{CellChannel, ChannelRef};
+use super::channel::ChannelRef;
 use super::channel_map::{ChannelMap, cell_unit};
 use crate::section::Dof;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
@@ -25,21 +25,16 @@ pub(super) const CELLS: usize = 4;
 /// The map for the cells of `rig`, of which there are at most [`CELLS`].
 pub(super) fn channel_map(rig: &Rig) -> ChannelMap {
     let motion = |column: usize, unit| Some(ChannelRef::new(format!("motion[{column}]"), unit));
-    let cells = rig.cells.iter().enumerate().map(|(i, cell)| {
-        let channel = |(k, key): (usize, &&str)| {
-            let name = format!("forces_global_coord[{}]", 6 * i + k + 1);
-            let channel = CellChannel::Measured(ChannelRef::new(name, cell_unit(key)));
-            ((*key).to_owned(), channel)
-        };
-        let channels = CELL_CHANNELS.iter().enumerate().map(channel).collect();
-        (cell.name.clone(), channels)
-    });
+    let of_cell = |cell: usize, channel: usize| {
+        let name = format!("forces_global_coord[{}]", 6 * cell + channel + 1);
+        ChannelRef::new(name, cell_unit(CELL_CHANNELS[channel]))
+    };
     ChannelMap {
         lateral: motion(1, "m"),
         vertical: motion(2, "m"),
         torsion: motion(3, "rad"),
         wind_speed: Some(ChannelRef::new("wind_velocity", "m/s")),
-        cells: cells.collect(),
+        cells: ChannelMap::measured_cells(rig, of_cell),
         ..ChannelMap::default()
     }
 }
@@ -66,8 +61,7 @@ pub(super) fn rig(rig: &Rig) -> Rig {
 pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
     let rig = &made.raw.rig;
     let mut file = FileBuilder::new();
-    for (run, truth) in made.raw.runs.iter().zip(&made.records) {
-        let moving: Vec<&str> = truth.moving().map(Dof::name).collect();
+    for run in &made.raw.runs {
         let still = run.still_air.iter().map(|r| ("still", r));
         for (what, recording) in std::iter::once(("wind", &run.in_wind)).chain(still) {
             let n = recording.sample_count() as u64;
@@ -80,7 +74,7 @@ pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
             group.set_attr("test_type", text("Forced vibration"));
             group.set_attr("test operator", text("aerodeck, virtual campaign"));
             group.set_attr("sampling frequency", AttrValue::F64(recording.sampling_hz));
-            group.set_attr("forced motion", text(&moving.join(", ")));
+            group.set_attr("forced motion", text(&Dof::names(&run.motion)));
             let density = run.air_density_kg_m3;
             let mut number = |name: &str, value: f64, unit: &str| {
                 group

@@ -8,29 +8,13 @@ use super::channel_map::{
 use super::file::{Campaign, FileRef, RunBlock};
 use super::findings::{RunFinding, channel_findings, first_gap};
 use super::quantity::Quantity;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::files::lab::ChannelSet;
-use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
-use serde::Serialize;
-
-/// What a recording is.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RecordingSummary {
-    /// File and group.
-    pub source: String,
-    /// Number of samples.
-    pub samples: usize,
-    /// Sampling frequency, Hz.
-    pub sampling_hz: f64,
-    /// Channels that were taken, as the file names them.
-    pub channels: Vec<String>,
-}
 
 impl Campaign {
-    /// Reads a file, or a group of it: the recording, what it is, and the air that the file in wind states. What is odd is added to
-    /// `findings`.
+    /// Reads a file, or a group of it: the recording, and the air that the file in wind states. What is odd is added to `findings`.
     pub(super) fn read_recording(
         &self,
         rig: &Rig,
@@ -39,7 +23,7 @@ impl Campaign {
         file: &FileRef,
         what: &'static str,
         findings: &mut Vec<RunFinding>,
-    ) -> Result<(RawRecording, RecordingSummary, Air)> {
+    ) -> Result<(RawRecording, Air)> {
         let path = self.directory.join(file.file());
         let place = format!("run `{}`, {what}", run.name);
         let mut read = || {
@@ -54,14 +38,7 @@ impl Campaign {
                 findings,
             };
             let recording = taking.recording(self, rig, file.to_string())?;
-            let air = taking.air(what == "in wind")?;
-            let summary = RecordingSummary {
-                source: recording.source.clone(),
-                samples: recording.sample_count(),
-                sampling_hz: recording.sampling_hz,
-                channels: taking.channels,
-            };
-            Ok((recording, summary, air))
+            Ok((recording, taking.air(what == "in wind")?))
         };
         read().map_err(|e: Error| e.in_file(&path))
     }
@@ -99,17 +76,12 @@ impl ChannelExtraction<'_> {
         let mut motion: [Vec<f64>; 3] = Default::default();
         for (samples, dof) in motion.iter_mut().zip(Dof::THREE) {
             if let Some(channel) = map.motion(dof) {
-                let quantity = if dof == Dof::Torsion {
-                    Quantity::Angle
-                } else {
-                    Quantity::Length
+                let quantity = match dof {
+                    Dof::Torsion => Quantity::Angle,
+                    _ => Quantity::Length,
                 };
-                *samples = self.take(
-                    &format!("channels.{}", dof.name()),
-                    channel,
-                    quantity,
-                    false,
-                )?;
+                let key = format!("channels.{}", dof.name());
+                *samples = self.take(&key, channel, quantity, false)?;
             }
         }
         let mut cells = Vec::new();
@@ -118,22 +90,19 @@ impl ChannelExtraction<'_> {
         }
         let wind_speed_m_s = self.wind_speed()?;
         let samples = self.first.as_ref().map_or(0, |(length, _)| *length);
-        if samples < SAMPLES_AT_LEAST {
-            let expected = format!("at least {SAMPLES_AT_LEAST} samples");
-            return Err(Error::input(self.place, expected, samples.to_string()));
-        }
-        for cell in &mut cells {
-            // those not measured
-            cell.iter_mut()
-                .filter(|c: &&mut Vec<f64>| c.is_empty())
-                .for_each(|c| *c = vec![0.0; samples]);
-        }
+        let expected = format_args!("at least {SAMPLES_AT_LEAST} samples");
+        ensure(samples >= SAMPLES_AT_LEAST, self.place, expected, samples)?;
+        // those not measured
+        let channels = cells.iter_mut().flatten();
+        let silent = channels.filter(|c: &&mut Vec<f64>| c.is_empty());
+        silent.for_each(|c| c.resize(samples, 0.0));
         Ok(RawRecording {
             source,
             sampling_hz: self.sampling(campaign.recording.sampling_hz)?,
             motion,
             cells,
             wind_speed_m_s,
+            channels: std::mem::take(&mut self.channels),
         })
     }
 
@@ -155,30 +124,20 @@ impl ChannelExtraction<'_> {
         let Some(channel) = &self.map.wind_speed else {
             return Ok(Vec::new());
         };
-        if self.of.1 == "in wind" {
-            return self.take("channels.wind_speed", channel, Quantity::Speed, false);
-        }
-        let found = self.set.channel(&channel.name);
-        let length = self.first.as_ref().map(|(length, _)| *length);
-        match found {
-            Some(c) if first_gap(&c.samples).is_none() && Some(c.samples.len()) == length => {
-                self.take("channels.wind_speed", channel, Quantity::Speed, false)
+        let (run, recording) = self.of;
+        if recording != "in wind" {
+            let Some(c) = self.set.channel(&channel.name) else {
+                return Ok(Vec::new());
+            };
+            let (gap, length) = (first_gap(&c.samples), self.first.as_ref().map(|f| f.0));
+            if gap.is_some() || Some(c.samples.len()) != length {
+                let what = "wind speed is not a number or of another length; ignored".to_owned();
+                let finding = RunFinding::of_channel(run, recording, &channel.name, gap, what);
+                self.findings.push(finding);
+                return Ok(Vec::new());
             }
-            Some(c) => {
-                let (run, recording) = self.of;
-                self.findings.push(RunFinding {
-                    run: run.to_owned(),
-                    recording: recording.to_owned(),
-                    channel: Some(channel.name.clone()),
-                    sample: first_gap(&c.samples).map(|gap| gap.0),
-                    samples: first_gap(&c.samples).map(|gap| gap.1),
-                    severity: FindingSeverity::Note,
-                    what: "wind speed is not a number or of another length; ignored".to_owned(),
-                });
-                Ok(Vec::new())
-            }
-            None => Ok(Vec::new()),
         }
+        self.take("channels.wind_speed", channel, Quantity::Speed, false)
     }
 
     /// One channel in SI units, of the length of those before, all of it numbers.

@@ -8,6 +8,12 @@ use std::collections::BTreeMap;
 
 /// Name of the cell that stands for them.
 pub(super) const CELL: &str = "section";
+/// Its channels that are measured, the force in each, and its sign: the nose-up moment is one about −z.
+const CHANNELS: [(&str, Dof, f64); 3] = [
+    ("fx", Dof::Lateral, 1.0),
+    ("fy", Dof::Vertical, 1.0),
+    ("mz", Dof::Torsion, -1.0),
+];
 
 /// Forces of the wind on the section, without inertia, about the centre of rotation; at least one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -32,15 +38,6 @@ impl SectionForces {
         }
     }
 
-    /// The force of a degree of freedom, by its key.
-    pub(super) fn name(dof: Dof) -> &'static str {
-        match dof {
-            Dof::Vertical => "lift",
-            Dof::Lateral => "drag",
-            Dof::Torsion => "moment",
-        }
-    }
-
     fn channel(&self, dof: Dof) -> Option<&ChannelRef> {
         match dof {
             Dof::Vertical => self.lift.as_ref(),
@@ -55,22 +52,16 @@ impl SectionForces {
         Dof::THREE.into_iter().filter(has).collect()
     }
 
-    /// The channels of that cell; the nose-up moment is one about −z.
+    /// The channels of that cell.
     pub(super) fn channels(&self) -> BTreeMap<String, CellChannel> {
-        let of = |dof: Dof, sign: f64| {
-            self.channel(dof).map(|c| ChannelRef {
-                scale: sign * c.scale,
-                ..c.clone()
-            })
+        let measured = |key: &str| {
+            let (_, dof, sign) = CHANNELS.iter().find(|(name, ..)| *name == key)?;
+            let own = self.channel(*dof)?.clone();
+            let scale = sign * own.scale;
+            Some(CellChannel::Measured(ChannelRef { scale, ..own }))
         };
         let channel = |key: &str| {
-            let measured = match key {
-                "fx" => of(Dof::Lateral, 1.0),
-                "fy" => of(Dof::Vertical, 1.0),
-                "mz" => of(Dof::Torsion, -1.0),
-                _ => None,
-            };
-            let channel = measured.map_or(CellChannel::NotMeasured, CellChannel::Measured);
+            let channel = measured(key).unwrap_or(CellChannel::NotMeasured);
             (key.to_owned(), channel)
         };
         CELL_CHANNELS.into_iter().map(channel).collect()
@@ -78,11 +69,8 @@ impl SectionForces {
 
     /// The key of the campaign file behind a channel of that cell.
     pub(super) fn key(channel: &str) -> String {
-        let name = match channel {
-            "fx" => "drag",
-            "fy" => "lift",
-            _ => "moment",
-        };
-        format!("channels.section.{name}")
+        let named = CHANNELS.iter().find(|(name, ..)| *name == channel);
+        let dof = named.map_or(Dof::Torsion, |(_, dof, _)| *dof);
+        format!("channels.section.{}", dof.force_name())
     }
 }

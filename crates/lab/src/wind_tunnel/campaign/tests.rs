@@ -135,8 +135,8 @@ fn channels_are_taken_in_si_units_with_their_sign() {
     let mean: f64 = (0..200).map(|i| sample(i)[4]).sum::<f64>() / 200.0;
     assert!((run.mean_speed_m_s - mean).abs() < 1e-12);
     assert_eq!(run.air_density_kg_m3, 1.2);
-    assert_eq!(reading.runs[0].in_wind.channels, ["y", "d", "l", "m", "v"]);
-    assert_eq!(reading.runs[0].motion, [Dof::Vertical]);
+    assert_eq!(wind.channels, ["y", "d", "l", "m", "v"]);
+    assert_eq!(run.motion, [Dof::Vertical]);
 }
 
 fn lab(name: &str) -> PathBuf {

@@ -1,7 +1,7 @@
 //! Writing a virtual campaign to files that [`Campaign::read`] reads back.
 
 use super::air::Air;
-use super::channel::{CellChannel, ChannelRef};
+use super::channel::ChannelRef;
 use super::channel_map::{ChannelMap, cell_unit};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
@@ -106,7 +106,7 @@ fn write_truth(
 fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
     let raw = &made.raw;
     let first = raw.runs.first();
-    let run = |(run, truth): (&RawRun, &crate::wind_tunnel::Record)| {
+    let run = |run: &RawRun| {
         let file = |what: &str| match format {
             FileFormat::Csv => FileRef::File(PathBuf::from(format!(
                 "runs/{}-{what}.csv",
@@ -119,7 +119,7 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
         };
         RunBlock {
             name: run.name.clone(),
-            motion: truth.moving().collect(),
+            motion: run.motion.clone(),
             in_wind: file("wind"),
             still_air: Some(file("still")),
             mean_speed_m_s: Some(run.mean_speed_m_s),
@@ -156,7 +156,7 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
         },
         rig: Some(rig),
         channels,
-        runs: raw.runs.iter().zip(&made.records).map(run).collect(),
+        runs: raw.runs.iter().map(run).collect(),
         directory: PathBuf::new(),
     }
 }
@@ -178,20 +178,13 @@ fn csv_columns(rig: &Rig) -> Vec<(String, &'static str)> {
 fn csv_map(rig: &Rig) -> ChannelMap {
     let columns = csv_columns(rig);
     let one = |i: usize| ChannelRef::new(columns[i].0.clone(), columns[i].1);
-    let cells = rig.cells.iter().enumerate().map(|(c, cell)| {
-        let channels = CELL_CHANNELS
-            .iter()
-            .enumerate()
-            .map(|(k, key)| ((*key).to_owned(), CellChannel::Measured(one(4 + 6 * c + k))));
-        (cell.name.clone(), channels.collect())
-    });
     ChannelMap {
         time: Some(ChannelRef::new("time", "s")),
         vertical: Some(one(0)),
         lateral: Some(one(1)),
         torsion: Some(one(2)),
         wind_speed: Some(one(3)),
-        cells: cells.collect(),
+        cells: ChannelMap::measured_cells(rig, |cell, channel| one(4 + 6 * cell + channel)),
         ..ChannelMap::default()
     }
 }

@@ -46,6 +46,14 @@ pub struct StillAirInertia {
 }
 
 impl StillAirInertia {
+    /// The inertia with its standard error.
+    fn in_words(&self, unit: &str) -> String {
+        format!(
+            "{:.4} ± {:.4} {unit}",
+            self.inertia, self.inertia_standard_error
+        )
+    }
+
     /// Whether the inertia is no chance.
     pub(crate) fn is_certain(&self) -> bool {
         self.inertia.abs() > CERTAIN * self.inertia_standard_error
@@ -70,32 +78,22 @@ pub(super) fn check_motion(
     across: &StillAirInertia,
 ) -> Result<()> {
     let width = rig.model_width_m;
+    let (there, besides) = (own.inertia.abs(), across.inertia.abs());
     let (exchanged, unit) = match (own.dof, across.dof) {
-        (Dof::Torsion, _) => (
-            across.inertia.abs() * width > LEVER_OF_ROTATION * own.inertia.abs(),
-            ("kg·m²", "kg·m"),
-        ),
-        (_, Dof::Torsion) => (
-            across.inertia.abs() > width * own.inertia.abs(),
-            ("kg", "kg·m"),
-        ),
+        (Dof::Torsion, _) => (besides * width > LEVER_OF_ROTATION * there, "kg·m²"),
+        (_, Dof::Torsion) => (besides > width * there, "kg"),
         _ => return Ok(()),
     };
+    let name = own.dof.name();
     ensure(
         !(exchanged && across.is_certain()),
         format_args!("run {run}, still air"),
+        format_args!("inertia of the {name} motion mostly in the {name} force"),
         format_args!(
-            "inertia of the {} motion mostly in the {} force",
-            own.dof.name(),
-            own.dof.name()
-        ),
-        format_args!(
-            "{:.4} {} there and {:.4} {} in the {} force, which no body has: the channels of rotation and displacement are \
+            "{:.4} {unit} there and {:.4} kg·m in the {} force, which no body has: the channels of rotation and displacement are \
              exchanged",
             own.inertia,
-            unit.0,
             across.inertia,
-            unit.1,
             across.dof.name()
         ),
     )
@@ -149,23 +147,17 @@ pub(super) fn compare(
     if beyond <= SAME_BODY * stated + error {
         return Ok(None);
     }
-    let shown = format!(
-        "{:.4} ± {:.4} {unit}",
-        found.inertia, found.inertia_standard_error
-    );
+    let (name, times) = (found.dof.name(), found.inertia / stated);
+    let shown = found.in_words(unit);
     ensure(
         beyond <= ANOTHER_BODY * stated + error,
-        format_args!("run {run}, still air, {} motion", found.dof.name()),
+        format_args!("run {run}, still air, {name} motion"),
         format_args!("about the {stated:.4} {unit} that `{key}` states"),
-        format_args!(
-            "{shown}, {:.4} times that: {WHAT_IS_WRONG}",
-            found.inertia / stated
-        ),
+        format_args!("{shown}, {times:.4} times that: {WHAT_IS_WRONG}"),
     )?;
-    Ok(Some(format!(
-        "still air shows {shown} in {} motion, `{key}` states {stated:.4} {unit}",
-        found.dof.name()
-    )))
+    let doubt =
+        format!("still air shows {shown} in {name} motion, `{key}` states {stated:.4} {unit}");
+    Ok(Some(doubt))
 }
 
 /// Compares the inertia of the runs in which `dof` moves, by their names, which is that of one model: the run with the lowest and
@@ -179,32 +171,22 @@ pub(super) fn compare_runs(
     let [(lowest, low), .., (highest, high)] = runs[..] else {
         return Ok(None);
     };
-    let error = 3.0
-        * high
-            .inertia_standard_error
-            .hypot(low.inertia_standard_error);
+    let errors = [high, low].map(|found| found.inertia_standard_error);
+    let error = 3.0 * errors[0].hypot(errors[1]);
     let apart = high.inertia - low.inertia;
     if apart <= SAME_BODY * high.inertia + error {
         return Ok(None);
     }
     let unit = if dof == Dof::Torsion { "kg·m²" } else { "kg" };
-    let shown =
-        |s: &StillAirInertia| format!("{:.4} ± {:.4} {unit}", s.inertia, s.inertia_standard_error);
-    let found = format!(
-        "{} in run {highest}, {} in run {lowest}",
-        shown(high),
-        shown(low)
-    );
+    let (name, times) = (dof.name(), high.inertia / low.inertia);
+    let (most, least) = (high.in_words(unit), low.in_words(unit));
+    let found = format!("{most} in run {highest}, {least} in run {lowest}");
     ensure(
         apart <= ANOTHER_BODY * high.inertia + error,
-        format_args!("runs, still air, {} motion", dof.name()),
+        format_args!("runs, still air, {name} motion"),
         "the inertia of one model in all of them",
-        format_args!(
-            "{found}, {:.4} times that: {WHAT_IS_WRONG}",
-            high.inertia / low.inertia
-        ),
+        format_args!("{found}, {times:.4} times that: {WHAT_IS_WRONG}"),
     )?;
-    let name = dof.name();
     let doubt = format!("still air shows another inertia in {name} motion: {found}");
     Ok(Some((lowest.to_owned(), doubt)))
 }

@@ -54,15 +54,12 @@ pub(crate) fn about_centre(
 
 /// Means of every cell, for the report.
 pub(crate) fn shares(cells: &[GlobalCell], rig: &Rig) -> Vec<CellShare> {
-    rig.cells
-        .iter()
-        .zip(cells)
-        .map(|(place, cell)| CellShare {
-            cell: place.name.clone(),
-            mean_force_n: std::array::from_fn(|i| mean(&cell[i])),
-            mean_moment_n_m: std::array::from_fn(|i| mean(&cell[3 + i])),
-        })
-        .collect()
+    let share = |(place, cell): (&LoadCell, &GlobalCell)| CellShare {
+        cell: place.name.clone(),
+        mean_force_n: std::array::from_fn(|i| mean(&cell[i])),
+        mean_moment_n_m: std::array::from_fn(|i| mean(&cell[3 + i])),
+    };
+    rig.cells.iter().zip(cells).map(share).collect()
 }
 
 /// Force (x, y, z) and moment (x, y, z) at a cell in global axes: N, N·m.

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 /// Sampling frequencies that differ by less are the same, written with fewer digits.
 const SAME_RATE: f64 = 1e-6;
 
+/// What channels of the recording in still air are called first.
+const STILL_AIR: &str = "still air";
+
 /// A stretch in which a channel stood at its limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClippedStretch {
@@ -20,38 +23,39 @@ pub struct ClippedStretch {
     pub samples: usize,
 }
 
-/// Checks both recordings of a run: clipped stretches in wind and in still air, and what the user should know.
+impl ClippedStretch {
+    /// Whether it is of the recording in still air.
+    pub(super) fn is_in_still_air(&self) -> bool {
+        self.channel.starts_with(STILL_AIR)
+    }
+}
+
+/// Checks both recordings of a run: clipped stretches in wind, then in still air, and what the user should know.
 ///
 /// # Errors
 /// [`Error::Input`] naming run, recording, channel and sample: a speed or density that is not positive, no cells, too few
 /// samples, channels of unequal length, numbers that are not finite, different sampling frequencies, no motion, channels
 /// at their limit for more than a short while.
-pub(super) fn check_run(
-    run: &RawRun,
-    rig: &Rig,
-) -> Result<([Vec<ClippedStretch>; 2], Vec<String>)> {
+pub(super) fn check_run(run: &RawRun, rig: &Rig) -> Result<(Vec<ClippedStretch>, Vec<String>)> {
     let place = |what: &str| format!("run {}, {what}", run.name);
     positive(place("mean wind speed"), run.mean_speed_m_s)?;
     positive(place("air density"), run.air_density_kg_m3)?;
     let wind = &run.in_wind;
     check_recording(&place("in wind"), wind, rig)?;
-    let mut clipped_stretches = [clipped(&run.name, "in wind", wind, rig)?, Vec::new()];
+    let mut clipped_stretches = clipped(&run.name, "in wind", wind, rig)?;
     let mut warnings = Vec::new();
     if let Some(still) = &run.still_air {
         check_recording(&place("still air"), still, rig)?;
         check_pair(&run.name, wind, still)?;
-        clipped_stretches[1] = clipped(&run.name, "still air", still, rig)?;
-        if wind.sample_count() != still.sample_count() {
+        clipped_stretches.extend(clipped(&run.name, STILL_AIR, still, rig)?);
+        let (in_wind, in_still) = (wind.sample_count(), still.sample_count());
+        if in_wind != in_still {
             warnings.push(format!(
-                "{} samples in wind, {} in still air: only the part that both cover is used",
-                wind.sample_count(),
-                still.sample_count()
+                "{in_wind} samples in wind, {in_still} in still air: only the part that both cover is used"
             ));
         }
     }
-    let channels = clipped_stretches
-        .iter()
-        .flat_map(|c| c.chunk_by(|a, b| a.channel == b.channel));
+    let channels = clipped_stretches.chunk_by(|a, b| a.channel == b.channel);
     warnings.extend(channels.map(|stretches| {
         let samples: usize = stretches.iter().map(|c| c.samples).sum();
         format!(
@@ -89,13 +93,12 @@ fn check_pair(run: &str, wind: &RawRecording, still: &RawRecording) -> Result<()
 fn channels<'a>(recording: &'a RawRecording, rig: &'a Rig) -> Vec<(String, &'a [f64])> {
     let mut all = Vec::new();
     for (dof, samples) in Dof::THREE.iter().zip(&recording.motion) {
-        if !samples.is_empty() {
-            all.push((format!("{} motion", dof.name()), samples.as_slice()));
-        }
+        all.push((format!("{} motion", dof.name()), &samples[..]));
     }
+    all.retain(|(_, samples)| !samples.is_empty());
     for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
         for (name, samples) in CELL_CHANNELS.iter().zip(channels) {
-            all.push((format!("cell {}, {name}", cell.name), samples.as_slice()));
+            all.push((format!("cell {}, {name}", cell.name), &samples[..]));
         }
     }
     if !recording.wind_speed_m_s.is_empty() {
@@ -105,37 +108,21 @@ fn channels<'a>(recording: &'a RawRecording, rig: &'a Rig) -> Vec<(String, &'a [
 }
 
 fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<()> {
-    positive(
-        format!("{place}, sampling frequency"),
-        recording.sampling_hz,
-    )?;
-    ensure(
-        recording.cells.len() == rig.cells.len() && !rig.cells.is_empty(),
-        place,
-        format_args!("{} load cells, at least one", rig.cells.len()),
-        recording.cells.len(),
-    )?;
-    ensure(
-        recording.motion.iter().any(|c| !c.is_empty()),
-        place,
-        "a motion channel",
-        "none",
-    )?;
+    let rate = format!("{place}, sampling frequency");
+    positive(rate, recording.sampling_hz)?;
+    let (cells, found) = (rig.cells.len(), recording.cells.len());
+    let expected = format_args!("{cells} load cells, at least one");
+    ensure(found == cells && cells > 0, place, expected, found)?;
+    let any_moves = recording.motion.iter().any(|c| !c.is_empty());
+    ensure(any_moves, place, "a motion channel", "none")?;
     let count = recording.sample_count();
-    ensure(
-        count >= SAMPLES_AT_LEAST,
-        place,
-        format_args!("at least {SAMPLES_AT_LEAST} samples"),
-        count,
-    )?;
+    let expected = format_args!("at least {SAMPLES_AT_LEAST} samples");
+    ensure(count >= SAMPLES_AT_LEAST, place, expected, count)?;
+    let expected = format_args!("{count} samples, as the first force channel");
     for (name, samples) in channels(recording, rig) {
-        ensure(
-            samples.len() == count,
-            format_args!("{place}, {name}"),
-            format_args!("{count} samples, as the first force channel"),
-            samples.len(),
-        )?;
-        check_finite(&format!("{place}, {name}"), 0, samples)?;
+        let (place, found) = (format!("{place}, {name}"), samples.len());
+        ensure(found == count, &place, expected, found)?;
+        check_finite(&place, 0, samples)?;
     }
     Ok(())
 }
@@ -150,11 +137,15 @@ fn clipped(
     for (name, samples) in channels(recording, rig) {
         let channel = format!("{what}, {name}");
         let stretches = check_clipping(&format!("run {run}, {channel}"), 0, samples)?;
-        found.extend(stretches.iter().map(|(first, samples)| ClippedStretch {
-            channel: channel.clone(),
-            first: *first,
-            samples: *samples,
-        }));
+        found.extend(
+            stretches
+                .into_iter()
+                .map(|(first, samples)| ClippedStretch {
+                    channel: channel.clone(),
+                    first,
+                    samples,
+                }),
+        );
     }
     Ok(found)
 }

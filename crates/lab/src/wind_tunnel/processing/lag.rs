@@ -282,11 +282,10 @@ fn weighted_fit(
         gram += row * row.transpose() * weight;
         moments += row * (value * weight);
     }
+    let finite = |found: ([f64; 2], f64)| found.1.is_finite().then_some(found);
     if !both {
         let variance = 1.0 / gram[(0, 0)];
-        return variance
-            .is_finite()
-            .then_some(([moments[0] * variance, 0.0], variance));
+        return finite(([moments[0] * variance, 0.0], variance));
     }
     // columns differ by orders of magnitude
     let scale = Vector2::new(gram[(0, 0)].sqrt(), gram[(1, 1)].sqrt());
@@ -295,22 +294,16 @@ fn weighted_fit(
     let solution = inverse * moments.component_div(&scale);
     let result = solution.component_div(&scale);
     let variance = inverse[(0, 0)] / (scale[0] * scale[0]);
-    variance
-        .is_finite()
-        .then_some(([result[0], result[1]], variance))
+    finite((result.into(), variance))
 }
 
 /// One lag of the force channels behind the motion for a campaign, s, the mean of its runs by inverse variance, and its standard error,
 /// `None` where it may be damping as well; nothing when no run tells it. Runs that cannot tell it from
 /// damping are asked where there are no others.
 pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<(f64, Option<f64>)> {
-    let told = |r: &&StillAirInertia| r.tells_lag(sampling_hz);
-    let is_known = runs.iter().filter(told).any(|r| r.damping.is_some());
-    let telling = || {
-        runs.iter()
-            .filter(told)
-            .filter(|r| !is_known || r.damping.is_some())
-    };
+    let told = || runs.iter().filter(|r| r.tells_lag(sampling_hz));
+    let is_known = told().any(|r| r.damping.is_some());
+    let telling = || told().filter(|r| !is_known || r.damping.is_some());
     let weight = |r: &StillAirInertia| r.lag_standard_error_s.max(1e-12).powi(-2);
     let sum: f64 = telling().map(weight).sum();
     let mean = telling().map(|r| weight(r) * r.lag_s).sum::<f64>() / sum;

@@ -52,7 +52,7 @@ pub(super) fn judge(rig: &Rig, runs: &mut [PreparedRun<'_>]) {
             off_axis = off_axis.or(c.enter_centre(rig, runs, of_rotation));
         }
         for (run, doubt) in unseen.into_iter().chain(off_axis) {
-            runs[run].doubts.push(doubt);
+            runs[run].report.doubts.push(doubt);
         }
     }
 }
@@ -69,13 +69,18 @@ fn surest(all: &[InertialCoupling]) -> Option<&InertialCoupling> {
 
 /// Inertia of the runs of `dof` in the force of `other`.
 fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<InertialCoupling> {
-    let told = |p: &&PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| !s.hides_weight());
-    let body = runs.iter().filter(told).find(|p| p.dof == other);
-    let body = body.and_then(|p| p.still_air.as_ref());
+    let told = |p: &&PreparedRun<'_>| {
+        p.report
+            .still_air
+            .as_ref()
+            .is_some_and(|s| !s.hides_weight())
+    };
+    let body = runs.iter().filter(told).find(|p| p.report.dof == other);
+    let body = body.and_then(|p| p.report.still_air.as_ref());
     let of_dof = runs
         .iter()
         .enumerate()
-        .filter(|(_, p)| p.dof == dof && told(p));
+        .filter(|(_, p)| p.report.dof == dof && told(p));
     // a force that nobody measures is zero
     let measured = |r: &&Ratios| r.total[index(other)].iter().any(|r| r.value.norm() > 0.0);
     let (at, ratios): (Vec<usize>, Vec<&Ratios>) = of_dof
@@ -139,7 +144,7 @@ impl InertialCoupling {
         let [least, most] = MISSING;
         let is_missing = (least + error..=most).contains(&missing);
         (self.part > CONSIDERABLE && is_missing).then(|| {
-            let (own, other) = (runs[self.run].dof.name(), self.found.dof.name());
+            let (own, other) = (runs[self.run].report.dof.name(), self.found.dof.name());
             format!(
                 "the {other} channel tells of {:.0} % of the {own} motion, both over the width, whose inertia in the {other} force, \
                  {:.4} kg·m, still air does not show ({:.4} ± {:.4} kg·m): a sensor that feels the {own} motion?",
@@ -165,6 +170,7 @@ impl InertialCoupling {
         rotation: Option<&Self>,
     ) -> Option<(usize, String)> {
         let body = runs[self.run]
+            .report
             .still_air
             .as_mut()
             .filter(|b| b.is_certain())?;

@@ -1,10 +1,9 @@
 //! A run before any stage: checked, its test points found, its inertia asked for the lag.
 
-use super::body::StillAirInertia;
 use super::check::{ClippedStretch, check_run};
 use super::lag::{Ratios, still_air_inertia};
 use super::options::ProcessingOptions;
-use super::report::LAG_TURNS;
+use super::report::{LAG_TURNS, RunReport};
 use super::segmentation::{find_segments, moving_dof, whole_periods};
 use super::signals::{HarmonicSegment, highest_hz};
 use super::{body, index, lag, still_air};
@@ -21,22 +20,12 @@ const WEIGHT_IS_HIDDEN: &str = "the runs of the torsion motion have one frequenc
 /// A run that has been checked, with its test points and its lag.
 pub(super) struct PreparedRun<'a> {
     pub run: &'a RawRun,
-    /// Degree of freedom that moves.
-    pub dof: Dof,
-    /// Clipped stretches in wind and in still air.
-    pub clipped: [Vec<ClippedStretch>; 2],
-    /// What the user should know.
-    pub warnings: Vec<String>,
-    /// What contradicts what is stated, or another run.
-    pub doubts: Vec<String>,
-    /// In samples of the recording in wind.
-    pub segments: Vec<HarmonicSegment>,
+    /// What is known of it: segments in samples of the whole recording in wind, what still air says with the other runs of the motion.
+    pub report: RunReport,
     /// In samples of the recording in still air; empty without one.
     pub still_segments: Vec<HarmonicSegment>,
     /// Forces over the motion in still air.
     pub ratios: Option<Ratios>,
-    /// What they say, with those of the other runs of the motion.
-    pub still_air: Option<StillAirInertia>,
 }
 
 impl<'a> PreparedRun<'a> {
@@ -73,20 +62,22 @@ impl<'a> PreparedRun<'a> {
         }
         Ok(Self {
             run,
-            dof,
-            clipped,
-            warnings,
-            doubts: Vec::new(),
-            segments,
+            report: RunReport {
+                clipped,
+                segments,
+                warnings,
+                ..RunReport::new(run, rig, dof)
+            },
             still_segments,
             ratios,
-            still_air: None,
         })
     }
+}
 
+impl RunReport {
     /// Segments counted from the first covered sample, their steady parts cut to the whole periods that are covered.
-    pub(crate) fn covered_segments(&self, covered: &Range<usize>) -> Result<Vec<HarmonicSegment>> {
-        let rate = self.run.in_wind.sampling_hz;
+    pub(super) fn covered_segments(&self, covered: &Range<usize>) -> Result<Vec<HarmonicSegment>> {
+        let rate = self.sampling_hz;
         let shift_s = covered.start as f64 / rate;
         let last_s = covered.len() as f64 / rate;
         self.segments
@@ -103,7 +94,7 @@ impl<'a> PreparedRun<'a> {
                 }
                 ensure(
                     moved.plateau.periods as f64 >= COVERED * s.plateau.periods as f64,
-                    format_args!("run {}, still air", self.run.name),
+                    format_args!("run {}, still air", self.run),
                     format_args!(
                         "a recording as long as the motion at {:.3} Hz (samples {} to {})",
                         s.segment.frequency_hz, p.start, p.end
@@ -121,19 +112,17 @@ impl<'a> PreparedRun<'a> {
             .collect()
     }
 
-    /// Clipped stretches of both recordings in samples from the first covered one.
-    pub(crate) fn clipped(&self, covered: &Range<usize>, offset: f64) -> Vec<Range<usize>> {
-        let [wind, still] = &self.clipped;
-        let wind = wind.iter().map(|c| (c, 0.0));
-        let still = still.iter().map(|c| (c, offset));
+    /// Clipped stretches of both recordings in samples from the first covered one, that in still air being aligned.
+    pub(super) fn clipped_ranges(&self, covered: &Range<usize>) -> Vec<Range<usize>> {
         let place = |x: f64| (x.max(0.0) as usize).min(covered.len());
-        wind.chain(still)
-            .map(|(c, late)| {
-                let first = c.first as f64 - late - covered.start as f64;
-                place(first.floor())..place((first + c.samples as f64).ceil())
-            })
-            .filter(|r| !r.is_empty())
-            .collect()
+        let range = |c: &ClippedStretch| {
+            let late = self.alignment.filter(|_| c.is_in_still_air());
+            let late = late.map_or(0.0, |a| a.offset_samples);
+            let first = c.first as f64 - late - covered.start as f64;
+            place(first.floor())..place((first + c.samples as f64).ceil())
+        };
+        let ranges = self.clipped.iter().map(range);
+        ranges.filter(|r| !r.is_empty()).collect()
     }
 }
 
@@ -147,21 +136,21 @@ pub(super) fn judge_still_air(
     let found = still_air_inertia(rig, dof, &ratios);
     let with_still_air = runs.iter_mut().filter(|p| p.ratios.is_some());
     let judged = with_still_air.zip(found).map(|(p, found)| {
-        p.still_air = found?;
-        let Some(found) = &p.still_air else {
+        p.report.still_air = found?;
+        let Some(found) = &p.report.still_air else {
             return Ok(());
         };
         let doubt = body::compare(&p.run.name, rig, found, p.run.air_density_kg_m3)?;
-        p.doubts.extend(doubt);
+        p.report.doubts.extend(doubt);
         Ok(())
     });
     let mut judged: Vec<_> = judged.collect();
     if judged.iter().all(Result::is_ok) {
         let bodies = runs
             .iter()
-            .filter_map(|p| Some((&p.run.name[..], p.still_air.as_ref()?)));
+            .filter_map(|p| Some((&p.run.name[..], p.report.still_air.as_ref()?)));
         let doubt = body::compare_runs(dof, bodies.collect());
-        if let Some(first) = runs.first_mut() {
+        if let Some(first) = runs.first_mut().map(|first| &mut first.report) {
             let hidden = first.still_air.as_ref().filter(|s| s.hides_weight());
             let said =
                 hidden.map(|s| format!("{WEIGHT_IS_HIDDEN} ({:.4} kg·m² in all)", s.inertia));
@@ -174,7 +163,7 @@ pub(super) fn judge_still_air(
         judged.push(doubt.map(|doubt| {
             if let Some((lowest, doubt)) = doubt {
                 let named = runs.iter_mut().filter(|p| p.run.name == lowest);
-                named.for_each(|p| p.doubts.push(doubt.clone()));
+                named.for_each(|p| p.report.doubts.push(doubt.clone()));
             }
         }));
     }
@@ -189,13 +178,13 @@ pub(super) fn common_lag(
     if let Some(stated) = options.lag_s {
         return (stated, None);
     }
-    let inertia: Vec<_> = runs.iter().filter_map(|p| p.still_air.clone()).collect();
-    let sampling_hz = runs[0].run.in_wind.sampling_hz;
-    let Some((lag_s, standard_error_s)) = lag::common_lag(&inertia, sampling_hz) else {
+    let mut runs: Vec<_> = runs.iter_mut().map(|p| &mut p.report).collect();
+    let inertia: Vec<_> = runs.iter().filter_map(|r| r.still_air.clone()).collect();
+    let Some((lag_s, standard_error_s)) = lag::common_lag(&inertia, runs[0].sampling_hz) else {
         return (0.0, None);
     };
     let unknown =
-        |p: &&mut PreparedRun<'_>| p.still_air.as_ref().is_some_and(|s| s.damping.is_none());
+        |r: &&mut &mut RunReport| r.still_air.as_ref().is_some_and(|s| s.damping.is_none());
     let unknown = runs.iter_mut().filter(unknown);
     let fastest =
         unknown.max_by(|a, b| highest_hz(&a.segments).total_cmp(&highest_hz(&b.segments)));

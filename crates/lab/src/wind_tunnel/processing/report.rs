@@ -8,12 +8,11 @@ use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
-use super::signals::{HarmonicSegment, SectionSignals, highest_hz};
+use super::signals::{HarmonicSegment, highest_hz};
 use super::spikes::{CLIPPED, Replaced};
 use super::still_air::{Alignment, RemovedInertia};
 use crate::error::{Result, ensure};
 use crate::section::Dof;
-use crate::signal::{largest_magnitude, root_mean_square};
 use crate::wind_tunnel::{RawRun, Rig};
 use serde::{Deserialize, Serialize};
 
@@ -26,16 +25,6 @@ pub struct StageLevels {
     pub peak: [f64; 3],
     /// Root mean square of the same.
     pub rms: [f64; 3],
-}
-
-impl StageLevels {
-    pub(super) fn new(stage: &str, signals: &SectionSignals) -> Self {
-        Self {
-            stage: stage.to_owned(),
-            peak: signals.force.each_ref().map(|f| largest_magnitude(f)),
-            rms: signals.force.each_ref().map(|f| root_mean_square(f)),
-        }
-    }
 }
 
 /// What drift was taken for.
@@ -67,17 +56,6 @@ pub struct DimensionlessFactors {
     pub pressure_pa: f64,
     /// `Δs = VΔt/B` of the record.
     pub delta_s: f64,
-}
-
-impl DimensionlessFactors {
-    pub(super) fn new(run: &RawRun, rig: &Rig) -> Self {
-        Self {
-            speed_m_s: run.mean_speed_m_s,
-            air_density_kg_m3: run.air_density_kg_m3,
-            pressure_pa: 0.5 * run.air_density_kg_m3 * run.mean_speed_m_s.powi(2),
-            delta_s: run.mean_speed_m_s / (rig.model_width_m * run.in_wind.sampling_hz),
-        }
-    }
 }
 
 /// Everything that was done to one run.
@@ -186,6 +164,42 @@ pub(super) const LAG_TURNS: (f64, f64) = (2.0, 5.0);
 const INERTIA_LEFT: [f64; 2] = [0.005, 0.02];
 
 impl RunReport {
+    /// Before anything is done, of a run in which `dof` moves.
+    pub(super) fn new(run: &RawRun, rig: &Rig, dof: Dof) -> Self {
+        let (density, speed) = (run.air_density_kg_m3, run.mean_speed_m_s);
+        let sampling_hz = run.in_wind.sampling_hz;
+        Self {
+            run: run.name.clone(),
+            dof,
+            sampling_hz,
+            samples: run.in_wind.sample_count(),
+            cut: [0; 2],
+            clipped: Vec::new(),
+            segments: Vec::new(),
+            still_air: None,
+            lag_corrected_s: 0.0,
+            alignment: None,
+            cells: Vec::new(),
+            means: RemovedMeans::default(),
+            inertia: RemovedInertia::default(),
+            replaced: Vec::new(),
+            cell_drift: Vec::new(),
+            drift: RemovedDrift::default(),
+            low_pass: None,
+            cross_talk: CrossTalk::default(),
+            signal_to_noise: SignalToNoise::default(),
+            dimensionless: DimensionlessFactors {
+                speed_m_s: speed,
+                air_density_kg_m3: density,
+                pressure_pa: 0.5 * density * speed.powi(2),
+                delta_s: speed / (rig.model_width_m * sampling_hz),
+            },
+            levels: Vec::new(),
+            warnings: Vec::new(),
+            doubts: Vec::new(),
+        }
+    }
+
     /// Says where still air moved otherwise than wind, in amplitude or because its clock went otherwise.
     fn say_what_inertia_is_left(&mut self) {
         let [told, grave] = INERTIA_LEFT;
@@ -200,12 +214,10 @@ impl RunReport {
             self.alignment.map_or(1.0, |a| a.amplitude_ratio),
             100.0 * left
         );
-        let said = if left > grave {
-            &mut self.doubts
-        } else {
-            &mut self.warnings
-        };
-        said.push(what);
+        match left > grave {
+            true => self.doubts.push(what),
+            false => self.warnings.push(what),
+        }
     }
 
     /// Says what the lag that the inertia of this run shows is: nothing where it is the one that was corrected.
@@ -242,10 +254,9 @@ impl RunReport {
         };
         let what = format!("its own inertia says {own}{or}; {corrected:.3} ms were corrected");
         match turned > grave && !(is_stated && may_be_damping) {
-            true => {
-                let doubt = format!("{what}: {unless}its derivatives are wrong by as much");
-                self.doubts.push(doubt);
-            }
+            true => self.doubts.push(format!(
+                "{what}: {unless}its derivatives are wrong by as much"
+            )),
             false => self.warnings.push(what),
         }
         Ok(())

@@ -86,15 +86,13 @@ pub(super) fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> (R
 
 /// Removes from each force and each motion its mean over `range`; returns those of the forces.
 pub(crate) fn remove_means(signals: &mut SectionSignals, range: &Range<usize>) -> [f64; 3] {
+    let remove = |x: &mut Vec<f64>| {
+        let mean = mean(&x[range.start.min(x.len())..range.end.min(x.len())]);
+        x.iter_mut().for_each(|v| *v -= mean);
+        mean
+    };
     for motion in &mut signals.motion {
-        remove_mean(motion, range);
+        remove(motion);
     }
-    std::array::from_fn(|d| remove_mean(&mut signals.force[d], range))
-}
-
-fn remove_mean(x: &mut [f64], range: &Range<usize>) -> f64 {
-    let stretch = &x[range.start.min(x.len())..range.end.min(x.len())];
-    let mean = mean(stretch);
-    x.iter_mut().for_each(|v| *v -= mean);
-    mean
+    signals.force.each_mut().map(remove)
 }

@@ -3,59 +3,44 @@
 use super::coherent::{Parts, Regressors};
 use super::options::ProcessingOptions;
 use super::prepare::PreparedRun;
-use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
-use super::rest::{CrossTalk, RemovedMeans, remove_means, rest, still_the_rest};
+use super::report::{RemovedDrift, RunReport, SignalToNoise, StageLevels};
+use super::rest::{RemovedMeans, remove_means, rest, still_the_rest};
 use super::signals::{HarmonicSegment, SectionSignals};
-use super::still_air::{Alignment, RemovedInertia};
+use super::still_air::RemovedInertia;
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
 use crate::Error;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::signal::{ButterworthLowPass, delayed, extremes, root_mean_square};
+use crate::signal::{ButterworthLowPass, delayed, extremes, largest_magnitude, root_mean_square};
 use crate::wind_tunnel::{RawCampaign, RawRecording, Record, Rig};
 use std::ops::Range;
 
 /// Drag coefficient below which a drag upwind is no sign: thrust of a moving plate, rounding, a shift of the zero.
 const LEAST_DRAG: f64 = 0.005;
 
-/// Force on the whole model after a stage, for figures.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StageSignals {
-    /// What has been done.
-    pub stage: String,
-    /// The signals.
-    pub signals: SectionSignals,
-}
-
 /// Takes a prepared run through all stages: one record, or one per segment when ramps are cut, what was done, and the signals after each
 /// stage.
 pub(super) fn process_run(
-    prepared: &PreparedRun<'_>,
+    prepared: PreparedRun<'_>,
     campaign: &RawCampaign,
     dofs: &[Dof],
     lag_s: f64,
     options: &ProcessingOptions,
-) -> Result<(Vec<Record>, RunReport, Vec<StageSignals>)> {
+) -> Result<(Vec<Record>, RunReport, Vec<SectionSignals>)> {
+    let raw = prepared.run;
     let mut run = RunInProgress::in_step(prepared, &campaign.rig, lag_s, options)?;
     run.remove_means();
     run.subtract_still_air()?;
     run.clean_and_filter()?;
     run.still_the_rest();
     report::warn(&mut run.report, options)?;
-    let records = signals::records(
-        campaign,
-        dofs,
-        &run.signals,
-        &run.report.segments,
-        prepared.run,
-        options.segments.ramps,
-    );
+    let (segments, ramps) = (&run.report.segments, options.segments.ramps);
+    let records = signals::records(campaign, dofs, &run.signals, segments, raw, ramps);
     Ok((records, run.report, run.stages))
 }
 
 /// A run on its way: every stage changes the signals and enters in the report what it did.
 struct RunInProgress<'a> {
-    prepared: &'a PreparedRun<'a>,
     rig: &'a Rig,
     options: &'a ProcessingOptions,
     signals: SectionSignals,
@@ -63,22 +48,23 @@ struct RunInProgress<'a> {
     /// Clipped stretches of both recordings.
     clipped: Vec<Range<usize>>,
     report: RunReport,
-    stages: Vec<StageSignals>,
+    stages: Vec<SectionSignals>,
 }
 
 impl<'a> RunInProgress<'a> {
     /// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells. Both recordings in step, in global axes, about the centre of
     /// rotation.
     fn in_step(
-        prepared: &'a PreparedRun<'a>,
+        prepared: PreparedRun<'_>,
         rig: &'a Rig,
         lag_s: f64,
         options: &'a ProcessingOptions,
     ) -> Result<Self> {
-        let run = prepared.run;
+        let (run, mut report) = (prepared.run, prepared.report);
+        let dof = report.dof;
         let ready = |recording: &RawRecording, segments: &[HarmonicSegment], what: &str| {
             let mut recording = without_lag(recording, lag_s);
-            let motion = still_air::from_rest(&recording.motion[index(prepared.dof)]);
+            let motion = still_air::from_rest(&recording.motion[index(dof)]);
             let rotation = motion_or_zeros(&recording, Dof::Torsion);
             let degree = options.drift_degree;
             let drift =
@@ -86,13 +72,12 @@ impl<'a> RunInProgress<'a> {
                     .map_err(|e| of_recording(e, &run.name, what))?;
             Ok::<_, Error>((recording, drift))
         };
-        let (mut wind, cell_drift) = ready(&run.in_wind, &prepared.segments, "in wind")?;
-        let (mut covered, mut alignment, mut still) = (0..wind.sample_count(), None, None);
+        let (mut wind, cell_drift) = ready(&run.in_wind, &report.segments, "in wind")?;
+        let (mut covered, mut still) = (0..wind.sample_count(), None);
         if let Some(recording) = &run.still_air {
             let (recording, _) = ready(recording, &prepared.still_segments, "still air")?;
-            let (aligned, both, found) =
-                still_air::align(&run.name, &wind, &recording, prepared.dof)?;
-            (covered, alignment) = (both, Some(found));
+            let (aligned, both, found) = still_air::align(&run.name, &wind, &recording, dof)?;
+            (covered, report.alignment) = (both, Some(found));
             let within = |x: &[f64]| x[covered.clone()].to_vec();
             wind = wind.map(within);
             still = Some(aligned.map(within));
@@ -105,48 +90,23 @@ impl<'a> RunInProgress<'a> {
                 ..signals.clone()
             },
         };
-        let segments = prepared.covered_segments(&covered)?;
-        let mut warnings = prepared.warnings.clone();
-        let pairs = || segments.iter().zip(&prepared.segments);
-        if pairs().any(|(used, all)| used.plateau.samples < all.plateau.samples) {
+        let segments = report.covered_segments(&covered)?;
+        let mut pairs = segments.iter().zip(&report.segments);
+        if pairs.any(|(used, all)| used.plateau.samples < all.plateau.samples) {
             let Range { start, end } = covered;
-            warnings.push(format!(
+            report.warnings.push(format!(
                 "still air covers samples {start} to {end} of the motion in wind: only the whole periods in these are used"
             ));
         }
-        let offset = alignment.map_or(0.0, |a: Alignment| a.offset_samples);
-        let report = RunReport {
-            run: run.name.clone(),
-            dof: prepared.dof,
-            sampling_hz: signals.sampling_hz,
-            samples: run.in_wind.sample_count(),
-            cut: [covered.start, run.in_wind.sample_count() - covered.end],
-            clipped: prepared.clipped.iter().flatten().cloned().collect(),
-            segments,
-            still_air: prepared.still_air.clone(),
-            lag_corrected_s: lag_s,
-            alignment,
-            cells,
-            means: RemovedMeans::default(),
-            inertia: RemovedInertia::default(),
-            replaced: Vec::new(),
-            cell_drift,
-            drift: RemovedDrift::default(),
-            low_pass: None,
-            cross_talk: CrossTalk::default(),
-            signal_to_noise: SignalToNoise::default(),
-            dimensionless: DimensionlessFactors::new(run, rig),
-            levels: Vec::new(),
-            warnings,
-            doubts: prepared.doubts.clone(),
-        };
+        report.cut = [covered.start, report.samples - covered.end];
+        report.lag_corrected_s = lag_s;
+        (report.segments, report.cells, report.cell_drift) = (segments, cells, cell_drift);
         let mut under_way = Self {
-            clipped: prepared.clipped(&covered, offset),
-            prepared,
             rig,
             options,
             signals,
             still_air,
+            clipped: report.clipped_ranges(&covered),
             report,
             stages: Vec::new(),
         };
@@ -156,13 +116,13 @@ impl<'a> RunInProgress<'a> {
 
     /// Levels and signals after a stage.
     fn done(&mut self, stage: &str) {
-        self.report
-            .levels
-            .push(StageLevels::new(stage, &self.signals));
-        self.stages.push(StageSignals {
+        let force = self.signals.force.each_ref();
+        self.report.levels.push(StageLevels {
             stage: stage.to_owned(),
-            signals: self.signals.clone(),
+            peak: force.map(|f| largest_magnitude(f)),
+            rms: force.map(|f| root_mean_square(f)),
         });
+        self.stages.push(self.signals.clone());
     }
 
     /// Stage 7.
@@ -202,7 +162,7 @@ impl<'a> RunInProgress<'a> {
                 &self.signals,
                 &self.still_air,
                 &self.report.segments,
-                index(self.prepared.dof),
+                index(self.report.dof),
             )?,
             None => RemovedInertia::default(),
         };
@@ -213,9 +173,9 @@ impl<'a> RunInProgress<'a> {
 
     /// Stages 9 and 10, with what follows the motion over what is left on either side of the filter.
     fn clean_and_filter(&mut self) -> Result<()> {
-        let name = &self.prepared.run.name;
-        let (segments, rate) = (&self.report.segments, self.signals.sampling_hz);
-        let designed = low_pass::design(name, &self.options.low_pass, segments, rate)?;
+        let RunReport { run, segments, .. } = &self.report;
+        let rate = self.signals.sampling_hz;
+        let designed = low_pass::design(run, &self.options.low_pass, segments, rate)?;
         let (filter, applied) = designed.unzip();
         let parts = self.clean(filter.as_ref())?;
         let ratio = |run: &Self| noise_ratio(&run.signals, &parts, &run.report.segments);
@@ -239,7 +199,7 @@ impl<'a> RunInProgress<'a> {
     fn clean(&mut self, filter: Option<&ButterworthLowPass>) -> Result<[Parts; 3]> {
         let degree = self.options.drift_degree;
         let regressors = Regressors::new(
-            &self.signals.motion[index(self.prepared.dof)],
+            &self.signals.motion[index(self.report.dof)],
             self.signals.sampling_hz,
             &self.report.segments,
             degree,
@@ -252,7 +212,7 @@ impl<'a> RunInProgress<'a> {
             self.rig.model_width_m,
             &self.clipped,
         )
-        .map_err(|e| of_recording(e, &self.prepared.run.name, "in wind"))?;
+        .map_err(|e| of_recording(e, &self.report.run, "in wind"))?;
         self.report.replaced = replaced;
         self.done("spikes replaced");
         let range = std::array::from_fn(|d| {
@@ -271,7 +231,7 @@ impl<'a> RunInProgress<'a> {
     fn still_the_rest(&mut self) {
         self.report.cross_talk = still_the_rest(
             &mut self.signals,
-            self.prepared.dof,
+            self.report.dof,
             &self.report.segments,
             self.rig.model_width_m,
             self.options.negligible_motion,

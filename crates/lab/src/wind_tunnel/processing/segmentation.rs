@@ -48,24 +48,24 @@ pub(crate) fn find_segments(
     let groups = groups_of_one_period(&passages);
     let mut found = Vec::new();
     for (i, group) in groups.iter().enumerate() {
-        let before = i.checked_sub(1).map(|j| groups[j].last);
-        let after = groups.get(i + 1).map(|g| g.first);
+        let (first, last) = (group[0], group[group.len() - 1]);
+        let period = (last - first) / (group.len() - 1) as f64;
         let quiet = AT_REST * amplitude;
         // a slow motion is quiet about every passage through zero
-        let rest = (0.25 * sampling_hz).max(0.25 * group.period);
-        let start = match before {
-            Some(last) => seam(motion, last, group.first, quiet),
-            None => first_motion(motion, group.first, quiet, rest, sampling_hz),
+        let rest = (0.25 * sampling_hz).max(0.25 * period);
+        let start = match groups[..i].last().and_then(|g| g.last()) {
+            Some(before) => seam(motion, *before, first, quiet),
+            None => first_motion(motion, first, quiet, rest, sampling_hz),
         };
-        let end = match after {
-            Some(first) => seam(motion, group.last, first, quiet),
+        let end = match groups.get(i + 1) {
+            Some(after) => seam(motion, last, after[0], quiet),
             None => {
                 let reversed: Vec<f64> = motion.iter().rev().copied().collect();
-                let last = motion.len() as f64 - 1.0 - group.last;
+                let last = motion.len() as f64 - 1.0 - last;
                 motion.len() - first_motion(&reversed, last, quiet, rest, sampling_hz)
             }
         };
-        let rough = sampling_hz / group.period;
+        let rough = sampling_hz / period;
         let full = options.full_amplitude;
         let steady = |f: f64| plateau(motion, start..end, sampling_hz, f, full);
         let refined = steady(rough)
@@ -76,14 +76,12 @@ pub(crate) fn find_segments(
         };
         let stated = &options.frequencies_hz;
         if stated.is_empty() || stated.iter().any(|f| is_near(frequency_hz, *f)) {
-            found.push(HarmonicSegment {
-                segment: Segment {
-                    frequency_hz,
-                    start_s: start as f64 / sampling_hz,
-                    end_s: end as f64 / sampling_hz,
-                },
-                plateau,
-            });
+            let segment = Segment {
+                frequency_hz,
+                start_s: start as f64 / sampling_hz,
+                end_s: end as f64 / sampling_hz,
+            };
+            found.push(HarmonicSegment { segment, plateau });
         }
     }
     found
@@ -129,14 +127,8 @@ fn upward_passages(motion: &[f64], level: f64) -> Vec<f64> {
     passages
 }
 
-/// Passages of one frequency, in samples.
-struct PassageGroup {
-    first: f64,
-    last: f64,
-    period: f64,
-}
-
-fn groups_of_one_period(passages: &[f64]) -> Vec<PassageGroup> {
+/// The passages of each frequency.
+fn groups_of_one_period(passages: &[f64]) -> Vec<&[f64]> {
     let mut groups = Vec::new();
     let mut from = 0;
     while from + 1 < passages.len() {
@@ -151,11 +143,7 @@ fn groups_of_one_period(passages: &[f64]) -> Vec<PassageGroup> {
             to += 1;
         }
         if periods.len() >= PERIODS_AT_LEAST {
-            groups.push(PassageGroup {
-                first: passages[from],
-                last: passages[to],
-                period: (passages[to] - passages[from]) / periods.len() as f64,
-            });
+            groups.push(&passages[from..=to]);
             from = to;
         } else {
             from += 1;

@@ -79,38 +79,35 @@ pub(super) fn records(
         source: campaign.source.clone(),
         licence: campaign.licence.clone(),
     };
-    let part = |range: Range<usize>, header: RecordHeader| Record {
-        motion: dofs
-            .iter()
-            .map(|d| signals.motion[index(*d)][range.clone()].to_vec())
-            .collect(),
-        force: dofs
-            .iter()
-            .map(|d| {
-                let force = &signals.force[index(*d)][range.clone()];
-                force.iter().map(|f| f / length).collect()
-            })
-            .collect(),
-        header,
+    let part = |range: Range<usize>, header: RecordHeader| {
+        let of = |all: &[Vec<f64>; 3]| -> Vec<Vec<f64>> {
+            let channels = dofs.iter().map(|d| &all[index(*d)]);
+            channels.map(|x| x[range.clone()].to_vec()).collect()
+        };
+        let (motion, mut force) = (of(&signals.motion), of(&signals.force));
+        force.iter_mut().flatten().for_each(|f| *f /= length);
+        Record {
+            header,
+            motion,
+            force,
+        }
     };
     match ramps {
         Ramps::Keep => {
             let all = segments.iter().map(|s| s.segment).collect();
             vec![part(0..signals.len(), header(run.name.clone(), all))]
         }
-        Ramps::Cut => segments
-            .iter()
-            .map(|s| {
+        Ramps::Cut => {
+            let record = |s: &HarmonicSegment| {
                 let whole = Segment {
                     frequency_hz: s.segment.frequency_hz,
                     start_s: 0.0,
                     end_s: s.plateau.samples as f64 / signals.sampling_hz,
                 };
-                part(
-                    s.plateau.range(),
-                    header(s.record_name(&run.name), vec![whole]),
-                )
-            })
-            .collect(),
+                let header = header(s.record_name(&run.name), vec![whole]);
+                part(s.plateau.range(), header)
+            };
+            segments.iter().map(record).collect()
+        }
     }
 }

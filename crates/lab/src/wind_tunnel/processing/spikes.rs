@@ -109,12 +109,11 @@ fn fit_all(
     reasons: &[Option<&'static str>],
 ) -> Result<[Parts; 3]> {
     let outliers: Vec<bool> = reasons.iter().map(Option::is_some).collect();
-    let [a, b, c] = &signals.force;
-    Ok([
-        regressors.fit(a, &outliers)?,
-        regressors.fit(b, &outliers)?,
-        regressors.fit(c, &outliers)?,
-    ])
+    let [lift, drag, moment] = signals
+        .force
+        .each_ref()
+        .map(|f| regressors.fit(f, &outliers));
+    Ok([lift?, drag?, moment?])
 }
 
 /// What is left of a force; zero where it is already known to be an outlier.
@@ -154,10 +153,9 @@ fn outliers(
             continue;
         }
         let deviation = robust_deviation(&residual[range.clone()]);
-        let follows = if i % 2 == 1 {
-            largest_magnitude(&part.coherent[range.clone()])
-        } else {
-            overall
+        let follows = match i % 2 {
+            1 => largest_magnitude(&part.coherent[range.clone()]),
+            _ => overall,
         };
         let limit = (options.deviations * deviation)
             .max(options.least_part * follows)

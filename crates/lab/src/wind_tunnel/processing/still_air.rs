@@ -132,18 +132,17 @@ pub(crate) fn mismatch(
             found.left_in_force = found.left_in_force.max(mismatch * removed / left);
         }
     };
-    let amplitude = |signal: &[f64], at: &HarmonicSegment| {
-        let frequency_hz = at.segment.frequency_hz;
-        let fit = fit_sine(
-            signal,
-            at.plateau.range(),
-            in_wind.sampling_hz,
-            frequency_hz,
-        )?;
-        Ok::<_, Error>(fit.fundamental())
-    };
     for at in segments {
-        let of = |signals: &[Vec<f64>; 3]| amplitude(&signals[dof], at);
+        let (steady, frequency_hz) = (at.plateau.range(), at.segment.frequency_hz);
+        let of = |signals: &[Vec<f64>; 3]| {
+            let fit = fit_sine(
+                &signals[dof],
+                steady.clone(),
+                in_wind.sampling_hz,
+                frequency_hz,
+            );
+            fit.map(|fit| fit.fundamental())
+        };
         let motion = of(&still_air.motion)? / of(&in_wind.motion)?;
         let (wind, still) = (of(&in_wind.force)?, of(&still_air.force)?);
         enter((motion - 1.0).norm(), still.norm(), (wind - still).norm());

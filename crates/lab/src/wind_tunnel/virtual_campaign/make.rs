@@ -165,6 +165,7 @@ impl<'a> RunInMaking<'a> {
         let header = &self.record.header;
         RawRun {
             name: header.name.clone(),
+            motion: self.record.moving().collect(),
             in_wind: self.recording(true),
             still_air: Some(self.recording(false)),
             mean_speed_m_s: header.mean_speed_m_s,
@@ -224,6 +225,7 @@ impl<'a> RunInMaking<'a> {
             motion: std::array::from_fn(|d| seen.iter().map(|[x, ..]| x[d]).collect()),
             cells: self.cells(in_wind, &felt, &gusts),
             wind_speed_m_s: self.wind_speed(in_wind, &gusts[0]),
+            channels: Vec::new(),
         }
     }
 

@@ -172,30 +172,24 @@ impl Default for StaticWind {
     }
 }
 
-impl Disturbances {
-    /// Everything at a level that a careful laboratory meets: a lag of a third and an offset of two and a half
-    /// samples at 200 Hz, a spike in the segment at 0.5 Hz.
-    pub(crate) fn realistic() -> Self {
-        Self {
-            drift_n: 0.3,
-            drift_n_m: 0.03,
-            force_lag_s: 0.0017,
-            still_air_offset_s: 0.0123,
-            speed_noise_m_s: 0.05,
-            spike: Some(Spike {
-                frequency_hz: 0.5,
-                height: 4.0,
-                duration_s: 0.06,
-            }),
-        }
-    }
-}
-
 impl VirtualCampaignPlan {
-    /// The default with 5 % noise and `Disturbances::realistic`.
+    /// The default with 5 % noise and every disturbance at a level that a careful laboratory meets: a lag of a third and an offset of
+    /// two and a half samples at 200 Hz, a spike in the segment at 0.5 Hz.
     pub fn realistic() -> Self {
+        let spike = Spike {
+            frequency_hz: 0.5,
+            height: 4.0,
+            duration_s: 0.06,
+        };
         let mut plan = Self {
-            disturbances: Disturbances::realistic(),
+            disturbances: Disturbances {
+                drift_n: 0.3,
+                drift_n_m: 0.03,
+                force_lag_s: 0.0017,
+                still_air_offset_s: 0.0123,
+                speed_noise_m_s: 0.05,
+                spike: Some(spike),
+            },
             ..Self::default()
         };
         plan.tunnel.noise_fraction = 0.05;

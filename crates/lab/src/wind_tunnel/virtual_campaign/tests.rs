@@ -251,7 +251,7 @@ fn gusts_have_their_intensity_and_length_and_push_as_the_slopes_say() {
 #[test]
 fn spike_and_drift_stand_where_the_truth_says() {
     let mut plan = short();
-    plan.disturbances.spike = Disturbances::realistic().spike;
+    plan.disturbances.spike = VirtualCampaignPlan::realistic().disturbances.spike;
     let (made, plain) = (on_jones(&plan), on_jones(&short()));
     for (i, run) in made.raw.runs.iter().enumerate() {
         let of = |r| section_forces(&made.raw.rig, r)[1].clone();

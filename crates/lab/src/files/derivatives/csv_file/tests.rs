@@ -121,7 +121,9 @@ fn impossible_points_carry_their_line() {
 
 #[test]
 fn a_missing_file_is_named() {
-    let message = read_csv("no/such.csv").unwrap_err().to_string();
+    let message = read_csv_with("no/such.csv", &ReadOptions::default())
+        .unwrap_err()
+        .to_string();
     assert!(message.starts_with("no/such.csv: "), "{message}");
 }
 
@@ -140,8 +142,7 @@ fn first_format() -> String {
 #[test]
 fn files_of_the_first_format_are_still_read() {
     let old = first_format();
-    let TableInConvention { table, convention } =
-        parse_csv_in(&old, &ReadOptions::default()).unwrap();
+    let (table, convention) = parse_csv_in(&old, &ReadOptions::default()).unwrap();
     assert_eq!(convention, Convention::default());
     let embedded = embedded::deck("LN21-5200").unwrap();
     for d in Derivative::ALL {

@@ -3,11 +3,11 @@
 use crate::aerodynamics::derivatives::Missing;
 use crate::aerodynamics::derivatives::notation::{Notation, StatedConvention};
 use crate::files::derivatives::csv_wide::*;
-use crate::files::derivatives::{TableInConvention, embedded, read_csv_with};
+use crate::files::derivatives::{embedded, read_csv_with};
 use crate::section::Dof;
 
 fn read(text: &str, options: &ReadOptions) -> Result<DerivativeTable> {
-    parse(text, "deck", options).map(|read| read.table)
+    parse(text, "deck", options).map(|(table, _)| table)
 }
 
 fn scanlan() -> ReadOptions {
@@ -69,8 +69,7 @@ fn a_deck_written_wide_comes_back() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("wide.csv");
     std::fs::write(&path, text).unwrap();
-    let TableInConvention { table, convention } =
-        read_csv_with(&path, &ReadOptions::default()).unwrap();
+    let (table, convention) = read_csv_with(&path, &ReadOptions::default()).unwrap();
     assert_eq!(convention, polimi);
     assert_eq!((table.name.as_str(), table.width_m), ("wide", 0.5057));
     assert_eq!(table.dofs(), Dof::THREE);
@@ -175,7 +174,7 @@ fn a_unit_behind_a_name_is_no_other_column() {
         )
     };
     let read = |h1: &str| parse(&text(h1), "wide", &ReadOptions::default());
-    let table = read("H1 [-]").unwrap().table;
+    let table = read("H1 [-]").unwrap().0;
     assert_eq!(table.points(Derivative::H1)[0].value, -1.0);
     // the argument is there: it is not blamed for a derivative that is not
     let said = read("H1_up").unwrap_err().to_string();

@@ -72,7 +72,7 @@ fn in_scanlan(path: &Path) -> Result<DerivativeTable> {
         width_m: Some(0.4),
         ..ReadOptions::default()
     };
-    read_table_with(path, &options).map(|read| read.table)
+    read_table_with(path, &options).map(|(table, _)| table)
 }
 
 fn same(found: &DerivativeTable, scale: f64) {
@@ -154,7 +154,7 @@ fn what_is_not_understood_is_named() {
     let mut options = ReadOptions::default();
     options.convention.notation = Some(Notation::Scanlan);
     options.convention.argument = Some(Argument::VStar);
-    same(&read_table_with(&path, &options).unwrap().table, 1.0);
+    same(&read_table_with(&path, &options).unwrap().0, 1.0);
     let (_folder, path) = saved(|book| write(book.add_worksheet(), 0, "k", NAMES, 1.0));
     let message = in_scanlan(&path).unwrap_err().to_string();
     assert!(

@@ -1,7 +1,7 @@
 //! Tests on the workbooks of `tests/data/make_workbook.py`.
 
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation};
-use crate::files::derivatives::read_workbook;
+use crate::files::derivatives::read_table_with;
 use crate::files::derivatives::workbook::*;
 use crate::files::derivatives::{parse_csv, write_csv};
 use std::path::PathBuf;
@@ -10,6 +10,10 @@ fn fixture(name: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "../..", "tests", "data", name]
         .iter()
         .collect()
+}
+
+fn read_workbook(path: impl AsRef<Path>, options: &ReadOptions) -> Result<DerivativeTable> {
+    read_table_with(path, options).map(|(table, _)| table)
 }
 
 fn three_frequencies() -> ReadOptions {
@@ -233,7 +237,10 @@ fn workbooks_that_would_fill_the_memory_are_bounded() {
 
 #[test]
 fn files_that_are_no_workbooks_are_refused() {
-    let message = refused("make_workbook.py", &three_frequencies());
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("text.xlsx");
+    std::fs::write(&path, "a text").unwrap();
+    let message = refused(path.to_str().unwrap(), &three_frequencies());
     assert!(
         message.starts_with("expected a workbook (.xlsx, .xls, .ods), found"),
         "{message}"
