@@ -15,8 +15,8 @@ use crate::section::{SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
-    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, Reach,
+    CriticalSpeed, DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation,
+    Reach,
 };
 use std::path::Path;
 
@@ -233,10 +233,7 @@ pub(super) fn add_coefficients(
     if let Some(speed_m_s) = found.search.critical_speed_m_s() {
         // quasi-steady theory of coupled motions is no answer beside derivatives
         if gallops || found.search.onset().is_none() {
-            evidence.galloping = Some(GallopingReading {
-                forces: forces.clone(),
-                speed_m_s,
-            });
+            evidence.galloping = Some(CriticalSpeed::galloping(&forces, speed_m_s));
         } else {
             evidence
                 .remarks

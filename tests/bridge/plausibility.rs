@@ -6,8 +6,8 @@ use aerodeck::bridge::{DampedPoint, Dampers, MassDamper, ViscousLink};
 use aerodeck::bridge::{StripGroup, tributary_lengths};
 use aerodeck::files::bridge::{BridgeModes, embedded};
 use aerodeck::plausibility::{
-    Finding, FindingKind, FindingSeverity, Girder, of_bridge, of_modes, of_modes_left_out,
-    of_profile, sentences,
+    Finding, FindingKind, FindingSeverity, of_bridge, of_modes, of_modes_left_out, of_profile,
+    sentences,
 };
 use aerodeck::section::Dof;
 use std::f64::consts::TAU;
@@ -204,11 +204,7 @@ fn girder_findings(length_m: f64, end_deg: f64, skew_deg: f64) -> Vec<Finding> {
         })
         .collect();
     let offsets_m: Vec<[f64; 2]> = places.iter().map(|p| [p[1], 30.0]).collect();
-    of_modes(&Girder {
-        nodes: &nodes,
-        offsets_m: &offsets_m,
-        modes: &[],
-    })
+    of_modes(&nodes, &offsets_m, &[])
 }
 
 #[test]

@@ -12,7 +12,7 @@ mod section;
 mod table;
 
 pub use bridge::{
-    Girder, TurbulenceFigures, is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile,
+    TurbulenceFigures, is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile,
     of_turbulence,
 };
 pub use coefficients::of_coefficients;
@@ -21,8 +21,7 @@ pub use limits::{
     ratio_hint, significant,
 };
 pub use model::{of_model, of_trained};
-pub use section::WIDEST_MODEL_M;
-pub use section::{of_required_speed, of_section, unusual_air};
+pub use section::{WIDEST_MODEL_M, of_required_speed, of_section, unusual_air};
 pub use table::of_table;
 
 use serde::{Deserialize, Serialize};
@@ -86,10 +85,14 @@ impl Finding {
 
     /// A doubt about the unit of a number.
     pub fn unit(place: impl Into<String>, value: f64, text: impl Into<String>) -> Self {
-        Self {
-            value: Some(value),
-            ..Self::doubt(FindingKind::Unit, place, text)
-        }
+        Self::doubt(FindingKind::Unit, place, text).with_value(value)
+    }
+
+    /// The same of a number.
+    #[must_use]
+    pub fn with_value(mut self, value: f64) -> Self {
+        self.value = Some(value);
+        self
     }
 
     /// The same with what it would be otherwise.
@@ -101,8 +104,15 @@ impl Finding {
 
     /// The same as no more than a note.
     #[must_use]
-    pub fn into_note(mut self) -> Self {
-        self.severity = FindingSeverity::Note;
+    pub fn into_note(self) -> Self {
+        self.into_note_if(true)
+    }
+
+    /// The same, where that is so no more than as a note.
+    pub(crate) fn into_note_if(mut self, minor: bool) -> Self {
+        if minor {
+            self.severity = FindingSeverity::Note;
+        }
         self
     }
 }

@@ -15,20 +15,15 @@
 //! assert!(verdict.headline.starts_with("✗ NOT MET, required 100 m/s: static divergence at 79.9 m/s"));
 //! ```
 
-mod below;
-mod contradiction;
 mod critical;
 mod doubt;
 mod doubts;
 mod evidence;
-mod judgement;
-mod moved;
 mod outcome;
 mod reach;
+mod reasons;
 mod searched;
 mod sentences;
-mod untested;
-mod words;
 
 #[cfg(test)]
 mod tests;
@@ -36,13 +31,12 @@ mod tests;
 pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
-    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, ModesLeftOut, RequiredSpeed, UntestedPart, UntestedParts,
+    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation, ModesLeftOut,
+    RequiredSpeed, UntestedPart, UntestedParts,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;
 
-use judgement::Judgement;
 use sentences::{explanation, headline};
 use serde::{Deserialize, Serialize};
 
@@ -68,15 +62,26 @@ pub struct Verdict {
 impl Verdict {
     /// What the evidence amounts to.
     pub fn judge(evidence: &Evidence) -> Self {
-        let judgement = Judgement::new(evidence);
+        let mut verdict = Self::unworded(evidence);
+        verdict.headline = headline(&verdict, evidence);
+        verdict.explanation = explanation(&verdict);
+        verdict
+    }
+
+    /// The same without its sentences.
+    fn unworded(evidence: &Evidence) -> Self {
+        let (against, critical) = (evidence.required, Critical::find(evidence));
+        let doubts = doubts::all(evidence, &critical);
         Self {
-            headline: headline(&judgement, evidence),
-            explanation: explanation(&judgement, evidence.required),
-            outcome: judgement.outcome,
-            against: evidence.required,
-            critical: judgement.critical,
-            doubts: judgement.doubts,
-            suggested_m_s: judgement.suggested_m_s,
+            outcome: against.map(|r| Outcome::judge(r, &critical, &doubts)),
+            suggested_m_s: match against {
+                None => suggestion(evidence, &critical),
+                Some(_) => None,
+            },
+            against,
+            critical,
+            doubts,
+            ..Self::default()
         }
     }
 
@@ -94,4 +99,28 @@ impl Verdict {
     pub fn warnings(&self) -> impl Iterator<Item = &str> {
         self.doubts.iter().map(|d| d.text.as_str())
     }
+}
+
+/// The highest requirement, to a tenth of a metre per second, that this evidence meets, and would meet after a search for it.
+fn suggestion(evidence: &Evidence, critical: &Critical) -> Option<f64> {
+    let found = evidence.flutter.first().and_then(FlutterReading::best_m_s);
+    let searched = evidence.searched_to_m_s.filter(|_| found.is_none());
+    let least = critical
+        .least_m_s()
+        .into_iter()
+        .chain(searched.map(RequiredSpeed::of_search))
+        .fold(critical.judged_to_m_s, f64::min);
+    let met = |&speed_m_s: &f64| {
+        let required = Evidence {
+            required: Some(RequiredSpeed { speed_m_s }),
+            ..evidence.clone()
+        };
+        let is_speed = speed_m_s.is_finite() && speed_m_s > 0.0;
+        is_speed && Verdict::unworded(&required).outcome == Some(Outcome::Met)
+    };
+    // half of an onset whose interval is not known
+    [least, RequiredSpeed::of_search(least)]
+        .map(|speed_m_s| (10.0 * speed_m_s).floor() / 10.0)
+        .into_iter()
+        .find(met)
 }

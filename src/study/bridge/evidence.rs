@@ -11,8 +11,8 @@ use crate::study::bridge::BridgeStudy;
 use crate::study::bridge::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::units::ReducedFrequencyRange;
 use crate::verdict::{
-    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, GallopingReading,
-    MeanRotation, ModesLeftOut, Reach, UntestedPart, UntestedParts, Verdict,
+    CriticalSpeed, DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation,
+    ModesLeftOut, Reach, UntestedPart, UntestedParts, Verdict,
 };
 
 /// Whose forces the two routes take, in the order of the answers.
@@ -63,10 +63,9 @@ impl BridgeStudy {
                 .reduce(f64::min),
             untested: results.untested.clone(),
             modes_left_out: results.modes_left_out.clone(),
-            galloping: results.galloping_m_s.map(|speed_m_s| GallopingReading {
-                forces: "static coefficients".to_owned(),
-                speed_m_s,
-            }),
+            galloping: results
+                .galloping_m_s
+                .map(|speed_m_s| CriticalSpeed::galloping("static coefficients", speed_m_s)),
             implausible: self.findings.clone(),
             remarks,
             ..Evidence::default()

@@ -24,10 +24,8 @@ pub fn of_coefficients(place: &str, at: &CoefficientsAt, arms: &Arms) -> Vec<Fin
     let key = |name: &str| format!("{place}{name}");
     if at.drag < 0.0 {
         let text = "drag acts with the wind: it is positive downwind";
-        found.push(Finding {
-            value: Some(at.drag),
-            ..Finding::doubt(FindingKind::Convention, key("drag"), text)
-        });
+        let odd = Finding::doubt(FindingKind::Convention, key("drag"), text);
+        found.push(odd.with_value(at.drag));
     }
     for (name, value, most) in [
         ("drag", at.drag, MOST_DRAG),
@@ -58,41 +56,36 @@ pub fn of_coefficients(place: &str, at: &CoefficientsAt, arms: &Arms) -> Vec<Fin
 /// Slopes of lift and moment: their unit, of both at once, then their signs.
 fn slopes(place: &str, at: &CoefficientsAt) -> Vec<Finding> {
     let both = [
-        ("lift_slope", at.lift_slope, 2.0 * PI),
-        ("moment_slope", at.moment_slope, 0.5 * PI),
+        ("lift_slope", at.lift_slope, 2.0 * PI, MOST_SLOPES.0),
+        ("moment_slope", at.moment_slope, 0.5 * PI, MOST_SLOPES.1),
     ];
     let small = |value: f64, most: f64| value.abs() < most;
     let per_degree =
         small(at.lift_slope, SLOPES_PER_DEGREE.0) && small(at.moment_slope, SLOPES_PER_DEGREE.1);
-    let mut found = Vec::new();
-    for ((name, value, plate), most) in both.into_iter().zip([MOST_SLOPES.0, MOST_SLOPES.1]) {
+    let odd = |(name, value, plate, most): (&str, f64, f64, f64)| {
         let key = format!("{place}{name}");
+        let text = format!("per rad a flat plate has {plate:.2}");
+        let (degrees, radians) = (value.to_degrees(), value.to_radians());
         if per_degree && value != 0.0 {
-            let text = format!("per rad a flat plate has {plate:.2}");
-            let meant = format!(
-                "per degree it would be {} per rad",
-                significant(value.to_degrees())
-            );
-            found.push(Finding::unit(key, value, text).otherwise(meant));
+            let meant = format!("per degree it would be {} per rad", significant(degrees));
+            Some(Finding::unit(key, value, text).otherwise(meant))
         } else if value.abs() > most {
-            let text = format!("per rad a flat plate has {plate:.2}");
             let meant = format!(
                 "of angles in radians that are taken for degrees it would be {} per rad",
-                significant(value.to_radians())
+                significant(radians)
             );
-            let meant = (value.to_radians().abs() <= most).then_some(meant);
-            found.push(Finding::unit(key, value, text).otherwise(meant));
+            let meant = (radians.abs() <= most).then_some(meant);
+            Some(Finding::unit(key, value, text).otherwise(meant))
         } else if value < 0.0 {
             let text = "decks lift and turn nose-up as their angle of attack rises, few do not";
             let meant = "is lift positive down, or the moment nose-down?".to_owned();
-            let odd = Finding {
-                value: Some(value),
-                ..Finding::doubt(FindingKind::Convention, key, text)
-            };
-            found.push(odd.otherwise(meant).into_note());
+            let odd = Finding::doubt(FindingKind::Convention, key, text).with_value(value);
+            Some(odd.otherwise(meant).into_note())
+        } else {
+            None
         }
-    }
-    found
+    };
+    both.into_iter().filter_map(odd).collect()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::limits::{DECK_WIDTH, FREQUENCIES, Limits, beyond, significant};
 use super::{Finding, FindingKind, FindingSeverity};
 use crate::section::SectionModel;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 /// Air between a high mountain and a cold day, kg/m³.
 const AIR: Limits = Limits {
@@ -26,14 +27,14 @@ const NARROWEST_ROAD_M: f64 = 10.0;
 const LEAST_REQUIRED_M_S: f64 = 10.0;
 /// Mass over that of the air in a square of the width, `m/(ρB²)`: steel boxes have 10 to 30, concrete decks to 100, footbridges to
 /// 200; models may be as heavy as their rig.
-const MASS_RATIOS: (f64, f64) = (3.0, 300.0);
-const MASS_RATIOS_OF_MODELS: (f64, f64) = (1.5, 1000.0);
+const MASS_RATIOS: RangeInclusive<f64> = 3.0..=300.0;
+const MASS_RATIOS_OF_MODELS: RangeInclusive<f64> = 1.5..=1000.0;
 /// Radius of gyration over the width, `√(J/m)/B`: 0.289 for a uniform plate, 0.5 for all mass in both edges.
-const RADII: (f64, f64) = (0.2, 0.45);
+const RADII: RangeInclusive<f64> = 0.2..=0.45;
 /// Nothing inside the width has more; less than the other only a girder without a deck.
-const POSSIBLE_RADII: (f64, f64) = (0.15, 0.5);
+const POSSIBLE_RADII: RangeInclusive<f64> = 0.15..=0.5;
 /// Frequency of torsion over that of heave.
-const FREQUENCY_RATIOS: (f64, f64) = (1.3, 4.0);
+const FREQUENCY_RATIOS: RangeInclusive<f64> = 1.3..=4.0;
 /// Flutter of a flat plate with these numbers above this is that of no long bridge and of no model, m/s …
 const FASTEST_PLATE_M_S: f64 = 200.0;
 /// … and of no footbridge, which are stiff.
@@ -52,30 +53,25 @@ const FASTEST_FOOTBRIDGE_M_S: f64 = 350.0;
 /// assert!(!of_section(&in_millimetres).is_empty());
 /// ```
 pub fn of_section(section: &SectionModel) -> Vec<Finding> {
-    let (heave, twist) = (&section.vertical, &section.torsion);
-    let sway = section.lateral.as_ref();
-    let mut found: Vec<Finding> = beyond("section.width_m", section.width_m, &DECK_WIDTH)
-        .into_iter()
-        .chain(unusual_air(
-            "section.air_density_kg_m3",
-            section.air_density_kg_m3,
-        ))
-        .collect();
+    let width = beyond("section.width_m", section.width_m, &DECK_WIDTH);
+    let air = unusual_air("section.air_density_kg_m3", section.air_density_kg_m3);
+    let mut found: Vec<Finding> = width.into_iter().chain(air).collect();
     let scale_is_usual = found.is_empty();
-    let mut damping = |name: &str, ratio| {
-        let key = format!("section.{name}.damping_ratio");
-        let most = if section.width_m < WIDEST_MODEL_M {
-            DAMPING_OF_MODELS
-        } else {
-            USUAL_DAMPING
-        };
-        found.extend(unusual_damping(&key, ratio, most));
+    let sway = section
+        .lateral
+        .as_ref()
+        .map(|s| ("lateral", s.damping_ratio));
+    let ratios = [
+        ("vertical", section.vertical.damping_ratio),
+        ("torsion", section.torsion.damping_ratio),
+    ];
+    let most = match section.width_m < WIDEST_MODEL_M {
+        true => DAMPING_OF_MODELS,
+        false => USUAL_DAMPING,
     };
-    damping("vertical", heave.damping_ratio);
-    damping("torsion", twist.damping_ratio);
-    if let Some(s) = sway {
-        damping("lateral", s.damping_ratio);
-    }
+    found.extend(ratios.into_iter().chain(sway).filter_map(|(name, ratio)| {
+        unusual_damping(&format!("section.{name}.damping_ratio"), ratio, most)
+    }));
     if scale_is_usual {
         found.extend(axis_beyond_edge(section));
         let of_mass = masses(section);
@@ -98,11 +94,9 @@ pub fn of_required_speed(speed_m_s: Option<f64>, width_m: f64) -> Option<Finding
 /// An axis of rotation beyond the edge of the deck.
 fn axis_beyond_edge(section: &SectionModel) -> Option<Finding> {
     let offset = section.axis_offset_m.unwrap_or(0.0);
-    (offset.abs() > 0.5 * section.width_m).then(|| {
-        let text = format!(
-            "the edge of the deck is {} m from mid-chord",
-            0.5 * section.width_m
-        );
+    let edge = 0.5 * section.width_m;
+    (offset.abs() > edge).then(|| {
+        let text = format!("the edge of the deck is {edge} m from mid-chord");
         let otherwise = format!("in mm it would be {} m", significant(offset / 1e3));
         Finding::unit("section.axis_offset_m", offset, text).otherwise(otherwise)
     })
@@ -115,51 +109,49 @@ pub fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
 
 /// A damping ratio that no structure has, or few: above `most`.
 pub(super) fn unusual_damping(key: &str, ratio: f64, most: f64) -> Option<Finding> {
-    let least = LEAST_DAMPING;
-    if ratio == 0.0 || (least..=most).contains(&ratio) {
+    if ratio == 0.0 || (LEAST_DAMPING..=most).contains(&ratio) {
         return None;
     }
-    let text = format!("a ratio to critical damping is usually {least} to {most}");
-    let found = Finding::unit(key, ratio, text);
-    if ratio < least {
-        return Some(found.into_note());
-    }
-    let as_decrement = format!(
-        "as a logarithmic decrement it would be a ratio of {}",
-        significant(ratio / TAU)
-    );
-    if ratio <= MOST_DAMPING {
-        return Some(found.otherwise(as_decrement).into_note());
-    }
-    let as_per_cent = format!("in per cent it would be {}", significant(ratio / 100.0));
-    Some(found.otherwise(as_per_cent))
+    let otherwise = if ratio < LEAST_DAMPING {
+        None
+    } else if ratio <= MOST_DAMPING {
+        let meant = significant(ratio / TAU);
+        Some(format!(
+            "as a logarithmic decrement it would be a ratio of {meant}"
+        ))
+    } else {
+        let meant = significant(ratio / 100.0);
+        Some(format!("in per cent it would be {meant}"))
+    };
+    let text = format!("a ratio to critical damping is usually {LEAST_DAMPING} to {most}");
+    let found = Finding::unit(key, ratio, text).otherwise(otherwise);
+    Some(found.into_note_if(ratio <= MOST_DAMPING))
 }
 
 fn masses(section: &SectionModel) -> Vec<Finding> {
-    let mut found = Vec::new();
-    found.extend(mass("vertical", section.vertical.mass_kg_m, section));
     let sway = section.lateral.as_ref();
-    found.extend(sway.and_then(|s| mass("lateral", s.mass_kg_m, section)));
-    // with a mass in another unit the radius says the same once more
-    if found.is_empty() {
-        found.extend(radius(section));
+    let sway = sway.and_then(|s| mass("lateral", s.mass_kg_m, section));
+    let heave = mass("vertical", section.vertical.mass_kg_m, section);
+    let found: Vec<Finding> = heave.into_iter().chain(sway).collect();
+    match found.is_empty() {
+        true => radius(section).into_iter().collect(),
+        // with a mass in another unit the radius says the same once more
+        false => found,
     }
-    found
 }
 
 fn mass(name: &str, mass_kg_m: f64, section: &SectionModel) -> Option<Finding> {
     let air = section.air_density_kg_m3 * section.width_m.powi(2);
-    let (least, most) = if section.width_m < WIDEST_MODEL_M {
-        MASS_RATIOS_OF_MODELS
-    } else {
-        MASS_RATIOS
+    let usual = match section.width_m < WIDEST_MODEL_M {
+        true => MASS_RATIOS_OF_MODELS,
+        false => MASS_RATIOS,
     };
     let ratio = mass_kg_m / air;
-    let is_usual = |x: f64| (least..=most).contains(&x);
-    if is_usual(ratio) {
+    if usual.contains(&ratio) {
         return None;
     }
-    let otherwise = if is_usual(1e3 * ratio) {
+    let (least, most) = usual.clone().into_inner();
+    let otherwise = if usual.contains(&(1e3 * ratio)) {
         format!("in t/m it would be {} kg/m", significant(1e3 * mass_kg_m))
     } else if ratio > most {
         "it would be usual as that of the whole model or span".to_owned()
@@ -176,51 +168,38 @@ fn mass(name: &str, mass_kg_m: f64, section: &SectionModel) -> Option<Finding> {
 fn radius(section: &SectionModel) -> Option<Finding> {
     let inertia = section.torsion.inertia_kg_m2_m;
     let ratio = (inertia / section.vertical.mass_kg_m).sqrt() / section.width_m;
-    unusual_radius("section.torsion.inertia_kg_m2_m", section.width_m, ratio).map(|f| Finding {
-        value: Some(inertia),
-        ..f
-    })
+    let found = unusual_radius("section.torsion.inertia_kg_m2_m", section.width_m, ratio);
+    found.map(|f| f.with_value(inertia))
 }
 
 /// A radius of gyration, over the width, that no deck has.
 pub(super) fn unusual_radius(key: &str, width_m: f64, ratio: f64) -> Option<Finding> {
-    let within = |(least, most): (f64, f64), x: f64| (least..=most).contains(&x);
-    if within(RADII, ratio) {
+    if RADII.contains(&ratio) {
         return None;
     }
+    let (least, most) = RADII.into_inner();
     let text = format!(
-        "with the mass that is a radius of gyration of {ratio:.3} widths (decks have {} to {}; 0.5 is all mass in both edges)",
-        RADII.0, RADII.1
+        "with the mass that is a radius of gyration of {ratio:.3} widths (decks have {least} to {most}; 0.5 is all mass in both edges)"
     );
     let found = Finding::doubt(FindingKind::Unit, key, text);
-    if within(POSSIBLE_RADII, ratio) {
+    if POSSIBLE_RADII.contains(&ratio) {
         return Some(found.into_note());
     }
     let thousand = 1e3_f64.sqrt();
+    let width = 2.0 * width_m;
+    let semi_chord = format!("were width_m the semi-chord, B would be {width} m and this");
     // the factor on the ratio if it was meant so
     let meant = [
-        (
-            0.5,
-            format!(
-                "were width_m the semi-chord, B would be {} m",
-                2.0 * width_m
-            ),
-        ),
-        (thousand, "were J in t·m²/m, it".to_owned()),
-        (1.0 / thousand, "were the mass in t/m, it".to_owned()),
-        (1e-3, "were lengths of J in mm, it".to_owned()),
+        (0.5, semi_chord.as_str()),
+        (thousand, "were J in t·m²/m, it"),
+        (1.0 / thousand, "were the mass in t/m, it"),
+        (1e-3, "were lengths of J in mm, it"),
     ];
-    let meant = meant
+    let mut meant = meant
         .into_iter()
-        .find(|(factor, _)| within(RADII, factor * ratio));
-    let otherwise = meant.map(|(factor, words)| {
-        let what = if words.ends_with("it") {
-            words
-        } else {
-            format!("{words} and this")
-        };
-        format!("{what} would be {:.3} widths", factor * ratio)
-    });
+        .map(|(factor, what)| (factor * ratio, what));
+    let meant = meant.find(|(ratio, _)| RADII.contains(ratio));
+    let otherwise = meant.map(|(ratio, what)| format!("{what} would be {ratio:.3} widths"));
     Some(found.otherwise(otherwise))
 }
 
@@ -232,18 +211,12 @@ fn frequencies(section: &SectionModel, masses_are_usual: bool) -> Vec<Finding> {
     let (v, t) = (&section.vertical, &section.torsion);
     let heave = natural(v.frequency_hz, v.stiffness_n_m2, v.mass_kg_m);
     let twist = natural(t.frequency_hz, t.stiffness_n, t.inertia_kg_m2_m);
-    let sway = section.lateral.as_ref().map(|s| {
-        let f = natural(s.frequency_hz, s.stiffness_n_m2, s.mass_kg_m);
-        ("lateral", f)
-    });
-    let all = [("vertical", heave), ("torsion", twist)];
-    let all = all.into_iter().chain(sway);
-    let mut found: Vec<Finding> = all
-        .filter_map(|(name, hertz)| {
-            let key = format!("section.{name}.frequency_hz");
-            unusual_frequency(&key, name, hertz, section.width_m)
-        })
-        .collect();
+    let sway = section.lateral.as_ref();
+    let sway = sway.map(|s| natural(s.frequency_hz, s.stiffness_n_m2, s.mass_kg_m));
+    let odd = |name, hertz| unusual_frequency(name, hertz, section.width_m);
+    let all = [odd("vertical", heave), odd("torsion", twist)];
+    let sway = sway.and_then(|hertz| odd("lateral", hertz));
+    let mut found: Vec<Finding> = all.into_iter().flatten().chain(sway).collect();
     if masses_are_usual && found.iter().all(|f| f.severity < FindingSeverity::Doubt) {
         found.extend(fast_plate(section, heave, twist));
     }
@@ -251,51 +224,51 @@ fn frequencies(section: &SectionModel, masses_are_usual: bool) -> Vec<Finding> {
 }
 
 /// Usual natural frequencies of a motion at a width, and those beyond which it is another unit, Hz.
-fn frequency_limits(name: &str, width_m: f64) -> [(f64, f64); 2] {
-    let [usual, possible] = if width_m < WIDEST_MODEL_M {
+fn frequency_limits(name: &str, width_m: f64) -> [RangeInclusive<f64>; 2] {
+    let limits = if width_m < WIDEST_MODEL_M {
         [(1.0, 20.0), (0.3, 20.0)]
     } else if width_m < NARROWEST_ROAD_M {
         [(0.1, 6.0), (0.05, 10.0)]
     } else {
         [(0.05, 1.0), (0.03, 3.0)]
     };
-    let times = |(low, high): (f64, f64), factor: (f64, f64)| (low * factor.0, high * factor.1);
-    let factor = match (name, width_m < WIDEST_MODEL_M) {
+    let (lower, upper) = match (name, width_m < WIDEST_MODEL_M) {
         // one to four times that of heave, and half of it in sway
         ("torsion", false) => (1.0, 3.0),
         ("lateral", false) => (0.5, 1.0),
         ("lateral", true) => (0.3, 1.0),
         _ => (1.0, 1.0),
     };
-    [times(usual, factor), times(possible, factor)]
+    limits.map(|(low, high): (f64, f64)| low * lower..=high * upper)
 }
 
-fn unusual_frequency(key: &str, name: &str, hertz: f64, width_m: f64) -> Option<Finding> {
+fn unusual_frequency(name: &str, hertz: f64, width_m: f64) -> Option<Finding> {
     let [usual, possible] = frequency_limits(name, width_m);
-    let within = |(low, high): (f64, f64), x: f64| (low..=high).contains(&x);
     // a motion without a spring has none
-    if hertz == 0.0 || within(usual, hertz) {
+    if hertz == 0.0 || usual.contains(&hertz) {
         return None;
     }
-    let meant = FREQUENCIES.iter().find(|(_, f)| within(usual, f * hertz));
+    let (low, high) = usual.clone().into_inner();
+    let meant = FREQUENCIES
+        .iter()
+        .find(|(_, f)| usual.contains(&(f * hertz)));
     let otherwise = match meant {
         Some((unit, f)) => Some(format!(
             "in {unit} it would be {} Hz",
             significant(f * hertz)
         )),
-        None if hertz < usual.0 && width_m < WIDEST_MODEL_M => {
+        None if hertz < low && width_m < WIDEST_MODEL_M => {
             Some("is it that of the bridge beside the width of a model?".to_owned())
         }
         None => None,
     };
-    let (low, high) = usual;
     let text = format!("{low} to {high} Hz is usual at a width of {width_m} m");
-    let found = Finding::unit(key, hertz, text).otherwise(otherwise);
-    Some(if within(possible, hertz) {
-        found.into_note()
-    } else {
+    let found = Finding::unit(format!("section.{name}.frequency_hz"), hertz, text);
+    Some(
         found
-    })
+            .otherwise(otherwise)
+            .into_note_if(possible.contains(&hertz)),
+    )
 }
 
 /// A flat plate of these numbers flutters at `V = 3.7 f_t B √(m r/(ρB³) (1 − (f_v/f_t)²))` (Selberg's formula, within some per
@@ -309,10 +282,9 @@ pub(super) fn fast_plate(section: &SectionModel, heave_hz: f64, twist_hz: f64) -
     }
     let apart = 1.0 - (heave_hz / twist_hz).powi(2);
     let speed = 3.7 * twist_hz * width * (mass * radius / (density * width.powi(3)) * apart).sqrt();
-    let fastest = if (WIDEST_MODEL_M..NARROWEST_ROAD_M).contains(&width) {
-        FASTEST_FOOTBRIDGE_M_S
-    } else {
-        FASTEST_PLATE_M_S
+    let fastest = match (WIDEST_MODEL_M..NARROWEST_ROAD_M).contains(&width) {
+        true => FASTEST_FOOTBRIDGE_M_S,
+        false => FASTEST_PLATE_M_S,
     };
     if speed <= fastest {
         return None;
@@ -337,15 +309,15 @@ fn slow_twist(heave_hz: f64, twist_hz: f64) -> Option<Finding> {
     if twist_hz == 0.0 {
         return None;
     }
-    let (low, high) = FREQUENCY_RATIOS;
+    let (low, high) = FREQUENCY_RATIOS.into_inner();
     let text = format!(
         "it is not above that of heave, {heave_hz:.4} Hz, where decks have {low} to {high} times it"
     );
-    let in_hertz = heave_hz / TAU;
-    let otherwise = (low..=high).contains(&(twist_hz / in_hertz)).then(|| {
+    let meant = heave_hz / TAU;
+    let otherwise = FREQUENCY_RATIOS.contains(&(twist_hz / meant)).then(|| {
         format!(
             "were heave in rad/s, it would have {} Hz",
-            significant(in_hertz)
+            significant(meant)
         )
     });
     let found = Finding::unit("section.torsion.frequency_hz", twist_hz, text);

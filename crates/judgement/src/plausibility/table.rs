@@ -49,34 +49,33 @@ const MOST_A2: f64 = 1.5;
 
 /// The five numbers in the lower and the upper half of the reduced velocities, over those of the flat plate; `None` where the table
 /// has no such derivative.
-struct Signature([[Option<f64>; 5]; 2]);
+type Signature = [[Option<f64>; 5]; 2];
 
 /// What looks wrong in a table: signs, sizes and units that are those of another convention, and what its measurements contradict.
 /// Empty when nothing does. `label` is the convention that the file states, or that was stated for it.
 pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
     let width = format!("{}: width_m", table.name);
-    let mut found: Vec<Finding> = beyond(&width, table.width_m, &DECK_WIDTH)
-        .into_iter()
-        .collect();
     let measured = format!("measurements of {}", table.name);
     let doubt = |text| Finding::doubt(FindingKind::Contradiction, &measured, text);
-    found.extend(table.header.doubts.iter().map(doubt));
+    let doubts = table.header.doubts.iter().map(doubt);
+    let width = beyond(&width, table.width_m, &DECK_WIDTH);
+    let mut found: Vec<Finding> = width.into_iter().chain(doubts).collect();
     found.extend(of_sway(table));
-    let own = Signature::new(&|d| table.points(d).to_vec());
-    let score = own.score();
-    if score < ODD {
+    let own = signature(&|d| table.points(d).to_vec());
+    let own_score = score(&own);
+    if own_score < ODD {
         return found;
     }
-    let contradict = own.contradictions().iter().any(|half| !half.is_empty());
+    let contradict = contradictions(&own).iter().any(|half| !half.is_empty());
     // by themselves the sizes of a bluff deck may resemble those of an exchange
     let slips = contradict.then(|| single_slips(table, *label));
     let best = candidates(table, *label)
         .chain(slips.into_iter().flatten())
-        .map(|(words, reading)| (Signature::new(&*reading).score(), words))
+        .map(|(words, reading)| (score(&signature(&*reading)), words))
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let odd = Finding::doubt(FindingKind::Convention, &table.name, own.words());
+    let odd = Finding::doubt(FindingKind::Convention, &table.name, words(&own));
     found.push(match best {
-        Some((other, words)) if other < FITS && other + BETTER_BY < score => {
+        Some((other, words)) if other < FITS && other + BETTER_BY < own_score => {
             odd.otherwise(format!(
                 "{words} they would be those of a bridge deck: is the table labelled wrongly? (nothing was changed)"
             ))
@@ -87,12 +86,11 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
                  a flat plate's: check notation, argument, axes and units (nothing was changed)"
                     .to_owned(),
             );
+            let beyond_decks = |(ratio, (_, usual, _)): (f64, (Derivative, f64, f64))| {
+                (ratio / usual).abs().ln().abs() > NO_DECK.ln()
+            };
             // signs by themselves may be those of a bluff deck, which gallops
-            if contradict || own.has_a_size_of_no_deck() {
-                odd
-            } else {
-                odd.into_note()
-            }
+            odd.into_note_if(!contradict && !known(&own).any(beyond_decks))
         }
     });
     found
@@ -110,129 +108,122 @@ fn of_sway(table: &DerivativeTable) -> Option<Finding> {
     (4 * feeding > 3 * points.len()).then_some(odd)
 }
 
-impl Signature {
-    /// Medians over each half of the reduced velocities.
-    fn new(reading: &dyn Fn(Derivative) -> Vec<DerivativePoint>) -> Self {
-        let mut halves = [[None; 5]; 2];
-        for (i, (derivative, _, _)) in USUAL.into_iter().enumerate() {
-            let mut points = reading(derivative);
-            points.sort_by(|a, b| a.v_hat.total_cmp(&b.v_hat));
-            let ratio = |p: &DerivativePoint| p.value / flat_plate(derivative, p);
-            let median = |points: &[DerivativePoint]| {
-                let mut ratios: Vec<f64> = points.iter().map(ratio).collect();
-                ratios.sort_by(f64::total_cmp);
-                ratios.get(ratios.len() / 2).copied()
-            };
-            let (low, high) = points.split_at(points.len().div_ceil(2));
-            (halves[0][i], halves[1][i]) = (median(low), median(high));
-        }
-        Self(halves)
-    }
-
-    /// Those that the table has at low reduced velocities, each with its derivative, usual size and spread.
-    fn known(&self) -> impl Iterator<Item = (f64, (Derivative, f64, f64))> {
-        let all = self.0[0].into_iter().zip(USUAL);
-        all.filter_map(|(ratio, usual)| Some((ratio?, usual)))
-    }
-
-    /// Sum over the five of the squared distance from what is usual, in standard deviations, and what contradictions count.
-    fn score(&self) -> f64 {
-        let terms = self.known().map(|(ratio, (d, usual, spread))| {
-            if ratio > 0.0 {
-                ((ratio / usual).ln() / spread).powi(2).min(WRONG_SIGN)
-            } else if d == Derivative::A2 {
-                0.25 * WRONG_SIGN
-            } else {
-                WRONG_SIGN
-            }
-        });
-        terms.sum::<f64>() + WRONG_SIGN * self.contradictions().concat().len() as f64
-    }
-
-    /// What no deck can have whatever its shape, and errs to the side of a high onset, in the lower half of the reduced velocities, or
-    /// where nothing is wrong there in the upper one.
-    fn contradictions(&self) -> [Vec<String>; 2] {
-        let low = Self::contradictions_of(&self.0[0]);
-        match low.is_empty() {
-            true => [low, Self::contradictions_of(&self.0[1])],
-            false => [low, Vec::new()],
-        }
-    }
-
-    fn contradictions_of(half: &[Option<f64>; 5]) -> Vec<String> {
-        let below = |a: f64, b: f64| b > 0.0 && a * ONE_SLOPE < b;
-        let one_slope = |i: usize, j: usize, force: &str| {
-            let (a, b) = (half[i]?, half[j]?);
-            // an H1* that is small or feeds heave is that of a bluff deck, and lowers the onset
-            let odd = below(b, a) || force == "moment" && below(a, b);
-            let (x, y) = (USUAL[i].0, USUAL[j].0);
-            let words = format!(
-                "{x}* and {y}* are {a:.2} and {b:.2} times a flat plate's, though one slope of the {force} stands behind both"
-            );
-            odd.then_some(words)
+/// Medians over each half of the reduced velocities.
+fn signature(reading: &dyn Fn(Derivative) -> Vec<DerivativePoint>) -> Signature {
+    let mut halves = [[None; 5]; 2];
+    for (i, (derivative, _, _)) in USUAL.into_iter().enumerate() {
+        let mut points = reading(derivative);
+        points.sort_by(|a, b| a.v_hat.total_cmp(&b.v_hat));
+        let ratio = |p: &DerivativePoint| p.value / flat_plate(derivative, p);
+        let median = |points: &[DerivativePoint]| {
+            let mut ratios: Vec<f64> = points.iter().map(ratio).collect();
+            ratios.sort_by(f64::total_cmp);
+            ratios.get(ratios.len() / 2).copied()
         };
-        let damping = half[3].filter(|a2| *a2 > MOST_A2);
-        let damping = damping.map(|a2| {
-            format!("A2* damps rotation {a2:.2} times as much as a flat plate's, where decks have 0.3 to 0.7")
-        });
-        let without_moment = || {
-            let [h1, h3, a1, _, a3] = *half;
-            let (h1, h3, a1, a3) = (h1?, h3?, a1?, a3?);
-            let odd = a1.max(a3) < LEAST_MOMENT && h1.min(h3) > MUCH_LIFT;
-            odd.then(|| {
-                format!(
-                    "A1* and A3* are {a1:.2} and {a3:.2} times a flat plate's beside a lift of {h1:.2} and {h3:.2} times its own"
-                )
-            })
-        };
-        let found = [
-            one_slope(0, 1, "lift"),
-            one_slope(2, 4, "moment"),
-            damping,
-            without_moment(),
-        ];
-        found.into_iter().flatten().collect()
+        let (low, high) = points.split_at(points.len().div_ceil(2));
+        (halves[0][i], halves[1][i]) = (median(low), median(high));
     }
+    halves
+}
 
-    fn has_a_size_of_no_deck(&self) -> bool {
-        self.known()
-            .any(|(ratio, (_, usual, _))| (ratio / usual).abs().ln().abs() > NO_DECK.ln())
-    }
+/// Those that the table has at low reduced velocities, each with its derivative, usual size and spread.
+fn known(own: &Signature) -> impl Iterator<Item = (f64, (Derivative, f64, f64))> {
+    let all = own[0].into_iter().zip(USUAL);
+    all.filter_map(|(ratio, usual)| Some((ratio?, usual)))
+}
 
-    /// What is odd about the numbers.
-    fn words(&self) -> String {
-        let beyond = |deviations: f64| -> Vec<String> {
-            let odd = self.known().filter_map(|(ratio, (d, usual, spread))| {
-                if ratio == 0.0 {
-                    return Some(format!("{d}* is zero"));
-                }
-                if ratio < 0.0 {
-                    return Some(format!("{d}* has the sign opposite to a flat plate's"));
-                }
-                let far = (ratio / usual).ln().abs() > deviations * spread;
-                far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
-            });
-            odd.collect()
-        };
-        let [low, high] = self.contradictions();
-        let odd = [beyond(2.0), low].concat();
-        // none by itself, but all together
-        let odd = match odd.is_empty() && high.is_empty() {
-            true => beyond(0.0),
-            false => odd,
-        };
-        let wrong = |i: usize| self.0[0][i].is_some_and(|ratio| ratio <= 0.0);
-        let both = if wrong(0) && wrong(3) {
-            " (H1* and A2* both positive: a section that gallops and flutters at once, or PoliMi's h1*, a2*)"
+/// Sum over the five of the squared distance from what is usual, in standard deviations, and what contradictions count.
+fn score(own: &Signature) -> f64 {
+    let terms = known(own).map(|(ratio, (d, usual, spread))| {
+        if ratio > 0.0 {
+            ((ratio / usual).ln() / spread).powi(2).min(WRONG_SIGN)
+        } else if d == Derivative::A2 {
+            0.25 * WRONG_SIGN
         } else {
-            ""
-        };
-        let said = [("low", odd, both), ("high", high, "")].into_iter();
-        let said = said
-            .filter(|(_, odd, _)| !odd.is_empty())
-            .map(|(at, odd, more)| format!("at {at} V̂ {}{more}", odd.join(", ")));
-        said.collect::<Vec<_>>().join("; ")
+            WRONG_SIGN
+        }
+    });
+    terms.sum::<f64>() + WRONG_SIGN * contradictions(own).concat().len() as f64
+}
+
+/// What no deck can have whatever its shape, and errs to the side of a high onset, in the lower half of the reduced velocities, or
+/// where nothing is wrong there in the upper one.
+fn contradictions(own: &Signature) -> [Vec<String>; 2] {
+    let low = contradictions_of(&own[0]);
+    match low.is_empty() {
+        true => [low, contradictions_of(&own[1])],
+        false => [low, Vec::new()],
     }
+}
+
+fn contradictions_of(half: &[Option<f64>; 5]) -> Vec<String> {
+    let below = |a: f64, b: f64| b > 0.0 && a * ONE_SLOPE < b;
+    let one_slope = |i: usize, j: usize, force: &str| {
+        let (a, b) = (half[i]?, half[j]?);
+        // an H1* that is small or feeds heave is that of a bluff deck, and lowers the onset
+        let odd = below(b, a) || force == "moment" && below(a, b);
+        let (x, y) = (USUAL[i].0, USUAL[j].0);
+        let words = format!(
+            "{x}* and {y}* are {a:.2} and {b:.2} times a flat plate's, though one slope of the {force} stands behind both"
+        );
+        odd.then_some(words)
+    };
+    let damping = half[3].filter(|a2| *a2 > MOST_A2);
+    let damping = damping.map(|a2| {
+        format!("A2* damps rotation {a2:.2} times as much as a flat plate's, where decks have 0.3 to 0.7")
+    });
+    let without_moment = || {
+        let [h1, h3, a1, _, a3] = *half;
+        let (h1, h3, a1, a3) = (h1?, h3?, a1?, a3?);
+        let odd = a1.max(a3) < LEAST_MOMENT && h1.min(h3) > MUCH_LIFT;
+        odd.then(|| {
+            format!(
+                "A1* and A3* are {a1:.2} and {a3:.2} times a flat plate's beside a lift of {h1:.2} and {h3:.2} times its own"
+            )
+        })
+    };
+    let found = [
+        one_slope(0, 1, "lift"),
+        one_slope(2, 4, "moment"),
+        damping,
+        without_moment(),
+    ];
+    found.into_iter().flatten().collect()
+}
+
+/// What is odd about the numbers.
+fn words(own: &Signature) -> String {
+    let beyond = |deviations: f64| -> Vec<String> {
+        let odd = known(own).filter_map(|(ratio, (d, usual, spread))| {
+            if ratio == 0.0 {
+                return Some(format!("{d}* is zero"));
+            }
+            if ratio < 0.0 {
+                return Some(format!("{d}* has the sign opposite to a flat plate's"));
+            }
+            let far = (ratio / usual).ln().abs() > deviations * spread;
+            far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
+        });
+        odd.collect()
+    };
+    let [low, high] = contradictions(own);
+    let odd = [beyond(2.0), low].concat();
+    // none by itself, but all together
+    let odd = match odd.is_empty() && high.is_empty() {
+        true => beyond(0.0),
+        false => odd,
+    };
+    let wrong = |i: usize| own[0][i].is_some_and(|ratio| ratio <= 0.0);
+    let both = if wrong(0) && wrong(3) {
+        " (H1* and A2* both positive: a section that gallops and flutters at once, or PoliMi's h1*, a2*)"
+    } else {
+        ""
+    };
+    let said = [("low", odd, both), ("high", high, "")].into_iter();
+    let said = said
+        .filter(|(_, odd, _)| !odd.is_empty())
+        .map(|(at, odd, more)| format!("at {at} V̂ {}{more}", odd.join(", ")));
+    said.collect::<Vec<_>>().join("; ")
 }
 
 /// The derivative of the flat plate at the reduced velocity of a point.
@@ -258,21 +249,17 @@ mod tests {
     #[test]
     fn what_is_missing_is_no_doubt() {
         let half = [Some(0.85), None, None, None, Some(0.9)];
-        let part = Signature([half, half]);
-        assert!(part.score() < 1e-9);
+        assert!(score(&[half, half]) < 1e-9);
     }
 
     /// Sizes that are odd together, none by itself.
     #[test]
     fn what_is_odd_is_named() {
         let half = USUAL.map(|(_, usual, spread)| Some(usual * (-1.9 * spread).exp()));
-        let odd = Signature([half, half]);
-        assert!(odd.score() > ODD);
-        assert!(
-            odd.words().contains("times a flat plate's"),
-            "{}",
-            odd.words()
-        );
+        let odd = [half, half];
+        assert!(score(&odd) > ODD);
+        let words = words(&odd);
+        assert!(words.contains("times a flat plate's"), "{words}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The lowest wind speed at which something critical begins.
 
 use super::evidence::{Evidence, FlutterReading};
-use crate::flutter::{FlutterSearch, GrowthBand};
+use crate::flutter::FlutterSearch;
 use serde::{Deserialize, Serialize};
 
 /// Readings closer than this, relatively, are one answer: what ways of interpolating one table differ by at worst.
@@ -49,6 +49,17 @@ pub struct CriticalSpeed {
 }
 
 impl CriticalSpeed {
+    /// Galloping by quasi-steady theory; `forces` says whose coefficients, as part of a sentence.
+    pub fn galloping(forces: impl Into<String>, best_m_s: f64) -> Self {
+        Self {
+            phenomenon: Phenomenon::Galloping,
+            forces: forces.into(),
+            best_m_s,
+            lower_m_s: None,
+            extrapolated: false,
+        }
+    }
+
     /// The lower end, or the best estimate where there is none, m/s.
     pub fn least_m_s(&self) -> f64 {
         self.lower_m_s
@@ -81,18 +92,12 @@ impl Critical {
                 extrapolated: false,
             })
         }));
-        all.extend(evidence.galloping.iter().map(|g| CriticalSpeed {
-            phenomenon: Phenomenon::Galloping,
-            forces: g.forces.clone(),
-            best_m_s: g.speed_m_s,
-            lower_m_s: None,
-            extrapolated: false,
-        }));
+        all.extend(evidence.galloping.clone());
         all.extend(growth(evidence));
         all.sort_by(|a, b| a.least_m_s().total_cmp(&b.least_m_s()));
         let first = evidence.flutter.first();
         let judged = first.map(FlutterReading::judged_m_s);
-        let (from_m_s, judged_to_m_s) = judged.unwrap_or((0.0, 0.0));
+        let (from_m_s, judged_to_m_s) = judged.unwrap_or_default();
         let tested_from = first.and_then(FlutterReading::tested_from);
         let judged_from_m_s = tested_from.map_or(from_m_s, |t| from_m_s.max(t.speed_m_s));
         let mut all = all.into_iter();
@@ -134,16 +139,18 @@ fn flutter(readings: &[FlutterReading]) -> Vec<CriticalSpeed> {
         FlutterSearch::UnstableAtOrBelow(_) => Some(0.0),
         _ => reading.ends_m_s().map(|(low, _)| low),
     };
-    let agreeing = others.iter().filter(|o| !contradict(first, o));
-    let of_others = agreeing.filter_map(|o| match o.interval_is_known() {
-        true => lower(o).or(o.best_m_s()),
-        // the spread between ways of reading is no lower end of another answer
-        false => o.best_m_s(),
-    });
+    let (against, agreeing): (Vec<&FlutterReading>, Vec<_>) =
+        others.iter().partition(|o| contradict(first, o));
+    let of_others = agreeing
+        .into_iter()
+        .filter_map(|o| match o.interval_is_known() {
+            true => lower(o).or(o.best_m_s()),
+            // the spread between ways of reading is no lower end of another answer
+            false => o.best_m_s(),
+        });
     let least = lower(first).into_iter().chain(of_others).reduce(f64::min);
     let mut all: Vec<CriticalSpeed> = speed(first, least).into_iter().collect();
-    let against = others.iter().filter(|o| contradict(first, o));
-    all.extend(against.filter_map(|o| speed(o, lower(o))));
+    all.extend(against.into_iter().filter_map(|o| speed(o, lower(o))));
     all
 }
 
@@ -174,13 +181,11 @@ fn excludes(stable: &FlutterReading, best_m_s: f64, ends: Option<(f64, f64)>) ->
 
 /// Growth that was found by the scan below the answer.
 fn growth(evidence: &Evidence) -> Option<CriticalSpeed> {
-    let forces = evidence.flutter.first().map(|r| r.forces.clone())?;
-    let bands = &evidence.growth.as_ref()?.bands;
-    let from = |b: &GrowthBand| b.from_m_s;
+    let bands = evidence.growth.as_ref()?.bands.iter();
     Some(CriticalSpeed {
         phenomenon: Phenomenon::Growth,
-        forces,
-        best_m_s: bands.iter().map(from).reduce(f64::min)?,
+        forces: evidence.flutter.first()?.forces.clone(),
+        best_m_s: bands.map(|b| b.from_m_s).reduce(f64::min)?,
         lower_m_s: None,
         extrapolated: true,
     })

@@ -1,5 +1,6 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
+use super::critical::CriticalSpeed;
 use super::reach::Reach;
 use crate::flutter::{FlutterSearch, MovedOnset, Onset, OnsetInterval, TestedFrom, UnwantedGrowth};
 use crate::plausibility::Finding;
@@ -50,7 +51,7 @@ pub struct Evidence {
     /// Static divergence, by each of the forces.
     pub divergence: Vec<DivergenceReading>,
     /// Galloping by quasi-steady theory, where static coefficients are given and it was found.
-    pub galloping: Option<GallopingReading>,
+    pub galloping: Option<CriticalSpeed>,
     /// Growth of the first of the readings below its onset, where nothing was tested; `None` where nobody looked.
     pub growth: Option<UnwantedGrowth>,
     /// Stages that failed.
@@ -205,15 +206,6 @@ impl DivergenceReading {
             measured: false,
         }
     }
-}
-
-/// Galloping by quasi-steady theory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GallopingReading {
-    /// Whose coefficients, as part of a sentence.
-    pub forces: String,
-    /// Onset, m/s.
-    pub speed_m_s: f64,
 }
 
 /// A part of the girder that was not tested.

@@ -43,9 +43,9 @@ impl Outcome {
                 settled_by: vec!["a positive required speed".to_owned()],
             };
         }
-        let found = || critical.all();
-        let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
-        let undetermined = doubts.iter().any(open);
+        let undetermined = doubts
+            .iter()
+            .any(|d| matches!(d.kind, DoubtKind::IntervalUndetermined { .. }));
         // forces of steady flow that another reading does not find
         let contradicted = |c: &CriticalSpeed| {
             doubts.iter().any(|d| match &d.kind {
@@ -67,26 +67,24 @@ impl Outcome {
         };
         let least = |c: &CriticalSpeed| c.least_m_s() < required.speed_m_s;
         let best = |c: &CriticalSpeed| c.best_m_s < required.speed_m_s;
-        if found().filter(backed).any(best) {
+        let found = || critical.all().filter(backed);
+        if found().any(best) {
             let below = Below::BestEstimate;
             return Self::NotMet { below };
         }
-        let severe: Vec<&Doubt> = doubts
-            .iter()
-            .filter(|d| d.severity == Severity::Severe)
-            .collect();
-        if found().filter(backed).any(least) {
+        if found().any(least) {
             let below = Below::LowerEnd;
             return Self::NotMet { below };
         }
-        if severe.is_empty() {
+        let severe = || doubts.iter().filter(|d| d.severity == Severity::Severe);
+        let missing: Vec<String> = severe().map(|d| d.text.clone()).collect();
+        if missing.is_empty() {
             return Self::Met;
         }
-        let mut settled_by: Vec<String> =
-            severe.iter().filter_map(|d| d.settled_by.clone()).collect();
+        let mut settled_by: Vec<String> = severe().filter_map(|d| d.settled_by.clone()).collect();
         settled_by.dedup();
         Self::CannotBeJudged {
-            missing: severe.iter().map(|d| d.text.clone()).collect(),
+            missing,
             settled_by,
         }
     }

@@ -57,8 +57,8 @@ impl Reach {
         all.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
         let mut lowest: Vec<(f64, f64)> = Vec::new();
         for point in all {
-            let k = ReducedFrequency::from_hertz(point.frequency_hz, width_m, point.speed_m_s);
-            let k = k.full_width();
+            let k = ReducedFrequency::from_hertz(point.frequency_hz, width_m, point.speed_m_s)
+                .full_width();
             if lowest.last().is_none_or(|(_, least)| k < *least) {
                 lowest.push((point.speed_m_s, k));
             }

@@ -4,7 +4,7 @@ use super::evidence::{DivergenceReading, Evidence, Failure, FlutterReading, Forc
 use super::reach::Reach;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::flutter::{
     AssumedAtRest, FlutterSearch, OnsetSearch, divergence_speed, judged_speeds, static_part,
     table_tested_from, trace_modes, unwanted_growth_below,
@@ -41,12 +41,7 @@ impl Evidence {
             search: found,
             basis: ForceBasis::tested(tested, reach.unwrap_or_else(Reach::nowhere)),
         });
-        let divergence = divergence_speed(structure, at_rest);
-        if let Some(speed_m_s) = evidence.noted("divergence", divergence) {
-            let reading = DivergenceReading::at(forces, speed_m_s);
-            evidence.divergence.push(reading);
-        }
-        evidence
+        evidence.with_divergence(forces, divergence_speed(structure, at_rest))
     }
 
     /// What a structure in the forces of a table, tested in `range`, answers beside what was `found` for it by a search that ends
@@ -87,31 +82,37 @@ impl Evidence {
         exact: &dyn Transfer,
         found: FlutterSearch,
     ) -> Self {
-        let mut evidence = Self::default();
-        evidence.flutter.push(FlutterReading {
+        let reading = FlutterReading {
             forces: forces.to_owned(),
             search: found,
             basis: ForceBasis::Exact,
-        });
+        };
+        let evidence = Self {
+            flutter: vec![reading],
+            ..Self::default()
+        };
         let at_rest = exact.transfer(ReducedFrequency::from_full_width(0.0));
         let divergence = at_rest.and_then(|g| divergence_speed(structure, &g));
-        if let Some(speed_m_s) = evidence.noted("divergence", divergence) {
-            let reading = DivergenceReading::at(forces, speed_m_s);
-            evidence.divergence.push(reading);
-        }
-        evidence
+        evidence.with_divergence(forces, divergence)
+    }
+
+    /// With static divergence by these forces, or why it is not known.
+    fn with_divergence(mut self, forces: &str, found: Result<Option<f64>>) -> Self {
+        let reading = |speed_m_s| DivergenceReading::at(forces, speed_m_s);
+        let known = self.noted("divergence", found);
+        self.divergence.extend(known.map(reading));
+        self
     }
 
     /// The value of a stage; a failure is one of the evidence.
     fn noted<T>(&mut self, stage: &str, result: Result<T>) -> Option<T> {
-        result
-            .map_err(|e| {
-                self.failures.push(Failure {
-                    stage: stage.to_owned(),
-                    reason: e.to_string(),
-                    bears_on_answer: true,
-                });
-            })
-            .ok()
+        let failed = |e: &Error| {
+            self.failures.push(Failure {
+                stage: stage.to_owned(),
+                reason: e.to_string(),
+                bears_on_answer: true,
+            });
+        };
+        result.inspect_err(failed).ok()
     }
 }

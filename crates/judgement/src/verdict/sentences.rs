@@ -1,18 +1,60 @@
 //! The sentences of a verdict.
 
-use super::contradiction::of_divergence;
+use super::Verdict;
 use super::critical::{Critical, CriticalSpeed, Phenomenon, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Evidence, FlutterReading, RequiredSpeed};
-use super::judgement::Judgement;
+use super::evidence::{Evidence, FlutterReading};
 use super::outcome::{Below, Outcome};
-use super::words::{found, speed};
-use crate::flutter::FlutterSearch;
+use super::reasons::doubted_divergence;
+use crate::flutter::{FlutterSearch, shown_m_s};
+use crate::units::ReducedFrequency;
+
+/// A wind speed with its unit.
+pub(super) fn speed(m_s: f64) -> String {
+    format!("{} m/s", shown_m_s(m_s))
+}
+
+/// The same, or that there is none.
+pub(super) fn speed_or_none(m_s: Option<f64>) -> String {
+    m_s.map_or("none".to_owned(), speed)
+}
+
+/// Two reduced frequencies.
+pub(super) fn k_range(from: ReducedFrequency, to: ReducedFrequency) -> String {
+    format!("{:.2}–{:.2}", from.full_width(), to.full_width())
+}
+
+impl FlutterReading {
+    /// `the model is`, `the models are`.
+    pub(super) fn are(&self) -> String {
+        let several = ["the models", "the tables"];
+        let verb = match several.iter().any(|s| self.forces.starts_with(s)) {
+            true => "are",
+            false => "is",
+        };
+        format!("{} {verb}", self.forces)
+    }
+
+    /// What it found, with its ends.
+    pub(super) fn found(&self) -> String {
+        match &self.search {
+            FlutterSearch::Onset(onset) => {
+                let ends = onset.interval.ends();
+                let ends = ends.map(|(a, b)| format!(" ({}–{})", shown_m_s(a), shown_m_s(b)));
+                speed(onset.at.speed_m_s) + &ends.unwrap_or_default()
+            }
+            FlutterSearch::UnstableAtOrBelow(start) => {
+                format!("unstable at and below {}", speed(start.at.speed_m_s))
+            }
+            FlutterSearch::StableUpTo(range) => range.explain(),
+        }
+    }
+}
 
 /// The answer in one line; begins with the outcome where a speed is required.
-pub(super) fn headline(judgement: &Judgement, evidence: &Evidence) -> String {
-    let what = what(&judgement.critical, evidence);
-    match (&judgement.outcome, evidence.required) {
+pub(super) fn headline(verdict: &Verdict, evidence: &Evidence) -> String {
+    let what = what(&verdict.critical, evidence);
+    match (&verdict.outcome, evidence.required) {
         (Some(outcome), Some(required)) => format!(
             "{} {}, required {} m/s: {what}",
             outcome.sign(),
@@ -27,17 +69,17 @@ pub(super) fn headline(judgement: &Judgement, evidence: &Evidence) -> String {
 /// known.
 fn what(critical: &Critical, evidence: &Evidence) -> String {
     let flutter = flutter(evidence);
-    let against = of_divergence(evidence);
+    let against = doubted_divergence(evidence);
     let says = |c: &CriticalSpeed| {
         let (name, best) = (c.phenomenon.name(), speed(c.best_m_s));
         let lower = c.lower_m_s.filter(|l| *l < c.best_m_s);
         let lower = lower.map_or_else(String::new, |l| format!(", lower end {}", speed(l)));
-        let against = against
-            .as_ref()
-            .filter(|a| a.doubted.forces == c.forces && c.phenomenon == Phenomenon::Divergence);
-        let against = against.map_or_else(String::new, |a| {
-            let at = a.other.speed_m_s.map_or("none".to_owned(), speed);
-            format!(", CONTRADICTED by {}: {at}", a.other.forces)
+        let against = against.filter(|[doubted, _]| {
+            doubted.forces == c.forces && c.phenomenon == Phenomenon::Divergence
+        });
+        let against = against.map_or_else(String::new, |[_, other]| {
+            let at = speed_or_none(other.speed_m_s);
+            format!(", CONTRADICTED by {}: {at}", other.forces)
         });
         format!("{name} at {best}{lower} ({}){against}", c.forces)
     };
@@ -65,7 +107,6 @@ fn flutter(evidence: &Evidence) -> String {
     let Some((first, others)) = evidence.flutter.split_first() else {
         return "flutter not searched".to_owned();
     };
-    let against: Vec<&FlutterReading> = others.iter().filter(|o| contradict(first, o)).collect();
     let support = others.iter().find(|o| {
         !first.interval_is_known()
             && o.onset().is_some()
@@ -77,38 +118,30 @@ fn flutter(evidence: &Evidence) -> String {
             "flutter onset {} by {}{}; {}: {}",
             speed(onset.at.speed_m_s),
             first.forces,
-            tested(onset.in_tested_range),
+            match onset.in_tested_range {
+                Some(true) => ", inside the tested range",
+                Some(false) => ", OUTSIDE the tested range",
+                None => "",
+            },
             other.forces,
-            found(other)
+            other.found()
         ),
         (FlutterSearch::Onset(onset), None) => onset.headline(),
         (other, _) => other.explain(),
     };
-    for other in against {
-        text.push_str(&format!(
-            "; CONTRADICTED by {}: {}",
-            other.forces,
-            found(other)
-        ));
+    for other in others.iter().filter(|o| contradict(first, o)) {
+        let found = other.found();
+        text.push_str(&format!("; CONTRADICTED by {}: {found}", other.forces));
     }
     text
 }
 
-fn tested(inside: Option<bool>) -> &'static str {
-    match inside {
-        Some(true) => ", inside the tested range",
-        Some(false) => ", OUTSIDE the tested range",
-        None => "",
-    }
-}
-
 /// Why the outcome is what it is.
-pub(super) fn explanation(judgement: &Judgement, required: Option<RequiredSpeed>) -> String {
-    let critical = &judgement.critical;
-    match (&judgement.outcome, required) {
-        (Some(Outcome::Met), Some(required)) => met(judgement, required.speed_m_s),
+pub(super) fn explanation(verdict: &Verdict) -> String {
+    match (&verdict.outcome, verdict.against) {
+        (Some(Outcome::Met), Some(required)) => met(verdict, required.speed_m_s),
         (Some(Outcome::NotMet { below }), Some(required)) => {
-            not_met(critical, *below, required.speed_m_s)
+            not_met(&verdict.critical, *below, required.speed_m_s)
         }
         (
             Some(Outcome::CannotBeJudged {
@@ -117,16 +150,13 @@ pub(super) fn explanation(judgement: &Judgement, required: Option<RequiredSpeed>
             }),
             Some(_),
         ) => {
-            let mut text = format!("Cannot be judged: {}.", missing.join("; "));
-            if !settled_by.is_empty() {
-                text.push_str(&format!(
-                    " It would be settled by {}.",
-                    settled_by.join("; ")
-                ));
+            let text = format!("Cannot be judged: {}.", missing.join("; "));
+            if settled_by.is_empty() {
+                return text;
             }
-            text
+            format!("{text} It would be settled by {}.", settled_by.join("; "))
         }
-        _ => no_requirement(judgement),
+        _ => no_requirement(verdict),
     }
 }
 
@@ -144,14 +174,9 @@ fn one(c: &CriticalSpeed) -> String {
     )
 }
 
-fn met(judgement: &Judgement, required_m_s: f64) -> String {
-    let critical = &judgement.critical;
-    let all: Vec<String> = critical
-        .governs
-        .iter()
-        .chain(&critical.others)
-        .map(one)
-        .collect();
+fn met(verdict: &Verdict, required_m_s: f64) -> String {
+    let critical = &verdict.critical;
+    let all: Vec<String> = critical.all().map(one).collect();
     let mut text = match all.is_empty() {
         true => format!(
             "Met: nothing critical up to {}.",
@@ -161,22 +186,19 @@ fn met(judgement: &Judgement, required_m_s: f64) -> String {
     };
     // not one test is at so slow a wind
     let below = |d: &&Doubt| matches!(d.kind, DoubtKind::NotJudgedBelow { speed_m_s } if required_m_s < speed_m_s);
-    if let Some(doubt) = judgement.doubts.iter().find(below) {
+    if let Some(doubt) = verdict.doubts.iter().find(below) {
         text.push_str(&format!(" {}.", doubt.text));
     }
     text
 }
 
 fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {
-    let all = || critical.all();
-    let which = |c: &&CriticalSpeed| match below {
-        Below::BestEstimate => c.best_m_s < required_m_s,
-        Below::LowerEnd => c.least_m_s() < required_m_s,
+    let speed = |c: &CriticalSpeed| match below {
+        Below::BestEstimate => c.best_m_s,
+        Below::LowerEnd => c.least_m_s(),
     };
-    let Some(c) = all()
-        .filter(|c| c.phenomenon != Phenomenon::Growth)
-        .find(which)
-    else {
+    let which = |c: &&CriticalSpeed| c.phenomenon != Phenomenon::Growth && speed(c) < required_m_s;
+    let Some(c) = critical.all().find(which) else {
         return "Not met.".to_owned();
     };
     match below {
@@ -195,24 +217,22 @@ fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {
     }
 }
 
-fn no_requirement(judgement: &Judgement) -> String {
+fn no_requirement(verdict: &Verdict) -> String {
     let how = "state required_speed_m_s, the criterion of a code";
-    match judgement.suggested_m_s {
+    match verdict.suggested_m_s {
         Some(most) => {
-            let nothing_found = judgement.critical.least_m_s().is_none();
             // a search that found nothing and went farther would show more
+            let nothing_found = verdict.critical.governs.is_none();
             let at_least = if nothing_found { "at least " } else { "" };
             format!(
                 "No required speed is stated, so that nothing is judged; {how}: {at_least}up to {most} m/s it would be met."
             )
         }
         None => {
-            let severe = judgement
-                .doubts
-                .iter()
-                .filter(|d| d.severity == Severity::Severe);
+            let doubts = verdict.doubts.iter();
+            let severe = doubts.filter(|d| d.severity == Severity::Severe);
             let why: Vec<&str> = severe.map(|d| d.text.as_str()).collect();
-            let governs = judgement.critical.governs.as_ref();
+            let governs = verdict.critical.governs.as_ref();
             let why = match governs.filter(|c| c.lower_m_s.is_some_and(|low| low <= 0.0)) {
                 Some(first) => one(first),
                 None if why.is_empty() => "nothing was judged by data".to_owned(),

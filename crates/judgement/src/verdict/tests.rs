@@ -209,10 +209,7 @@ fn what_begins_first_governs_also_without_a_requirement() {
     // what was assumed at rest makes the lower end
     evidence.divergence[0].lower_m_s = Some(14.0);
     assert_eq!(Verdict::judge(&evidence).critical.least_m_s(), Some(14.0));
-    evidence.galloping = Some(GallopingReading {
-        forces: "the coefficients".to_owned(),
-        speed_m_s: 9.0,
-    });
+    evidence.galloping = Some(CriticalSpeed::galloping("the coefficients", 9.0));
     let governs = Verdict::judge(&evidence).critical.governs.unwrap();
     assert_eq!(governs.phenomenon, Phenomenon::Galloping);
 }

@@ -22,14 +22,16 @@ const STILL: f64 = 1e-6;
 /// What is odd about the dampers of a bridge: of each kind the first that is.
 pub(super) fn of_dampers(bridge: &Bridge) -> Vec<Finding> {
     let width_m = bridge.width_m();
-    let mut found: Vec<Finding> = heavy(bridge).into_iter().collect();
-    found.extend(bridge.dampers.masses.iter().find_map(overdamped));
-    let beyond_girder = |d: &MassDamper| beyond_girder(d, width_m);
-    found.extend(bridge.dampers.masses.iter().find_map(beyond_girder));
-    found.extend(detuned(bridge));
-    found.extend(without_motion(bridge));
-    found.extend(strong_link(bridge));
-    found
+    let masses = || bridge.dampers.masses.iter();
+    let found = [
+        heavy(bridge),
+        masses().find_map(overdamped),
+        masses().find_map(|d| beyond_girder(d, width_m)),
+        detuned(bridge),
+        without_motion(bridge),
+        strong_link(bridge),
+    ];
+    found.into_iter().flatten().collect()
 }
 
 fn overdamped(damper: &MassDamper) -> Option<Finding> {
@@ -42,11 +44,8 @@ fn overdamped(damper: &MassDamper) -> Option<Finding> {
 
 fn beyond_girder(damper: &MassDamper, width_m: f64) -> Option<Finding> {
     let arm = damper.at.offset_m.abs();
-    let odd = Finding::unit(
-        format!("{}: arm_m", damper.name),
-        arm,
-        "it hangs beside the girder",
-    );
+    let key = format!("{}: arm_m", damper.name);
+    let odd = Finding::unit(key, arm, "it hangs beside the girder");
     let meant = format!("in millimetres it would be {} m", significant(arm / 1e3));
     (arm > MOST_OFFSET * width_m).then(|| odd.otherwise(meant))
 }
@@ -116,10 +115,8 @@ fn detuned(bridge: &Bridge) -> Option<Finding> {
     };
     let mut masses = bridge.dampers.masses.iter();
     let damper = masses.find(|d| distance(d.frequency_hz) > DETUNED)?;
-    let (key, hertz) = (
-        format!("{}: frequency_hz", damper.name),
-        damper.frequency_hz,
-    );
+    let hertz = damper.frequency_hz;
+    let key = format!("{}: frequency_hz", damper.name);
     let odd = Finding::unit(key, hertz, "it is tuned to no mode that takes part");
     let meant = format!("in rad/s it would be {} Hz", significant(hertz / TAU));
     Some(odd.otherwise(meant).into_note())

@@ -36,28 +36,29 @@ pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
         return Vec::new();
     }
     let length = length_m(nodes);
-    let along: Vec<f64> = nodes.iter().map(|n| n.along_m).collect();
-    let mut found: Vec<Finding> = beyond("nodes: length", length, &LENGTH)
-        .into_iter()
-        .collect();
-    found.extend(tributary(nodes));
+    let of_length = beyond("nodes: length", length, &LENGTH);
+    let mut found: Vec<Finding> = of_length.into_iter().chain(tributary(nodes)).collect();
     if offsets_m.len() != nodes.len() {
         return found;
     }
-    let [in_plan, in_elevation] =
-        [0, 1].map(|i| straight(&along, offsets_m.iter().map(|o| o[i]).collect()));
-    found.extend(skew(in_plan.slope));
-    if in_elevation.slope.abs() > STEEPEST {
+    // the chord from the first node to the last: unlike a regression it is the same however dense the nodes are
+    let (first, last) = (offsets_m[0], offsets_m[offsets_m.len() - 1]);
+    let [slope, rise] = [0, 1].map(|i| (last[i] - first[i]) / length);
+    found.extend(skew(slope));
+    if rise.abs() > STEEPEST {
         let text = format!(
             "the line of the nodes rises by {:.0} % of its length",
-            100.0 * in_elevation.slope
+            100.0 * rise
         );
-        found.push(
-            Finding::doubt(FindingKind::Axes, "modes.axes.up", text)
-                .otherwise("is another axis up?".to_owned()),
-        );
+        let odd = Finding::doubt(FindingKind::Axes, "modes.axes.up", text);
+        found.push(odd.otherwise("is another axis up?".to_owned()));
     }
-    found.extend(curve(&in_plan, length));
+    let distance = |(node, o): (&Node, &[f64; 2])| {
+        let beside = o[0] - first[0] - slope * (node.along_m - nodes[0].along_m);
+        beside.abs() / slope.mul_add(slope, 1.0).sqrt()
+    };
+    let distances = nodes.iter().zip(offsets_m).map(distance);
+    found.extend(curve(distances.fold(0.0, f64::max), length));
     found.extend(step(nodes, offsets_m));
     found
 }
@@ -79,10 +80,8 @@ fn step(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Option<Finding> {
         beside.abs(),
         if beside > 0.0 { "above" } else { "below" }
     );
-    Some(
-        Finding::doubt(FindingKind::Contradiction, "nodes", text)
-            .otherwise("nodes of cables and towers are no part of the girder".to_owned()),
-    )
+    let odd = Finding::doubt(FindingKind::Contradiction, "nodes", text);
+    Some(odd.otherwise("nodes of cables and towers are no part of the girder".to_owned()))
 }
 
 /// Lengths on which the wind acts against the places of their nodes: half of them would be half the wind forces.
@@ -102,10 +101,8 @@ fn tributary(nodes: &[Node]) -> Option<Finding> {
         significant(sum),
         significant(length)
     );
-    Some(
-        Finding::doubt(FindingKind::Contradiction, "nodes", text)
-            .otherwise("wind forces grow with the lengths".to_owned()),
-    )
+    let odd = Finding::doubt(FindingKind::Contradiction, "nodes", text);
+    Some(odd.otherwise("wind forces grow with the lengths".to_owned()))
 }
 
 /// What is odd about a wind profile that is stated at the places `along_m`: none of them may say anything of the girder.
@@ -113,9 +110,7 @@ pub fn of_profile(along_m: &[f64], nodes: &[Node]) -> Option<Finding> {
     let ([a, .., b] | [a @ b]) = along_m else {
         return None;
     };
-    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
-        return None;
-    };
+    let (first, last) = nodes.first().zip(nodes.last())?;
     if *b >= first.along_m && *a <= last.along_m {
         return None;
     }
@@ -124,10 +119,8 @@ pub fn of_profile(along_m: &[f64], nodes: &[Node]) -> Option<Finding> {
         significant(first.along_m),
         significant(last.along_m)
     );
-    Some(
-        Finding::doubt(FindingKind::Contradiction, "wind.profile", text)
-            .otherwise("the factor of its nearest point is taken everywhere".to_owned()),
-    )
+    let odd = Finding::doubt(FindingKind::Contradiction, "wind.profile", text);
+    Some(odd.otherwise("the factor of its nearest point is taken everywhere".to_owned()))
 }
 
 fn skew(slope: f64) -> Option<Finding> {
@@ -145,56 +138,22 @@ fn skew(slope: f64) -> Option<Finding> {
         "the wind square to the nodes blows {:.1}° from the stated direction",
         angle.abs()
     );
-    let found = Finding::doubt(FindingKind::Axes, "modes.axes.downwind", text).otherwise(otherwise);
-    Some(if angle.abs() < doubt {
-        found.into_note()
-    } else {
-        found
-    })
+    let found = Finding::doubt(FindingKind::Axes, "modes.axes.downwind", text);
+    Some(found.otherwise(otherwise).into_note_if(angle.abs() < doubt))
 }
 
-fn curve(line: &Straight, length_m: f64) -> Option<Finding> {
-    let part = line.farthest_m / length_m;
+/// Nodes of which one lies as far from the chord.
+fn curve(farthest_m: f64, length_m: f64) -> Option<Finding> {
+    let part = farthest_m / length_m;
     let (note, doubt) = CURVED;
     if part < note {
         return None;
     }
     let text = format!(
-        "the nodes leave a straight line in plan by {:.2} m, {:.1} % of its length: a curved girder is answered as a straight one, \
-         with wind square to its chord and motions along the same axes everywhere",
-        line.farthest_m,
+        "the nodes leave a straight line in plan by {farthest_m:.2} m, {:.1} % of its length: a curved girder is answered as a straight \
+         one, with wind square to its chord and motions along the same axes everywhere",
         100.0 * part
     );
     let found = Finding::doubt(FindingKind::Axes, "nodes", text);
-    Some(if part < doubt {
-        found.into_note()
-    } else {
-        found
-    })
-}
-
-/// Nodes against the straight line from the first to the last.
-struct Straight {
-    slope: f64,
-    /// Greatest distance of a node from it, m.
-    farthest_m: f64,
-}
-
-/// The chord: unlike a regression it is the same however dense the nodes are.
-fn straight(along: &[f64], off: Vec<f64>) -> Straight {
-    let (Some((a0, a1)), Some((o0, o1))) = (ends(along), ends(&off)) else {
-        return Straight {
-            slope: 0.0,
-            farthest_m: 0.0,
-        };
-    };
-    let slope = (o1 - o0) / (a1 - a0);
-    let square = slope.mul_add(slope, 1.0).sqrt();
-    let distance = |(a, o): (&f64, &f64)| (o - o0 - slope * (a - a0)).abs() / square;
-    let farthest_m = along.iter().zip(&off).map(distance).fold(0.0, f64::max);
-    Straight { slope, farthest_m }
-}
-
-fn ends(values: &[f64]) -> Option<(f64, f64)> {
-    Some((*values.first()?, *values.last()?))
+    Some(found.into_note_if(part < doubt))
 }

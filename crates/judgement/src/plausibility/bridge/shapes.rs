@@ -27,7 +27,7 @@ pub(super) fn of_shapes(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
     found.into_iter().flatten().collect()
 }
 
-fn contradiction(place: impl Into<String>, text: String) -> Finding {
+fn contradiction(place: impl Into<String>, text: impl Into<String>) -> Finding {
     Finding::doubt(FindingKind::Contradiction, place, text)
 }
 
@@ -113,7 +113,7 @@ fn cut(bridge: &Bridge, length_m: f64) -> Option<Finding> {
             })
     };
     let mode = bridge.modes.iter().find(is_cut)?;
-    let text = "it ends at the last node of the girder level and where it moves most".to_owned();
+    let text = "it ends at the last node of the girder level and where it moves most";
     let otherwise = "are these the nodes of half a girder, with masses of the whole?".to_owned();
     Some(contradiction(place(mode), text).otherwise(otherwise))
 }
@@ -123,19 +123,15 @@ pub(super) fn place(mode: &BridgeMode) -> String {
 }
 
 pub(super) fn greatest(mode: &BridgeMode, motion: usize) -> f64 {
-    mode.shape
-        .iter()
-        .map(|s| s[motion].abs())
-        .fold(0.0, f64::max)
+    let sizes = mode.shape.iter().map(|s| s[motion].abs());
+    sizes.fold(0.0, f64::max)
 }
 
 /// Half waves of one motion over the whole girder.
 pub(super) fn half_waves(mode: &BridgeMode, motion: usize) -> usize {
     let least = 0.05 * greatest(mode, motion);
     let values = mode.shape.iter().map(|s| s[motion]);
-    let signs: Vec<bool> = values
-        .filter(|s| s.abs() > least)
-        .map(|s| s > 0.0)
-        .collect();
+    let large = values.filter(|s| s.abs() > least);
+    let signs: Vec<bool> = large.map(|s| s > 0.0).collect();
     1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }

@@ -49,7 +49,9 @@ fn of_times(modes: &[BridgeMode], figures: &TurbulenceFigures) -> Option<Finding
         .iter()
         .min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz))?;
     let (number, period_s) = (slowest.number, slowest.frequency_hz.recip());
-    let (step_s, duration_s) = (figures.step_s, figures.duration_s);
+    let &TurbulenceFigures {
+        step_s, duration_s, ..
+    } = figures;
     if step_s * SAMPLES_PER_PERIOD > period_s {
         let text = format!(
             "a period of mode {number}, the slowest, is {} s: gusts that far apart do not move it as they would",

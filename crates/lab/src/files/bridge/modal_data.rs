@@ -3,7 +3,7 @@
 use super::axes::MotionDirections;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result, ensure};
-use crate::plausibility::{Finding, FindingKind, Girder, of_modes};
+use crate::plausibility::{Finding, FindingKind, of_modes};
 
 /// Name of each node, and its place in x, y, z of the program, m.
 pub(super) type PlacedNodes = Vec<(String, [f64; 3])>;
@@ -139,11 +139,7 @@ impl BridgeModes {
 
     /// What is odd about them.
     pub fn findings(&self) -> Vec<Finding> {
-        let mut findings = of_modes(&Girder {
-            nodes: &self.nodes,
-            offsets_m: &self.offsets_m,
-            modes: &self.modes,
-        });
+        let mut findings = of_modes(&self.nodes, &self.offsets_m, &self.modes);
         if let (true, [first, .., last]) = (self.reversed, &self.nodes[..]) {
             let text = format!(
                 "taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
