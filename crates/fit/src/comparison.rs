@@ -69,17 +69,15 @@ impl<'a> SignalPair<'a> {
         ensure(
             reference.len() == compared.len(),
             "compared signal",
-            format_args!(
-                "{}, as in the reference",
-                counted(reference.len(), "sample")
-            ),
+            counted(reference.len(), "sample") + ", as in the reference",
             counted(compared.len(), "sample"),
         )?;
+        let samples = counted(reference.len(), "sample");
         ensure(
             reference.len() >= 2,
             "reference signal",
             "at least 2 samples",
-            counted(reference.len(), "sample"),
+            samples,
         )?;
         check_finite("reference signal", 0, reference)?;
         check_finite("compared signal", 0, compared)?;

@@ -34,6 +34,7 @@ pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints,
 };
 pub use entry_report::{Coefficient, EntryReport};
+pub(crate) use fit::sources;
 pub use fit::{FitOptions, fit};
 pub use form::{FeedThrough, Form, LEAST_CHOSEN, MOST_CHOSEN, PoleSearch};
 pub use frequency::fit_table;

@@ -50,12 +50,8 @@ pub fn rms(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
 /// # Errors
 /// [`crate::Error::Input`] if the reference is zero throughout, [`crate::Error::Numerical`] if a square overflows.
 pub fn magnitude(pair: &SignalPair<'_>) -> Result<Metric<DistanceDetails>> {
-    distance_metric(
-        pair.reference()
-            .iter()
-            .copied()
-            .zip(pair.compared().iter().copied()),
-    )
+    let compared = pair.compared().iter().copied();
+    distance_metric(pair.reference().iter().copied().zip(compared))
 }
 
 /// `exp(−‖X₁ − X₂‖₂/‖X₁‖₂)` over the pairs `(X₁, X₂)` handed in.
@@ -91,11 +87,10 @@ pub(super) fn content_metric(
             reference_norm: 0.0,
         },
     };
-    let (first, second) = (
+    match (
         pairs.clone().any(|p| p.0 > 0.0),
         pairs.clone().any(|p| p.1 > 0.0),
-    );
-    match (first, second) {
+    ) {
         (true, true) => distance_metric(pairs),
         (false, false) => Ok(nothing(1.0)),
         _ => Ok(nothing(0.0)),
@@ -144,11 +139,8 @@ pub fn magnitude_warped(
     band_samples: Option<usize>,
 ) -> Result<Metric<WarpingDetails>> {
     let path = warping_path(pair.compared(), pair.reference(), band_samples)?;
-    let matched = path
-        .cells
-        .iter()
-        .map(|&(i, j)| (pair.reference()[j], pair.compared()[i]));
-    let metric = distance_metric(matched)?;
+    let cells = path.cells.iter();
+    let metric = distance_metric(cells.map(|&(i, j)| (pair.reference()[j], pair.compared()[i])))?;
     let shift = path.cells.iter().map(|&(i, j)| i.abs_diff(j)).max();
     Ok(Metric {
         value: metric.value,

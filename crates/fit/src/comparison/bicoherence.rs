@@ -87,22 +87,18 @@ pub fn bicoherence(
     let plane = Plane::new(pair, parameters)?;
     let [first, second] =
         [pair.reference(), pair.compared()].map(|signal| plane.thresholded(signal, parameters));
-    let couplings: Vec<Coupling> = plane
-        .cells()
-        .zip(first.0.iter().zip(&second.0))
-        .filter(|(_, (a, b))| **a > 0.0 || **b > 0.0)
-        .map(|((i, j), (&reference, &compared))| Coupling {
-            first_hz: plane.single.frequency_hz(i),
-            second_hz: plane.single.frequency_hz(j),
-            reference,
-            compared,
-        })
-        .collect();
-    let roots = couplings
-        .iter()
-        .map(|c| (c.reference.sqrt(), c.compared.sqrt()));
+    let both = plane.cells().zip(first.0.iter().zip(&second.0));
+    let coupled = both.filter(|(_, (a, b))| **a > 0.0 || **b > 0.0);
+    let coupling = |((i, j), (&reference, &compared)): ((_, _), (&_, &_))| Coupling {
+        first_hz: plane.single.frequency_hz(i),
+        second_hz: plane.single.frequency_hz(j),
+        reference,
+        compared,
+    };
+    let couplings: Vec<Coupling> = coupled.map(coupling).collect();
+    let root = |c: &Coupling| (c.reference.sqrt(), c.compared.sqrt());
     Ok(Metric {
-        value: content_metric(roots)?.value,
+        value: content_metric(couplings.iter().map(root))?.value,
         details: BicoherenceDetails {
             couplings,
             thresholds: [first.1, second.1],
@@ -114,18 +110,10 @@ fn check(parameters: &BicoherenceParameters) -> Result<()> {
     non_negative("randomisation of the biphase", parameters.randomisation)?;
     non_negative("threshold of coupling", parameters.threshold_deviations)?;
     let smallest = positive("smallest biphase, rad", parameters.smallest_biphase_rad)?;
-    ensure(
-        smallest < PI,
-        "smallest biphase, rad",
-        "a number below π",
-        smallest,
-    )?;
-    ensure(
-        parameters.surrogate_count >= 2,
-        "number of surrogates",
-        "at least 2",
-        parameters.surrogate_count,
-    )
+    let below = "a number below π";
+    ensure(smallest < PI, "smallest biphase, rad", below, smallest)?;
+    let count = parameters.surrogate_count;
+    ensure(count >= 2, "number of surrogates", "at least 2", count)
 }
 
 /// The plane of frequency pairs and what all pairs share.
@@ -158,9 +146,8 @@ impl Plane {
         // Also checks the parameters as given.
         let whole = Morlet::new(&parameters.wavelet, count, step)?;
         let half_hz = 0.5 * parameters.wavelet.frequency_max_hz;
-        let level_count = (0..whole.level_count())
-            .take_while(|&level| whole.frequency_hz(level) <= half_hz)
-            .count();
+        let low = |&level: &usize| whole.frequency_hz(level) <= half_hz;
+        let level_count = (0..whole.level_count()).take_while(low).count();
         ensure(
             level_count != 0,
             "highest wavelet frequency, Hz",
@@ -175,19 +162,16 @@ impl Plane {
             ..parameters.wavelet
         };
         let (randomised, _) = factors(parameters, 0, count);
+        let turns = randomised.iter().map(|r| Complex64::cis(-TAU * r));
         let streams = 1..=parameters.surrogate_count as u64;
         let columns = streams.flat_map(|stream| surrogate(parameters, stream, count));
-        let columns = columns.collect();
         Ok(Self {
             single: Morlet::new(&grid(level_count, lowest), count, step)?,
             sums: Morlet::new(&grid(2 * level_count - 1, 2.0 * lowest), count, step)?,
             time_step_s: step,
-            turns: randomised
-                .iter()
-                .map(|r| Complex64::cis(-TAU * r))
-                .collect(),
+            turns: turns.collect(),
+            surrogates: DMatrix::from_vec(count, 2 * parameters.surrogate_count, columns.collect()),
             factors: randomised,
-            surrogates: DMatrix::from_vec(count, 2 * parameters.surrogate_count, columns),
         })
     }
 
@@ -199,20 +183,14 @@ impl Plane {
 
     /// `B` of all pairs, zero where it is not above the threshold, and the threshold.
     fn thresholded(&self, signal: &[f64], parameters: &BicoherenceParameters) -> (Vec<f64>, f64) {
-        let (single, sums) = (
-            self.rows(&self.single, signal),
-            self.rows(&self.sums, signal),
-        );
+        let [single, sums] = [&self.single, &self.sums].map(|plan| self.rows(plan, signal));
         let values = threads::numbered(single.len(), true, |i| {
             self.bispectra(i, &single[i..], &sums[2 * i..], parameters)
         });
         let values = values.concat();
         let threshold = values.iter().fold(0.0_f64, |m, v| m.max(v[1]));
-        let kept = values
-            .iter()
-            .map(|v| if v[0] > threshold { v[0] } else { 0.0 })
-            .collect();
-        (kept, threshold)
+        let kept = |v: &[f64; 2]| if v[0] > threshold { v[0] } else { 0.0 };
+        (values.iter().map(kept).collect(), threshold)
     }
 
     /// All levels of a signal.
@@ -259,10 +237,8 @@ impl Plane {
         let levels = sums.row_iter().map(|row| {
             let parts: Vec<f64> = row.iter().copied().collect();
             let (pairs, _) = parts.as_chunks::<2>();
-            let roots = pairs
-                .iter()
-                .map(|[re, im]| re.hypot(*im) * self.time_step_s);
-            let (mean, deviation) = mean_and_deviation(roots);
+            let root = |[re, im]: &[f64; 2]| re.hypot(*im) * self.time_step_s;
+            let (mean, deviation) = mean_and_deviation(pairs.iter().map(root));
             (mean + parameters.threshold_deviations * deviation).powi(2)
         });
         let own = pairs().map(|(b, c)| {
@@ -295,10 +271,8 @@ fn factors(parameters: &BicoherenceParameters, stream: u64, count: usize) -> (Ve
     let mut random = random_stream(parameters.seed, stream);
     let modulus = random.random_range(parameters.smallest_biphase_rad..PI);
     let biphase = if random.random() { modulus } else { -modulus };
-    let factors = (0..count)
-        .map(|_| parameters.randomisation * random.random_range(-1.0..=1.0))
-        .collect();
-    (factors, biphase)
+    let factor = |_| parameters.randomisation * random.random_range(-1.0..=1.0);
+    ((0..count).map(factor).collect(), biphase)
 }
 
 /// `e^{iφ(1 + R(t))}`: all real parts, then all imaginary ones.

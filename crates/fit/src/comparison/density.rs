@@ -44,11 +44,8 @@ pub fn probability_density(
     let (low, high) = extremes(first.iter().chain(&second).copied());
     let step = (high - low) / POINTS as f64;
     let [(reference, own), (compared, other)] = [&first, &second].map(|x| density(x, [low, high]));
-    let overlap: f64 = reference
-        .iter()
-        .zip(&compared)
-        .map(|(p, q)| (p * q).sqrt() * step)
-        .sum();
+    let both = reference.iter().zip(&compared);
+    let overlap: f64 = both.map(|(p, q)| (p * q).sqrt() * step).sum();
     Ok(Metric {
         value: overlap.min(1.0),
         details: DensityDetails {
@@ -77,10 +74,9 @@ fn values(place: &str, signal: &[f64], standard_score: bool) -> Result<Vec<f64>>
             "{place}: the variance is too large for double precision"
         )));
     }
-    Ok(if standard_score {
-        signal.iter().map(|x| (x - mean) / deviation).collect()
-    } else {
-        signal.to_vec()
+    Ok(match standard_score {
+        true => signal.iter().map(|x| (x - mean) / deviation).collect(),
+        false => signal.to_vec(),
     })
 }
 
@@ -127,10 +123,8 @@ const SAME_VALUE: f64 = 1e-9;
 fn distinct(sample: &[f64]) -> usize {
     let mut sorted = sample.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let range = sorted
-        .last()
-        .zip(sorted.first())
-        .map_or(0.0, |(b, a)| b - a);
+    let ends = sorted.last().zip(sorted.first());
+    let range = ends.map_or(0.0, |(b, a)| b - a);
     // from the first of a run, so that steps below the tolerance do not add up to one value
     sorted.dedup_by(|next, kept| *next - *kept <= SAME_VALUE * range);
     sorted.len()
@@ -140,11 +134,10 @@ fn distinct(sample: &[f64]) -> usize {
 fn cosine_transform(p: &[f64]) -> Vec<f64> {
     let n = p.len();
     let spectrum = Fourier::new(2 * n).spectrum(p.iter().chain(p.iter().rev()).copied());
-    let mut coefficients: Vec<f64> = spectrum[..n]
-        .iter()
-        .enumerate()
-        .map(|(k, z)| (z * Complex64::from_polar(1.0, -PI * k as f64 / (2 * n) as f64)).re)
-        .collect();
+    let turned = |(k, z): (usize, &Complex64)| {
+        (z * Complex64::from_polar(1.0, -PI * k as f64 / (2 * n) as f64)).re
+    };
+    let mut coefficients: Vec<f64> = spectrum[..n].iter().enumerate().map(turned).collect();
     coefficients[0] *= 0.5;
     coefficients
 }
@@ -163,15 +156,11 @@ fn cosine_sum(a: &[f64]) -> Vec<f64> {
 /// `‖f⁽ˢ⁾‖²` of the density smoothed for `time`, on a range of 1:
 /// `2 π^(2s) Σ k^(2s) (a_k/2)² exp(−k²π²t)`.
 fn squared_norm(a: &[f64], derivative: i32, time: f64) -> f64 {
-    let sum: f64 = a
-        .iter()
-        .enumerate()
-        .skip(1)
-        .map(|(k, a)| {
-            let k2 = (k * k) as f64;
-            k2.powi(derivative) * (0.5 * a).powi(2) * (-k2 * PI * PI * time).exp()
-        })
-        .sum();
+    let term = |(k, a): (usize, &f64)| {
+        let k2 = (k * k) as f64;
+        k2.powi(derivative) * (0.5 * a).powi(2) * (-k2 * PI * PI * time).exp()
+    };
+    let sum: f64 = a.iter().enumerate().skip(1).map(term).sum();
     2.0 * PI.powi(2 * derivative) * sum
 }
 
@@ -203,10 +192,9 @@ fn diffusion_time(a: &[f64], count: f64) -> f64 {
     let mut low = 0.0;
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
-        if positive(middle) {
-            high = middle;
-        } else {
-            low = middle;
+        match positive(middle) {
+            true => high = middle,
+            false => low = middle,
         }
     }
     0.5 * (low + high)

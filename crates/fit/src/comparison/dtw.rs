@@ -45,15 +45,9 @@ pub fn warping_path(
         format_args!("{} and {} samples", compared.len(), reference.len()),
     )?;
     let excess = compared.len().abs_diff(reference.len());
-    if let Some(width) = band
-        && width < excess
-    {
-        return Err(Error::input(
-            "warping band, samples",
-            format!("at least {excess}, the difference of the lengths"),
-            width.to_string(),
-        ));
-    }
+    let width = band.unwrap_or(usize::MAX);
+    let expected = format_args!("at least {excess}, the difference of the lengths");
+    ensure(width >= excess, "warping band, samples", expected, width)?;
     CostMatrix::new(compared, reference, band).path(INTERVAL)
 }
 
@@ -74,10 +68,9 @@ struct Antidiagonal {
 
 impl Antidiagonal {
     fn at(&self, row: isize) -> f64 {
-        usize::try_from(row - self.first_row)
-            .ok()
-            .and_then(|k| self.values.get(k).copied())
-            .unwrap_or(f64::INFINITY)
+        let place = usize::try_from(row - self.first_row).ok();
+        let value = place.and_then(|k| self.values.get(k).copied());
+        value.unwrap_or(f64::INFINITY)
     }
 }
 
@@ -146,13 +139,11 @@ impl<'a> CostMatrix<'a> {
             ));
         }
         let cells = self.backtrack(checkpoints);
-        let band_binds = self
-            .band
-            .is_some_and(|r| cells.iter().any(|&(i, j)| i.abs_diff(j) as isize == r));
+        let touches = |r| cells.iter().any(|&(i, j)| i.abs_diff(j) as isize == r);
         Ok(WarpingPath {
             distance,
+            band_binds: self.band.is_some_and(touches),
             cells,
-            band_binds,
         })
     }
 
@@ -203,12 +194,10 @@ impl<'a> CostMatrix<'a> {
             if d < 0 {
                 return Antidiagonal::default();
             }
-            let (first, end) = self.row_range(d);
-            let values = (first..=end).map(|row| buffer[row as usize + 1]).collect();
-            Antidiagonal {
-                first_row: first,
-                values,
-            }
+            let (first_row, end) = self.row_range(d);
+            let values = (first_row..=end).map(|row| buffer[row as usize + 1]);
+            let values = values.collect();
+            Antidiagonal { first_row, values }
         };
         (index, [keep(index, last), keep(index - 1, before)])
     }

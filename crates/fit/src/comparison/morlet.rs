@@ -1,9 +1,8 @@
 //! Continuous Morlet transform on chosen frequencies.
 
-use crate::error::{Result, ensure, positive};
+use crate::error::{Result, ensure, non_negative, positive};
 use crate::signal::{Complex64, Fourier};
-use aerodeck_core::threads;
-use aerodeck_core::vectorised;
+use aerodeck_core::{threads, vectorised};
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use std::ops::Range;
@@ -97,13 +96,11 @@ impl Morlet {
             let transform = transform.unwrap_or_else(|| Arc::new(Fourier::new(length)));
             plan.fourier.push(transform);
         }
+        let highest_hz = parameters.frequency_max_hz;
         ensure(
             !plan.inside(plan.level_count() - 1).is_empty(),
             "signals for the wavelet transform",
-            format_args!(
-                "a record longer than twice the cone at {} Hz",
-                parameters.frequency_max_hz
-            ),
+            format_args!("a record longer than twice the cone at {highest_hz} Hz"),
             format_args!("{} s", sample_count as f64 * time_step_s),
         )?;
         Ok(plan)
@@ -121,8 +118,7 @@ impl Morlet {
 
     /// Frequency of a level, Hz.
     pub(super) fn frequency_hz(&self, level: usize) -> f64 {
-        let p = &self.parameters;
-        p.frequency_min_hz + level as f64 * self.frequency_step_hz()
+        self.parameters.frequency_min_hz + level as f64 * self.frequency_step_hz()
     }
 
     /// Distance of the frequencies, Hz.
@@ -249,7 +245,7 @@ fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
     positive("lowest wavelet frequency, Hz", p.frequency_min_hz)?;
     positive("central frequency of the wavelet", p.central_frequency)?;
     positive("truncation of the wavelet", p.truncation)?;
-    crate::error::non_negative("cone of influence of the wavelet", p.cone)?;
+    non_negative("cone of influence of the wavelet", p.cone)?;
     let nyquist = 0.5 / time_step_s;
     ensure(
         p.frequency_max_hz >= p.frequency_min_hz && p.frequency_max_hz <= nyquist,

@@ -118,10 +118,9 @@ fn climb(correlation: &dyn Fn(isize) -> f64, start: isize, reach: isize) -> Resu
     let magnitude = |lag: isize| correlation(lag).abs();
     let mut lag = start;
     loop {
-        let next = if magnitude(lag + 1) > magnitude(lag - 1) {
-            lag + 1
-        } else {
-            lag - 1
+        let next = match magnitude(lag + 1) > magnitude(lag - 1) {
+            true => lag + 1,
+            false => lag - 1,
         };
         if magnitude(next) <= magnitude(lag) {
             return Ok(lag);
@@ -148,24 +147,20 @@ fn band_limited(correlation: &dyn Fn(isize) -> f64, top: isize) -> f64 {
         .map(|k| (k as f64, sign * correlation(top + k)))
         .collect();
     let interpolated = |offset: f64| -> f64 {
-        values
-            .iter()
-            .map(|(k, value)| {
-                let x = offset - k;
-                let window = (-0.5 * (x / WINDOW_SIGMA).powi(2)).exp();
-                value * window * sinc(x)
-            })
-            .sum()
+        let part = |(k, value): &(f64, f64)| {
+            let x = offset - k;
+            let window = (-0.5 * (x / WINDOW_SIGMA).powi(2)).exp();
+            // sin(πx)/(πx)
+            let sinc = if x == 0.0 {
+                1.0
+            } else {
+                (PI * x).sin() / (PI * x)
+            };
+            value * window * sinc
+        };
+        values.iter().map(part).sum()
     };
     top as f64 + place_of_maximum(interpolated, -1.0, 1.0)
-}
-
-/// `sin(πx)/(πx)`.
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 {
-        return 1.0;
-    }
-    (PI * x).sin() / (PI * x)
 }
 
 /// Place of the maximum of a function with one maximum between `low` and `high`.

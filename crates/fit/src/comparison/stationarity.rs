@@ -81,21 +81,17 @@ pub fn stationarity(
 ) -> Result<Metric<StationarityDetails>> {
     check(parameters)?;
     let plan = Morlet::new(&parameters.wavelet, pair.sample_count(), pair.time_step_s())?;
-    let signals = [
-        Surrogates::new(&plan, pair.reference(), parameters),
-        Surrogates::new(&plan, pair.compared(), parameters),
-    ];
+    let signals = [pair.reference(), pair.compared()]
+        .map(|signal| Surrogates::new(&plan, signal, parameters));
     let reference = signals[0].test("reference signal", parameters)?;
     let compared = signals[1].test("compared signal", parameters)?;
-    let mut content = None;
-    let value = match (reference.stationary, compared.stationary) {
-        (true, true) => 1.0,
+    let (value, content) = match (reference.stationary, compared.stationary) {
+        (true, true) => (1.0, None),
         (false, false) => {
             let metric = of_contents(&plan, &signals)?;
-            content = Some(metric.details);
-            metric.value
+            (metric.value, Some(metric.details))
         }
-        _ => 0.0,
+        _ => (0.0, None),
     };
     Ok(Metric {
         value,
@@ -108,23 +104,17 @@ pub fn stationarity(
 }
 
 fn check(parameters: &StationarityParameters) -> Result<()> {
+    let count = parameters.surrogate_count;
+    ensure(count >= 2, "number of surrogates", "at least 2", count)?;
+    let confidence = parameters.confidence;
     ensure(
-        parameters.surrogate_count >= 2,
-        "number of surrogates",
-        "at least 2",
-        parameters.surrogate_count,
-    )?;
-    ensure(
-        parameters.confidence > 0.0 && parameters.confidence < 1.0,
+        confidence > 0.0 && confidence < 1.0,
         "confidence of the stationarity test",
         "a number between 0 and 1",
-        parameters.confidence,
+        confidence,
     )?;
-    non_negative(
-        "threshold of non-stationary content",
-        parameters.threshold_deviations,
-    )?;
-    Ok(())
+    let threshold = parameters.threshold_deviations;
+    non_negative("threshold of non-stationary content", threshold).map(drop)
 }
 
 /// Surrogates that one thread takes at a time.
@@ -218,7 +208,7 @@ impl<'a> Surrogates<'a> {
 /// The wavelet metric of the non-stationary content.
 fn of_contents(plan: &Morlet, signals: &[Surrogates<'_>; 2]) -> Result<Metric<DistanceDetails>> {
     let groups = plan.by_groups(|group| {
-        let [first, second] = [&signals[0], &signals[1]].map(|s| s.content(plan, &group));
+        let [first, second] = signals.each_ref().map(|s| s.content(plan, &group));
         let pairs = first.into_iter().zip(second);
         pairs.filter(|p| *p != (0.0, 0.0)).collect::<Vec<_>>()
     });

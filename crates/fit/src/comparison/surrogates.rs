@@ -12,18 +12,17 @@ pub(super) fn phase_randomised(signal: &[f64], count: usize, seed: u64) -> Vec<V
     let n = signal.len();
     let fourier = Fourier::new(n);
     let spectrum = fourier.spectrum(signal.iter().copied());
-    (0..count)
-        .map(|index| {
-            let mut random = random_stream(seed, index as u64);
-            let mut buffer = spectrum.clone();
-            for k in 1..n / 2 {
-                let phase = random.random_range(0.0..TAU);
-                buffer[k] = Complex64::from_polar(spectrum[k].norm(), phase);
-                buffer[n - k] = buffer[k].conj();
-            }
-            fourier.sums(buffer).iter().map(|x| x / n as f64).collect()
-        })
-        .collect()
+    let drawn = |index| {
+        let mut random = random_stream(seed, index as u64);
+        let mut buffer = spectrum.clone();
+        for k in 1..n / 2 {
+            let phase = random.random_range(0.0..TAU);
+            buffer[k] = Complex64::from_polar(spectrum[k].norm(), phase);
+            buffer[n - k] = buffer[k].conj();
+        }
+        fourier.sums(buffer).iter().map(|x| x / n as f64).collect()
+    };
+    (0..count).map(drawn).collect()
 }
 
 /// Shape and scale of a gamma distribution.

@@ -68,12 +68,9 @@ pub fn wavelet_normalised(
         },
         |a, b| [a[0] + b[0], a[1] + b[1]],
     );
-    let columns: Vec<(usize, f64)> = sums
-        .iter()
-        .enumerate()
-        .filter(|(_, sum)| sum[1] > 0.0)
-        .map(|(sample, sum)| (sample, (sum[0] / sum[1]).sqrt()))
-        .collect();
+    let known = sums.iter().enumerate().filter(|(_, sum)| sum[1] > 0.0);
+    let relative = known.map(|(sample, sum)| (sample, (sum[0] / sum[1]).sqrt()));
+    let columns: Vec<(usize, f64)> = relative.collect();
     if columns.is_empty() {
         return Err(zero_signal("reference signal"));
     }

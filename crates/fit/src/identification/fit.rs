@@ -61,6 +61,7 @@ impl<R: RecordSource> FitOptions<[R]> for DiscreteFit {
     }
 }
 
-fn sources<R: RecordSource>(records: &[R]) -> Vec<&dyn RecordSource> {
+/// Records as the fits take them.
+pub(crate) fn sources<R: RecordSource>(records: &[R]) -> Vec<&dyn RecordSource> {
     records.iter().map(|r| r as &dyn RecordSource).collect()
 }

@@ -6,7 +6,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::section::SectionModel;
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
+use crate::wind_tunnel::{Record, TunnelPlan};
 
 /// A fit to a table by least squares alone, for what is to be recovered exactly or was computed so.
 pub(crate) fn table_alone() -> FrequencyFit {
@@ -83,9 +83,4 @@ pub(super) fn records(
         ..TunnelPlan::default()
     };
     plan.records_from_model(model, "test", 0.5).unwrap()
-}
-
-/// Records as the fits take them.
-pub(super) fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
-    records.iter().map(|r| r as &dyn RecordSource).collect()
 }

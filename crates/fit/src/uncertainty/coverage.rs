@@ -15,12 +15,12 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::samples::part_of;
-use crate::identification::{Fitted, fit_records};
+use crate::identification::{Fitted, fit_records, sources};
 use crate::numbered::{OnDone, numbered};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::signal::random_stream;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
+use crate::wind_tunnel::{Record, TunnelPlan};
 use nalgebra::Complex;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -130,7 +130,7 @@ impl<'a> KnownDeck<'a> {
         &self,
         records: &[Record],
     ) -> Result<(CoefficientUncertainty, Option<Onset>, ReducedFrequencyRange)> {
-        let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+        let sources = sources(records);
         let fit = self.plan.time_fit();
         let Fitted { model, report } = fit_records(&sources, &fit, &|_| ())?;
         let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ())?;

@@ -52,30 +52,27 @@ pub fn compare_decks(options: &CompareOptions, progress: OnDone<'_>) -> Result<D
     let teacher = options.trained_on.as_ref();
     let teacher = teacher.map(|name| train(&TestedDeck::new(name, options)?));
     let teacher = teacher.transpose()?;
-    let mut decks = Vec::with_capacity(options.decks.len());
-    for name in &options.decks {
+    let trained = |name: &String| {
         let deck = TestedDeck::new(name, options)?;
-        let trained = match &teacher {
-            Some(teacher) => teacher.clone(),
-            None => train(&deck)?,
-        };
-        decks.push((deck, trained));
-    }
-    let name = options.laguerre_name();
-    let trials: Vec<ModelOnRecord<'_>> = decks
+        let by = teacher.clone().map_or_else(|| train(&deck), Ok)?;
+        Ok((deck, by))
+    };
+    let decks = options
+        .decks
         .iter()
-        .flat_map(|(deck, ((trained_on, speed_m_s), fitted))| {
-            let name = &name;
-            deck.records.iter().map(move |record| ModelOnRecord {
-                deck,
-                record,
-                name,
-                model: &fitted.model,
-                held_out: *trained_on != deck.table.name
-                    || *speed_m_s != record.header.mean_speed_m_s,
-            })
-        })
-        .collect();
+        .map(trained)
+        .collect::<Result<Vec<_>>>()?;
+    let name = &options.laguerre_name();
+    let mut trials = Vec::new();
+    for (deck, ((trained_on, speed_m_s), fitted)) in &decks {
+        trials.extend(deck.records.iter().map(|record| ModelOnRecord {
+            deck,
+            record,
+            name,
+            model: &fitted.model,
+            held_out: *trained_on != deck.table.name || *speed_m_s != record.header.mean_speed_m_s,
+        }));
+    }
     let outcomes = numbered(trials.len(), progress, |at| trials[at].run(options))?;
     let scores: Vec<Score> = outcomes.into_iter().flat_map(|(_, s)| s).collect();
     let scores_of = |(deck, (trained_on, fitted)): (TestedDeck, (_, Fitted))| TestedDeckScores {

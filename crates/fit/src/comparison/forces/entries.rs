@@ -39,6 +39,13 @@ pub struct PerModel<P> {
     pub points: Vec<P>,
 }
 
+impl<P> PerModel<P> {
+    fn new(model: &str, points: Vec<P>) -> Self {
+        let model = model.to_owned();
+        Self { model, points }
+    }
+}
+
 /// One transfer function.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EntryComparison {
@@ -80,12 +87,8 @@ impl EntryComparison {
     pub fn describe(&self, model: usize) -> String {
         let points = &self.models[model].points;
         let count = |f: fn(&(f64, f64)) -> bool| points.iter().filter(|p| f(p)).count();
-        let worst = |f: fn(&(f64, f64)) -> f64| {
-            points
-                .iter()
-                .map(f)
-                .fold(0.0_f64, |w, x| if x.abs() > w.abs() { x } else { w })
-        };
+        let larger = |w: f64, x: f64| if x.abs() > w.abs() { x } else { w };
+        let worst = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).fold(0.0, larger);
         format!(
             "magnitude within ±15 % at {} of {} (worst {:+.0} %), phase within ±5° at {} (worst {:+.1}°)",
             count(|p| in_magnitude_band(p.0)),
@@ -110,42 +113,34 @@ pub(super) fn compare_entries(
             let measured = measured(group, force, motion);
             let hz = |k: ReducedFrequency| k.circular(group.width_m, speed_m_s) / TAU;
             let mut phase_deg = 0.0;
-            let points: Vec<TestPoint> = measured
-                .iter()
-                .map(|(k, g)| {
-                    phase_deg = unwrapped(g.arg().to_degrees(), phase_deg);
-                    TestPoint {
-                        frequency_hz: hz(*k),
-                        k: k.full_width(),
-                        magnitude: g.norm(),
-                        phase_deg,
-                    }
-                })
-                .collect();
-            let mut comparison = EntryComparison {
+            let point = |(k, g): &(ReducedFrequency, Complex<f64>)| {
+                phase_deg = unwrapped(g.arg().to_degrees(), phase_deg);
+                TestPoint {
+                    frequency_hz: hz(*k),
+                    k: k.full_width(),
+                    magnitude: g.norm(),
+                    phase_deg,
+                }
+            };
+            let points: Vec<TestPoint> = measured.iter().map(point).collect();
+            let (mut of_models, mut curves) = (Vec::new(), Vec::new());
+            for (name, model) in models {
+                let at = |k| Ok::<_, crate::Error>(model.transfer(k)?[(i, j)]);
+                let deviation = |(k, g): &(ReducedFrequency, Complex<f64>)| {
+                    let ratio = at(*k)? / g;
+                    Ok((100.0 * (ratio.norm() - 1.0), ratio.arg().to_degrees()))
+                };
+                let deviations = measured.iter().map(deviation).collect::<Result<_>>()?;
+                of_models.push(PerModel::new(name, deviations));
+                curves.push(PerModel::new(name, curve(&points, &hz, &at)?));
+            }
+            all.push(EntryComparison {
                 force,
                 motion,
                 points,
-                models: Vec::new(),
-                curves: Vec::new(),
-            };
-            for (name, model) in models {
-                let at = |k| Ok::<_, crate::Error>(model.transfer(k)?[(i, j)]);
-                let mut deviations = Vec::with_capacity(measured.len());
-                for (k, g) in &measured {
-                    let ratio = at(*k)? / g;
-                    deviations.push((100.0 * (ratio.norm() - 1.0), ratio.arg().to_degrees()));
-                }
-                comparison.models.push(PerModel {
-                    model: name.clone(),
-                    points: deviations,
-                });
-                comparison.curves.push(PerModel {
-                    model: name.clone(),
-                    points: curve(&comparison.points, &hz, &at)?,
-                });
-            }
-            all.push(comparison);
+                models: of_models,
+                curves,
+            });
         }
     }
     Ok(all)
@@ -159,17 +154,13 @@ fn measured(
 ) -> Vec<(ReducedFrequency, Complex<f64>)> {
     let part = |p| group.points(Derivative::from_entry(force, motion, p));
     let value = |p: &DerivativePoint| p.value * p.k().full_width().powi(2);
-    let mut all: Vec<_> = part(Part::Real)
-        .iter()
-        .zip(part(Part::Imaginary))
-        .map(|(re, im)| {
-            let k = 0.5 * (re.k().full_width() + im.k().full_width());
-            (
-                ReducedFrequency::from_full_width(k),
-                Complex::new(value(re), value(im)),
-            )
-        })
-        .collect();
+    let both = part(Part::Real).iter().zip(part(Part::Imaginary));
+    let entry = |(re, im): (&DerivativePoint, &DerivativePoint)| {
+        let k = 0.5 * (re.k().full_width() + im.k().full_width());
+        let k = ReducedFrequency::from_full_width(k);
+        (k, Complex::new(value(re), value(im)))
+    };
+    let mut all: Vec<_> = both.map(entry).collect();
     all.sort_by(|a, b| a.0.full_width().total_cmp(&b.0.full_width()));
     all
 }
@@ -184,15 +175,14 @@ fn curve(
         return Ok(Vec::new());
     };
     let mut phase_deg = first.phase_deg;
-    (0..CURVE_POINTS)
-        .map(|i| {
-            let part = i as f64 / (CURVE_POINTS as f64 - 1.0);
-            let k = ReducedFrequency::from_full_width(first.k + part * (last.k - first.k));
-            let g = at(k)?;
-            phase_deg = unwrapped(g.arg().to_degrees(), phase_deg);
-            Ok((hz(k), g.norm(), phase_deg))
-        })
-        .collect()
+    let point = |i| {
+        let part = i as f64 / (CURVE_POINTS as f64 - 1.0);
+        let k = ReducedFrequency::from_full_width(first.k + part * (last.k - first.k));
+        let g = at(k)?;
+        phase_deg = unwrapped(g.arg().to_degrees(), phase_deg);
+        Ok((hz(k), g.norm(), phase_deg))
+    };
+    (0..CURVE_POINTS).map(point).collect()
 }
 
 /// A phase in degrees without a jump from the last one.
@@ -212,11 +202,8 @@ pub(super) fn compare_derivatives(
         let (Some(i), Some(j)) = (place(derivative.force()), place(derivative.motion())) else {
             continue;
         };
-        let mut measured: Vec<(f64, f64)> = group
-            .points(derivative)
-            .iter()
-            .map(|p| (p.v_hat, p.value))
-            .collect();
+        let points = group.points(derivative).iter();
+        let mut measured: Vec<(f64, f64)> = points.map(|p| (p.v_hat, p.value)).collect();
         measured.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (Some(first), Some(last)) = (measured.first(), measured.last()) else {
             continue;

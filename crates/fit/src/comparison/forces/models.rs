@@ -84,21 +84,18 @@ pub struct ModelsComparison {
 /// one deck at one speed, and compares them with what was measured. `progress` hears how many of how many records are done.
 pub fn compare_models(options: &CompareOptions, progress: OnDone<'_>) -> Result<ModelsComparison> {
     let [name] = options.decks.as_slice() else {
-        return Err(Error::input(
-            "decks",
-            "one deck",
-            options.decks.len().to_string(),
-        ));
+        let found = options.decks.len().to_string();
+        return Err(Error::input("decks", "one deck", found));
     };
     let deck = TestedDeck::new(name, options)?;
     let speed = deck.training_speed_m_s();
     let group = deck.table.at_speed_group(deck.training_group)?;
     let (records, sources) = (deck.training_records(), deck.training());
     let fits = fits(options, &sources, &group.samples(&options.dofs))?;
-    let models: Vec<(String, &dyn Transfer)> = fits
-        .iter()
-        .map(|(name, fitted)| (name.clone(), &fitted.model as &dyn Transfer))
-        .collect();
+    let model = |(name, fitted): &(String, Fitted)| ComparedModel::new(name, &fitted.report);
+    let models = fits
+        .each_ref()
+        .map(|(name, f)| (name.clone(), &f.model as &dyn Transfer));
     let mut trials = Vec::with_capacity(fits.len() * records.len());
     for (name, fitted) in &fits {
         trials.extend(records.iter().map(|record| ModelOnRecord {
@@ -120,10 +117,7 @@ pub fn compare_models(options: &CompareOptions, progress: OnDone<'_>) -> Result<
         histories: histories(&deck, records, &predicted),
         summaries: summaries(&scores),
         statements: on_models(&entries, &scores),
-        models: fits
-            .iter()
-            .map(|(name, fitted)| rival(name, &fitted.report))
-            .collect(),
+        models: fits.iter().map(model).collect(),
         entries,
         scores,
         options: options.clone(),
@@ -149,14 +143,16 @@ fn fits(
     ])
 }
 
-fn rival(name: &str, report: &FitReport) -> ComparedModel {
-    let entry = report.entries.first();
-    ComparedModel {
-        name: name.to_owned(),
-        method: report.method.clone(),
-        coefficients: entry.map_or(0, |e| e.coefficients.len()),
-        poles: entry.map_or_else(Vec::new, |e| e.poles.clone()),
-        notes: report.notes.clone(),
+impl ComparedModel {
+    fn new(name: &str, report: &FitReport) -> Self {
+        let entry = report.entries.first();
+        Self {
+            name: name.to_owned(),
+            method: report.method.clone(),
+            coefficients: entry.map_or(0, |e| e.coefficients.len()),
+            poles: entry.map_or_else(Vec::new, |e| e.poles.clone()),
+            notes: report.notes.clone(),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Error, Result, positive};
 use crate::files::derivatives::embedded;
-use crate::identification::DiscreteFit;
+use crate::identification::{DiscreteFit, sources};
 use crate::section::Dof;
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
 use serde::{Deserialize, Serialize};
@@ -120,7 +120,6 @@ impl TestedDeck {
     }
 
     pub(super) fn training(&self) -> Vec<&dyn RecordSource> {
-        let records = self.training_records().iter();
-        records.map(|r| r as &dyn RecordSource).collect()
+        sources(self.training_records())
     }
 }

@@ -43,11 +43,9 @@ pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
         let mut worst: Option<(f64, f64)> = None;
         let of_force = || rotating().filter(|s| s.case.force == force);
         for one in of_force() {
-            let same =
-                of_force().filter(|s| (s.frequency_hz / one.frequency_hz - 1.0).abs() < 0.08);
-            let values: Vec<f64> = same.map(|s| s.metrics.values()[metric]).collect();
-            let high = values.iter().copied().fold(0.0, f64::max);
-            let low = values.iter().copied().fold(1.0, f64::min);
+            let near = |s: &&Score| (s.frequency_hz / one.frequency_hz - 1.0).abs() < 0.08;
+            let values = || of_force().filter(near).map(|s| s.metrics.values()[metric]);
+            let (low, high) = (values().fold(1.0, f64::min), values().fold(0.0, f64::max));
             if worst.is_none_or(|(w, _)| high - low > w) {
                 worst = Some((high - low, one.frequency_hz));
             }
@@ -102,17 +100,14 @@ pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<St
         });
     }
     if let Some(e) = entry(t, y) {
-        let beyond: Vec<String> = e
-            .points
-            .iter()
-            .zip(&e.models[0].points)
-            .filter(|(_, m)| !in_phase_band(m.1))
+        let beyond = e.points.iter().zip(&e.models[0].points);
+        let beyond = beyond.filter(|(_, m)| !in_phase_band(m.1));
+        let beyond: Vec<String> = beyond
             .map(|(p, _)| format!("{:.2}", p.frequency_hz))
             .collect();
-        let list = if beyond.is_empty() {
-            "none".into()
-        } else {
-            format!("{} Hz", beyond.join(", "))
+        let list = match beyond.is_empty() {
+            true => "none".into(),
+            false => format!("{} Hz", beyond.join(", ")),
         };
         statements.push(Statement {
             section: "3.5.5",
@@ -201,22 +196,17 @@ fn better(scores: &[Score]) -> Statement {
     models.dedup();
     let means = models.iter().map(|model| {
         let own: Vec<&Score> = scores.iter().filter(|s| s.case.model == *model).collect();
-        let mean = |m: usize| {
-            own.iter().map(|s| s.metrics.values()[m]).sum::<f64>() / own.len().max(1) as f64
-        };
-        format!(
-            "{model}: M_phi {:.3}, M_p {:.3}, M_mw {:.3}",
-            mean(0),
-            mean(1),
-            mean(4)
-        )
+        let sum = |m: usize| own.iter().map(|s| s.metrics.values()[m]).sum::<f64>();
+        let [phase, peak, warped] = [0, 1, 4].map(|m| sum(m) / own.len().max(1) as f64);
+        format!("{model}: M_phi {phase:.3}, M_p {peak:.3}, M_mw {warped:.3}")
     });
+    let means: Vec<String> = means.collect();
     Statement {
         section: "3.5.6",
         thesis: "both models have really similar capability in the time domain, with three coefficients a transfer function",
         here: format!(
             "means over motions, forces and frequencies: {}",
-            means.collect::<Vec<_>>().join("; ")
+            means.join("; ")
         ),
     }
 }

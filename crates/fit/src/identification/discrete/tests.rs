@@ -1,7 +1,8 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::files::derivatives::embedded;
-use crate::identification::testing::{onset_m_s, records, sources};
+use crate::identification::sources;
+use crate::identification::testing::{onset_m_s, records};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::TunnelPlan;
 

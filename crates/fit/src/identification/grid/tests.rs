@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::identification::testing::{records, records_alone, sources};
+use crate::identification::sources;
+use crate::identification::testing::{records, records_alone};
 use crate::identification::{
     DiscreteFit, FeedThrough, Fitted, PoleSearch, fit_discrete, fit_records,
 };

@@ -3,7 +3,8 @@
 use super::training::distance;
 use crate::aerodynamics::RationalModel;
 use crate::files::derivatives::embedded;
-use crate::identification::testing::{records_alone, sources, table_alone};
+use crate::identification::sources;
+use crate::identification::testing::{records_alone, table_alone};
 use crate::identification::{
     DiscreteFit, Fitted, Form, FrequencyFit, PoleSearch, StaticTerm, TimeFit, fit_discrete,
     fit_records, fit_table,

@@ -3,7 +3,8 @@
 use crate::aerodynamics::laguerre::{DiscreteTerm, impulse_response};
 use crate::aerodynamics::{DiscreteLaguerre, LaguerreModel, RationalModel, Transfer};
 use crate::files::derivatives::embedded;
-use crate::identification::testing::{records, records_alone, sources, table_alone};
+use crate::identification::sources;
+use crate::identification::testing::{records, records_alone, table_alone};
 use crate::identification::{
     DiscreteFit, FitReport, Fitted, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch,
     StaticTerm, TimeFit, fit_discrete, fit_records, fit_table,
