@@ -49,6 +49,13 @@ mod wrapping;
 
 pub use answer::Answer;
 
+// the vocabulary of every command
+use common::{StudyArgs, folder_of, in_input, motion_columns, speed_or, spelt, warn};
+use interrupt::{Temporary, uninterrupted};
+use output::{OutputDir, Written, list};
+use progress::Progress;
+use text_table::TextTable;
+
 use crate::error::{Error, Result};
 use answer::{FAILED, NOT_MET};
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser};
@@ -140,7 +147,7 @@ pub fn main() -> ExitCode {
         };
         let result = cli.answer();
         // a signal that is being obeyed ends the program with a code of its own
-        let _busy = interrupt::uninterrupted();
+        let _busy = uninterrupted();
         match result {
             Ok(answer) => print(&answer, cli.json),
             Err(error) => report(&error, cli.json),
@@ -183,9 +190,9 @@ impl Cli {
 
     fn answer(&self) -> Result<Answer> {
         figures::want(!self.no_figures, self.png)?;
-        let progress = progress::Progress::new(!self.quiet && !self.json, self.verbose);
+        let progress = Progress::new(!self.quiet && !self.json, self.verbose);
         let answer = run(&self.command, &progress).map_err(|e| match &self.input {
-            Some(file) => common::in_input(file, &self.set, e),
+            Some(file) => in_input(file, &self.set, e),
             None => e,
         })?;
         Ok(answer.of_kind(&self.kind))
@@ -263,7 +270,7 @@ fn complain(error: &Error) {
     let _ = writeln!(std::io::stderr(), "error: {error}");
 }
 
-fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
+fn run(command: &Command, progress: &Progress) -> Result<Answer> {
     match command {
         Command::Demo(args) => demo::run(args, progress),
         Command::New(args) => new::run(args),

@@ -12,8 +12,7 @@ mod text;
 
 pub(crate) use files::read;
 
-use super::answer::Answer;
-use super::progress::Progress;
+use super::{Answer, Progress};
 use crate::error::Result;
 
 /// Flutter of whole bridges, their modes, and modes of finite-element programs

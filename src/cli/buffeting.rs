@@ -1,12 +1,8 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed, and the page of it.
 
-use super::answer::Answer;
-use super::output::OutputDir;
-use super::progress::Progress;
 use super::report::folder::today;
-use super::text_table::TextTable;
 use super::wind::WindArgs;
-use super::{figures, headline};
+use super::{Answer, OutputDir, Progress, TextTable, figures, headline};
 use crate::buffeting::peak_factor;
 use crate::error::{Error, Result, counted};
 use crate::files::report_block::ReportBlock;

@@ -2,8 +2,7 @@
 
 mod virtual_campaign;
 
-use crate::cli::answer::Answer;
-use crate::cli::progress::Progress;
+use super::{Answer, Progress};
 use crate::cli::text::to_tenths_of_mm;
 use crate::error::{Result, counted};
 use crate::section::Dof;

@@ -5,8 +5,7 @@ mod decks;
 mod models;
 mod signals;
 
-use super::answer::Answer;
-use super::progress::Progress;
+use super::{Answer, Progress};
 use crate::comparison::forces::THESIS_DECKS;
 use crate::error::Result;
 use crate::report::PageSection;

@@ -1,9 +1,6 @@
 //! `aerodeck coverage`: are the intervals reliable?
 
-use super::answer::Answer;
-use super::common::spelt;
-use super::progress::Progress;
-use super::text_table::TextTable;
+use super::{Answer, Progress, TextTable, spelt};
 use crate::error::Result;
 use crate::uncertainty::{
     CoveragePlan, CoverageReport, FamilyPlan, FamilyReport, RangeCount, Truth, coverage,

@@ -1,9 +1,7 @@
 //! `aerodeck demo`: the whole chain on an embedded measured deck.
 
-use super::answer::Answer;
-use super::output::OutputDir;
-use super::progress::Progress;
 use super::study::run_chain;
+use super::{Answer, OutputDir, Progress};
 use crate::error::Result;
 use crate::fmu::package::GrowthPolicy;
 use crate::study::{Study, demo_study_text};

@@ -1,9 +1,6 @@
 //! `aerodeck derivatives`: tables of derivatives, shown and converted between notations.
 
-use super::answer::Answer;
-use super::common::folder_of;
-use super::figures;
-use super::output::OutputDir;
+use super::{Answer, OutputDir, figures, folder_of};
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
     StatedConvention,

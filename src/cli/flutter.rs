@@ -1,10 +1,8 @@
 //! `aerodeck flutter`: curves and onsets of the trained models of a study.
 
-use super::answer::Answer;
-use super::common::StudyArgs;
-use super::output::OutputDir;
-use super::progress::Progress;
-use super::{headline, result_files, routes, select, stages, text};
+use super::{
+    Answer, OutputDir, Progress, StudyArgs, headline, result_files, routes, select, stages, text,
+};
 use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{

@@ -3,8 +3,7 @@
 mod export;
 mod replay;
 
-use crate::cli::answer::Answer;
-use crate::cli::progress::Progress;
+use super::{Answer, Progress};
 use crate::error::Result;
 use crate::fmu::importer::{CheckReport, Fmu};
 use std::fmt::Write as _;

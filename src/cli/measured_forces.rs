@@ -1,7 +1,6 @@
 //! Forces of records beside those that the exported model predicts for the measured motion.
 
-use super::figures;
-use super::output::OutputDir;
+use super::{OutputDir, figures};
 use crate::error::Result;
 use crate::flutter::CriticalPoint;
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};

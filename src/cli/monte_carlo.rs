@@ -1,10 +1,6 @@
 //! `aerodeck monte-carlo`: the distribution of the onset when section and forces are random.
 
-use super::answer::Answer;
-use super::common::folder_of;
-use super::output::OutputDir;
-use super::progress::Progress;
-use super::{figures, stages};
+use super::{Answer, OutputDir, Progress, figures, folder_of, stages};
 use crate::error::{Result, counted, ensure};
 use crate::files::text::read_text;
 use crate::plausibility::Finding;

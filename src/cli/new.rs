@@ -1,9 +1,7 @@
 //! `aerodeck new`: a commented study to begin with.
 
+use super::{Answer, OutputDir, Written, folder_of, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
-use crate::cli::answer::Answer;
-use crate::cli::common::folder_of;
-use crate::cli::output::{OutputDir, Written, list};
 use crate::error::{Error, Result};
 use crate::files::derivatives::{is_table_file, named_sheet};
 use crate::section::{Rotation, STANDARD_AIR_DENSITY_KG_M3, SectionModel, Translation};

@@ -1,9 +1,6 @@
 //! `aerodeck plot`: columns of a CSV file of results over one of them.
 
-use super::answer::Answer;
-use super::common::folder_of;
-use super::figures;
-use super::output::OutputDir;
+use super::{Answer, OutputDir, figures, folder_of};
 use crate::error::{Error, Result};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use std::path::{Path, PathBuf};

@@ -1,12 +1,7 @@
 //! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
 
-use super::answer::Answer;
-use super::common::motion_columns;
-use super::output::OutputDir;
-use super::progress::Progress;
-use super::text_table::TextTable;
 use super::wind::WindArgs;
-use super::{figures, headline, text};
+use super::{Answer, OutputDir, Progress, TextTable, figures, headline, motion_columns, text};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::error::{Error, Result, counted};

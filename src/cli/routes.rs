@@ -1,8 +1,7 @@
 //! The table of all routes and the onset cards, in words.
 
-use super::common::speed_or;
 use super::text::interval;
-use super::text_table::TextTable;
+use super::{TextTable, speed_or};
 use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;

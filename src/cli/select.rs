@@ -2,10 +2,7 @@
 
 mod text;
 
-use super::answer::Answer;
-use super::common::StudyArgs;
-use super::output::{OutputDir, Written, list};
-use super::progress::Progress;
+use super::{Answer, OutputDir, Progress, StudyArgs, Written, list};
 use crate::error::{Error, Result, ensure};
 use crate::flutter::FlutterSearch;
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};

@@ -1,9 +1,6 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
-use super::answer::Answer;
-use super::common::{folder_of, motion_columns, warn};
-use super::output::{OutputDir, list};
-use super::{figures, stages};
+use super::{Answer, OutputDir, figures, folder_of, list, motion_columns, stages, warn};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, counted, ensure, non_negative, positive};
 use crate::flutter::aliased_below;

@@ -1,9 +1,6 @@
 //! `aerodeck ssp`: a bridge as a system of FMUs.
 
-use super::answer::Answer;
-use super::bridge;
-use super::progress::Progress;
-use super::{headline, stages};
+use super::{Answer, Progress, bridge, headline, stages};
 use crate::error::{Result, counted};
 use crate::fmu::package::{Label, Overwrite, Runtime, write_archive};
 use crate::study::bridge::BridgeExportOptions;

@@ -1,9 +1,7 @@
 //! The stages of a study with their files: what `study` runs through and each command does alone.
 
-use super::figures;
-use super::output::OutputDir;
-use super::progress::Progress;
 use super::report::folder::digest;
+use super::{OutputDir, Progress, figures};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};

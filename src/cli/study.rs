@@ -1,14 +1,10 @@
 //! `aerodeck study`: the whole chain of a study file.
 
-use super::answer::Answer;
-use super::common::StudyArgs;
-use super::output::OutputDir;
-use super::progress::Progress;
-use super::report;
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::summary::{FitSummary, Summary};
 use super::{
-    buffeting, figures, headline, measured_forces, result_files, select, stages, study_run, text,
+    Answer, OutputDir, Progress, StudyArgs, buffeting, figures, headline, measured_forces, report,
+    result_files, select, stages, study_run, text,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};

@@ -1,11 +1,8 @@
 //! Results in words and tables, for people.
 
-use super::common::speed_or;
-use super::headline;
-use super::output::{Written, list};
 use super::study_run::BESIDE;
 use super::summary::Summary;
-use super::text_table::TextTable;
+use super::{TextTable, Written, headline, list, speed_or};
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};

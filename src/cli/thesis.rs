@@ -1,16 +1,12 @@
 //! `aerodeck thesis`: the headline of the source document, repeated, with a page of its figures and tables that can be computed, its
 //! numbers beside ours.
 
+use super::{Answer, OutputDir, Progress, Temporary, headline, list, result_files, stages, text};
 use crate::aerodynamics::laguerre::discrete_memory;
-use crate::cli::answer::Answer;
 use crate::cli::compare::thesis_comparisons;
-use crate::cli::interrupt::Temporary;
 use crate::cli::laboratory::svg;
-use crate::cli::output::{OutputDir, list};
-use crate::cli::progress::Progress;
 use crate::cli::result_files::{FIGURE, RESPONSE, ROOTS};
 use crate::cli::select::parameter_maps;
-use crate::cli::{headline, result_files, stages, text};
 use crate::error::{Error, Result};
 use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{FirstOrderExample, OF_THE_DECKS, laguerre_functions};

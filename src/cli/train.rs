@@ -1,10 +1,6 @@
 //! `aerodeck train`: the models of a study from its records and tables.
 
-use super::answer::Answer;
-use super::common::StudyArgs;
-use super::output::OutputDir;
-use super::progress::Progress;
-use super::{select, stages, text};
+use super::{Answer, OutputDir, Progress, StudyArgs, select, stages, text};
 use crate::error::Result;
 use crate::fmu::package::growth_of;
 use crate::study::{Deck, ModelGrowth, RecordSet, attempt};

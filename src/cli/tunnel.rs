@@ -1,10 +1,6 @@
 //! `aerodeck tunnel`: records of the virtual wind tunnel.
 
-use super::answer::Answer;
-use super::common::StudyArgs;
-use super::output::OutputDir;
-use super::progress::Progress;
-use super::stages;
+use super::{Answer, OutputDir, Progress, StudyArgs, stages};
 use crate::error::Result;
 use crate::study::Deck;
 use std::fmt::Write as _;

@@ -1,7 +1,6 @@
 //! `aerodeck validate`: the reference cases, expected against found.
 
-use super::answer::Answer;
-use super::progress::Progress;
+use super::{Answer, Progress};
 use crate::error::Result;
 use crate::reference::{CaseResult, UserCase, run as run_case, run_all, validation_table};
 use std::fmt::Write as _;

@@ -1,7 +1,6 @@
 //! Sketch of the axes: heave up (this program, PoliMi) beside heave down (classical, Küssner/Starossek).
 
-use super::scene::{Figure, Px, Scene};
-use super::style::{BLACK, COLOURS, GREY, Ink};
+use super::{BLACK, COLOURS, Figure, GREY, Ink, Px, Scene};
 use crate::aerodynamics::derivatives::notation::Axes;
 
 /// Width and height of one panel, px.

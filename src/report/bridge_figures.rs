@@ -1,12 +1,10 @@
 //! Modes of a bridge, their frequencies and damping over wind speed, and the motion at flutter.
 
-use super::axis::Axis;
-use super::drawing::{Drawing, titled};
 use super::flutter_figures::root_locus;
-use super::legend::Entry;
-use super::panel::Panel;
-use super::scene::Figure;
-use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash, outcome_colour};
+use super::{
+    Axis, COLOURS, Drawing, Entry, Figure, GREY, Ink, PALE_GREY, Panel, Shape, dash,
+    outcome_colour, titled,
+};
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{BridgeMotion, ModeBranch, ModePoint};

@@ -1,11 +1,9 @@
 //! Aerodynamic derivatives over the reduced velocity: measured points and fitted lines.
 
-use super::axis::Axis;
-use super::drawing::{Drawing, titled};
-use super::legend::{Entry, PlottedSeries, entries, labels_of};
-use super::panel::Panel;
-use super::scene::Figure;
-use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
+use super::{
+    Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, PlottedSeries, Shape, colour, dash,
+    entries, labels_of, titled,
+};
 use crate::error::{Error, Result};
 
 /// One derivative (or any other quantity that is measured and fitted).

@@ -1,11 +1,9 @@
 //! Panels in a grid with a title above and a legend below, put together into one figure.
 
 use super::axis::ends;
-use super::font::text_width;
-use super::legend::{Entry, LegendLayout, lay_out, shortened};
-use super::panel::{LABEL_SIZE, Panel, ROOM_BELOW};
-use super::scene::{Area, Figure, Px, Scene};
-use super::style::BLACK;
+use super::legend::{LegendLayout, lay_out, shortened};
+use super::panel::{LABEL_SIZE, ROOM_BELOW};
+use super::{Area, BLACK, Entry, Figure, Panel, Px, Scene, text_width};
 use crate::error::{Error, Result};
 
 const TITLE_SIZE: u32 = 14;

@@ -1,12 +1,10 @@
 //! Frequencies and damping ratios over wind speed, with the onsets; eigenvalues as the wind speed rises.
 
-use super::axis::{Axis, significant};
-use super::drawing::Drawing;
-use super::legend::{Entry, distinct, index_of};
-use super::panel::{Note, Panel};
-use super::scene::Figure;
-use super::style::{
-    BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale,
+use super::axis::significant;
+use super::style::pale;
+use super::{
+    Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Note, PALE_GREY, Panel, Shape, branch_width,
+    colour, dash, distinct, index_of, outcome_colour,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModeBranch, ModePoint, Onset, OnsetMethod};

@@ -2,8 +2,7 @@
 
 use super::axis::ends;
 use super::legend::shortened;
-use super::scene::{Area, Figure, Px, Scene};
-use super::style::{BLACK, GREY, Ink};
+use super::{Area, BLACK, Figure, GREY, Ink, Px, Scene};
 use crate::error::{Error, Result, ensure};
 
 /// Stops of a colour scale that rises evenly in lightness and is read by colour-blind readers (viridis, CC0).

@@ -1,7 +1,6 @@
 //! Where the labels of points go, so that they cover neither each other nor the curves.
 
-use super::font::text_width;
-use super::scene::{Area, Px};
+use super::{Area, Px, text_width};
 
 /// Places for one label after the other.
 #[derive(Debug)]

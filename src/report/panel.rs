@@ -1,11 +1,9 @@
 //! One pair of axes with curves, markers, shaded regions and labelled points.
 
-use super::axis::{Axis, Scale};
-use super::font::text_width;
+use super::axis::Scale;
 use super::labels::Labels;
-use super::legend::{PlottedSeries, index_of};
-use super::scene::{Area, Px, Scene};
-use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY};
+use super::style::{GRID, SHADE, SHADE_OPACITY};
+use super::{Area, Axis, BLACK, Ink, PlottedSeries, Px, Scene, index_of, text_width};
 use crate::error::{Error, Result, ensure};
 
 pub(super) const TICK_SIZE: u32 = 11;

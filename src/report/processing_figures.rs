@@ -1,11 +1,6 @@
 //! The stages of processing of one run, one below the other: the whole run, and a few periods of it.
 
-use super::axis::Axis;
-use super::drawing::Drawing;
-use super::legend::Entry;
-use super::panel::{Panel, Series};
-use super::scene::Figure;
-use super::style::{BLACK, Ink, colour};
+use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Series, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::processing::{RunReport, SectionSignals, StageLevels};

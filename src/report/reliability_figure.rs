@@ -1,11 +1,7 @@
 //! Distribution of the onset speed of random sections.
 
-use super::axis::{Axis, significant};
-use super::drawing::Drawing;
-use super::legend::Entry;
-use super::panel::{Note, Panel};
-use super::scene::Figure;
-use super::style::{BLACK, Ink, Shape, colour};
+use super::axis::significant;
+use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Note, Panel, Shape, colour};
 use crate::error::{Error, Result};
 use crate::uncertainty::monte_carlo::MonteCarloResult;
 

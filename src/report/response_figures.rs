@@ -1,11 +1,9 @@
 //! Rows of points in panels: over time, metrics of goodness of fit over the frequency, and what something costs over its size.
 
-use super::axis::Axis;
-use super::drawing::{Drawing, titled};
-use super::legend::{PlottedSeries, entries, labels_of};
-use super::panel::Panel;
-use super::scene::Figure;
-use super::style::{COLOURS, Ink, Shape, colour, dash};
+use super::{
+    Axis, COLOURS, Drawing, Figure, Ink, Panel, PlottedSeries, Shape, colour, dash, entries,
+    labels_of, titled,
+};
 use crate::error::Result;
 
 /// Histories with a common ordinate.

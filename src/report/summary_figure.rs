@@ -1,13 +1,8 @@
 //! Frequency and damping of the model that answers, small enough for the summary of a report.
 
-use super::axis::Axis;
-use super::drawing::Drawing;
-use super::legend::Entry;
 use super::page_head::required_colour;
-use super::panel::Panel;
-use super::scene::Figure;
 use super::study_page::{PageCurve, StudyPage};
-use super::style::{BLACK, COLOURS, Ink, PALE_GREY, dash};
+use super::{Axis, BLACK, COLOURS, Drawing, Entry, Figure, Ink, PALE_GREY, Panel, dash};
 use crate::error::Result;
 use crate::flutter::ModeBranch;
 

@@ -1,9 +1,7 @@
 //! Figures 2.1 to 2.11 and 3.10 of the thesis: Laguerre functions and their gain, and the first-order example.
 
-use super::legend::PlottedSeries;
-use super::response_figures::{TimePanel, time_history_figure};
-use super::scene::Figure;
 use super::transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
+use super::{Figure, PlottedSeries, TimePanel, time_history_figure};
 use crate::error::Result;
 use crate::reference::{FirstOrderResults, Lines, SampledTransfer};
 

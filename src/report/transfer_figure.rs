@@ -1,11 +1,9 @@
 //! Transfer functions over frequency: magnitude and phase, models against a reference with its tolerance bands.
 
-use super::axis::Axis;
-use super::drawing::{Drawing, titled};
-use super::legend::{Entry, distinct, entries, index_of};
-use super::panel::Panel;
-use super::scene::Figure;
-use super::style::{BLACK, GREY, Ink, Shape};
+use super::{
+    Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, Shape, distinct, entries, index_of,
+    titled,
+};
 use crate::comparison::forces::PerModel;
 use crate::error::Result;
 

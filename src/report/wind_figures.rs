@@ -1,11 +1,6 @@
 //! Static equilibria, and the response to turbulence: spectra, root mean squares, and envelopes along the span of a bridge.
 
-use super::axis::Axis;
-use super::drawing::Drawing;
-use super::legend::{Entry, entries};
-use super::panel::Panel;
-use super::scene::Figure;
-use super::style::{BLACK, Ink, Shape};
+use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Shape, entries};
 use crate::aeroelastic::EquilibriumPath;
 use crate::buffeting::SpectrumCurve;
 use crate::error::Result;

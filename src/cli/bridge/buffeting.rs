@@ -1,14 +1,10 @@
 //! `aerodeck bridge buffeting`: RMS and peak factors at named nodes.
 
-use super::super::answer::Answer;
-use super::super::headline;
-use super::super::progress::Progress;
-use super::super::text_table::TextTable;
 use super::buffeting_page::{self, forces, of_motion};
 use super::files::{BUFFETING_PAGE, BridgeArgs};
 use super::flutter::renew;
 use crate::buffeting::TurbulenceField;
-use crate::cli::common::warn;
+use crate::cli::{Answer, Progress, TextTable, headline, warn};
 use crate::error::{Error, Result};
 use crate::files::bridge::read_field;
 use crate::files::text::csv_cell;

@@ -1,9 +1,8 @@
 //! `aerodeck bridge convert`: modes of any readable format as one compact file.
 
-use super::super::answer::Answer;
-use super::super::common::warn;
 use super::summary::named;
 use crate::bridge::BridgeMode;
+use crate::cli::{Answer, warn};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, ModesFormat, write_modes};
 use crate::plausibility::{Finding, FindingSeverity, sentences};

@@ -1,14 +1,11 @@
 //! `aerodeck demo --bridge`: from wind-tunnel records to the flutter of a whole bridge.
 
-use super::super::answer::Answer;
-use super::super::output::OutputDir;
-use super::super::progress::Progress;
-use super::super::stages;
 use super::super::text::ending;
 use super::files::BRIDGE_FMU;
 use super::flutter::{computed, leave};
 use super::summary::BridgeSummary;
 use super::text::{MORE, text};
+use crate::cli::{Answer, OutputDir, Progress, stages};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::{Label, Runtime, package};

@@ -1,10 +1,7 @@
 //! `aerodeck bridge show`: modes, similarities, what is stated.
 
-use super::super::answer::Answer;
-use super::super::figures;
-use super::super::progress::Progress;
-use super::super::text_table::TextTable;
 use super::files::BridgeArgs;
+use crate::cli::{Answer, Progress, TextTable, figures};
 use crate::error::{Result, counted};
 use crate::report::modes_figure;
 use std::fmt::Write as _;

@@ -1,7 +1,7 @@
 //! `summary.json` of a bridge, and copies of the files that it was computed from.
 
 use super::text::beside_the_onset;
-use crate::cli::output::OutputDir;
+use crate::cli::OutputDir;
 use crate::cli::report::folder::{digest, today};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, ModesFormat};

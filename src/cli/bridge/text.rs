@@ -1,8 +1,7 @@
 //! The onset card of a bridge, in words.
 
-use super::super::common::speed_or;
-use crate::cli::headline;
 use crate::cli::text::{figures, of_onsets};
+use crate::cli::{headline, speed_or};
 use crate::error::counted;
 use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy, NAMED_SHARE};

@@ -1,10 +1,7 @@
 //! `aerodeck campaign virtual`: a raw campaign with a known truth.
 
 use crate::aerodynamics::{FlatPlate, RationalModel};
-use crate::cli::answer::Answer;
-use crate::cli::common::spelt;
-use crate::cli::output::OutputDir;
-use crate::cli::progress::Progress;
+use crate::cli::{Answer, OutputDir, Progress, spelt};
 use crate::error::{Error, Result};
 use crate::files::derivatives::named_table;
 use crate::section::Dof;

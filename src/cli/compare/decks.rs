@@ -1,10 +1,8 @@
 //! `aerodeck compare decks`: one model on several girders.
 
 use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
-use crate::cli::answer::Answer;
 use crate::cli::figures as drawn;
-use crate::cli::output::OutputDir;
-use crate::cli::progress::Progress;
+use crate::cli::{Answer, OutputDir, Progress};
 use crate::comparison::forces::{
     CompareOptions, DecksComparison, Score, compare_decks, score_table,
 };

@@ -3,11 +3,7 @@
 mod bridge;
 
 use crate::aerodynamics::{GustForce, RationalAdmittance};
-use crate::cli::answer::Answer;
-use crate::cli::common::{in_input, spelt, warn};
-use crate::cli::progress::Progress;
-use crate::cli::text;
-use crate::cli::{headline, stages};
+use crate::cli::{Answer, Progress, headline, in_input, spelt, stages, text, warn};
 use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;

@@ -1,7 +1,6 @@
 //! `aerodeck fmu replay`: the runs that an archive carries, repeated.
 
-use crate::cli::answer::Answer;
-use crate::cli::progress::Progress;
+use crate::cli::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::fmu::importer::{Fmu, LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 use crate::fmu::package::COMPONENT;

@@ -1,11 +1,8 @@
 //! A whole bridge as an FMU, its structure alone, or the wind forces on its sections.
 
 use super::{ExportKind, FmuExportArgs};
-use crate::cli::answer::Answer;
 use crate::cli::bridge::{self, files::BRIDGE_FMU};
-use crate::cli::common::warn;
-use crate::cli::progress::Progress;
-use crate::cli::{headline, stages};
+use crate::cli::{Answer, Progress, headline, stages, warn};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::fmu::package::{Export, Label, package};
