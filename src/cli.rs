@@ -272,16 +272,20 @@ fn complain(error: &Error) {
 
 fn run(command: &Command, progress: &Progress) -> Result<Answer> {
     match command {
-        Command::Demo(args) => demo::run(args, progress),
+        Command::Demo { out, bridge, force } => demo::run(out, *bridge, *force, progress),
         Command::New(args) => new::run(args),
-        Command::Study(args) => study::run(args, progress),
-        Command::Report(args) => report::run(args),
-        Command::Plot(args) => plot::run(args),
+        Command::Study {
+            study,
+            allow_unstable,
+            force,
+        } => study::run(study, *allow_unstable, *force, progress),
+        Command::Report { folder, pdf } => report::run(folder, *pdf),
+        Command::Plot { file, x, y, out } => plot::run(file, x.as_deref(), y, out.as_deref()),
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Campaign(command) => campaign::run(command, progress),
         Command::Process(args) => process::run(args, progress),
         Command::Train(args) => train::run(args, progress),
-        Command::Flutter(args) => flutter::run(args, progress),
+        Command::Flutter { study, all } => flutter::run(study, *all, progress),
         Command::MonteCarlo(args) => monte_carlo::run(args, progress),
         Command::Simulate(args) => simulate::run(args),
         Command::QuasiSteady(args) => quasi_steady::run(args, progress),
@@ -290,7 +294,11 @@ fn run(command: &Command, progress: &Progress) -> Result<Answer> {
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Ssp(command) => ssp::run(command, progress),
         Command::Derivatives(command) => derivatives::run(command),
-        Command::Validate(args) => validate::run(args, progress),
+        Command::Validate {
+            name,
+            files,
+            markdown,
+        } => validate::run(name.as_deref(), files, *markdown, progress),
         Command::Thesis { out } => thesis::run(out.as_deref(), progress),
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),

@@ -47,6 +47,8 @@
 //! derivatives and models, `uncertainty` from their scatter, and that of the section, to intervals, `selection` to one model among many;
 //! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts. `study` runs the
 //! whole chain, `report` draws it, [`live`] answers its sliders and `cli` is the program.
+// the program in the README is compiled and run with the tests
+#![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![deny(unsafe_code, missing_docs)]
 // what is public can be reached from outside
 #![deny(unreachable_pub)]
@@ -88,8 +90,3 @@ pub use aerodeck_core::{
     state_space, trained_model, units,
 };
 pub use aerodeck_judgement::{plausibility, verdict};
-
-/// The program in the README is compiled and run with the tests.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;

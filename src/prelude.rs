@@ -8,7 +8,7 @@ pub use crate::files::derivatives::named_table;
 pub use crate::flutter::{
     FlutterSearch, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };
-pub use crate::fmu::package::{GrowthPolicy, write_fmu};
+pub use crate::fmu::package::{Export, write_fmu};
 pub use crate::identification::{Fitted, FrequencyFit, TimeFit, fit};
 pub use crate::section::{Dof, SectionModel};
 pub use crate::study::Study;

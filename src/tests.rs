@@ -7,7 +7,7 @@ use crate::files::lab::ChannelSet;
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::importer::Fmu;
 use crate::fmu::instance::Instance;
-use crate::fmu::package::{Export, FmiVersion, GrowthPolicy, Runtime, package};
+use crate::fmu::package::{Export, FmiVersion, Runtime, package};
 use crate::fmu::resources::{OptionFiles, Resources};
 use crate::fmu::variables::{Causality, Listing, StartValue};
 use crate::study::{Study, demo_study_text};
@@ -201,7 +201,8 @@ fn packed() -> Vec<u8> {
     let model = TrainedModel::from_json(&String::from_utf8(model("rational")).unwrap()).unwrap();
     let export = Export {
         listing: Listing::All,
-        ..GrowthPolicy::Allow.into()
+        allow_unstable: true,
+        ..Export::default()
     };
     package(&model, &[Runtime::embedded().unwrap()], export).unwrap()
 }

@@ -30,7 +30,7 @@ mod three_dof;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, FmiVersion, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
@@ -85,8 +85,11 @@ fn export() -> PathBuf {
             &fmu,
             model,
             &runtimes,
-            Overwrite::Refuse,
-            GrowthPolicy::Allow,
+            false,
+            Export {
+                allow_unstable: true,
+                ..Export::default()
+            },
         )
         .unwrap();
         expected.insert(name.into(), in_process::expectations(model, golden));
@@ -109,8 +112,11 @@ fn export() -> PathBuf {
         &fmu,
         &lateral,
         &runtimes,
-        Overwrite::Refuse,
-        GrowthPolicy::Allow,
+        false,
+        Export {
+            allow_unstable: true,
+            ..Export::default()
+        },
     )
     .unwrap();
     export_forces(&folder, &runtimes);
@@ -137,14 +143,7 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     let mut model = TrainedModel::from_json(&text).unwrap();
     model.section = SectionModel::iabse_1_1a();
     let fmu = folder.join("full_scale.fmu");
-    write_fmu(
-        &fmu,
-        &model,
-        runtimes,
-        Overwrite::Refuse,
-        GrowthPolicy::Refuse,
-    )
-    .unwrap();
+    write_fmu(&fmu, &model, runtimes, false, Export::default()).unwrap();
     let single = ForceOptions::single(model.section.width_m);
     let strips = ForceOptions {
         strips: vec![single.strips[0].clone(); 3],
@@ -154,10 +153,10 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     for (name, options) in [("force", single), ("force_strips", strips)] {
         let export = Export {
             force: Some(options),
-            ..GrowthPolicy::Refuse.into()
+            ..Export::default()
         };
         let fmu = folder.join(format!("{name}.fmu"));
-        write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+        write_fmu(&fmu, &model, runtimes, false, export).unwrap();
     }
 }
 
@@ -178,10 +177,10 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
         let export = Export {
             force,
             gusts: Some(gusts.clone()),
-            ..GrowthPolicy::Refuse.into()
+            ..Export::default()
         };
         let fmu = folder.join(format!("{name}.fmu"));
-        write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+        write_fmu(&fmu, &model, runtimes, false, export).unwrap();
     }
 }
 
@@ -204,10 +203,11 @@ fn export_fmi3(folder: &Path, runtimes: &[Runtime]) {
             let export = Export {
                 force,
                 version,
-                ..GrowthPolicy::Allow.into()
+                allow_unstable: true,
+                ..Export::default()
             };
             let fmu = folder.join(format!("{unit}_{kind}.fmu"));
-            write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+            write_fmu(&fmu, &model, runtimes, false, export).unwrap();
         }
     }
 }
@@ -222,10 +222,11 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
             let export = Export {
                 force,
                 listing: Listing::Reals,
-                ..GrowthPolicy::Allow.into()
+                allow_unstable: true,
+                ..Export::default()
             };
             let fmu = folder.join(format!("reals_{unit}_{kind}.fmu"));
-            write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+            write_fmu(&fmu, &model, runtimes, false, export).unwrap();
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::flutter::{find_onset, trace_modes_watched};
-use aerodeck::fmu::package::{Label, Overwrite, Runtime, package, write_archive};
+use aerodeck::fmu::package::{Label, Runtime, package, write_archive};
 use aerodeck::study::bridge::{
     BridgeExportOptions, BridgeStudy, DerivativeScatter, Scatter, bridge_flutter,
 };
@@ -322,7 +322,7 @@ impl Bridge {
             export.verdict = Some(Verdict::judge(&evidence));
             export.label = label.dated()?;
             let bytes = package(&model, &Runtime::available()?, export)?;
-            write_archive(&path, &bytes, Overwrite::replacing(overwrite))
+            write_archive(&path, &bytes, overwrite)
         })?;
         written.map_err(raised)
     }

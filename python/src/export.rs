@@ -10,9 +10,7 @@ use aerodeck::files::coefficients::gust_force;
 use aerodeck::flutter::OnsetSearch;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::onset_bounds::OnsetBounds;
-use aerodeck::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, write_fmu,
-};
+use aerodeck::fmu::package::{Export, FmiVersion, Label, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::verdict::Verdict;
@@ -119,20 +117,15 @@ pub fn export_fmu(
         },
         label: label.dated().map_err(raised)?,
         version: version(fmi)?,
-        ..GrowthPolicy::allowing(allow_unstable).into()
+        allow_unstable,
+        ..Export::default()
     };
     detached(py, || {
         let runtimes = match platforms {
             Some(platforms) => Runtime::chosen(&platforms)?,
             None => Runtime::available()?,
         };
-        write_fmu(
-            &path,
-            &trained,
-            &runtimes,
-            Overwrite::replacing(overwrite),
-            export,
-        )
+        write_fmu(&path, &trained, &runtimes, overwrite, export)
     })
     .map_err(raised)
 }

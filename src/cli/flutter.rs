@@ -6,7 +6,7 @@ use super::{
 use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, RouteTable, StageFailure, Study, attempt, route_table,
+    Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, attempt, route_table,
     saved_moved_onset, saved_uncertainty, section_evidence, state_route_intervals,
 };
 use crate::trained_model::TrainedModel;
@@ -14,25 +14,11 @@ use crate::verdict::{Evidence, Verdict};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Frequencies, damping and flutter onset of the trained models of a study (see `train`)
-///
-/// Example: aerodeck flutter study.toml --all
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct FlutterArgs {
-    #[command(flatten)]
-    study: StudyArgs,
-    /// Every route side by side: eigenvalues, determinant, p-k iteration, quasi-steady limit, flat plate, Selberg and
-    /// Rocard; with an onset card for each force model.
-    #[arg(long)]
-    all: bool,
-}
-
 /// Runs the command.
-pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
-    let study = select::with_saved(args.study.read()?);
+pub(crate) fn run(args: &StudyArgs, all: bool, progress: &Progress) -> Result<Answer> {
+    let study = select::with_saved(args.read()?);
     let deck = Deck::load(&study)?;
-    let directory = args.study.directory();
+    let directory = args.directory();
     let mut failed = Vec::new();
     let models = stages::read_models(&study, &deck, &directory, &mut failed)?;
     let known = models.iter().map(|m| saved_uncertainty(m, &directory));
@@ -42,34 +28,41 @@ pub(crate) fn run(args: &FlutterArgs, progress: &Progress) -> Result<Answer> {
     let verdict = verdict(
         &study, &deck, &results, &models, &known, &directory, &failed,
     )?;
-    if args.all {
-        let stage = progress.stage("onset by every route");
-        let mut table = route_table(&study, &deck, &models)?;
-        state_route_intervals(&mut table, &study, &models, &known)?;
-        drop(stage);
-        return all_routes(&study, &deck, table, &verdict, out, &failed);
-    }
-    let figure = result_files::flutter_figure(&study, &results, Some(&verdict), &mut out);
-    attempt(&mut failed, "figure", figure)?;
-    let curves = result_files::write_curves(&study, &results.curves, &mut out);
-    attempt(&mut failed, "curves", curves)?;
-    results.failed.splice(0..0, failed);
     let mut text = headline::text(&study.name, &verdict, &deck.warnings());
     let _ = writeln!(text, "{}", deck.description());
     text.push_str(&text::deck_warnings(&deck));
     text.push('\n');
-    text.push_str(&text::found(&results));
-    text.push_str(&text::failures(&results.failed));
-    let value = serde_json::json!({
-        "verdict": verdict, "flutter": results, "warnings": deck.warnings()
-    });
+    let mut value = serde_json::json!({ "verdict": verdict, "warnings": deck.warnings() });
+    if all {
+        let stage = progress.stage("onset by every route");
+        let mut table = route_table(&study, &deck, &models)?;
+        state_route_intervals(&mut table, &study, &models, &known)?;
+        drop(stage);
+        let marked = routes::marked(&table);
+        // a figure that cannot be drawn does not take the table with it
+        if let Err(e) = result_files::routes_figure(&study, &table.curves, &marked, &mut out) {
+            table.left_out.push(format!("figure of all routes: {e}"));
+        }
+        text.push_str(&routes::text(&table, study.speeds().searched_to_m_s));
+        value["routes"] = serde_json::json!(table);
+        value["failed"] = serde_json::json!(failed);
+    } else {
+        let figure = result_files::flutter_figure(&study, &results, Some(&verdict), &mut out);
+        attempt(&mut failed, "figure", figure)?;
+        let curves = result_files::write_curves(&study, &results.curves, &mut out);
+        attempt(&mut failed, "curves", curves)?;
+        results.failed.splice(0..0, failed);
+        text.push_str(&text::found(&results));
+        value["flutter"] = serde_json::json!(results);
+        failed = results.failed;
+    }
+    text.push_str(&text::failures(&failed));
     Ok(out
         .answer(text, value)?
-        .passed_if(results.failed.is_empty())
+        .passed_if(failed.is_empty())
         .with_outcome_of(&verdict))
 }
 
-/// What the models saved in a folder of results amount to.
 fn verdict(
     study: &Study,
     deck: &Deck,
@@ -93,34 +86,4 @@ fn verdict(
         constraints: moved,
         ..section_evidence(study, deck, results, own, known, &failed)
     }))
-}
-
-/// Every route in one table, with cards and a figure.
-fn all_routes(
-    study: &Study,
-    deck: &Deck,
-    mut table: RouteTable,
-    verdict: &Verdict,
-    mut out: OutputDir,
-    failed: &[StageFailure],
-) -> Result<Answer> {
-    // a figure that cannot be drawn does not take the table with it
-    if let Err(e) =
-        result_files::routes_figure(study, &table.curves, &routes::marked(&table), &mut out)
-    {
-        table.left_out.push(format!("figure of all routes: {e}"));
-    }
-    let mut text = headline::text(&study.name, verdict, &deck.warnings());
-    let _ = writeln!(text, "{}", deck.description());
-    text.push_str(&text::deck_warnings(deck));
-    text.push('\n');
-    text.push_str(&routes::text(&table, study.speeds().searched_to_m_s));
-    text.push_str(&text::failures(failed));
-    let value = serde_json::json!({
-        "verdict": verdict, "routes": table, "failed": failed, "warnings": deck.warnings()
-    });
-    Ok(out
-        .answer(text, value)?
-        .passed_if(failed.is_empty())
-        .with_outcome_of(verdict))
 }

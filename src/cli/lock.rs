@@ -9,49 +9,38 @@ use std::path::Path;
 /// Name of the lock, which exists while a run writes into the folder.
 pub(crate) const LOCK_FILE: &str = ".aerodeck-lock";
 
-/// The right to write into a folder. The operating system takes the lock back when the process ends, however it ends,
-/// so that a file left behind locks nobody out.
-pub(crate) struct FolderLock {
-    // removed first, then closed: nobody can take a lock on a file that is about to go
-    _name: Temporary,
-    _file: File,
-}
-
-impl FolderLock {
-    /// Takes the lock of `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the other process while one has it; [`Error::Io`] when the file cannot be written.
-    pub(crate) fn take(folder: &Path) -> Result<Self> {
-        let path = folder.join(LOCK_FILE);
-        // an interrupt between making the file and taking charge of it would leave it behind
-        let _whole = uninterrupted();
-        loop {
-            let mut file = OpenOptions::new()
-                .read(true)
-                .write(true)
-                .create(true)
-                .truncate(false)
-                .open(&path)
-                .map_err(|e| Error::io(&path, e))?;
-            match file.try_lock() {
-                // a file system without locks excludes nobody
-                Ok(()) | Err(TryLockError::Error(_)) => {}
-                Err(TryLockError::WouldBlock) => return Err(taken(folder, &mut file)),
-            }
-            // a run that ended in between has removed the file that was opened here
-            if !is_at(&file, &path) {
-                continue;
-            }
-            let written = file
-                .set_len(0)
-                .and_then(|()| write!(file, "{}", std::process::id()));
-            written.map_err(|e| Error::io(&path, e))?;
-            return Ok(Self {
-                _name: Temporary::new(path),
-                _file: file,
-            });
+/// Takes the right to write into `folder`. The operating system takes the lock back when the process ends, however it ends, so that a
+/// file left behind locks nobody out.
+///
+/// # Errors
+/// [`Error::Input`] naming the other process while one has it; [`Error::Io`] when the file cannot be written.
+pub(crate) fn lock(folder: &Path) -> Result<(Temporary, File)> {
+    let path = folder.join(LOCK_FILE);
+    // an interrupt between making the file and taking charge of it would leave it behind
+    let _whole = uninterrupted();
+    loop {
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path)
+            .map_err(|e| Error::io(&path, e))?;
+        match file.try_lock() {
+            // a file system without locks excludes nobody
+            Ok(()) | Err(TryLockError::Error(_)) => {}
+            Err(TryLockError::WouldBlock) => return Err(taken(folder, &mut file)),
         }
+        // a run that ended in between has removed the file that was opened here
+        if !is_at(&file, &path) {
+            continue;
+        }
+        let written = file
+            .set_len(0)
+            .and_then(|()| write!(file, "{}", std::process::id()));
+        written.map_err(|e| Error::io(&path, e))?;
+        // the name is removed first, then the file closed: nobody can take a lock on a file that is about to go
+        return Ok((Temporary::new(path), file));
     }
 }
 

@@ -7,9 +7,13 @@ use crate::files::derivatives::{is_table_file, named_sheet};
 use crate::section::{Rotation, STANDARD_AIR_DENSITY_KG_M3, SectionModel, Translation};
 use crate::study::bridge::new_bridge_text;
 use crate::study::{Deck, Study, example_wind_study_text, new_study_text};
+use clap::ArgGroup;
 use std::ffi::OsStr;
 use std::io::{BufRead, Write, stderr, stdin};
 use std::path::{Path, PathBuf};
+
+/// The flags that ask for a file of another kind, one at most.
+const INSTEAD: &str = "instead";
 
 /// Write a commented study file for an embedded deck, the flat plate or a table of your own; or a file of another kind
 ///
@@ -18,6 +22,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck new --bridge
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
+#[command(group = ArgGroup::new(INSTEAD).conflicts_with_all(["deck", "workbook", "interactive"]))]
 pub(crate) struct NewArgs {
     /// An embedded deck (LN20-5500, LN21-5200, LN21-5500, LN21-5800, LN21-6100) or `flat plate`.
     #[arg(long, default_value = "LN21-5200")]
@@ -40,8 +45,18 @@ pub(crate) struct NewArgs {
     /// Ask for deck and section: five questions.
     #[arg(long, conflicts_with_all = ["deck", "workbook"])]
     interactive: bool,
-    #[command(flatten)]
-    instead: Instead,
+    /// A file of a whole bridge instead, for `aerodeck bridge`.
+    #[arg(long, group = INSTEAD)]
+    bridge: bool,
+    /// A file of wind on a section instead, for `aerodeck buffeting` and `aerodeck quasi-steady`.
+    #[arg(long, group = INSTEAD)]
+    wind: bool,
+    /// A file of raw wind-tunnel runs instead, for `aerodeck campaign` and `aerodeck process`.
+    #[arg(long, group = INSTEAD)]
+    campaign: bool,
+    /// A file of scatter instead, for `aerodeck monte-carlo`.
+    #[arg(long, group = INSTEAD)]
+    monte_carlo: bool,
     /// The file [default: study.toml, bridge.toml, wind.toml, campaign.toml or scatter.toml].
     #[arg(long)]
     out: Option<PathBuf>,
@@ -50,59 +65,13 @@ pub(crate) struct NewArgs {
     force: bool,
 }
 
-/// A file of another kind.
-#[derive(clap::Args)]
-#[group(multiple = false, conflicts_with_all = ["deck", "workbook", "interactive"])]
-struct Instead {
-    /// A file of a whole bridge instead, for `aerodeck bridge`.
-    #[arg(long)]
-    bridge: bool,
-    /// A file of wind on a section instead, for `aerodeck buffeting` and `aerodeck quasi-steady`.
-    #[arg(long)]
-    wind: bool,
-    /// A file of raw wind-tunnel runs instead, for `aerodeck campaign` and `aerodeck process`.
-    #[arg(long)]
-    campaign: bool,
-    /// A file of scatter instead, for `aerodeck monte-carlo`.
-    #[arg(long)]
-    monte_carlo: bool,
-}
-
-impl Instead {
-    /// Its usual name, its text and what to do with it.
-    fn template(&self) -> Option<[&'static str; 3]> {
-        match self {
-            Self { bridge: true, .. } => Some([
-                "bridge.toml",
-                new_bridge_text(),
-                "state your bridge in it, then run `aerodeck bridge flutter",
-            ]),
-            Self { wind: true, .. } => Some([
-                "wind.toml",
-                example_wind_study_text(),
-                "state your section and its wind in it, then run `aerodeck buffeting",
-            ]),
-            Self { campaign: true, .. } => Some([
-                "campaign.toml",
-                include_str!("new/campaign.toml"),
-                "state your rig, channels and files in it, then run `aerodeck campaign check",
-            ]),
-            Self {
-                monte_carlo: true, ..
-            } => Some([
-                "scatter.toml",
-                include_str!("new/monte_carlo.toml"),
-                "name your model in it, then run `aerodeck monte-carlo",
-            ]),
-            _ => None,
-        }
-    }
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
-    if let Some([usual, text, next]) = args.instead.template() {
-        return args.template(usual, text, next);
+    if let Some([usual, text, next]) = args.template() {
+        let path = args.out.clone().unwrap_or_else(|| usual.into());
+        let written = args.leave(&path, text)?;
+        let said = format!("{}{next} {}`\n", list(&written), path.display());
+        return Answer::new(said, &serde_json::json!({ "files": written }));
     }
     let path = args.out.clone().unwrap_or_else(|| "study.toml".into());
     let folder = folder_of(&path);
@@ -158,11 +127,36 @@ fn file_name(path: &Path) -> Result<&OsStr> {
 
 impl NewArgs {
     /// Writes a file that needs no more than to be edited.
-    fn template(&self, usual: &str, text: &str, next: &str) -> Result<Answer> {
-        let path = self.out.clone().unwrap_or_else(|| usual.into());
-        let written = self.leave(&path, text)?;
-        let said = format!("{}{next} {}`\n", list(&written), path.display());
-        Answer::new(said, &serde_json::json!({ "files": written }))
+    /// Of another file than a study: its usual name, its text, and what is to be done with it.
+    fn template(&self) -> Option<[&'static str; 3]> {
+        let all = [
+            (
+                self.bridge,
+                "bridge.toml",
+                new_bridge_text(),
+                "state your bridge in it, then run `aerodeck bridge flutter",
+            ),
+            (
+                self.wind,
+                "wind.toml",
+                example_wind_study_text(),
+                "state your section and its wind in it, then run `aerodeck buffeting",
+            ),
+            (
+                self.campaign,
+                "campaign.toml",
+                include_str!("new/campaign.toml"),
+                "state your rig, channels and files in it, then run `aerodeck campaign check",
+            ),
+            (
+                self.monte_carlo,
+                "scatter.toml",
+                include_str!("new/monte_carlo.toml"),
+                "name your model in it, then run `aerodeck monte-carlo",
+            ),
+        ];
+        let wanted = all.into_iter().find(|(wanted, ..)| *wanted);
+        wanted.map(|(_, usual, text, next)| [usual, text, next])
     }
 
     fn leave(&self, path: &Path, text: &str) -> Result<Vec<Written>> {

@@ -1,13 +1,13 @@
 //! Files of a command: written aside first, put in place together, nothing left behind however the command ends.
 
-use super::lock::{FolderLock, LOCK_FILE};
+use super::lock::{LOCK_FILE, lock};
 use super::wrapping::COLUMNS;
 use super::{Answer, Temporary, uninterrupted};
 use crate::error::{Error, Result};
 use crate::json;
 use crate::wind_tunnel::{Record, write_record};
 use aerodeck_core::threads;
-use std::fs;
+use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ pub(crate) struct OutputDir {
     kept: Vec<PathBuf>,
     replaced: Vec<PathBuf>,
     outdated: Vec<PathBuf>,
-    _lock: FolderLock,
+    _lock: (Temporary, File),
 }
 
 /// One file that was put in place, or left.
@@ -55,7 +55,7 @@ impl OutputDir {
             return Err(Error::input("", "a folder for the results", "a file").in_file(directory));
         }
         fs::create_dir_all(directory).map_err(|e| Error::io(directory, e))?;
-        let lock = FolderLock::take(directory)?;
+        let lock = lock(directory)?;
         clear(directory)?;
         // not while a signal removes what is known to be temporary
         let busy = uninterrupted();

@@ -24,27 +24,14 @@ use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row, sliders};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use variables::variables_of;
 
-/// Write report.html, one self-contained page, from a folder of results of `study`, `demo` or `bridge flutter`
-///
-/// Example: aerodeck report aerodeck-out
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct ReportArgs {
-    /// The folder of results.
-    folder: PathBuf,
-    /// Print the page to report.pdf too, where a browser of the Chromium family is installed (AERODECK_BROWSER names another).
-    #[arg(long)]
-    pdf: bool,
-}
-
 /// Runs the command.
-pub(super) fn run(args: &ReportArgs) -> Result<Answer> {
-    let page = page_of(&args.folder)?;
-    let mut out = OutputDir::new(&args.folder)?;
-    if args.pdf {
+pub(super) fn run(folder: &Path, pdf: bool) -> Result<Answer> {
+    let page = page_of(folder)?;
+    let mut out = OutputDir::new(folder)?;
+    if pdf {
         let at = out.stage(REPORT)?;
         std::fs::write(&at, &page).map_err(|e| Error::io(&at, e))?;
         let pdf = out.stage("report.pdf")?;

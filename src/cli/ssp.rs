@@ -2,7 +2,7 @@
 
 use super::{Answer, Progress, bridge, headline, stages};
 use crate::error::{Result, counted};
-use crate::fmu::package::{Label, Overwrite, Runtime, write_archive};
+use crate::fmu::package::{Label, Runtime, write_archive};
 use crate::study::bridge::BridgeExportOptions;
 use std::path::PathBuf;
 
@@ -48,7 +48,7 @@ pub(super) fn run(command: &SspCommand, progress: &Progress) -> Result<Answer> {
     let system = system.map_err(stages::or_allow_unstable)?;
     let beside = || file.with_file_name("bridge.ssp");
     let path = out.clone().unwrap_or_else(beside);
-    write_archive(&path, &system.package()?, Overwrite::replacing(*force))?;
+    write_archive(&path, &system.package()?, *force)?;
     drop(stage);
     let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
     let parameters: usize = system.components.iter().map(|c| c.values.len()).sum();

@@ -10,7 +10,7 @@ use crate::files::text::file_name;
 use crate::files::toml_lines::of_a_kind_of_ours;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
+use crate::fmu::package::{Export, Label, Runtime, package};
 use crate::identification;
 use crate::study::{
     Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, Study, TrainedWithReport,
@@ -280,7 +280,7 @@ pub(crate) fn export(
     own: &TrainedWithReport,
     study: &Study,
     verdict: &Verdict,
-    growing: GrowthPolicy,
+    allow_unstable: bool,
     progress: &Progress,
 ) -> Result<Vec<u8>> {
     let stage = progress.stage("packing the FMU");
@@ -294,7 +294,8 @@ pub(crate) fn export(
         label: label.dated()?,
         bounds: onset_bounds(&own.model, &own.uncertainty)?,
         verdict: Some(verdict.clone()),
-        ..growing.into()
+        allow_unstable,
+        ..Export::default()
     };
     let bytes = package(&own.model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
     drop(stage);

@@ -8,7 +8,6 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
-use crate::fmu::package::GrowthPolicy;
 use crate::plausibility::sentences;
 use crate::selection::Recommendation;
 use crate::study::{
@@ -19,38 +18,23 @@ use crate::verdict::{Evidence, Verdict};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Run the whole chain of a study file: records, training, flutter, FMU, onset by stepping the FMU
-///
-/// Example: aerodeck study study.toml --out results
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct RunStudyArgs {
-    #[command(flatten)]
-    study: StudyArgs,
-    /// Export a model that grows below its onset, at reduced frequencies that were not tested.
-    #[arg(long)]
-    allow_unstable: bool,
-    /// Replace a study.toml in the folder of results that differs; without, this study stands beside it as study_as_run.toml.
-    #[arg(long)]
-    force: bool,
-}
-
 /// Stages that later ones ask for, in the messages of failures.
 const RECORDS: &str = "records";
 const STEPPING: &str = "stepping the FMU";
 
 /// Runs the command.
-pub(crate) fn run(args: &RunStudyArgs, progress: &Progress) -> Result<Answer> {
-    let (study, text) = args.study.read_with_text()?;
-    let mut out = OutputDir::new(&args.study.directory())?;
-    if args.force {
+pub(crate) fn run(
+    args: &StudyArgs,
+    allow_unstable: bool,
+    force: bool,
+    progress: &Progress,
+) -> Result<Answer> {
+    let (study, text) = args.read_with_text()?;
+    let mut out = OutputDir::new(&args.directory())?;
+    if force {
         out.replace(study_run::STUDY);
     }
-    let (file, growing) = (
-        args.study.file(),
-        GrowthPolicy::allowing(args.allow_unstable),
-    );
-    run_chain(study, &text, file, out, growing, progress)
+    run_chain(study, &text, args.file(), out, allow_unstable, progress)
 }
 
 /// The whole chain of a study into `out`, with its text and the file that this stands in (none when it was read otherwise or
@@ -60,7 +44,7 @@ pub(crate) fn run_chain(
     text: &str,
     file: Option<&Path>,
     mut out: OutputDir,
-    growing: GrowthPolicy,
+    allow_unstable: bool,
     progress: &Progress,
 ) -> Result<Answer> {
     let deck = Deck::load(&study)?;
@@ -79,7 +63,7 @@ pub(crate) fn run_chain(
     let mut results = stages::flutter_of(&chain.study, &chain.deck, &trained, failed, progress)?;
     let own = chain.own(&trained)?;
     let verdict = chain.verdict(own, &results);
-    let fmu = chain.export(own, &verdict, growing)?;
+    let fmu = chain.export(own, &verdict, allow_unstable)?;
     let stepped = chain.step(own, fmu, &mut results)?;
     let verdict = chain.verdict(own, &results);
     chain.draw(&trained, &results, &verdict)?;
@@ -158,7 +142,7 @@ impl StudyStages<'_> {
         &mut self,
         own: Option<&TrainedWithReport>,
         verdict: &Verdict,
-        growing: GrowthPolicy,
+        allow_unstable: bool,
     ) -> Result<Option<PathBuf>> {
         self.out.outdated(stages::FMU_FILE);
         let Some(own) = own else {
@@ -166,7 +150,7 @@ impl StudyStages<'_> {
             self.failed.push(StageFailure::new("export", reason));
             return Ok(None);
         };
-        let bytes = stages::export(own, &self.study, verdict, growing, self.progress);
+        let bytes = stages::export(own, &self.study, verdict, allow_unstable, self.progress);
         let Some(bytes) = self.attempt("export", bytes)? else {
             return Ok(None);
         };

@@ -6,45 +6,28 @@ use crate::reference::{CaseResult, UserCase, run as run_case, run_all, validatio
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compute the reference cases and compare them with published or independently computed figures
-///
-/// Example: aerodeck validate
-/// Example: aerodeck validate --case my_bridge.toml --case my_deck.toml
-#[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub(crate) struct ValidateArgs {
-    /// One case by name; by default, all.
-    name: Option<String>,
-    /// A case of your own (`.toml`); may be given several times.
-    #[arg(long = "case", value_name = "FILE", conflicts_with = "name")]
-    files: Vec<PathBuf>,
-    /// The table in Markdown, as it stands in docs/validation.md.
-    #[arg(long)]
-    markdown: bool,
-}
-
 /// Runs the command.
-pub(crate) fn run(args: &ValidateArgs, progress: &Progress) -> Result<Answer> {
-    let results = progress.during("reference cases", || match &args.name {
+pub(crate) fn run(
+    name: Option<&str>,
+    files: &[PathBuf],
+    markdown: bool,
+    progress: &Progress,
+) -> Result<Answer> {
+    let results = progress.during("reference cases", || match name {
         Some(name) => run_case(name),
-        None if args.files.is_empty() => run_all(),
-        None => user_cases(&args.files),
+        None if files.is_empty() => run_all(),
+        None => {
+            let read = |file: &PathBuf| UserCase::read(file).map(|case| case.run());
+            Ok(files.iter().map(read).collect::<Result<Vec<_>>>()?.concat())
+        }
     })?;
     let passed = results.iter().all(|r| r.passed);
     let value = serde_json::json!({ "cases": results });
-    let answer = match args.markdown {
+    let answer = match markdown {
         true => Answer::new(validation_table(&results), &value)?.verbatim(),
         false => Answer::new(table(&results), &value)?,
     };
     Ok(answer.passed_if(passed))
-}
-
-fn user_cases(files: &[PathBuf]) -> Result<Vec<CaseResult>> {
-    let cases = files
-        .iter()
-        .map(|file| UserCase::read(file))
-        .collect::<Result<Vec<_>>>()?;
-    Ok(cases.iter().flat_map(UserCase::run).collect())
 }
 
 fn table(results: &[CaseResult]) -> String {

@@ -3,16 +3,13 @@
 //! Order of elements and attributes follow the XML schema of FMI 2.0; an empty list is left out. The text holds no path, and a
 //! date only where its label states one, so that an export is reproducible byte for byte.
 
-use super::identity::MODEL_IDENTIFIER;
 use super::log_categories::LOG_CATEGORIES;
 use super::package::label::Label;
-use super::resources::Resources;
 use super::si::SiUnit;
-use super::standard::FmiTerm;
-use super::variables::{
-    Causality, Dependency, DependencyKind, Listing, StartValue, Variable, VariableTable,
+use super::{
+    Causality, Dependency, DependencyKind, Element, FmiTerm, Listing, MODEL_IDENTIFIER, Resources,
+    StartValue, Variable, VariableTable,
 };
-use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
 

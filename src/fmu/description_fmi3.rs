@@ -3,13 +3,11 @@
 use super::description::{
     depending, described, experiment, log_categories, number, units, with_role, with_unit,
 };
-use super::force_options::MAX_STRIPS;
-use super::groups::{Groups, array_of};
-use super::identity::MODEL_IDENTIFIER;
 use super::package::label::Label;
-use super::resources::Resources;
-use super::variables::{Causality, Dependency, StartValue, Variable, VariableTable};
-use super::xml::Element;
+use super::{
+    Causality, Dependency, Element, Groups, MAX_STRIPS, MODEL_IDENTIFIER, Resources, StartValue,
+    Variable, VariableTable, array_of,
+};
 use crate::error::Result;
 use std::collections::BTreeMap;
 

@@ -6,7 +6,6 @@
 mod archive_file;
 mod bridge_page;
 mod documentation;
-mod growth;
 pub(in crate::fmu) mod label;
 mod reference_runs;
 mod runtime;
@@ -17,25 +16,21 @@ use reference_runs::{WASM_MANIFEST, wasm_manifest};
 
 pub(super) use archive_file::archive;
 pub(crate) use archive_file::with_report;
-pub use archive_file::{Overwrite, write_archive};
-pub use growth::GrowthPolicy;
-pub(crate) use growth::growth_of;
+pub use archive_file::write_archive;
 pub use label::Label;
 pub use runtime::Runtime;
 pub(crate) use runtime::{COMPONENT, live_module};
 
-use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
-use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::description::model_description;
-use super::description_fmi3;
-use super::force_options::{FORCE_FILE, ForceOptions};
 use super::location::MODEL_FILE;
-use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
-use super::resources::{GUST_FILE, OptionFiles, Resources};
-use super::variables::Listing;
-use super::xml::Element;
+use super::{
+    BOUNDS_FILE, BRIDGE_FILE, BridgeOptions, Element, FORCE_FILE, ForceOptions, GUST_FILE, Listing,
+    OnsetBounds, OptionFiles, Resources, TURBULENCE_FILE, TurbulenceOptions, description_fmi3,
+};
 use crate::aerodynamics::GustForce;
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};
+use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use std::collections::BTreeMap;
@@ -51,10 +46,17 @@ const LICENCES: [(&str, &str); 3] = [
 const ICON: &[u8] = include_bytes!("package/model.png");
 
 /// What is exported of a model: its section in its forces or, with options, its forces alone, or a whole bridge.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// ```
+/// use aerodeck::fmu::package::Export;
+///
+/// let export = Export { allow_unstable: true, ..Export::default() };
+/// assert!(!export.without_reference_runs);
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Export {
-    /// What becomes of a model that makes its own section grow where it should not.
-    pub growing: GrowthPolicy,
+    /// Whether a model that grows below its onset is packed; its documentation and its log then say at which speeds it grows.
+    pub allow_unstable: bool,
     /// Strips for a structure outside; `None` for the coupled section.
     pub force: Option<ForceOptions>,
     /// Forces of gusts, so that gusts are inputs.
@@ -74,26 +76,15 @@ pub struct Export {
     pub label: Label,
     /// Of the standard.
     pub version: FmiVersion,
-    /// Whether it carries runs by which an importer sees that it does what it should.
-    pub reference_runs: bool,
+    /// Whether it leaves out the runs by which an importer sees that it does what it should.
+    pub without_reference_runs: bool,
 }
 
-impl From<GrowthPolicy> for Export {
-    fn from(growing: GrowthPolicy) -> Self {
-        Self {
-            growing,
-            force: None,
-            gusts: None,
-            bridge: None,
-            turbulence: None,
-            bounds: None,
-            verdict: None,
-            listing: Listing::All,
-            label: Label::default(),
-            version: FmiVersion::default(),
-            reference_runs: true,
-        }
-    }
+/// Growth below the onset of the section of a model, by extrapolation alone; see `unwanted_growth`.
+pub(crate) fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
+    let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
+    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
+    unwanted_growth(&section, &search, Some(model.tested_range))
 }
 
 /// The FMU of a trained model as the bytes of its archive, with these runtimes in it.
@@ -102,12 +93,7 @@ impl From<GrowthPolicy> for Export {
 /// [`Error::Input`] for a model or a bridge that cannot be exported, for no runtime at all, and for two of one platform;
 /// [`Error::Numerical`] for a model that grows where it should not, unless that is allowed. What a bridge does below its onset is for
 /// the caller to judge.
-pub fn package(
-    model: &TrainedModel,
-    runtimes: &[Runtime],
-    export: impl Into<Export>,
-) -> Result<Vec<u8>> {
-    let export = export.into();
+pub fn package(model: &TrainedModel, runtimes: &[Runtime], export: Export) -> Result<Vec<u8>> {
     if (export.listing, export.version) == (Listing::Reals, FmiVersion::Three) {
         let place = "real variables only";
         return Err(Error::input(place, "FMI 2.0", "FMI 3.0"));
@@ -121,7 +107,11 @@ pub fn package(
     ensure(!mixed, "FMU", expected, "both")?;
     let further = export.force.iter().flat_map(|force| &force.further);
     for model in std::iter::once(model).chain(further.map(|f| &f.model)) {
-        growth::check(model, export.growing)?;
+        let growth = (!export.allow_unstable).then(|| growth_of(model));
+        if let Some(growth) = growth.transpose()?.filter(|growth| !growth.is_none()) {
+            let why = format!("{} is not exported: it {}", model.name, growth.explain());
+            return Err(Error::Unstable(why));
+        }
     }
     let expected = "a runtime for at least one platform";
     ensure(!runtimes.is_empty(), "FMU", expected, "none")?;
@@ -203,7 +193,7 @@ fn assembled(
         files.insert(format!("{licences}/{name}"), text.into());
     }
     files.extend(binaries(runtimes, version)?);
-    if export.reference_runs {
+    if !export.without_reference_runs {
         let bounds = export.bounds.as_ref();
         files.extend(reference_runs::files(resources, bounds, listing, version)?);
     }
@@ -234,7 +224,7 @@ fn binaries(runtimes: &[Runtime], version: FmiVersion) -> Result<BTreeMap<String
 /// seen.
 ///
 /// ```
-/// use aerodeck::fmu::package::{GrowthPolicy, Overwrite, Runtime, write_fmu};
+/// use aerodeck::fmu::package::{Export, Runtime, write_fmu};
 /// use aerodeck::prelude::*;
 /// use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION};
 ///
@@ -264,9 +254,9 @@ fn binaries(runtimes: &[Runtime], version: FmiVersion) -> Result<BTreeMap<String
 /// let folder = tempfile::tempdir().map_err(|e| Error::io("temporary folder", e))?;
 /// let fmu = folder.path().join("plate.fmu");
 /// let runtimes = Runtime::available()?;
-/// write_fmu(&fmu, &model, &runtimes, Overwrite::Refuse, GrowthPolicy::Refuse)?;
+/// write_fmu(&fmu, &model, &runtimes, false, Export::default())?;
 /// // a file that is there is not lost
-/// assert!(write_fmu(&fmu, &model, &runtimes, Overwrite::Refuse, GrowthPolicy::Refuse).is_err());
+/// assert!(write_fmu(&fmu, &model, &runtimes, false, Export::default()).is_err());
 /// # Ok::<(), Error>(())
 /// ```
 ///
@@ -277,10 +267,10 @@ pub fn write_fmu(
     path: &Path,
     model: &TrainedModel,
     runtimes: &[Runtime],
-    overwrite: Overwrite,
-    export: impl Into<Export>,
+    replace: bool,
+    export: Export,
 ) -> Result<()> {
-    write_archive(path, &package(model, runtimes, export)?, overwrite)
+    write_archive(path, &package(model, runtimes, export)?, replace)
 }
 
 fn licence(resources: &Resources) -> String {

@@ -1,16 +1,18 @@
 //! Systems of FMUs: System Structure and Parameterization 1.0, an archive with the units, who is connected to whom, and their
 //! parameters.
 
+use super::Element;
 use super::description::number;
 use super::package::archive;
-use super::ssv::{VERSION, parameter_set};
-use super::xml::Element;
-use crate::error::{Error, Result};
+use crate::error::{Result, ensure};
 use crate::trained_model::Experiment;
 use std::collections::BTreeMap;
 
 const STRUCTURE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
+const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
 const COMMON: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";
+/// Version of the standard.
+const VERSION: &str = "1.0";
 
 /// A unit of a system.
 #[derive(Debug, Clone)]
@@ -19,10 +21,6 @@ pub struct SystemComponent {
     pub name: String,
     /// Its FMU.
     pub fmu: Vec<u8>,
-    /// Inputs that are connected.
-    pub inputs: Vec<String>,
-    /// Outputs that are connected.
-    pub outputs: Vec<String>,
     /// Start values of parameters and of inputs that are not connected.
     pub values: Vec<(String, f64)>,
 }
@@ -55,38 +53,20 @@ impl System {
     /// # Errors
     /// [`Error::Input`] for a number that is not finite, and for a connection between what is not there.
     pub fn package(&self) -> Result<Vec<u8>> {
-        self.check()?;
+        for end in self.connections.iter().flat_map(|c| [&c.from, &c.to]) {
+            let is_there = self.components.iter().any(|c| c.name == end[0]);
+            let expected = "an output and an input of the components";
+            ensure(is_there, "connection", expected, end.join("."))?;
+        }
         let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
-        files.insert(
-            "SystemStructure.ssd".into(),
-            self.description()?.into_bytes(),
-        );
+        let description = self.description()?.into_bytes();
+        files.insert("SystemStructure.ssd".into(), description);
         for component in &self.components {
             let values = parameter_set(&component.name, &component.values)?.into_bytes();
             files.insert(resource(&component.name, "ssv"), values);
             files.insert(resource(&component.name, "fmu"), component.fmu.clone());
         }
         archive(&files)
-    }
-
-    /// Both ends of a connection are there.
-    fn check(&self) -> Result<()> {
-        let has = |[name, connector]: &[String; 2], of: &dyn Fn(&SystemComponent) -> &[String]| {
-            let component = self.components.iter().find(|c| c.name == *name);
-            component.is_some_and(|c| of(c).contains(connector))
-        };
-        for Connection { from, to } in &self.connections {
-            for (end, is_there) in [
-                (from, has(from, &|c| &c.outputs)),
-                (to, has(to, &|c| &c.inputs)),
-            ] {
-                if !is_there {
-                    let expected = "an output and an input of the components";
-                    return Err(Error::input("connection", expected, end.join(".")));
-                }
-            }
-        }
-        Ok(())
     }
 
     fn description(&self) -> Result<String> {
@@ -97,10 +77,11 @@ impl System {
                 .with("endElement", &c.to[0])
                 .with("endConnector", &c.to[1])
         };
+        let components = self.components.iter().map(|of| self.component(&of.name));
         let system = Element::new("ssd:System")
             .with("name", &self.name)
             .containing([
-                Element::new("ssd:Elements").containing(self.components.iter().map(component)),
+                Element::new("ssd:Elements").containing(components),
                 Element::new("ssd:Connections").containing(self.connections.iter().map(connection)),
             ]);
         let experiment = Element::new("ssd:DefaultExperiment")
@@ -117,30 +98,48 @@ impl System {
             );
         Ok(root.containing([system, experiment]).document())
     }
+
+    /// A component with what is connected of it.
+    fn component(&self, name: &str) -> Element {
+        let connector = |kind: &'static str, [of, connector]: &[String; 2]| {
+            (of == name).then(|| {
+                Element::new("ssd:Connector")
+                    .with("name", connector)
+                    .with("kind", kind)
+                    .containing([Element::new("ssc:Real")])
+            })
+        };
+        let all = self.connections.iter();
+        let inputs = all.clone().filter_map(|c| connector("input", &c.to));
+        let connectors = inputs.chain(all.filter_map(|c| connector("output", &c.from)));
+        let binding = Element::new("ssd:ParameterBinding").with("source", resource(name, "ssv"));
+        Element::new("ssd:Component")
+            .with("name", name)
+            .with("type", "application/x-fmu-sharedlibrary")
+            .with("source", resource(name, "fmu"))
+            .containing([
+                Element::new("ssd:Connectors").containing(connectors),
+                Element::new("ssd:ParameterBindings").containing([binding]),
+            ])
+    }
 }
 
 fn resource(name: &str, ending: &str) -> String {
     format!("resources/{name}.{ending}")
 }
 
-fn component(of: &SystemComponent) -> Element {
-    let connector = |kind: &'static str| {
-        move |name: &String| {
-            Element::new("ssd:Connector")
-                .with("name", name)
-                .with("kind", kind)
-                .containing([Element::new("ssc:Real")])
-        }
-    };
-    let connectors = of.inputs.iter().map(connector("input"));
-    let connectors = connectors.chain(of.outputs.iter().map(connector("output")));
-    let binding = Element::new("ssd:ParameterBinding").with("source", resource(&of.name, "ssv"));
-    Element::new("ssd:Component")
-        .with("name", &of.name)
-        .with("type", "application/x-fmu-sharedlibrary")
-        .with("source", resource(&of.name, "fmu"))
-        .containing([
-            Element::new("ssd:Connectors").containing(connectors),
-            Element::new("ssd:ParameterBindings").containing([binding]),
-        ])
+/// Start values of that name as an SSV file.
+pub(super) fn parameter_set(of: &str, values: &[(String, f64)]) -> Result<String> {
+    let mut all = Vec::new();
+    for (name, value) in values {
+        let value = Element::new("ssv:Real").with("value", number(*value)?);
+        let parameter = Element::new("ssv:Parameter").with("name", name);
+        all.push(parameter.containing([value]));
+    }
+    let root = Element::new("ssv:ParameterSet")
+        .with("xmlns:ssv", VALUES)
+        .with("version", VERSION)
+        .with("name", of)
+        .containing([Element::new("ssv:Parameters").containing(all)]);
+    Ok(root.document())
 }

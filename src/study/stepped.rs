@@ -46,18 +46,12 @@ pub struct SteppedRun {
 impl SteppedOnset {
     /// In words.
     pub(crate) fn explain(&self) -> String {
-        let runs: Vec<String> = self
-            .runs
-            .iter()
-            .map(|r| {
-                format!(
-                    "{:.4} m/s with a step of {:.4} s ({})",
-                    r.speed_m_s,
-                    r.communication_step_s,
-                    counted(r.steps, "step")
-                )
-            })
-            .collect();
+        let run = |r: &SteppedRun| {
+            let (speed, step, steps) = (r.speed_m_s, r.communication_step_s, r.steps);
+            let steps = counted(steps, "step");
+            format!("{speed:.4} m/s with a step of {step:.4} s ({steps})")
+        };
+        let runs: Vec<String> = self.runs.iter().map(run).collect();
         format!("FMU stepped: {}", runs.join(", "))
     }
 }
@@ -96,14 +90,12 @@ pub fn stepped_onset(
             }
         }
     }
-    let runs = found
-        .iter()
-        .map(|f| SteppedRun {
-            communication_step_s: f.communication_step_s,
-            speed_m_s: f.speed_m_s,
-            steps: f.steps,
-        })
-        .collect();
+    let runs = found.iter().map(|f| SteppedRun {
+        communication_step_s: f.communication_step_s,
+        speed_m_s: f.speed_m_s,
+        steps: f.steps,
+    });
+    let runs = runs.collect();
     let Some(first) = found.first() else {
         return Err(Error::Numerical("FMU stepped: no run".into()));
     };
@@ -181,13 +173,12 @@ fn diverges_inside(at: &GrowthPoint) -> Option<String> {
 }
 
 fn unstable(model: &TrainedModel, at: &GrowthPoint, reason: String) -> FlutterSearch {
-    let (speed_m_s, hertz) = (at.speed_m_s, at.frequency_hz());
-    let k = ReducedFrequency::from_hertz(hertz, model.section.width_m, speed_m_s);
+    let point = stepped_point(model, at.speed_m_s, at.frequency_hz());
     FlutterSearch::UnstableAtOrBelow(Box::new(UnstableStart {
-        at: CriticalPoint::new(&model.name, OnsetMethod::FmuStepping, speed_m_s, hertz, k),
+        in_tested_range: Some(model.tested_range.contains(point.reduced_frequency)),
+        at: point,
         growth_rate_per_s: at.growth_rate_per_s,
         branch: "dominant".to_owned(),
-        in_tested_range: Some(model.tested_range.contains(k)),
         reason,
         warnings: Vec::new(),
         onset_above: None,
@@ -196,16 +187,10 @@ fn unstable(model: &TrainedModel, at: &GrowthPoint, reason: String) -> FlutterSe
 }
 
 fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
-    let k =
-        ReducedFrequency::from_hertz(found.frequency_hz, model.section.width_m, found.speed_m_s);
+    let point = stepped_point(model, found.speed_m_s, found.frequency_hz);
+    let k = point.reduced_frequency;
     Onset {
-        at: CriticalPoint::new(
-            &model.name,
-            OnsetMethod::FmuStepping,
-            found.speed_m_s,
-            found.frequency_hz,
-            k,
-        ),
+        at: point,
         mode: found.mode_ratio.map(|mode_ratio| ModeRatio {
             mode_ratio,
             phase_deg: found.phase_deg,
@@ -218,6 +203,13 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
         warnings: Vec::new(),
         interval: OnsetInterval::none("that of the model in it"),
     }
+}
+
+/// A speed at which the FMU of the model was stepped, with its oscillation.
+fn stepped_point(model: &TrainedModel, speed_m_s: f64, frequency_hz: f64) -> CriticalPoint {
+    let k = ReducedFrequency::from_hertz(frequency_hz, model.section.width_m, speed_m_s);
+    let method = OnsetMethod::FmuStepping;
+    CriticalPoint::new(&model.name, method, speed_m_s, frequency_hz, k)
 }
 
 #[cfg(test)]

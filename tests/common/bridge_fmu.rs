@@ -7,7 +7,7 @@ use aerodeck::files::bridge::FieldTable;
 use aerodeck::flutter::{find_onset, motion_at_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, package, write_archive, write_fmu,
+    Export, FmiVersion, Label, Runtime, package, write_archive, write_fmu,
 };
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 use serde_json::json;
@@ -32,7 +32,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         };
         let bytes = package(&model, runtimes, export).unwrap();
         let path = folder.join(format!("{name}.fmu"));
-        write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+        write_archive(&path, &bytes, false).unwrap();
     }
     gusts(folder, runtimes);
     sections(folder, runtimes);
@@ -51,10 +51,10 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
     };
     let force = Export {
         force: Some(options),
-        ..GrowthPolicy::Refuse.into()
+        ..Export::default()
     };
     let fmu = folder.join("bridge_force.fmu");
-    write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, force).unwrap();
+    write_fmu(&fmu, &model, runtimes, false, force).unwrap();
     let section = coupled(bridge);
     let onset = &onset(find_onset("bridge", &section, &SEARCH, None).unwrap()).at;
     let motion = motion_at_onset(bridge, &bridge.forces(), onset).unwrap();
@@ -84,7 +84,7 @@ fn system(path: PathBuf, study: &BridgeStudy, runtimes: &[Runtime]) {
     let (all, verdict) = (BridgeExportOptions::default(), study.verdict().unwrap());
     let system = study.system(&all, &verdict, runtimes, &Label::default());
     let bytes = system.unwrap().package().unwrap();
-    write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+    write_archive(&path, &bytes, false).unwrap();
 }
 
 /// Writes the forces on a bridge of several sections in both versions, its system and, in `sections.json`, its onset by eigenvalues.
@@ -93,7 +93,9 @@ fn sections(folder: &Path, runtimes: &[Runtime]) {
     system(folder.join("sections.ssp"), &study, runtimes);
     let wanted = BridgeExportOptions::default();
     let gusts = Some(RationalAdmittance::Sears);
-    let each = study.section_forces(&wanted, gusts).unwrap();
+    let each = study
+        .section_forces(&study.export(&wanted).unwrap().0, gusts)
+        .unwrap();
     let all = study.joined(each).unwrap();
     for (name, version) in [
         ("sections_force", FmiVersion::Two),
@@ -101,7 +103,7 @@ fn sections(folder: &Path, runtimes: &[Runtime]) {
     ] {
         let export = all.packed(&Label::default(), version);
         let path = folder.join(format!("{name}.fmu"));
-        write_fmu(&path, &all.model, runtimes, Overwrite::Refuse, export).unwrap();
+        write_fmu(&path, &all.model, runtimes, false, export).unwrap();
     }
     let section = coupled(&study.by_model);
     let onset = onset(find_onset("bridge", &section, &SEARCH, None).unwrap()).at;
@@ -138,5 +140,5 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
     };
     let (model, export) = study.export(&wanted).unwrap();
     let bytes = package(&model, runtimes, export).unwrap();
-    write_archive(&folder.join("bridge_gusts.fmu"), &bytes, Overwrite::Refuse).unwrap();
+    write_archive(&folder.join("bridge_gusts.fmu"), &bytes, false).unwrap();
 }

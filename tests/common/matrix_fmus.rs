@@ -6,7 +6,7 @@ use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, find_onset};
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, FmiVersion, Runtime, write_fmu};
 use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 use serde_json::{Value, json};
@@ -66,18 +66,20 @@ fn cell(
         let export = Export {
             gusts: Some(plate_gusts(&model)),
             version,
-            ..GrowthPolicy::Allow.into()
+            allow_unstable: true,
+            ..Export::default()
         };
         let fmu = folder.join(format!("{name}_{shell}.fmu"));
-        write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+        write_fmu(&fmu, &model, runtimes, false, export).unwrap();
     }
     let forces = Export {
         gusts: Some(plate_gusts(&model)),
         force: Some(ForceOptions::single(model.section.width_m)),
-        ..GrowthPolicy::Allow.into()
+        allow_unstable: true,
+        ..Export::default()
     };
     let fmu = folder.join(format!("{name}_force.fmu"));
-    write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, forces).unwrap();
+    write_fmu(&fmu, &model, runtimes, false, forces).unwrap();
     json!({
         "fmu": name, "what": format!("{}, {}", model.name, section.name), "answered": answered,
         "speed_m_s": at.speed_m_s, "frequency_hz": at.frequency_hz, "motions": model.section.dofs().len(),

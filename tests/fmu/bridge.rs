@@ -3,7 +3,7 @@
 use crate::bridges::{SEARCH, TWO, coupled, langenuen, langenuen_text, lively, read};
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{CheckReport, Fmu, Slave, Value};
-use aerodeck::fmu::package::{Export, Overwrite, Runtime, package, write_archive};
+use aerodeck::fmu::package::{Export, Runtime, package, write_archive};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::study::bridge::BridgeExportOptions;
 use aerodeck::trained_model::TrainedModel;
@@ -14,7 +14,7 @@ fn opened(model: &TrainedModel, export: &Export) -> (tempfile::TempDir, Fmu) {
     let path = folder.path().join("bridge.fmu");
     let runtimes = [Runtime::embedded().unwrap()];
     let bytes = package(model, &runtimes, export.clone()).unwrap();
-    write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+    write_archive(&path, &bytes, false).unwrap();
     let fmu = Fmu::open(&path).unwrap();
     (folder, fmu)
 }

@@ -5,7 +5,7 @@ use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::description_fmi3::model_description;
 use aerodeck::fmu::importer::{Fmu, Slave, Value};
-use aerodeck::fmu::package::{Export, Label, Overwrite, Runtime, package, write_archive};
+use aerodeck::fmu::package::{Export, Label, Runtime, package, write_archive};
 use aerodeck::fmu::resources::Resources;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 use aerodeck::trained_model::TrainedModel;
@@ -17,7 +17,7 @@ fn opened(model: &TrainedModel, export: Export) -> Fmu {
     let path = folder.path().join("bridge.fmu");
     let runtimes = [Runtime::embedded().unwrap()];
     let bytes = package(model, &runtimes, export).unwrap();
-    write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+    write_archive(&path, &bytes, false).unwrap();
     Fmu::open(&path).unwrap()
 }
 
@@ -144,7 +144,9 @@ fn a_damper_outside_does_what_one_inside_does() {
         ..BridgeExportOptions::default()
     };
     let [inside, outside] = [&with, &plain].map(|study| {
-        let (model, export) = study.structure(&wanted).unwrap();
+        let (model, whole) = study.export(&wanted).unwrap();
+        let all = wanted.nodes.is_empty();
+        let (model, export) = study.structure(model, whole, all).unwrap();
         opened(&model, export)
     });
     let start = |fmu: &Fmu| {

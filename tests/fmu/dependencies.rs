@@ -337,6 +337,7 @@ fn damped_bridges_in_gusts_depend_on_what_is_stated() {
     };
     let (model, export) = study.export(&wanted).unwrap();
     ProbedUnit::bridge("dampers and gusts", &model, &export).checked();
-    let (model, export) = study.structure(&BridgeExportOptions::default()).unwrap();
+    let (model, whole) = study.export(&BridgeExportOptions::default()).unwrap();
+    let (model, export) = study.structure(model, whole, true).unwrap();
     ProbedUnit::bridge("structure", &model, &export).checked();
 }

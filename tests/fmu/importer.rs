@@ -5,7 +5,7 @@ use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{Fmu, FmuSeverity, Slave, SteppedSearch, Value, onset_by_stepping};
-use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, FmiVersion, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -25,8 +25,11 @@ fn exported(folder: &Path, kind: &str) -> PathBuf {
         &path,
         &model(kind),
         &runtimes,
-        Overwrite::Refuse,
-        GrowthPolicy::Allow,
+        false,
+        Export {
+            allow_unstable: true,
+            ..Export::default()
+        },
     )
     .unwrap();
     path
@@ -49,10 +52,11 @@ fn real_variables_alone_pass_every_check() {
         let export = Export {
             listing: Listing::Reals,
             version: FmiVersion::Two,
-            ..GrowthPolicy::Allow.into()
+            allow_unstable: true,
+            ..Export::default()
         };
         let runtimes = [Runtime::embedded().unwrap()];
-        write_fmu(&path, &model(kind), &runtimes, Overwrite::Refuse, export).unwrap();
+        write_fmu(&path, &model(kind), &runtimes, false, export).unwrap();
         let fmu = Fmu::open(&path).unwrap();
         let report = fmu.check();
         assert!(report.passed(), "{kind}: {report:#?}");

@@ -7,7 +7,7 @@ use aerodeck::bridge::BridgeMode;
 use aerodeck::fmu::description_fmi3;
 use aerodeck::fmu::force_options::StripsOfModel;
 use aerodeck::fmu::importer::{Fmu, Slave, Value, replay};
-use aerodeck::fmu::package::{FmiVersion, Label, Overwrite, Runtime, package, write_archive};
+use aerodeck::fmu::package::{Export, FmiVersion, Label, Runtime, package, write_archive};
 use aerodeck::fmu::resources::Resources;
 use aerodeck::fmu::variables::Causality;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart};
@@ -20,19 +20,21 @@ fn runtimes() -> [Runtime; 1] {
 fn opened(bytes: &[u8]) -> Fmu {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("part.fmu");
-    write_archive(&path, bytes, Overwrite::Refuse).unwrap();
+    write_archive(&path, bytes, false).unwrap();
     Fmu::open(&path).unwrap()
 }
 
 fn structure(study: &BridgeStudy) -> Fmu {
-    let (model, export) = study.structure(&BridgeExportOptions::default()).unwrap();
+    let (model, whole) = study.export(&BridgeExportOptions::default()).unwrap();
+    let (model, export) = study.structure(model, whole, true).unwrap();
     opened(&package(&model, &runtimes(), export).unwrap())
 }
 
 fn packed(forces: &SectionForcePart) -> Fmu {
-    let export = aerodeck::fmu::package::Export {
+    let export = Export {
         force: Some(forces.options.clone()),
-        ..aerodeck::fmu::package::GrowthPolicy::Allow.into()
+        allow_unstable: true,
+        ..Export::default()
     };
     opened(&package(&forces.model, &runtimes(), export).unwrap())
 }
@@ -124,7 +126,9 @@ fn the_forces_of_every_girder_are_packed() {
             allow_unstable: true,
             ..BridgeExportOptions::default()
         };
-        let all = study.section_forces(&wanted, None).unwrap();
+        let all = study
+            .section_forces(&study.export(&wanted).unwrap().0, None)
+            .unwrap();
         let [forces] = &all[..] else {
             panic!("{} sections", all.len());
         };
@@ -164,7 +168,9 @@ fn all_sections_are_one_unit() {
         allow_unstable: true,
         ..BridgeExportOptions::default()
     };
-    let each = study.section_forces(&wanted, None).unwrap();
+    let each = study
+        .section_forces(&study.export(&wanted).unwrap().0, None)
+        .unwrap();
     let names: Vec<&str> = each.iter().map(|f| f.sections[0].as_str()).collect();
     // in the order of the nodes
     assert_eq!(names, ["west side", "middle", "east", "fairing", "end"]);
@@ -214,7 +220,9 @@ fn the_unit_of_all_sections_is_the_units_of_each() {
         ..BridgeExportOptions::default()
     };
     let gusts = Some(RationalAdmittance::Liepmann);
-    let each = study.section_forces(&wanted, gusts).unwrap();
+    let each = study
+        .section_forces(&study.export(&wanted).unwrap().0, gusts)
+        .unwrap();
     let all = study.joined(each.clone()).unwrap();
     let started = |forces: &SectionForcePart| {
         let export = forces.packed(&Label::default(), FmiVersion::Two);
@@ -266,7 +274,11 @@ fn arrays_of_some_nodes_are_named() {
         ..BridgeExportOptions::default()
     };
     let forces = study
-        .joined(study.section_forces(&wanted, None).unwrap())
+        .joined(
+            study
+                .section_forces(&study.export(&wanted).unwrap().0, None)
+                .unwrap(),
+        )
         .unwrap();
     let export = forces.packed(&Label::default(), FmiVersion::Three);
     let fmu = opened(&package(&forces.model, &runtimes(), export).unwrap());
@@ -310,7 +322,9 @@ fn what_a_structure_does_not_have_is_refused() {
         gust_strips: Some(3),
         ..BridgeExportOptions::default()
     };
-    let refused = langenuen("LN21-5200", TWO).structure(&wanted).unwrap_err();
+    let study = langenuen("LN21-5200", TWO);
+    let (model, whole) = study.export(&wanted).unwrap();
+    let refused = study.structure(model, whole, true).unwrap_err();
     assert!(
         refused.to_string().contains("not to the structure"),
         "{refused}"

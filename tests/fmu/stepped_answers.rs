@@ -6,7 +6,7 @@ use aerodeck::aerodynamics::RationalModel;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, divergence_by_eigenvalues, find_onset};
 use aerodeck::fmu::importer::Fmu;
 use aerodeck::fmu::importer::{SteppedSearch, onset_by_stepping};
-use aerodeck::fmu::package::{GrowthPolicy, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, Runtime, write_fmu};
 use aerodeck::identification::Form;
 use aerodeck::section::SectionModel;
 use aerodeck::study::stepped_onset;
@@ -43,8 +43,11 @@ fn answers(model: &TrainedModel, speed_max: f64) -> (FlutterSearch, FlutterSearc
         &path,
         model,
         &runtimes,
-        Overwrite::Refuse,
-        GrowthPolicy::Allow,
+        false,
+        Export {
+            allow_unstable: true,
+            ..Export::default()
+        },
     )
     .unwrap();
     let (stepped, _) = stepped_onset(model, &path, speed_max).unwrap();
@@ -132,8 +135,11 @@ fn growth_at_every_speed_is_an_answer() {
         &path,
         &model,
         &runtimes,
-        Overwrite::Refuse,
-        GrowthPolicy::Allow,
+        false,
+        Export {
+            allow_unstable: true,
+            ..Export::default()
+        },
     )
     .unwrap();
     let fmu = Fmu::open(&path).unwrap();

@@ -2,16 +2,14 @@
 
 mod bridge;
 
-use crate::aerodynamics::{GustForce, RationalAdmittance};
+use crate::aerodynamics::RationalAdmittance;
 use crate::cli::{Answer, Progress, headline, in_input, spelt, stages, text, warn};
 use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, growth_of, package, write_archive,
-};
+use crate::fmu::package::{Export, FmiVersion, Label, Runtime, growth_of, package, write_archive};
 use crate::fmu::variables::Listing;
 use crate::plausibility::{of_model, sentences};
 use crate::study::saved_evidence;
@@ -19,7 +17,7 @@ use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Pack a trained model (`model.json`) or a bridge as an FMU (FMI 2.0 or 3.0): with its forces, or the forces alone
 ///
@@ -121,57 +119,59 @@ fn version(number: String) -> FmiVersion {
 }
 
 impl FmuExportArgs {
-    /// The export with what is said of its origin, in the version and with the variables and runs that are wanted.
-    fn described(&self, export: Export) -> Result<Export> {
+    /// Packs what is exported and writes the archive, in place of another only with --force, as `file` beside the input where no other
+    /// place is named; where it stands, and for which platforms.
+    fn packed(
+        &self,
+        model: &TrainedModel,
+        export: Export,
+        file: &str,
+    ) -> Result<(PathBuf, Vec<Runtime>)> {
         let label = Label {
             name: self.name.clone().or(export.label.name),
             author: self.author.clone(),
             copyright: self.copyright.clone(),
             generated: None,
         };
-        Ok(Export {
+        let export = Export {
             label: label.dated()?,
             version: self.fmi,
             listing: match self.reals_only {
                 true => Listing::Reals,
                 false => Listing::All,
             },
-            reference_runs: !self.no_reference,
+            without_reference_runs: self.no_reference,
             ..export
-        })
-    }
-
-    fn runtimes(&self) -> Result<Vec<Runtime>> {
-        if self.platforms.is_empty() {
-            Runtime::available()
-        } else {
-            Runtime::chosen(&self.platforms)
-        }
-    }
-
-    /// The forces of gusts.
-    fn gusts(&self, model: &TrainedModel) -> Result<Option<GustForce>> {
-        let dofs = model.section.dofs();
-        gust_force(self.gusts.as_deref(), self.admittance, &dofs)
+        };
+        let runtimes = match &self.platforms[..] {
+            [] => Runtime::available()?,
+            chosen => Runtime::chosen(chosen)?,
+        };
+        let bytes = package(model, &runtimes, export).map_err(stages::or_allow_unstable)?;
+        let beside = || self.model.with_file_name(file);
+        let path = self.out.clone().unwrap_or_else(beside);
+        write_archive(&path, &bytes, self.force).map_err(|e| match e {
+            Error::Input(mut input) if !self.force => {
+                input.expected.push_str(" (or --force)");
+                Error::Input(input)
+            }
+            other => other,
+        })?;
+        Ok((path, runtimes))
     }
 
     /// The options of a force FMU.
     fn force(&self, model: &TrainedModel) -> Result<Option<ForceOptions>> {
         let mut options = ForceOptions::single(model.section.width_m);
         if self.kind == ExportKind::Section {
+            let expected =
+                "--kind force with it: a coupled section has no strips and no prediction";
             let given = [
-                ("--strips", self.strips.is_some()),
-                ("--strip-length", self.strip_length.is_some()),
-                ("--prediction", self.prediction.is_some()),
+                ("--strips", self.strips.is_some(), expected),
+                ("--strip-length", self.strip_length.is_some(), expected),
+                ("--prediction", self.prediction.is_some(), expected),
             ];
-            return match given.into_iter().find(|(_, given)| *given) {
-                None => Ok(None),
-                Some((flag, _)) => Err(Error::input(
-                    flag,
-                    "--kind force with it: a coupled section has no strips and no prediction",
-                    "--kind section",
-                )),
-            };
+            return none_of(given, "--kind section").map(|()| None);
         }
         options.strips[0].length_m = self.strip_length.unwrap_or(options.strips[0].length_m);
         options.prediction_steps = self.prediction.unwrap_or(options.prediction_steps);
@@ -184,17 +184,13 @@ impl FmuExportArgs {
         options.validate()?;
         Ok(Some(options))
     }
+}
 
-    /// Writes the archive, in place of another only with --force.
-    fn write(&self, path: &Path, bytes: &[u8]) -> Result<()> {
-        let overwrite = Overwrite::replacing(self.force);
-        write_archive(path, bytes, overwrite).map_err(|e| match e {
-            Error::Input(mut input) if !self.force => {
-                input.expected.push_str(" (or --force)");
-                Error::Input(input)
-            }
-            other => other,
-        })
+/// Refuses the first of the flags that is given, with what is expected instead, where `kind` is packed.
+fn none_of<const N: usize>(flags: [(&str, bool, &str); N], kind: &str) -> Result<()> {
+    match flags.into_iter().find(|(_, given, _)| *given) {
+        None => Ok(()),
+        Some((flag, _, expected)) => Err(Error::input(flag, expected, kind)),
     }
 }
 
@@ -212,23 +208,17 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         "a trained model",
     )?;
     let model = stages::read_model(&args.model)?;
-    let default_name = match args.kind {
-        ExportKind::Section => stages::FMU_FILE,
-        ExportKind::Force | ExportKind::Structure => "deck_force.fmu",
-    };
+    let coupled = args.kind == ExportKind::Section;
     let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
-    let evidence = saved_evidence(&args.model, &model, &model.section, &search);
-    let evidence = match args.kind {
-        ExportKind::Section => Some(evidence?),
+    let evidence = match saved_evidence(&args.model, &model, &model.section, &search) {
+        Ok(evidence) => Some(evidence),
+        Err(why) if coupled => return Err(why),
         // forces are forces, whatever the section does
-        ExportKind::Force | ExportKind::Structure => evidence
-            .map_err(|why| {
-                warn(
-                    &args.model,
-                    &[format!("the section of the model is not judged: {why}")],
-                )
-            })
-            .ok(),
+        Err(why) => {
+            let why = format!("the section of the model is not judged: {why}");
+            warn(&args.model, &[why]);
+            None
+        }
     };
     let verdict = evidence.as_ref().map(Verdict::judge);
     let findings = match verdict {
@@ -237,26 +227,31 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         None => of_model(&model.name, &model.model, model.tested_range, &[]),
     };
     warn(&args.model, &sentences(&findings));
-    let beside_the_model = || args.model.with_file_name(default_name);
-    let path = args.out.clone().unwrap_or_else(beside_the_model);
+    let bounds = evidence.as_ref().filter(|_| coupled).and_then(|e| {
+        let onset = e.flutter.first()?.search.onset()?;
+        OnsetBounds::from_interval(&onset.interval)
+    });
     let export = Export {
         force: args.force(&model)?,
-        gusts: args.gusts(&model)?,
-        bounds: evidence.as_ref().and_then(|e| {
-            let onset = e.flutter.first()?.search.onset()?;
-            OnsetBounds::from_interval(&onset.interval).filter(|_| args.kind == ExportKind::Section)
-        }),
+        gusts: gust_force(
+            args.gusts.as_deref(),
+            args.admittance,
+            &model.section.dofs(),
+        )?,
+        bounds,
         verdict: verdict.clone(),
-        ..args.described(GrowthPolicy::allowing(args.allow_unstable).into())?
+        allow_unstable: args.allow_unstable,
+        ..Export::default()
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
-    let runtimes = args.runtimes()?;
-    let stage = progress.stage("packing the FMU");
-    let bytes = package(&model, &runtimes, export).map_err(stages::or_allow_unstable)?;
-    args.write(&path, &bytes)?;
-    drop(stage);
+    let file = match coupled {
+        true => stages::FMU_FILE,
+        false => "deck_force.fmu",
+    };
+    let packing = || args.packed(&model, export, file);
+    let (path, runtimes) = progress.during("packing the FMU", packing)?;
     let growth = growth_of(&model)?;
-    let platforms: Vec<_> = runtimes.iter().map(|r| r.platform.to_string()).collect();
+    let platforms: Vec<_> = runtimes.iter().map(|r| r.platform).collect();
     let headline = verdict.iter().map(|v| headline::text(&model.name, v, &[]));
     let mut text: String = headline.collect();
     let _ = writeln!(

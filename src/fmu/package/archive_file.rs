@@ -10,30 +10,11 @@ use zip::result::{ZipError, ZipResult};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-/// What to do with a file that is already there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Overwrite {
-    /// Leave it and say so.
-    Refuse,
-    /// Replace it.
-    Replace,
-}
-
-impl Overwrite {
-    /// Replaces a file that is there where that is wanted.
-    pub fn replacing(wanted: bool) -> Self {
-        match wanted {
-            true => Self::Replace,
-            false => Self::Refuse,
-        }
-    }
-}
-
 /// Writes the bytes of an archive as [`super::write_fmu`] does.
 ///
 /// # Errors
 /// [`Error::Input`] when the file is there and is not to be replaced, or is no archive; [`Error::Io`].
-pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<()> {
+pub fn write_archive(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -46,7 +27,7 @@ pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<
     if !folder.is_dir() {
         return refused("a folder to write into", "none").map_err(|e| e.in_file(folder));
     }
-    if overwrite == Overwrite::Replace && is_of_another_kind(path) {
+    if replace && is_of_another_kind(path) {
         let (expected, found) = (
             "no file there yet, or an archive",
             "a file of another kind, which was left as it is",
@@ -60,9 +41,9 @@ pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<
         .map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     readable_by_all(file.as_file()).map_err(failed)?;
-    match overwrite {
-        Overwrite::Replace => file.persist(path).map_err(|e| failed(e.error))?,
-        Overwrite::Refuse => file.persist_noclobber(path).map_err(|e| {
+    match replace {
+        true => file.persist(path).map_err(|e| failed(e.error))?,
+        false => file.persist_noclobber(path).map_err(|e| {
             if e.error.kind() == std::io::ErrorKind::AlreadyExists {
                 Error::input(
                     "archive",

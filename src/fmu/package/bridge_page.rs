@@ -1,10 +1,7 @@
 //! The page that documents the FMU of a bridge, in its archive.
 
 use super::documentation::{GUSTS_ARE_INPUTS, gust_words, rows, sentences};
-use crate::fmu::bridge_options::BridgeOptions;
-use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Role, Variable};
-use crate::fmu::xml::Element;
+use crate::fmu::{BridgeOptions, Element, Resources, Role, Variable};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 

@@ -5,12 +5,11 @@ use crate::aerodynamics::{RationalAdmittance, Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
-use crate::fmu::force_options::ForceOptions;
 use crate::fmu::package::runtime::Runtime;
-use crate::fmu::resources::Resources;
-use crate::fmu::standard::{FmiVersion, each_once};
-use crate::fmu::variables::{Role, SectionParameter, Variable, VariableTable};
-use crate::fmu::xml::Element;
+use crate::fmu::{
+    Element, FmiVersion, ForceOptions, Resources, Role, SectionParameter, Variable, VariableTable,
+    each_once,
+};
 use crate::plausibility;
 use crate::plausibility::{Finding, of_model, of_trained};
 use crate::section::{Dof, SectionModel};

@@ -6,12 +6,8 @@ mod unit;
 
 use crate::error::Result;
 use crate::fmu::importer::{LS_REF, LS_REF_MANIFEST};
-use crate::fmu::onset_bounds::{BOUNDS_FILE, OnsetBounds};
-use crate::fmu::resources::Resources;
-use crate::fmu::ssv::parameter_set;
-use crate::fmu::standard::FmiVersion;
-use crate::fmu::variables::Listing;
-use crate::fmu::xml::Element;
+use crate::fmu::ssp::parameter_set;
+use crate::fmu::{BOUNDS_FILE, Element, FmiVersion, Listing, OnsetBounds, Resources};
 use plan::PARAMETERS;
 use std::collections::BTreeMap;
 use unit::ReferenceUnit;

@@ -2,10 +2,9 @@
 //! its motion and the force on it, and so is the wind.
 
 use crate::aerodynamics::GustComponent;
-use crate::fmu::groups::array_of;
-use crate::fmu::standard::{Causality, FmiVersion};
-use crate::fmu::variables::{Response, Role, VariableTable};
-use crate::fmu::xml::Element;
+use crate::fmu::{
+    Causality, Element, FmiVersion, Response, Role, VariableTable, array_of,
+};
 use crate::section::Dof;
 use std::collections::BTreeSet;
 

@@ -14,10 +14,10 @@ fn embedded() -> Vec<Runtime> {
 
 #[test]
 fn archives_are_reproducible_and_complete() {
-    let bytes = package(&model("rational"), &embedded(), GrowthPolicy::Refuse).unwrap();
+    let bytes = package(&model("rational"), &embedded(), Export::default()).unwrap();
     assert_eq!(
         bytes,
-        package(&model("rational"), &embedded(), GrowthPolicy::Refuse).unwrap()
+        package(&model("rational"), &embedded(), Export::default()).unwrap()
     );
     let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
     let names: Vec<_> = (0..zip.len())
@@ -99,8 +99,8 @@ fn the_page_of_an_archive_describes_that_archive() {
         let export = Export {
             force: Some(force.clone()),
             version,
-            reference_runs: false,
-            ..GrowthPolicy::Refuse.into()
+            without_reference_runs: true,
+            ..Export::default()
         };
         let bytes = package(&model("rational"), &embedded(), export).unwrap();
         let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
@@ -153,8 +153,8 @@ fn the_page_says_what_gusts_do() {
             let export = Export {
                 force: force.clone(),
                 gusts,
-                reference_runs: false,
-                ..GrowthPolicy::Refuse.into()
+                without_reference_runs: true,
+                ..Export::default()
             };
             let page = page_of(&model, export);
             assert_eq!(page.contains("smooth wind"), !act);
@@ -174,8 +174,8 @@ fn sizes_of_arrays_of_nodes_are_numbers_on_the_page() {
     let export = Export {
         force: Some(force),
         version: FmiVersion::Three,
-        reference_runs: false,
-        ..GrowthPolicy::Refuse.into()
+        without_reference_runs: true,
+        ..Export::default()
     };
     let page = page_of(&model("rational"), export);
     let heave = "<code>heave</code></td><td>Float64[2]</td>";
@@ -195,8 +195,9 @@ fn the_page_of_forces_says_what_looks_wrong_in_them() {
     for (model, wrong) in [(model("rational"), false), (odd, true)] {
         let export = Export {
             force: Some(ForceOptions::single(31.0)),
-            reference_runs: false,
-            ..GrowthPolicy::Allow.into()
+            without_reference_runs: true,
+            allow_unstable: true,
+            ..Export::default()
         };
         let page = page_of(&model, export);
         assert_eq!(page.contains("What looks wrong in the forces"), wrong);
@@ -209,34 +210,12 @@ fn files_are_replaced_only_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a b.fmu");
     let model = model("rational");
-    write_fmu(
-        &path,
-        &model,
-        &embedded(),
-        Overwrite::Refuse,
-        GrowthPolicy::Refuse,
-    )
-    .unwrap();
+    write_fmu(&path, &model, &embedded(), false, Export::default()).unwrap();
     let first = std::fs::read(&path).unwrap();
     std::fs::write(&path, "mine").unwrap();
-    let refusal = write_fmu(
-        &path,
-        &model,
-        &embedded(),
-        Overwrite::Refuse,
-        GrowthPolicy::Refuse,
-    )
-    .unwrap_err();
+    let refusal = write_fmu(&path, &model, &embedded(), false, Export::default()).unwrap_err();
     assert!(refusal.to_string().contains("left as it is"), "{refusal}");
-    let replace = || {
-        write_fmu(
-            &path,
-            &model,
-            &embedded(),
-            Overwrite::Replace,
-            GrowthPolicy::Refuse,
-        )
-    };
+    let replace = || write_fmu(&path, &model, &embedded(), true, Export::default());
     // an archive is replaced on request, a model or a table never
     let refusal = replace().unwrap_err().to_string();
     assert!(
@@ -249,24 +228,15 @@ fn files_are_replaced_only_on_request() {
     assert_eq!(std::fs::read(&path).unwrap(), first);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     let nowhere = folder.path().join("missing").join("a.fmu");
-    assert!(
-        write_fmu(
-            &nowhere,
-            &model,
-            &embedded(),
-            Overwrite::Replace,
-            GrowthPolicy::Refuse
-        )
-        .is_err()
-    );
+    assert!(write_fmu(&nowhere, &model, &embedded(), true, Export::default()).is_err());
 }
 
 #[test]
 fn impossible_packages_are_refused() {
     let model = model("rational");
-    assert!(package(&model, &[], GrowthPolicy::Refuse).is_err());
+    assert!(package(&model, &[], Export::default()).is_err());
     let twice = [embedded(), embedded()].concat();
-    let message = package(&model, &twice, GrowthPolicy::Refuse)
+    let message = package(&model, &twice, Export::default())
         .unwrap_err()
         .to_string();
     assert!(
@@ -296,12 +266,20 @@ pub(crate) fn growing_model() -> TrainedModel {
 #[test]
 fn a_model_that_grows_where_nothing_was_tested_is_exported_only_on_request() {
     let model = growing_model();
-    let refusal = package(&model, &embedded(), GrowthPolicy::Refuse).unwrap_err();
+    let refusal = package(&model, &embedded(), Export::default()).unwrap_err();
     let refusal = refusal.to_string();
     for words in ["is not exported", "grows from", "m/s", "were not tested"] {
         assert!(refusal.contains(words), "`{words}` is not in: {refusal}");
     }
-    let bytes = package(&model, &embedded(), GrowthPolicy::Allow).unwrap();
+    let bytes = package(
+        &model,
+        &embedded(),
+        Export {
+            allow_unstable: true,
+            ..Export::default()
+        },
+    )
+    .unwrap();
     let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
     let mut page = String::new();
     let mut entry = zip.by_name("documentation/index.html").unwrap();
@@ -381,7 +359,7 @@ fn control_characters_stay_out_of_the_description() {
 
 #[test]
 fn a_report_enters_an_archive_and_its_manifest() {
-    let bytes = package(&model("rational"), &embedded(), GrowthPolicy::Refuse).unwrap();
+    let bytes = package(&model("rational"), &embedded(), Export::default()).unwrap();
     let with = archive_file::with_report(&bytes, "<html>of the study</html>").unwrap();
     let mut zip = zip::ZipArchive::new(Cursor::new(&with)).unwrap();
     let mut text = |name: &str| {
@@ -398,8 +376,8 @@ fn a_report_enters_an_archive_and_its_manifest() {
         "{manifest}"
     );
     let without = Export {
-        reference_runs: false,
-        ..GrowthPolicy::Refuse.into()
+        without_reference_runs: true,
+        ..Export::default()
     };
     let bytes = package(&model("rational"), &embedded(), without).unwrap();
     assert_eq!(archive_file::with_report(&bytes, "").unwrap(), bytes);

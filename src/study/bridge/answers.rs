@@ -158,6 +158,11 @@ fn mean_rotation(
     Ok(rotations.max_by(|a, b| away(a).total_cmp(&away(b))))
 }
 
+/// What was found; why nothing was stands among what failed.
+fn noted<T>(failed: &mut Vec<String>, what: &str, found: Result<T>) -> Option<T> {
+    found.map_err(|e| failed.push(format!("{what}: {e}"))).ok()
+}
+
 /// Searches the onset by every route and says what takes part.
 ///
 /// # Errors
@@ -172,28 +177,32 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         || study.by_table.as_ref().map(|b| by_table(b, &search)),
         || by_model(&study.by_model, &search, tested),
     );
-    let mut note = |what: &str, e: crate::Error| failed.push(format!("{what}: {e}"));
-    if let Some(found) = of_tables {
-        let found = found.map_err(|e| note("p-k iteration of the tables", e));
-        answers.extend(found);
-    }
+    let found = of_tables.map(|found| noted(&mut failed, "p-k iteration of the tables", found));
+    answers.extend(found.flatten());
     let mut by_model = by_model?;
     if let FlutterSearch::Onset(onset) = &mut by_model.search {
-        match study.onset_interval(onset) {
-            Ok(interval) => onset.interval = interval,
-            Err(e) => note("interval of the onset", e),
-        }
-        match study.contradictions(onset) {
-            Ok(found) => onset.warnings.extend(found),
-            Err(e) => note("onsets of single mean speeds", e),
-        }
+        let interval = noted(
+            &mut failed,
+            "interval of the onset",
+            study.onset_interval(onset),
+        );
+        onset.interval = interval.unwrap_or(onset.interval.clone());
+        let found = study.contradictions(onset);
+        let found = noted(&mut failed, "onsets of single mean speeds", found);
+        onset.warnings.extend(found.into_iter().flatten());
     }
-    let constraints = study.moved_onset(&by_model.search);
-    let constraints = constraints.map_err(|e| note("constraints", e));
-    let untested = study.untested(&by_model.search);
-    let untested = untested.map_err(|e| note("parts without a test", e));
-    let modes_left_out = study.with_all_modes(&by_model.search);
-    let modes_left_out = modes_left_out.map_err(|e| note("modes left out", e));
+    let constraints = noted(
+        &mut failed,
+        "constraints",
+        study.moved_onset(&by_model.search),
+    );
+    let untested = noted(
+        &mut failed,
+        "parts without a test",
+        study.untested(&by_model.search),
+    );
+    let with_all = study.with_all_modes(&by_model.search);
+    let modes_left_out = noted(&mut failed, "modes left out", with_all);
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
@@ -201,20 +210,20 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     // modal shapes of all modes at all speeds are megabytes that nobody reads
     let points = curves.branches.iter_mut().flat_map(|b| &mut b.points);
     points.for_each(|p| p.shape = Vec::new());
-    let left_out = fewer_modes(study, &by_model, &search).map_err(|e| note("fewer modes", e));
+    let left_out = fewer_modes(study, &by_model, &search);
+    let left_out = noted(&mut failed, "fewer modes", left_out);
     let forces = study.by_model.forces();
     let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
     let divergence_m_s = divergence_speed(&study.by_model.structure(), &at_rest)?;
-    let of_tables = table_divergence(study).map_err(|e| note("divergence of the tables", e));
+    let of_tables = table_divergence(study);
+    let table_divergence = noted(&mut failed, "divergence of the tables", of_tables);
     let growth = unwanted_growth_below(Some(&by_model.search), &section, &search, tested);
-    let growth = growth.map_err(|e| note("scan for growth", e)).ok();
-    let galloping =
-        galloping(study, &search).map_err(|e| note("galloping by static coefficients", e));
+    let growth = noted(&mut failed, "scan for growth", growth);
+    let galloping = galloping(study, &search);
+    let galloping = noted(&mut failed, "galloping by static coefficients", galloping);
     // where the answer is: by the tables first, which are the headline
-    let critical = answers.iter().chain([&by_model]);
-    let critical = critical
-        .filter_map(|a| a.search.critical_speed_m_s())
-        .next();
+    let of = |a: &BridgeAnswer| a.search.critical_speed_m_s();
+    let critical = answers.iter().find_map(of).or(of(&by_model));
     let required = study.file.flutter.required_speed_m_s;
     let mean_rotation = critical.or(required).and_then(|speed| {
         let mean = mean_rotation(study, &at_rest, speed);
@@ -226,13 +235,13 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         curves,
         left_out: left_out.unwrap_or_default(),
         divergence_m_s,
-        table_divergence: of_tables.ok().flatten(),
-        galloping_m_s: galloping.ok().flatten(),
+        table_divergence: table_divergence.flatten(),
+        galloping_m_s: galloping.flatten(),
         growth,
         mean_rotation,
-        constraints: constraints.ok().flatten(),
-        untested: untested.ok().flatten(),
-        modes_left_out: modes_left_out.ok().flatten(),
+        constraints: constraints.flatten(),
+        untested: untested.flatten(),
+        modes_left_out: modes_left_out.flatten(),
         failed,
     })
 }
@@ -309,9 +318,8 @@ fn answer(
     forces: &dyn Transfer,
     mut search: FlutterSearch,
 ) -> Result<BridgeAnswer> {
-    let motion = search
-        .critical()
-        .map(|at| motion_at_onset(bridge, forces, at));
+    let critical = search.critical();
+    let motion = critical.map(|at| motion_at_onset(bridge, forces, at));
     let motion = motion.transpose()?;
     if let (FlutterSearch::Onset(onset), Some(motion)) = (&mut search, &motion) {
         // of the node that turns most, as a section there would see it
@@ -330,32 +338,24 @@ fn fewer_modes(
     full: &BridgeAnswer,
     search: &OnsetSearch,
 ) -> Result<Vec<LeftOut>> {
-    let mut all: Vec<LeftOut> = Vec::new();
+    let (bridge, mut all) = (&study.by_model, Vec::<LeftOut>::new());
     let Some(motion) = &full.motion else {
         return Ok(all);
     };
     for below_share in SHARES {
-        let mut modes: Vec<usize> = motion
+        let kept = motion
             .modes
             .iter()
-            .filter(|m| m.energy_share >= below_share)
-            .map(|m| m.mode)
-            .collect();
+            .filter(|m| m.energy_share >= below_share);
+        let mut modes: Vec<usize> = kept.map(|m| m.mode).collect();
         modes.sort_unstable();
-        if modes.len() == study.by_model.modes.len() || all.last().is_some_and(|l| l.modes == modes)
-        {
+        if modes.len() == bridge.modes.len() || all.last().is_some_and(|l| l.modes == modes) {
             continue;
         }
-        let part = study
-            .by_model
-            .with_modes(|i| modes.contains(&study.by_model.modes[i].number))?;
+        let part = bridge.with_modes(|i| modes.contains(&bridge.modes[i].number))?;
         // the whole bridge was searched: the modes that are left are followed alone
-        let onset_m_s = find_onset_of_modes(
-            "fewer modes",
-            &coupled(&part)?,
-            search,
-            study.tested_range(),
-        )?;
+        let (part, tested) = (coupled(&part)?, study.tested_range());
+        let onset_m_s = find_onset_of_modes("fewer modes", &part, search, tested)?;
         all.push(LeftOut {
             modes,
             below_share,

@@ -8,14 +8,14 @@ use crate::buffeting::Admittance;
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::FieldTable;
 use crate::flutter::{
-    BridgeMotion, FlutterSearch, OnsetInterval, OnsetSearch, divergence_with_forces,
-    motion_at_onset, unwanted_growth_below,
+    BridgeMotion, FlutterSearch, OnsetInterval, divergence_with_forces, motion_at_onset,
+    unwanted_growth_below,
 };
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::onset_start::{OnsetStart, simulated_onset};
-use crate::fmu::package::{Export, GrowthPolicy};
+use crate::fmu::package::Export;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
@@ -26,6 +26,8 @@ const PART_OF_ONSET: f64 = 0.98;
 /// Periods of the slowest mode in the default experiment, steps in a period of the fastest.
 const PERIODS: f64 = 10.0;
 const STEPS_PER_PERIOD: f64 = 50.0;
+/// Where gust forces come from, before the names of sections.
+pub(super) const STATIC_COEFFICIENTS: &str = "quasi-steady theory with the static coefficients of";
 
 /// What is wanted of an FMU.
 #[derive(Debug, Clone, Default)]
@@ -44,26 +46,6 @@ pub struct BridgeExportOptions {
     pub onset_interval: Option<OnsetInterval>,
 }
 
-/// Refuses a bridge that grows below its onset, tested there or not, or only where nothing was tested.
-fn check_growth(
-    found: &FlutterSearch,
-    section: &CoupledSection,
-    search: &OnsetSearch,
-    tested: Option<ReducedFrequencyRange>,
-) -> Result<()> {
-    let why = if let FlutterSearch::UnstableAtOrBelow(_) = found {
-        format!("is {}", found.explain())
-    } else {
-        let growth = unwanted_growth_below(Some(found), section, search, tested)?;
-        if growth.is_none() {
-            return Ok(());
-        }
-        growth.explain()
-    };
-    let text = format!("the bridge is not exported: it {why}");
-    Err(Error::Unstable(text))
-}
-
 impl BridgeStudy {
     /// What goes into an FMU: the force model of the first section, with the section that the first modes make, and the bridge.
     ///
@@ -79,33 +61,36 @@ impl BridgeStudy {
         let tested = self.tested_range();
         let found = simulated_onset("bridge", &section, &search, tested)?;
         if !wanted.allow_unstable {
-            check_growth(&found, &section, &search, tested)?;
+            // tested there or not, or only where nothing was tested
+            let why = match found {
+                FlutterSearch::UnstableAtOrBelow(_) => Some(format!("is {}", found.explain())),
+                _ => {
+                    let growth = unwanted_growth_below(Some(&found), &section, &search, tested)?;
+                    (!growth.is_none()).then(|| growth.explain())
+                }
+            };
+            if let Some(why) = why {
+                let why = format!("the bridge is not exported: it {why}");
+                return Err(Error::Unstable(why));
+            }
         }
         let bridge = &self.by_model;
         let divergence = divergence_with_forces(&bridge.structure(), &bridge.forces())?;
         let first = found.first_limit_m_s(divergence, search.speed_max_m_s);
-        let onset = found.onset();
-        let field = wanted.turbulence.as_ref();
+        let field = wanted.turbulence.as_ref().map(|field| self.at_nodes(field));
+        let turbulence = field.transpose()?.map(|field| {
+            let [u, w] = field.gusts;
+            let step_s = field.step_s;
+            TurbulenceOptions { step_s, u, w }
+        });
         let export = Export {
-            bridge: Some(BridgeOptions {
-                onset: onset.and_then(|o| OnsetStart::from_onset(o, &section)),
-                onset_interval: self.bounds(wanted, &found),
-                ..self.options(&found, named, gusts)?
-            }),
-            turbulence: field.map(|field| self.turbulence(field)).transpose()?,
+            bridge: Some(self.options(&found, &section, named, gusts, wanted)?),
+            turbulence,
             // it was judged here
-            ..GrowthPolicy::Allow.into()
+            allow_unstable: true,
+            ..Export::default()
         };
         Ok((self.first_model(first)?, export))
-    }
-
-    /// The interval of an onset as a unit has it; one without is better than none.
-    fn bounds(&self, wanted: &BridgeExportOptions, found: &FlutterSearch) -> Option<OnsetBounds> {
-        let onset = found.onset()?;
-        match &wanted.onset_interval {
-            Some(known) => OnsetBounds::from_interval(known),
-            None => OnsetBounds::from_interval(&self.onset_interval(onset).ok()?),
-        }
     }
 
     /// The model of the first section, under the name of the bridge.
@@ -135,9 +120,17 @@ impl BridgeStudy {
     fn options(
         &self,
         found: &FlutterSearch,
+        section: &CoupledSection,
         named: Vec<usize>,
         gusts: Option<BridgeGusts>,
+        wanted: &BridgeExportOptions,
     ) -> Result<BridgeOptions> {
+        let onset = found.onset();
+        // an archive without an interval is better than none
+        let interval = onset.and_then(|onset| match &wanted.onset_interval {
+            Some(known) => OnsetBounds::from_interval(known),
+            None => OnsetBounds::from_interval(&self.onset_interval(onset).ok()?),
+        });
         let bridge = &self.by_model;
         let critical = found.critical();
         let motion = critical.map(|at| motion_at_onset(bridge, &bridge.forces(), at));
@@ -163,8 +156,8 @@ impl BridgeStudy {
             section_ranges: self.section_ranges().collect(),
             initial: self.release(motion.transpose()?.as_ref()),
             gusts,
-            onset_interval: None,
-            onset: None,
+            onset_interval: interval,
+            onset: onset.and_then(|o| OnsetStart::from_onset(o, section)),
         })
     }
 
@@ -182,15 +175,14 @@ impl BridgeStudy {
             count,
         )?;
         let first = |strip: usize| (strip * nodes).div_ceil(count);
+        let strips = (0..count).map(|s| (first(s)..first(s + 1)).collect());
         let sections = self.file.sections.iter().map(|s| s.name.as_str());
         let names = sections.collect::<Vec<_>>().join(", ");
         Ok(Some(BridgeGusts {
             coefficients: self.gust_matrices()?,
             admittance: wanted.admittance,
-            strips: (0..count)
-                .map(|s| (first(s)..first(s + 1)).collect())
-                .collect(),
-            source: format!("quasi-steady theory with the static coefficients of {names}"),
+            strips: strips.collect(),
+            source: format!("{STATIC_COEFFICIENTS} {names}"),
         }))
     }
 
@@ -213,17 +205,6 @@ impl BridgeStudy {
         ))
     }
 
-    /// A field of a file, one gust per node.
-    fn turbulence(&self, field: &FieldTable) -> Result<TurbulenceOptions> {
-        let field = self.at_nodes(field)?;
-        let [u, w] = field.gusts;
-        Ok(TurbulenceOptions {
-            step_s: field.step_s,
-            u,
-            w,
-        })
-    }
-
     /// Places of named nodes; of mid-span and both quarter points where none are named.
     pub(super) fn named(&self, named: &[String]) -> Result<Vec<usize>> {
         let nodes = &self.by_model.nodes;
@@ -233,13 +214,11 @@ impl BridgeStudy {
             return Ok(places);
         }
         let place = |name: &String| {
-            nodes.iter().position(|n| n.name == *name).ok_or_else(|| {
+            let at = nodes.iter().position(|n| n.name == *name);
+            at.ok_or_else(|| {
                 let (a, b) = (&nodes[0].name, &nodes[nodes.len() - 1].name);
-                Error::input(
-                    "nodes",
-                    format!("nodes of the bridge, {a} to {b}"),
-                    format!("`{name}`"),
-                )
+                let expected = format!("nodes of the bridge, {a} to {b}");
+                Error::input("nodes", expected, format!("`{name}`"))
             })
         };
         named.iter().map(place).collect()
@@ -250,16 +229,11 @@ impl BridgeStudy {
         let bridge = &self.by_model;
         let number = motion.and_then(|m| m.modes.first()).map(|m| m.mode);
         let half_width = 0.5 * bridge.width_m();
-        let chosen = bridge
-            .modes
-            .iter()
-            .position(|m| Some(m.number) == number)
-            .unwrap_or(0);
+        let mut modes = bridge.modes.iter();
+        let chosen = modes.position(|m| Some(m.number) == number).unwrap_or(0);
         let scale = [1.0, 1.0, half_width];
-        let values = bridge.modes[chosen]
-            .shape
-            .iter()
-            .flat_map(|s| (0..3).map(|i| (s[i] * scale[i]).abs()));
+        let shape = bridge.modes[chosen].shape.iter();
+        let values = shape.flat_map(|s| (0..3).map(|i| (s[i] * scale[i]).abs()));
         let greatest = values.fold(f64::MIN_POSITIVE, f64::max);
         let mut initial = vec![0.0; bridge.modes.len()];
         initial[chosen] = RELEASE * half_width / greatest;
@@ -268,10 +242,8 @@ impl BridgeStudy {
 
     fn experiment(&self, first_m_s: f64) -> Experiment {
         let hertz = || self.by_model.modes.iter().map(|m| m.frequency_hz);
-        let (slowest, fastest) = (
-            hertz().fold(f64::MAX, f64::min),
-            hertz().fold(0.0, f64::max),
-        );
+        let slowest = hertz().fold(f64::MAX, f64::min);
+        let fastest = hertz().fold(0.0, f64::max);
         // a round part of a second, and whole steps
         let step = 0.01 * (100.0 / (STEPS_PER_PERIOD * fastest)).floor().max(1.0);
         Experiment {

@@ -2,13 +2,13 @@
 
 use crate::aerodynamics::{GustForce, RationalAdmittance, RationalModel, Transfer as _};
 use crate::bridge::StripGroup;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
 use crate::fmu::force_options::{ForceOptions, FurtherModel, StripOptions};
-use crate::fmu::package::{Export, FmiVersion, GrowthPolicy, Label, Runtime, package};
+use crate::fmu::package::{Export, FmiVersion, Label, Runtime, package};
 use crate::fmu::ssp::{Connection, System, SystemComponent};
 use crate::section::Dof;
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy};
+use crate::study::bridge::{BridgeExportOptions, BridgeStudy, STATIC_COEFFICIENTS};
 use crate::trained_model::{Model, Provenance, TrainedModel};
 use crate::verdict::Verdict;
 use nalgebra::DMatrix;
@@ -29,23 +29,6 @@ pub struct SectionForcePart {
     pub gusts: Option<GustForce>,
 }
 
-impl SectionForcePart {
-    /// The strips of another section behind its own.
-    fn push(&mut self, other: Self) {
-        let own = &mut self.options;
-        let model = own.further.len() + 1;
-        let strips = other.options.strips.into_iter();
-        own.strips
-            .extend(strips.map(|s| StripOptions { model, ..s }));
-        own.nodes.extend(other.options.nodes);
-        own.further.push(FurtherModel {
-            model: other.model,
-            gusts: other.gusts,
-        });
-        self.sections.extend(other.sections);
-    }
-}
-
 /// No forces of heave and rotation, whatever moves.
 fn no_forces() -> Model {
     let zero = || DMatrix::zeros(2, 2);
@@ -53,27 +36,20 @@ fn no_forces() -> Model {
 }
 
 impl BridgeStudy {
-    /// The structure alone, with inputs and outputs at the nodes that are wanted, all where none are named; its release is that of
+    /// The structure alone of the whole bridge as it is exported, with inputs and outputs at its nodes or at all; its release is that of
     /// the whole bridge.
     ///
     /// # Errors
-    /// As [`Self::export`]; [`Error::Input`] for gusts and turbulence, which blow on no structure alone.
-    pub fn structure(&self, wanted: &BridgeExportOptions) -> Result<(TrainedModel, Export)> {
-        if wanted.gust_strips.is_some() || wanted.turbulence.is_some() {
-            let expected = "none: gusts belong to the forces, not to the structure";
-            return Err(Error::input("gusts", expected, "some"));
-        }
-        let (model, whole) = self.export(wanted)?;
-        self.structure_of(model, whole, wanted.nodes.is_empty())
-    }
-
-    /// The structure of the whole bridge as it is exported, at its nodes or at all.
-    pub(super) fn structure_of(
+    /// [`Error::Input`] for gusts and turbulence, which blow on no structure alone.
+    pub fn structure(
         &self,
         model: TrainedModel,
         whole: Export,
         all_nodes: bool,
     ) -> Result<(TrainedModel, Export)> {
+        let gusts = whole.bridge.as_ref().and_then(|b| b.gusts.as_ref());
+        let expected = "none: gusts belong to the forces, not to the structure";
+        ensure(gusts.is_none(), "gusts", expected, "some")?;
         let nodes = self.by_model.nodes.len();
         let width_m = self.by_model.width_m();
         let alone = |bridge: BridgeOptions| BridgeOptions {
@@ -115,38 +91,37 @@ impl BridgeStudy {
         Ok((model, export))
     }
 
-    /// The wind forces of every section, each on strips at its nodes, in the order of the nodes; with gusts as inputs where `gusts` states
-    /// their admittance.
-    ///
-    /// # Errors
-    /// As [`Self::export`]; [`Error::Input`] for gusts on sections without static coefficients.
-    pub fn section_forces(
-        &self,
-        wanted: &BridgeExportOptions,
-        gusts: Option<RationalAdmittance>,
-    ) -> Result<Vec<SectionForcePart>> {
-        self.section_forces_of(&self.export(wanted)?.0, gusts)
-    }
-
     /// Those of all sections as one.
     ///
     /// # Errors
     /// As [`Self::export`]; [`Error::Input`] for a bridge without sections, or with more strips than a unit may have.
     pub fn joined(&self, forces: Vec<SectionForcePart>) -> Result<SectionForcePart> {
         let mut each = forces.into_iter();
-        let mut all = each
-            .next()
-            .ok_or_else(|| Error::input("sections", "one at least", "none"))?;
-        each.for_each(|other| all.push(other));
-        if !all.options.further.is_empty() {
+        let none = || Error::input("sections", "one at least", "none");
+        let mut all = each.next().ok_or_else(none)?;
+        for (model, other) in (1..).zip(each) {
+            let own = &mut all.options;
+            let strips = other.options.strips.into_iter();
+            own.strips
+                .extend(strips.map(|s| StripOptions { model, ..s }));
+            own.nodes.extend(other.options.nodes);
+            own.further.push(FurtherModel {
+                model: other.model,
+                gusts: other.gusts,
+            });
+            all.sections.extend(other.sections);
             all.name = format!("{}, wind forces", self.file.name);
         }
         all.options.validate()?;
         Ok(all)
     }
 
-    /// The wind forces of the whole bridge, which is exported with the model `whole`.
-    pub(super) fn section_forces_of(
+    /// The wind forces of every section, each on strips at its nodes, in the order of the nodes, of the bridge that is exported with the
+    /// model `whole`; with gusts as inputs where `gusts` states their admittance.
+    ///
+    /// # Errors
+    /// As [`Self::export`]; [`Error::Input`] for gusts on sections without static coefficients.
+    pub fn section_forces(
         &self,
         whole: &TrainedModel,
         gusts: Option<RationalAdmittance>,
@@ -155,27 +130,21 @@ impl BridgeStudy {
         let mut all = BTreeMap::new();
         for (s, (block, forces)) in self.file.sections.iter().zip(&self.sections).enumerate() {
             let groups = self.by_model.groups.iter().zip(&self.section_of_group);
-            let own = groups
-                .enumerate()
-                .filter(|(_, (_, section))| **section == s);
+            let own = groups.enumerate().filter(|(_, (_, of))| **of == s);
             let own: Vec<usize> = own.map(|(g, _)| g).collect();
-            let Some(&first) = own.first() else {
-                continue;
-            };
+            let Some(&first) = own.first() else { continue };
             let model = forces.saved.clone();
             let dofs = model.dofs().to_vec();
-            let gusts = matrices
-                .as_ref()
-                .zip(gusts)
-                .map(|(of_group, admittance)| GustForce {
-                    coefficients: dofs.iter().map(|d| of_group[first][*d as usize]).collect(),
+            let gusts = matrices.as_ref().zip(gusts);
+            let gusts = gusts.map(|(of_group, admittance)| {
+                let rows = dofs.iter().map(|d| of_group[first][*d as usize]);
+                GustForce {
+                    coefficients: rows.collect(),
                     dofs: dofs.clone(),
                     admittance,
-                    source: format!(
-                        "quasi-steady theory with the static coefficients of {}",
-                        block.name
-                    ),
-                });
+                    source: format!("{STATIC_COEFFICIENTS} {}", block.name),
+                }
+            });
             let mut section = self.by_model.equivalent_section(&dofs)?;
             section.width_m = block.width_m;
             let name = format!("{}, {}", self.file.name, block.name);
@@ -220,13 +189,11 @@ impl BridgeStudy {
             wind_factor: group.wind_factor,
             model: 0,
         };
+        let numbers = own.iter().map(|(n, _)| node_number(&bridge.nodes, *n));
         let options = ForceOptions {
             strips: own.iter().map(strip).collect(),
             named_strips: true,
-            nodes: own
-                .iter()
-                .map(|(n, _)| node_number(&bridge.nodes, *n))
-                .collect(),
+            nodes: numbers.collect(),
             ..ForceOptions::single(bridge.width_m())
         };
         options.validate()?;
@@ -249,12 +216,13 @@ impl SectionForcePart {
                 ..label.clone()
             },
             version,
-            ..GrowthPolicy::Allow.into()
+            allow_unstable: true,
+            ..Export::default()
         }
     }
 
     /// Connections with the structure, there and back.
-    fn connections(&self) -> (Vec<Connection>, Vec<Connection>) {
+    fn connections(&self) -> Vec<Connection> {
         let (mut motions, mut forces) = (Vec::new(), Vec::new());
         let parts = self.options.parts(&self.model, None).into_iter();
         let strips = parts.flat_map(|part| part.strips.map(move |s| (s, part.model)));
@@ -282,7 +250,8 @@ impl SectionForcePart {
                 });
             }
         }
-        (motions, forces)
+        motions.extend(forces);
+        motions
     }
 }
 
@@ -300,8 +269,8 @@ impl BridgeStudy {
         label: &Label,
     ) -> Result<System> {
         let (model, whole) = self.export(wanted)?;
-        let forces = self.joined(self.section_forces_of(&model, None)?)?;
-        let (model, structure) = self.structure_of(model, whole, true)?;
+        let forces = self.joined(self.section_forces(&model, None)?)?;
+        let (model, structure) = self.structure(model, whole, true)?;
         let values = structure.bridge.as_ref().map(structure_values);
         let experiment = model.experiment.clone();
         let structure = Export {
@@ -309,39 +278,32 @@ impl BridgeStudy {
             label: label.clone(),
             ..structure
         };
-        let (motions, back) = forces.connections();
-        let from = |list: &[Connection]| list.iter().map(|c| c.from[1].clone()).collect();
-        let to = |list: &[Connection]| list.iter().map(|c| c.to[1].clone()).collect();
         let export = Export {
             verdict: Some(verdict.clone()),
             ..forces.packed(label, FmiVersion::Two)
         };
+        let of_forces = [
+            ("wind_speed", forces.model.experiment.wind_speed_m_s),
+            ("air_density", self.by_model.air_density_kg_m3),
+            ("prediction", forces.options.prediction_steps),
+        ];
+        let of_forces = of_forces.map(|(name, value)| (name.to_owned(), value));
         let components = vec![
             SystemComponent {
                 name: STRUCTURE.to_owned(),
                 fmu: package(&model, runtimes, structure)?,
-                inputs: to(&back),
-                outputs: from(&motions),
                 values: values.unwrap_or_default(),
             },
             SystemComponent {
                 name: FORCE.to_owned(),
                 fmu: package(&forces.model, runtimes, export)?,
-                inputs: to(&motions),
-                outputs: from(&back),
-                values: [
-                    ("wind_speed", forces.model.experiment.wind_speed_m_s),
-                    ("air_density", self.by_model.air_density_kg_m3),
-                    ("prediction", forces.options.prediction_steps),
-                ]
-                .map(|(name, value)| (name.to_owned(), value))
-                .to_vec(),
+                values: of_forces.to_vec(),
             },
         ];
         Ok(System {
             name: self.file.name.clone(),
             components,
-            connections: motions.into_iter().chain(back).collect(),
+            connections: forces.connections(),
             experiment,
         })
     }

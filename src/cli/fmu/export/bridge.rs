@@ -1,15 +1,16 @@
 //! A whole bridge as an FMU, its structure alone, or the wind forces on its sections.
 
-use super::{ExportKind, FmuExportArgs};
+use super::{ExportKind, FmuExportArgs, none_of};
 use crate::cli::bridge::{self, files::BRIDGE_FMU};
 use crate::cli::{Answer, Progress, headline, stages, warn};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
-use crate::fmu::package::{Export, Label, package};
+use crate::fmu::package::{Export, Label};
 use crate::plausibility::sentences;
 use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart, bridge_flutter};
 use crate::trained_model::TrainedModel;
 use crate::verdict::Verdict;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// The word for the static coefficients of the bridge file.
@@ -18,56 +19,47 @@ const STATIC: &str = "static";
 impl FmuExportArgs {
     /// Refuses what a bridge, or this part of one, does not have.
     fn check_bridge(&self) -> Result<()> {
-        use ExportKind::{Force, Section, Structure};
-        let strips = "none: the strips of a bridge are those of its nodes";
-        let of_gusts = match self.kind {
-            Force => "`static`, the coefficients of the bridge file",
-            _ => "--gust-strips and the `static` coefficients of the bridge file",
+        let (forces, whole) = (
+            self.kind == ExportKind::Force,
+            self.kind == ExportKind::Section,
+        );
+        let (kind, of_gusts) = match self.kind {
+            ExportKind::Section => ("--bridge", GUST_STRIPS),
+            ExportKind::Force => (
+                "--bridge --kind force",
+                "`static`, the coefficients of the bridge file",
+            ),
+            ExportKind::Structure => ("--bridge --kind structure", GUST_STRIPS),
         };
-        let other_gusts = self
-            .gusts
-            .as_deref()
-            .is_some_and(|g| self.kind != Force || g != STATIC);
+        let gusts = self.gusts.as_deref();
+        let other_gusts = gusts.is_some_and(|g| !forces || g != STATIC);
+        let strips = "none: the strips of a bridge are those of its nodes";
+        let of_forces = "--kind force with it";
         let of_whole = "--kind section: the whole bridge";
-        let given: [(&str, bool, &str); 8] = [
+        let on_all = "none: forces act on all nodes";
+        let flags = [
             ("--strips", self.strips.is_some(), strips),
             ("--strip-length", self.strip_length.is_some(), strips),
             (
                 "--prediction",
-                self.prediction.is_some() && self.kind != Force,
-                "--kind force with it",
+                !forces && self.prediction.is_some(),
+                of_forces,
             ),
-            (
-                "--section",
-                self.section.is_some() && self.kind != Force,
-                "--kind force with it",
-            ),
+            ("--section", !forces && self.section.is_some(), of_forces),
             ("--gusts", other_gusts, of_gusts),
-            (
-                "--nodes",
-                !self.nodes.is_empty() && self.kind == Force,
-                "none: forces act on all nodes",
-            ),
+            ("--nodes", forces && !self.nodes.is_empty(), on_all),
             (
                 "--gust-strips",
-                self.gust_strips.is_some() && self.kind != Section,
+                !whole && self.gust_strips.is_some(),
                 of_whole,
             ),
             (
                 "--turbulence",
-                self.turbulence.is_some() && self.kind != Section,
+                !whole && self.turbulence.is_some(),
                 of_whole,
             ),
         ];
-        let kind = match self.kind {
-            Section => "--bridge",
-            Force => "--bridge --kind force",
-            Structure => "--bridge --kind structure",
-        };
-        match given.into_iter().find(|(_, given, _)| *given) {
-            None => Ok(()),
-            Some((flag, _, expected)) => Err(Error::input(flag, expected, kind)),
-        }
+        none_of(flags, kind)
     }
 
     /// Packs a bridge, or what is wanted of it.
@@ -91,100 +83,92 @@ impl FmuExportArgs {
         let results = bridge_flutter(&study)?;
         wanted.onset_interval = results.interval();
         let verdict = Verdict::judge(&study.evidence(&results, &results.failed));
-        let answer = match self.kind {
-            ExportKind::Force => self.bridge_forces(&study, &wanted, &verdict),
-            _ => self.bridge_unit(&study, &wanted, &verdict),
-        };
+        let whole = study.export(&wanted);
+        let (model, whole) = whole.map_err(stages::or_allow_unstable)?;
+        let (path, what, mut json) = match self.kind {
+            ExportKind::Force => self.bridge_forces(&study, &model, &verdict),
+            _ => self.bridge_unit(&study, model, whole, &verdict),
+        }?;
         drop(stage);
-        answer
+        json["fmu"] = json!(path);
+        json["verdict"] = json!(verdict);
+        let text = headline::text(&study.file.name, &verdict, &[]);
+        let text = format!("{text}wrote {}: {what}\n", path.display());
+        Ok(Answer::new(text, &json)?.with_outcome_of(&verdict))
     }
 
-    /// Packs and writes a part of a bridge, by the name of its file; where it stands, and what is said of that.
-    fn written(
-        &self,
-        model: &TrainedModel,
-        export: Export,
-        verdict: &Verdict,
-        file: &str,
-    ) -> Result<PathBuf> {
-        let export = Export {
-            verdict: Some(verdict.clone()),
-            ..self.described(export)?
-        };
-        let bytes = package(model, &self.runtimes()?, export)?;
-        let beside_the_file = || self.model.with_file_name(file);
-        let path = self.out.clone().unwrap_or_else(beside_the_file);
-        self.write(&path, &bytes)?;
-        Ok(path)
-    }
-
-    /// The whole bridge, or its structure.
+    /// The whole bridge, or its structure: where its archive stands, and what is in it, in words and for machines.
     fn bridge_unit(
         &self,
         study: &BridgeStudy,
-        wanted: &BridgeExportOptions,
+        model: TrainedModel,
+        whole: Export,
         verdict: &Verdict,
-    ) -> Result<Answer> {
-        let (file, of, exported) = match self.kind {
-            ExportKind::Structure => (
-                "bridge_structure.fmu",
-                "the structure of ",
-                study.structure(wanted),
-            ),
-            _ => (BRIDGE_FMU, "", study.export(wanted)),
+    ) -> Result<(PathBuf, String, Value)> {
+        let (file, of, (model, export)) = match self.kind {
+            ExportKind::Structure => {
+                let structure = study.structure(model, whole, self.nodes.is_empty())?;
+                ("bridge_structure.fmu", "the structure of ", structure)
+            }
+            _ => (BRIDGE_FMU, "", (model, whole)),
         };
-        let (model, export) = exported.map_err(stages::or_allow_unstable)?;
         let of_bridge = export.bridge.iter();
         let named = of_bridge.flat_map(|b| (0..b.named.len()).map(|n| b.node_name(n)));
         let named: Vec<String> = named.collect();
-        let path = self.written(&model, export, verdict, file)?;
-        let (name, modes) = (&study.file.name, study.by_model.modes.len());
-        let text = headline::text(name, verdict, &[]);
-        let text = format!(
-            "{text}wrote {}: {of}{name} with {}; inputs and outputs at the {} {}\n",
-            path.display(),
+        let export = Export {
+            verdict: Some(verdict.clone()),
+            ..export
+        };
+        let (path, _) = self.packed(&model, export, file)?;
+        let modes = study.by_model.modes.len();
+        let what = format!(
+            "{of}{} with {}; inputs and outputs at the {} {}",
+            study.file.name,
             counted(modes, "mode"),
             if named.len() == 1 { "node" } else { "nodes" },
             named.join(", ")
         );
-        let json =
-            serde_json::json!({ "fmu": path, "nodes": named, "modes": modes, "verdict": verdict });
-        Ok(Answer::new(text, &json)?.with_outcome_of(verdict))
+        Ok((path, what, json!({ "nodes": named, "modes": modes })))
     }
 
-    /// The wind forces on all sections, or on the one that is wanted.
+    /// The wind forces on all sections, or on the one that is wanted, as [`Self::bridge_unit`].
     fn bridge_forces(
         &self,
         study: &BridgeStudy,
-        wanted: &BridgeExportOptions,
+        whole: &TrainedModel,
         verdict: &Verdict,
-    ) -> Result<Answer> {
-        let gusts = self.gusts.as_ref().map(|_| wanted.admittance);
-        let all = study
-            .section_forces(wanted, gusts)
-            .map_err(stages::or_allow_unstable)?;
+    ) -> Result<(PathBuf, String, Value)> {
+        let gusts = self
+            .gusts
+            .as_ref()
+            .map(|_| self.admittance.unwrap_or_default());
+        let all = study.section_forces(whole, gusts)?;
         let mut forces = match &self.section {
             Some(name) => chosen(name, all)?,
             None => study.joined(all)?,
         };
         let prediction = &mut forces.options.prediction_steps;
         *prediction = self.prediction.unwrap_or(*prediction);
-        let export = forces.packed(&Label::default(), self.fmi);
-        let path = self.written(&forces.model, export, verdict, "bridge_force.fmu")?;
+        let export = Export {
+            verdict: Some(verdict.clone()),
+            ..forces.packed(&Label::default(), self.fmi)
+        };
+        let (path, _) = self.packed(&forces.model, export, "bridge_force.fmu")?;
         let nodes = &forces.options.nodes;
-        let text = headline::text(&study.file.name, verdict, &[]);
-        let text = format!(
-            "{text}wrote {}: forces on {} of {}, at the nodes {} to {}\n",
-            path.display(),
+        let what = format!(
+            "forces on {} of {}, at the nodes {} to {}",
             counted(nodes.len(), "strip"),
             forces.name,
             nodes[0],
             nodes[nodes.len() - 1],
         );
-        let json = serde_json::json!({ "fmu": path, "sections": forces.sections, "nodes": nodes, "verdict": verdict });
-        Ok(Answer::new(text, &json)?.with_outcome_of(verdict))
+        let json = json!({ "sections": forces.sections, "nodes": nodes });
+        Ok((path, what, json))
     }
 }
+
+/// What states the gusts on a whole bridge.
+const GUST_STRIPS: &str = "--gust-strips and the `static` coefficients of the bridge file";
 
 /// The forces of the section of that name.
 fn chosen(name: &str, mut all: Vec<SectionForcePart>) -> Result<SectionForcePart> {

@@ -3,14 +3,13 @@
 use super::plan::{PlannedRun, ReferenceSet, Stimulus, digits};
 use crate::error::{Error, Result};
 use crate::fmu::description::number;
-use crate::fmu::groups::{Groups, array_of};
 use crate::fmu::importer::array_element_name;
 use crate::fmu::instance::Instance;
-use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::refusal::Refusal;
-use crate::fmu::resources::Resources;
-use crate::fmu::standard::{Causality, FmiVersion};
-use crate::fmu::variables::{Listing, Response, Role, StartValue, Variable};
+use crate::fmu::{
+    Causality, FmiVersion, Groups, Listing, OnsetBounds, Resources, Response, Role, StartValue,
+    Variable, array_of,
+};
 use crate::section::{Dof, Translation};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
