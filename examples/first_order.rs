@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example first_order -- OUT_FOLDER`
 
-use aerodeck::reference::FirstOrderExample;
+use aerodeck::reference::first_order_example;
 use aerodeck::report::first_order_figures;
 use std::error::Error;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .ok_or("usage: first_order OUT_FOLDER")?
         .into();
     std::fs::create_dir_all(&folder)?;
-    let results = FirstOrderExample::default().run()?;
+    let results = first_order_example()?;
     for (number, figure) in first_order_figures(&results)? {
         let stem = format!("figure_{}", number.replace('.', "_"));
         let svg = figure.write(&folder, &stem)?;

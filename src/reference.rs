@@ -12,7 +12,8 @@ mod models;
 mod table;
 mod user_case;
 
-pub use first_order::{FirstOrderExample, FirstOrderResults, SampledTransfer};
+pub(crate) use first_order::{ALPHA, ALPHA_OF_ORDERS, FILTERS, STEP_S, VALIDATION_HZ};
+pub use first_order::{FirstOrderResults, SampledTransfer, first_order_example};
 pub use laguerre_functions::{Lines, OF_THE_DECKS, laguerre_functions};
 pub use table::validation_table;
 pub(crate) use user_case::UserCase;

@@ -44,7 +44,7 @@ pub(crate) use axes_sketch::axes_sketch;
 pub(crate) use bridge_figures::{
     bridge_curves_figure, bridge_roots_figure, flutter_motion_figure, modes_figure,
 };
-pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
+pub use derivatives_figure::{DerivativePlot, derivatives_figure};
 pub(crate) use flutter_figures::root_locus_figure;
 pub use flutter_figures::vf_vg_figure;
 pub(crate) use heat_map::{HeatMap, heat_map_figure};

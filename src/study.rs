@@ -115,7 +115,7 @@ pub struct Study {
 }
 
 /// Source of the aerodynamics.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeckSource {
     /// Name of an embedded deck, `flat plate`, or the path of a derivative table (`.csv`, `.xlsx`, `.xls`, `.ods`; `table.xlsx#SHEET`).

@@ -5,29 +5,17 @@ use clap::Command;
 use std::fmt::Write as _;
 
 /// What commands are for, and which they are, in the order in which a newcomer meets them.
-pub(super) const GROUPS: [(&str, &[&str]); 5] = [
+pub(super) const GROUPS: [(&str, &str); 5] = [
     (
         "Answers",
-        &[
-            "demo",
-            "study",
-            "flutter",
-            "bridge",
-            "quasi-steady",
-            "buffeting",
-            "monte-carlo",
-            "simulate",
-        ],
+        "demo study flutter bridge quasi-steady buffeting monte-carlo simulate",
     ),
-    (
-        "Data",
-        &["new", "derivatives", "campaign", "process", "tunnel"],
-    ),
-    ("Models", &["train", "select", "coverage", "compare"]),
-    ("FMUs", &["fmu", "ssp"]),
+    ("Data", "new derivatives campaign process tunnel"),
+    ("Models", "train select coverage compare"),
+    ("FMUs", "fmu ssp"),
     (
         "Reports and checks",
-        &["report", "plot", "validate", "thesis", "completions"],
+        "report plot validate thesis completions",
     ),
 ];
 const TEMPLATE: &str = "{about-with-newline}\n{usage-heading} {usage}\n\n";
@@ -46,7 +34,7 @@ fn listed(cli: &Command) -> String {
     let mut text = String::new();
     for (group, names) in GROUPS {
         let _ = writeln!(text, " {group}");
-        for command in names.iter().filter_map(|name| cli.find_subcommand(name)) {
+        for command in commands(cli, names) {
             let head = format!("  {:<width$} ", command.get_name());
             text.push_str(&wrapping::beside(&head, &purpose(command)));
         }
@@ -55,6 +43,12 @@ fn listed(cli: &Command) -> String {
 }
 
 /// The first sentence of a command's help.
+fn commands<'a>(cli: &'a Command, names: &'a str) -> impl Iterator<Item = &'a Command> {
+    names
+        .split(' ')
+        .filter_map(|name| cli.find_subcommand(name))
+}
+
 fn purpose(command: &Command) -> String {
     command
         .get_about()
@@ -67,7 +61,7 @@ pub(super) fn page(cli: &Command, exit_codes: &[(u8, &str)]) -> String {
     let mut text = String::new();
     for (group, names) in GROUPS {
         let _ = writeln!(text, "## {group}\n\n| command | what it does |\n|---|---|");
-        for command in names.iter().filter_map(|name| cli.find_subcommand(name)) {
+        for command in commands(cli, names) {
             rows(&mut text, command, "aerodeck");
         }
         text.push('\n');

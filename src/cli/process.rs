@@ -18,9 +18,7 @@ use crate::identification::derivatives::{
 };
 use crate::json;
 use crate::plausibility::{Finding, FindingKind, FindingSeverity, of_table, sentences};
-use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure, rendered,
-};
+use crate::report::{DerivativePlot, Figure, PlottedSeries, processing_figure, rendered};
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
 use crate::units::group_of;
@@ -250,8 +248,9 @@ fn write_derivatives(
     out: &mut OutputDir,
 ) -> Result<()> {
     out.write_json("derivatives.json", "derivatives", found)?;
-    let plot = plot(raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
-    figures::write("derivatives", out, || derivatives_figure(&plot))
+    let theory = args.quasi_steady(&found.dofs)?;
+    let draw = || plot(raw, found, theory.as_ref());
+    figures::write("derivatives", out, draw)
 }
 
 /// Writes the study, unless one that was edited stands there; a note when its section is still to be stated.
@@ -333,7 +332,7 @@ fn plot(
     raw: &RawCampaign,
     found: &IdentifiedDerivatives,
     quasi_steady: Option<&LinearQuasiSteady>,
-) -> Result<DerivativesPlot> {
+) -> Result<Figure> {
     let largest = found.estimates.iter().map(|e| e.v_hat).fold(0.0, f64::max);
     let lines = |name: &str, model: &dyn Transfer| -> Result<_> {
         Ok((name.to_owned(), derivative_lines(model, largest)?))
@@ -344,15 +343,13 @@ fn plot(
     }
     let groups = found.speed_groups();
     let title = format!("{}: aerodynamic derivatives", raw.section);
-    Ok(over_v_hat(title, "95 % interval".to_owned(), |d| {
-        DerivativePlot {
-            name: d.name().to_owned(),
-            measured: measured(found, &groups, d),
-            bars: found.each(d).map(bar).collect(),
-            reference: lines_of(&theories, d),
-            ..DerivativePlot::default()
-        }
-    }))
+    over_v_hat(&title, "95 % interval", |d| DerivativePlot {
+        name: d.name().to_owned(),
+        measured: measured(found, &groups, d),
+        bars: found.each(d).map(bar).collect(),
+        reference: lines_of(&theories, d),
+        ..DerivativePlot::default()
+    })
 }
 
 /// The estimates of a derivative, one series per mean speed.

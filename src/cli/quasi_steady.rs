@@ -8,8 +8,8 @@ use crate::error::{Error, Result, counted};
 use crate::files::gusts::write_gusts;
 use crate::flutter::FlutterSearch;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, derivatives_figure,
-    equilibrium_figure, time_history_figure, vf_vg_figure,
+    DerivativePlot, Figure, PlottedSeries, TimePanel, derivatives_figure, equilibrium_figure,
+    time_history_figure, vf_vg_figure,
 };
 use crate::study::{
     FlutterStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study,
@@ -53,9 +53,7 @@ pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
 }
 
 fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
-    figures::write("coefficients", out, || {
-        derivatives_figure(&coefficients(results))
-    })?;
+    figures::write("coefficients", out, || coefficients(results))?;
     if results.equilibria.points.is_empty() {
         return Ok(());
     }
@@ -70,7 +68,7 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
 }
 
 /// The table as dots and the line that is computed with.
-fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
+fn coefficients(results: &QuasiSteadyStudy) -> Result<Figure> {
     let plot = |name: &str, row: fn(&CoefficientRow) -> f64, of: fn(&CoefficientsAt) -> f64| {
         let table = results.rows.iter().map(|r| (r.angle_deg, row(r)));
         let spline = results.line.iter().map(|(angle, c)| (*angle, of(c)));
@@ -81,16 +79,13 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
             ..DerivativePlot::default()
         }
     };
-    DerivativesPlot {
-        title: format!("Static coefficients: {}", results.coefficients),
-        velocity_label: "Angle of attack α (deg)".to_owned(),
-        bars_label: String::new(),
-        derivatives: vec![
-            plot("Drag C_D", |r| r.drag, |c| c.drag),
-            plot("Lift C_L", |r| r.lift, |c| c.lift),
-            plot("Moment C_M", |r| r.moment, |c| c.moment),
-        ],
-    }
+    let all = [
+        plot("Drag C_D", |r| r.drag, |c| c.drag),
+        plot("Lift C_L", |r| r.lift, |c| c.lift),
+        plot("Moment C_M", |r| r.moment, |c| c.moment),
+    ];
+    let title = format!("Static coefficients: {}", results.coefficients);
+    derivatives_figure(&title, "Angle of attack α (deg)", "", &all)
 }
 
 fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::files::text::csv_cell;
 use crate::flutter::{CriticalPoint, FlutterCurves, Onset};
 use crate::report::{
-    DerivativePlot, DerivativesPlot, Figure, PlottedSeries, derivatives_figure, root_locus_figure,
+    DerivativePlot, Figure, PlottedSeries, derivatives_figure, root_locus_figure,
     scaled_history_figure, vf_vg_figure,
 };
 use crate::section::Dof;
@@ -160,21 +160,15 @@ pub(super) fn beside_models(
     }
 }
 
-/// Plots of the derivatives that are measured or fitted, over `V̂`.
+/// A panel for each derivative that is measured or fitted, over `V̂`.
 pub(super) fn over_v_hat(
-    title: String,
-    bars_label: String,
+    title: &str,
+    bars_label: &str,
     one: impl FnMut(Derivative) -> DerivativePlot,
-) -> DerivativesPlot {
-    let all = Derivative::ALL.into_iter().map(one);
-    DerivativesPlot {
-        title,
-        velocity_label: "V̂ = V/(ωB)".to_owned(),
-        bars_label,
-        derivatives: all
-            .filter(|d| !(d.measured.is_empty() && d.fitted.is_empty()))
-            .collect(),
-    }
+) -> Result<Figure> {
+    let mut all: Vec<DerivativePlot> = Derivative::ALL.into_iter().map(one).collect();
+    all.retain(|d| !(d.measured.is_empty() && d.fitted.is_empty()));
+    derivatives_figure(title, "V̂ = V/(ωB)", bars_label, &all)
 }
 
 /// The lines of one derivative.
@@ -218,9 +212,7 @@ pub(super) fn write_derivatives(
     let (table, dofs) = (deck.table(), study.section.dofs());
     let one = |d| beside_models(d, table, &dofs, &fitted, &exact, intervals);
     let bars = format!("95 % interval of {exported}");
-    figures::write(DERIVATIVES, out, || {
-        derivatives_figure(&over_v_hat(title, bars, one))
-    })
+    figures::write(DERIVATIVES, out, || over_v_hat(&title, &bars, one))
 }
 
 /// The test points of a derivative, one series per mean speed.

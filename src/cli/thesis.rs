@@ -9,7 +9,7 @@ use crate::cli::result_files::{FIGURE, RESPONSE, ROOTS};
 use crate::cli::select::parameter_maps;
 use crate::error::{Error, Result};
 use crate::identification::{Grid, GridAxis, TimeWeights};
-use crate::reference::{FirstOrderExample, OF_THE_DECKS, laguerre_functions};
+use crate::reference::{OF_THE_DECKS, first_order_example, laguerre_functions};
 use crate::report::{
     Figure, PageSection, SectionsPage, first_order_figures, laguerre_figures, rendered,
 };
@@ -108,41 +108,18 @@ fn thesis_page(
     })
 }
 
-/// What each figure of the functions and of the first-order system shows.
-const CAPTIONS: [(&str, &str); 12] = [
-    ("2.1", "Laguerre functions of order 0 to 4, p = 0.2"),
-    (
-        "2.2",
-        "the function of second order for several decay rates p",
-    ),
-    (
-        "2.3",
-        "discrete Laguerre functions of order 0 to 4, α = 0.4",
-    ),
-    ("2.4", "the discrete function of second order for several α"),
-    (
-        "2.5",
-        "gain of the filters over the frequency, the same for every order",
-    ),
-    ("2.6", "training input of six frequencies"),
-    (
-        "2.7",
-        "output predicted at a frequency that was not trained",
-    ),
-    ("2.8", "transfer function of system and model"),
-    ("2.9", "impulse response of system and model"),
-    ("2.10", "transfer functions for several α"),
-    (
-        "2.11",
-        "transfer functions for several numbers of filters L",
-    ),
-    ("3.10", "the filters of the bridge decks, L = 3, α = 0.6"),
-];
+/// The rows of a file of the page, a line each.
+fn rows_of(file: &str) -> Vec<Vec<String>> {
+    let rows = file.lines();
+    rows.map(|row| row.split(" | ").map(str::to_owned).collect())
+        .collect()
+}
 
 fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, String)> {
     let one = |(number, figure): (&str, Figure)| {
-        let known = CAPTIONS.iter().find(|(n, _)| *n == number);
-        let caption = known.map_or("", |(_, text)| text);
+        let mut captions = include_str!("thesis/captions.txt").lines();
+        let known = captions.find_map(|line| line.strip_prefix(number)?.strip_prefix(" | "));
+        let caption = known.unwrap_or_default();
         (
             format!("Figure {number}: {caption}"),
             figure.svg().to_owned(),
@@ -197,28 +174,17 @@ fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<Page
 
 /// Figures that are not here, and why.
 fn not_computed() -> PageSection {
-    let rows = [
-        (
-            "1.1, 1.2, 3.6 to 3.9, 4.1",
-            "drawings of axes, models and methods; this program's are in its manual",
-        ),
-        ("3.1 to 3.5", "the bridge, the girder and the rig"),
-        (
-            "3.11",
-            "where the recordings are cut: the laboratory's recordings are not published, and rebuilt records state their segments in their header",
-        ),
-    ];
     PageSection {
         title: "Figures that are not computed".to_owned(),
         header: "figure | why",
-        rows: rows.map(|(a, b)| vec![a.to_owned(), b.to_owned()]).to_vec(),
+        rows: rows_of(include_str!("thesis/not_computed.txt")),
         ..PageSection::default()
     }
 }
 
 fn first_order(progress: &Progress) -> Result<PageSection> {
     let stage = progress.stage("first-order example");
-    let results = FirstOrderExample::default().run()?;
+    let results = first_order_example()?;
     let figures = first_order_figures(&results)?;
     drop(stage);
     let (lower, upper) = results.alpha_bounds;
@@ -298,50 +264,10 @@ fn onsets(results: &FlutterStudy, printed_m_s: f64, out: &OutputDir) -> PageSect
 
 /// Corrections of printed equations that change a number.
 fn errata() -> PageSection {
-    let rows = [
-        (
-            "(1.24)",
-            "H1* with a factor V̂²",
-            "H1* with a factor V̂: −1.0464 where the printed form gives −2.1975",
-        ),
-        (
-            "(1.29) to (1.34)",
-            "lag terms enter with a plus",
-            "with a minus: as printed all lag forces have the wrong sign",
-        ),
-        (
-            "(3.3), (3.4)",
-            "forces over ρLBV² and ρLB²V²",
-            "over half of it, as (1.17) and (B.3) have it",
-        ),
-        (
-            "(4.8a), (B.2a)",
-            "the force of a sample is held over the step",
-            "a delay of half a step, stated beside each onset",
-        ),
-        (
-            "(B.4)",
-            "lower right block without the output matrix of the motion",
-            "with it; as printed the units do not match",
-        ),
-        (
-            "(C.1)",
-            "2πf, and ½ρV²B for the moment",
-            "K = 2πfB/V, and ½ρV²B² for the moment",
-        ),
-        ("(C.2)", "V* = V/(ωB)", "V* = V/(fB)"),
-        (
-            "(C.3)",
-            "p1, p4 for sway and p5, p6 for heave",
-            "p1, p4 belong to heave and p5, p6 to sway",
-        ),
-    ];
     PageSection {
         title: "Errata that change a number".to_owned(),
         header: "equation | printed | here",
-        rows: rows
-            .map(|(a, b, c)| [a, b, c].map(str::to_owned).to_vec())
-            .to_vec(),
+        rows: rows_of(include_str!("thesis/errata.txt")),
         ..PageSection::default()
     }
 }

@@ -7,7 +7,7 @@
 
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result};
 use crate::identification::{DiscreteFit, StaticTerm, fit_discrete};
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -17,55 +17,29 @@ use nalgebra::Complex;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// What is identified and how.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FirstOrderExample {
-    /// Time constant `τ`, s.
-    pub time_constant_s: f64,
-    /// Sampling step, s.
-    pub step_s: f64,
-    /// Frequencies of the training input, in turn, Hz.
-    pub training_hz: Vec<f64>,
-    /// Time at each of them, s; whole periods, so that the input is continuous.
-    pub seconds_each: f64,
-    /// Rest before the first, s: longer than any filter of the example remembers.
-    pub rest_s: f64,
-    /// Frequency of the validation input, Hz.
-    pub validation_hz: f64,
-    /// Number of filters `L`.
-    pub filters: usize,
-    /// Decay factor.
-    pub alpha: f64,
-    /// Decay factors to be compared (Figure 2.10).
-    pub alphas: Vec<f64>,
-    /// Numbers of filters to be compared (Figure 2.11), with [`FirstOrderExample::alpha_of_orders`].
-    pub orders: Vec<usize>,
-    /// Decay factor of that comparison.
-    pub alpha_of_orders: f64,
-    /// Memory on which the upper bound of `α` rests, samples, and the order of the highest filter (2.37).
-    pub memory: (usize, usize),
-}
-
-impl Default for FirstOrderExample {
-    /// The numbers that the thesis prints; it does not print how long each frequency lasts, nor which other `α` its figure
-    /// shows.
-    fn default() -> Self {
-        Self {
-            time_constant_s: 0.15,
-            step_s: 0.005,
-            training_hz: vec![0.5, 1.0, 1.5, 2.0, 2.5, 3.0],
-            seconds_each: 4.0,
-            rest_s: 2.0,
-            validation_hz: 1.3,
-            filters: 3,
-            alpha: 0.85,
-            alphas: vec![0.5, 0.7, 0.8283, 0.85, 0.889, 0.995],
-            orders: vec![1, 2, 3, 4],
-            alpha_of_orders: 0.889,
-            memory: (176, 3),
-        }
-    }
-}
+// the numbers that the thesis prints; it does not print how long each frequency lasts, nor which other `α` its figure shows
+/// Time constant `τ`, s.
+const TIME_CONSTANT_S: f64 = 0.15;
+/// Sampling step, s.
+pub(crate) const STEP_S: f64 = 0.005;
+/// Frequencies of the training input, in turn, Hz.
+const TRAINING_HZ: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+/// Time at each of them, s; whole periods, so that the input is continuous.
+const SECONDS_EACH: f64 = 4.0;
+/// Rest before the first, s: longer than any filter of the example remembers.
+const REST_S: f64 = 2.0;
+/// Frequency of the validation input, Hz.
+pub(crate) const VALIDATION_HZ: f64 = 1.3;
+/// Number of filters `L`.
+pub(crate) const FILTERS: usize = 3;
+/// Decay factor.
+pub(crate) const ALPHA: f64 = 0.85;
+/// Decay factors to be compared (Figure 2.10).
+const ALPHAS: [f64; 6] = [0.5, 0.7, 0.8283, 0.85, 0.889, 0.995];
+/// Decay factor with which numbers of filters are compared (Figure 2.11).
+pub(crate) const ALPHA_OF_ORDERS: f64 = 0.889;
+/// Memory on which the upper bound of `α` rests, samples, and the order of the highest filter (2.37).
+const MEMORY: (usize, usize) = (176, 3);
 
 /// A transfer function over frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -83,8 +57,6 @@ pub struct SampledTransfer {
 /// Everything that Figures 2.6 to 2.11 show.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FirstOrderResults {
-    /// The example.
-    pub example: FirstOrderExample,
     /// Training input and output, one per step (Figure 2.6).
     pub training: [Vec<f64>; 2],
     /// Validation: input, output of the system, output of the model (Figure 2.7).
@@ -113,186 +85,170 @@ pub struct FirstOrderResults {
     pub last_value: f64,
 }
 
-impl FirstOrderExample {
-    /// Trains all models and samples what the figures show.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for numbers that are not positive.
-    pub fn run(&self) -> Result<FirstOrderResults> {
-        positive("time_constant_s", self.time_constant_s)?;
-        positive("step_s", self.step_s)?;
-        let input = self.training_input();
-        let training = self.record(&input);
-        let model = self.train(&training, self.filters, self.alpha)?;
-        let frequencies_hz: Vec<f64> = (1..=120).map(|i| 0.05 * f64::from(i)).collect();
-        let system = self.exact(&frequencies_hz);
-        let sample = |label: String, model: &Model| {
-            let g = frequencies_hz
-                .iter()
-                .map(|f| Ok(model.transfer(ReducedFrequency::from_full_width(TAU * f))?[(0, 0)]));
-            let g = g.collect::<Result<Vec<_>>>()?;
-            Ok::<_, Error>(self.sampled(label, &frequencies_hz, &g, &system))
-        };
-        let trial =
-            |label: String, filters, alpha| sample(label, &self.train(&training, filters, alpha)?);
-        let shown = self.sine(self.validation_hz, 5.0 / self.validation_hz);
-        let validation = self.record(&shown);
-        let predicted = predicted_forces(&model, &validation)?.swap_remove(0);
-        let (samples, order) = self.memory;
-        let coefficients = match &model {
-            Model::DiscreteLaguerre(m) => m.terms[0].coefficients.as_slice().to_vec(),
-            _ => Vec::new(),
-        };
-        Ok(FirstOrderResults {
-            validation_error: relative_error(&predicted, &validation.force[0]),
-            validation: [shown, validation.force[0].clone(), predicted],
-            model: sample(format!("L = {}, α = {}", self.filters, self.alpha), &model)?,
-            by_alpha: (self.alphas.iter())
-                .map(|a| trial(format!("α = {a}"), self.filters, *a))
-                .collect::<Result<_>>()?,
-            by_order: (self.orders.iter())
-                .map(|l| trial(format!("L = {l}"), *l, self.alpha_of_orders))
-                .collect::<Result<_>>()?,
-            impulse: self.impulses(&coefficients),
-            alpha_bounds: (
-                alpha_lower_bound(self.highest_hz(), 1.0 / self.step_s),
-                alpha_upper_bound(order + 1, samples),
-            ),
-            last_value: impulse_response(self.alpha_of_orders, order + 1, samples + 1)
-                [(order, samples)]
-                .abs(),
-            tustin: self.sampled(
-                "Tustin".into(),
-                &frequencies_hz,
-                &self.tustin(&frequencies_hz),
-                &system,
-            ),
-            system: self.sampled("system".into(), &frequencies_hz, &system, &system),
-            training: [input, training.force[0].clone()],
-            frequencies_hz,
-            coefficients,
-            example: self.clone(),
-        })
-    }
+/// Trains all models and samples what the figures show.
+///
+/// # Errors
+/// Those of the fits.
+pub fn first_order_example() -> Result<FirstOrderResults> {
+    let input = training_input();
+    let training = record(&input);
+    let model = train(&training, FILTERS, ALPHA)?;
+    let frequencies_hz: Vec<f64> = (1..=120).map(|i| 0.05 * f64::from(i)).collect();
+    let system = exact(&frequencies_hz);
+    let sample = |label: String, model: &Model| {
+        let g = frequencies_hz
+            .iter()
+            .map(|f| Ok(model.transfer(ReducedFrequency::from_full_width(TAU * f))?[(0, 0)]));
+        let g = g.collect::<Result<Vec<_>>>()?;
+        Ok::<_, Error>(sampled(label, &frequencies_hz, &g, &system))
+    };
+    let trial = |label: String, filters, alpha| sample(label, &train(&training, filters, alpha)?);
+    let shown = sine(VALIDATION_HZ, 5.0 / VALIDATION_HZ);
+    let validation = record(&shown);
+    let predicted = predicted_forces(&model, &validation)?.swap_remove(0);
+    let (samples, order) = MEMORY;
+    let coefficients = match &model {
+        Model::DiscreteLaguerre(m) => m.terms[0].coefficients.as_slice().to_vec(),
+        _ => Vec::new(),
+    };
+    let last = impulse_response(ALPHA_OF_ORDERS, order + 1, samples + 1);
+    let tustin = tustin(&frequencies_hz);
+    Ok(FirstOrderResults {
+        validation_error: relative_error(&predicted, &validation.force[0]),
+        validation: [shown, validation.force[0].clone(), predicted],
+        model: sample(format!("L = {FILTERS}, α = {ALPHA}"), &model)?,
+        by_alpha: (ALPHAS.iter())
+            .map(|a| trial(format!("α = {a}"), FILTERS, *a))
+            .collect::<Result<_>>()?,
+        by_order: (1..=4)
+            .map(|l| trial(format!("L = {l}"), l, ALPHA_OF_ORDERS))
+            .collect::<Result<_>>()?,
+        impulse: impulses(&coefficients),
+        alpha_bounds: (
+            alpha_lower_bound(highest_hz(), 1.0 / STEP_S),
+            alpha_upper_bound(order + 1, samples),
+        ),
+        last_value: last[(order, samples)].abs(),
+        tustin: sampled("Tustin".into(), &frequencies_hz, &tustin, &system),
+        system: sampled("system".into(), &frequencies_hz, &system, &system),
+        training: [input, training.force[0].clone()],
+        frequencies_hz,
+        coefficients,
+    })
+}
 
-    fn highest_hz(&self) -> f64 {
-        self.training_hz.iter().copied().fold(0.0, f64::max)
-    }
+fn highest_hz() -> f64 {
+    TRAINING_HZ.into_iter().fold(0.0, f64::max)
+}
 
-    fn sine(&self, frequency_hz: f64, seconds: f64) -> Vec<f64> {
-        let count = (seconds / self.step_s).round() as usize;
+fn sine(frequency_hz: f64, seconds: f64) -> Vec<f64> {
+    let count = (seconds / STEP_S).round() as usize;
+    (0..count)
+        .map(|k| (TAU * frequency_hz * k as f64 * STEP_S).sin())
+        .collect()
+}
+
+fn training_input() -> Vec<f64> {
+    let mut input = vec![0.0; (REST_S / STEP_S).round() as usize];
+    for f in TRAINING_HZ {
+        input.extend(sine(f, SECONDS_EACH));
+    }
+    input
+}
+
+/// Input and output of the system as motion and force; the output is exact for an input that runs straight from sample
+/// to sample, as MATLAB's `lsim` takes a smooth one.
+fn record(input: &[f64]) -> Record {
+    let ratio = STEP_S / TIME_CONSTANT_S;
+    let decay = (-ratio).exp();
+    // ∫ e^{−(h−t)/τ}/τ of a ramp over the step
+    let late = 1.0 - (1.0 - decay) / ratio;
+    let early = 1.0 - decay - late;
+    let (mut y, mut before) = (0.0, 0.0);
+    let output = input.iter().map(|u| {
+        y = decay * y + early * before + late * u;
+        before = *u;
+        y
+    });
+    Record {
+        force: vec![output.collect()],
+        motion: vec![input.to_vec()],
+        header: RecordHeader {
+            name: "first-order system".into(),
+            dofs: vec![Dof::Vertical],
+            width_m: 1.0,
+            air_density_kg_m3: 2.0,
+            mean_speed_m_s: 1.0,
+            sampling_hz: 1.0 / STEP_S,
+            segments: Vec::new(),
+            source: "(2.26)".into(),
+            licence: String::new(),
+        },
+    }
+}
+
+fn train(training: &Record, filters: usize, alpha: f64) -> Result<Model> {
+    let fit = DiscreteFit {
+        filters,
+        alpha,
+        // "neglected because the training signal is with null mean value"
+        static_term: StaticTerm::None,
+        ..DiscreteFit::default()
+    };
+    Ok(fit_discrete(&[training], &fit, &|_| ())?.model)
+}
+
+/// (2.27) at `s = iω`.
+fn exact(frequencies_hz: &[f64]) -> Vec<Complex<f64>> {
+    let at = |f: &f64| Complex::new(1.0, TAU * f * TIME_CONSTANT_S).inv();
+    frequencies_hz.iter().map(at).collect()
+}
+
+/// (2.29) at `z = e^{iωΔt}`.
+fn tustin(frequencies_hz: &[f64]) -> Vec<Complex<f64>> {
+    let (h, tau) = (STEP_S, TIME_CONSTANT_S);
+    let at = |f: &f64| {
+        let z = Complex::new(0.0, TAU * f * h).exp();
+        (z + 1.0) * h / (z * (h + 2.0 * tau) + (h - 2.0 * tau))
+    };
+    frequencies_hz.iter().map(at).collect()
+}
+
+fn sampled(
+    label: String,
+    frequencies_hz: &[f64],
+    g: &[Complex<f64>],
+    system: &[Complex<f64>],
+) -> SampledTransfer {
+    let lowest = TRAINING_HZ.into_iter().fold(f64::INFINITY, f64::min);
+    let band = lowest * (1.0 - 1e-9)..=highest_hz() * (1.0 + 1e-9);
+    let errors = frequencies_hz
+        .iter()
+        .zip(g.iter().zip(system))
+        .filter(|(f, _)| band.contains(*f))
+        .map(|(_, (g, h))| (g - h).norm() / h.norm());
+    SampledTransfer {
+        label,
+        magnitude: g.iter().map(|z| z.norm()).collect(),
+        phase_deg: g.iter().map(|z| z.arg().to_degrees()).collect(),
+        worst_in_band: errors.fold(0.0, f64::max),
+    }
+}
+
+/// `h(t) Δt = Δt/τ e^{−t/τ}` and (2.34).
+fn impulses(coefficients: &[f64]) -> [Vec<f64>; 2] {
+    let count = (6.0 * TIME_CONSTANT_S / STEP_S).round() as usize;
+    let ratio = STEP_S / TIME_CONSTANT_S;
+    let g = impulse_response(ALPHA, coefficients.len(), count);
+    let model = g
+        .column_iter()
+        .map(|g| g.iter().zip(coefficients).map(|(g, c)| g * c).sum());
+    [
         (0..count)
-            .map(|k| (TAU * frequency_hz * k as f64 * self.step_s).sin())
-            .collect()
-    }
-
-    fn training_input(&self) -> Vec<f64> {
-        let mut input = vec![0.0; (self.rest_s / self.step_s).round() as usize];
-        for f in &self.training_hz {
-            input.extend(self.sine(*f, self.seconds_each));
-        }
-        input
-    }
-
-    /// Input and output of the system as motion and force; the output is exact for an input that runs straight from sample
-    /// to sample, as MATLAB's `lsim` takes a smooth one.
-    fn record(&self, input: &[f64]) -> Record {
-        let ratio = self.step_s / self.time_constant_s;
-        let decay = (-ratio).exp();
-        // ∫ e^{−(h−t)/τ}/τ of a ramp over the step
-        let late = 1.0 - (1.0 - decay) / ratio;
-        let early = 1.0 - decay - late;
-        let (mut y, mut before) = (0.0, 0.0);
-        let output = input.iter().map(|u| {
-            y = decay * y + early * before + late * u;
-            before = *u;
-            y
-        });
-        Record {
-            force: vec![output.collect()],
-            motion: vec![input.to_vec()],
-            header: RecordHeader {
-                name: "first-order system".into(),
-                dofs: vec![Dof::Vertical],
-                width_m: 1.0,
-                air_density_kg_m3: 2.0,
-                mean_speed_m_s: 1.0,
-                sampling_hz: 1.0 / self.step_s,
-                segments: Vec::new(),
-                source: "(2.26)".into(),
-                licence: String::new(),
-            },
-        }
-    }
-
-    fn train(&self, training: &Record, filters: usize, alpha: f64) -> Result<Model> {
-        let fit = DiscreteFit {
-            filters,
-            alpha,
-            // "neglected because the training signal is with null mean value"
-            static_term: StaticTerm::None,
-            ..DiscreteFit::default()
-        };
-        Ok(fit_discrete(&[training], &fit, &|_| ())?.model)
-    }
-
-    /// (2.27) at `s = iω`.
-    fn exact(&self, frequencies_hz: &[f64]) -> Vec<Complex<f64>> {
-        let at = |f: &f64| Complex::new(1.0, TAU * f * self.time_constant_s).inv();
-        frequencies_hz.iter().map(at).collect()
-    }
-
-    /// (2.29) at `z = e^{iωΔt}`.
-    fn tustin(&self, frequencies_hz: &[f64]) -> Vec<Complex<f64>> {
-        let (h, tau) = (self.step_s, self.time_constant_s);
-        let at = |f: &f64| {
-            let z = Complex::new(0.0, TAU * f * h).exp();
-            (z + 1.0) * h / (z * (h + 2.0 * tau) + (h - 2.0 * tau))
-        };
-        frequencies_hz.iter().map(at).collect()
-    }
-
-    fn sampled(
-        &self,
-        label: String,
-        frequencies_hz: &[f64],
-        g: &[Complex<f64>],
-        system: &[Complex<f64>],
-    ) -> SampledTransfer {
-        let lowest = self
-            .training_hz
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
-        let band = lowest * (1.0 - 1e-9)..=self.highest_hz() * (1.0 + 1e-9);
-        let errors = frequencies_hz
-            .iter()
-            .zip(g.iter().zip(system))
-            .filter(|(f, _)| band.contains(*f))
-            .map(|(_, (g, h))| (g - h).norm() / h.norm());
-        SampledTransfer {
-            label,
-            magnitude: g.iter().map(|z| z.norm()).collect(),
-            phase_deg: g.iter().map(|z| z.arg().to_degrees()).collect(),
-            worst_in_band: errors.fold(0.0, f64::max),
-        }
-    }
-
-    /// `h(t) Δt = Δt/τ e^{−t/τ}` and (2.34).
-    fn impulses(&self, coefficients: &[f64]) -> [Vec<f64>; 2] {
-        let count = (6.0 * self.time_constant_s / self.step_s).round() as usize;
-        let ratio = self.step_s / self.time_constant_s;
-        let g = impulse_response(self.alpha, coefficients.len(), count);
-        let model = g
-            .column_iter()
-            .map(|g| g.iter().zip(coefficients).map(|(g, c)| g * c).sum());
-        [
-            (0..count)
-                .map(|k| ratio * (-ratio * k as f64).exp())
-                .collect(),
-            model.collect(),
-        ]
-    }
+            .map(|k| ratio * (-ratio * k as f64).exp())
+            .collect(),
+        model.collect(),
+    ]
 }
 
 fn relative_error(found: &[f64], exact: &[f64]) -> f64 {
@@ -310,13 +266,13 @@ mod tests {
     /// the memory, a better fit towards the upper bound, "really precisely approximated already with four filters".
     #[test]
     fn figures_of_section_2_5() {
-        let results = FirstOrderExample::default().run().unwrap();
+        let results = first_order_example().unwrap();
         let (lower, upper) = results.alpha_bounds;
         assert!((lower - 0.8283).abs() < 5e-5, "{lower}");
         assert!((upper - 0.889).abs() < 1e-3, "{upper}");
         assert!((results.last_value - 0.0096).abs() < 5e-5);
-        let memory = discrete_memory(results.example.alpha, results.example.filters);
-        assert!(memory as f64 * 0.005 < results.example.rest_s);
+        let memory = discrete_memory(ALPHA, FILTERS);
+        assert!(memory as f64 * STEP_S < REST_S);
         let error = |label: &str| {
             let mut trials = results.by_alpha.iter().chain(&results.by_order);
             trials.find(|t| t.label == label).unwrap().worst_in_band
@@ -348,16 +304,10 @@ mod tests {
     /// Ordinary least squares on (2.32) written out as matrices, with every sample in the memory.
     #[test]
     fn coefficients_are_those_of_the_matrix_form() {
-        let example = FirstOrderExample {
-            training_hz: vec![1.0, 3.0],
-            seconds_each: 2.0,
-            rest_s: 0.0,
-            ..FirstOrderExample::default()
-        };
-        let results = example.run().unwrap();
+        let results = first_order_example().unwrap();
         let [u, y] = &results.training;
-        let g = impulse_response(example.alpha, example.filters, u.len());
-        let x = nalgebra::DMatrix::from_fn(u.len(), example.filters, |k, l| {
+        let g = impulse_response(ALPHA, FILTERS, u.len());
+        let x = nalgebra::DMatrix::from_fn(u.len(), FILTERS, |k, l| {
             (0..=k).map(|m| g[(l, m)] * u[k - m]).sum()
         });
         let c = x
@@ -372,13 +322,12 @@ mod tests {
     /// The held output against the closed form of the response to a sine from rest.
     #[test]
     fn the_training_output_is_that_of_the_system() {
-        let example = FirstOrderExample::default();
-        let input = example.sine(1.3, 3.0);
-        let y = &example.record(&input).force[0];
-        let (omega, tau) = (TAU * 1.3, example.time_constant_s);
+        let input = sine(1.3, 3.0);
+        let y = &record(&input).force[0];
+        let (omega, tau) = (TAU * 1.3, TIME_CONSTANT_S);
         let h = Complex::new(1.0, omega * tau).inv();
         for (k, y) in y.iter().enumerate() {
-            let t = k as f64 * example.step_s;
+            let t = k as f64 * STEP_S;
             let steady = (h * Complex::new(0.0, omega * t).exp()).im;
             let exact = steady - h.im * (-t / tau).exp();
             // straight lines between samples: (ωΔt)²/12

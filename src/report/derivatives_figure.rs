@@ -21,19 +21,6 @@ pub struct DerivativePlot {
     pub reference: Vec<PlottedSeries>,
 }
 
-/// Derivatives of a deck, for the figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DerivativesPlot {
-    /// Line above the figure; empty for none.
-    pub title: String,
-    /// Name of the abscissa with its definition, e.g. `V* = V/(fB)` or `V̂ = V/(ωB)`.
-    pub velocity_label: String,
-    /// What the bars are; not shown where there are none.
-    pub bars_label: String,
-    /// Row by row.
-    pub derivatives: Vec<DerivativePlot>,
-}
-
 /// A grid of the derivatives over reduced velocity: four columns for up to eight, six for the eighteen.
 ///
 /// Series of the same label share ink and legend entry over all panels. All panels have the same abscissa.
@@ -41,8 +28,12 @@ pub struct DerivativesPlot {
 /// # Errors
 /// [`Error::Input`] for no derivatives, one without any data, numbers that are not finite, and more labels than
 /// colours.
-pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
-    let all = &plot.derivatives;
+pub fn derivatives_figure(
+    title: &str,
+    velocity_label: &str,
+    bars_label: &str,
+    all: &[DerivativePlot],
+) -> Result<Figure> {
     if all.is_empty() {
         return Err(Error::input(PLACE, "at least one derivative", "none"));
     }
@@ -53,7 +44,7 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
     let range = velocity_range(all);
     let mut panels = Vec::with_capacity(all.len());
     for derivative in all {
-        let velocity = Axis::new(&plot.velocity_label);
+        let velocity = Axis::new(velocity_label);
         let mut panel = Panel::new(Axis { range, ..velocity }, Axis::new(""));
         panel.title = Some(starred(&derivative.name));
         panel.level = Some(0.0);
@@ -67,9 +58,16 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
         })?;
         panels.push(panel);
     }
+    let mut legend = Vec::new();
+    if all.iter().any(|d| !d.bars.is_empty()) {
+        legend.push(Entry::new(bars_label, BAR));
+    }
+    legend.extend(entries(&measured, |i| measured_ink(i, measured.len()))?);
+    legend.extend(entries(&fitted, fitted_ink)?);
+    legend.extend(entries(&reference, reference_ink)?);
     Drawing {
         name: PLACE,
-        title: titled(&plot.title),
+        title: titled(title),
         panels,
         columns,
         axes: if columns == 6 {
@@ -77,26 +75,10 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
         } else {
             (190.0, 160.0)
         },
-        legend: vec![legend(plot, &measured, &fitted, &reference)?],
+        legend: vec![legend],
     }
     .over_one_abscissa()
     .draw()
-}
-
-fn legend(
-    plot: &DerivativesPlot,
-    measured: &[String],
-    fitted: &[String],
-    reference: &[String],
-) -> Result<Vec<Entry>> {
-    let mut all = Vec::new();
-    if plot.derivatives.iter().any(|d| !d.bars.is_empty()) {
-        all.push(Entry::new(&plot.bars_label, BAR));
-    }
-    all.extend(entries(measured, |i| measured_ink(i, measured.len()))?);
-    all.extend(entries(fitted, fitted_ink)?);
-    all.extend(entries(reference, reference_ink)?);
-    Ok(all)
 }
 
 const PLACE: &str = "aerodynamic derivatives";

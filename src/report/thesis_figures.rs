@@ -3,7 +3,10 @@
 use super::transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
 use super::{Figure, PlottedSeries, TimePanel, time_history_figure};
 use crate::error::Result;
-use crate::reference::{FirstOrderResults, Lines, SampledTransfer};
+use crate::reference::{
+    ALPHA, ALPHA_OF_ORDERS, FILTERS, FirstOrderResults, Lines, STEP_S, SampledTransfer,
+    VALIDATION_HZ,
+};
 
 const TIME: &str = "Dimensionless time τ";
 const PARTS: &str = "Part of half the sampling frequency";
@@ -39,10 +42,9 @@ pub fn laguerre_figures(functions: &[Lines; 6]) -> Result<Vec<(&'static str, Fig
 /// The six figures with the number of each in the thesis: training input, predicted output, transfer function and impulse
 /// response of the model, transfer functions for several `α` and for several `L`.
 pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static str, Figure)>> {
-    let example = &results.example;
     let over_time = |(label, values): &(&str, &Vec<f64>)| {
         let points = values.iter().enumerate();
-        let points = points.map(|(k, y)| (k as f64 * example.step_s, *y));
+        let points = points.map(|(k, y)| (k as f64 * STEP_S, *y));
         PlottedSeries::new(*label, points.collect())
     };
     let history = |title: &str, label: &str, signals: &[(&str, &Vec<f64>)]| {
@@ -52,14 +54,14 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static 
         };
         time_history_figure(title, &[panel], "Time (s)")
     };
-    let order = format!("L = {}", example.filters);
-    let parameters = format!("{order}, α = {}", example.alpha);
+    let order = format!("L = {}", FILTERS);
+    let parameters = format!("{order}, α = {}", ALPHA);
     let [training, _] = &results.training;
     let [_, system, model] = &results.validation;
     let [impulse, filters] = &results.impulse;
     let input = history("Training input", "u (–)", &[("input", training)])?;
     let output = history(
-        &format!("Output at {} Hz, {parameters}", example.validation_hz),
+        &format!("Output at {} Hz, {parameters}", VALIDATION_HZ),
         "y (–)",
         &[("system", system), ("Laguerre model", model)],
     )?;
@@ -70,7 +72,7 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static 
     )?;
     let both = transfer(results, &parameters, [&results.tustin, &results.model])?;
     let alphas = transfer(results, &order, &results.by_alpha)?;
-    let one_alpha = format!("α = {}", example.alpha_of_orders);
+    let one_alpha = format!("α = {}", ALPHA_OF_ORDERS);
     let orders = transfer(results, &one_alpha, &results.by_order)?;
     Ok(vec![
         ("2.6", input),

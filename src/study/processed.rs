@@ -1,8 +1,6 @@
 //! The study that goes with the records of a processed campaign.
 
 use super::{DeckSource, FlutterBlock, Study};
-use crate::aerodynamics::derivatives::Interpolation;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result};
 use crate::files::toml_lines;
 use crate::identification::derivatives::IdentifiedDerivatives;
@@ -31,14 +29,9 @@ pub(crate) fn processed_study_text(
     };
     study.name.clone_from(&raw.section);
     study.deck = DeckSource {
-        convention: StatedConvention::default(),
-        interpolation: Interpolation::default(),
-        width_m: None,
-        angle_deg: None,
-        missing: None,
         source: table.to_owned(),
-        speed_groups: None,
         records: records.iter().map(|p| slashes(p)).collect(),
+        ..DeckSource::default()
     };
     if let Some(section) = section {
         study.section = section.clone();
@@ -50,10 +43,9 @@ pub(crate) fn processed_study_text(
         values.remove("section");
     }
     let text = toml::to_string(&values).map_err(|e| unwritable(&e))?;
-    let marked = if known {
-        String::new()
-    } else {
-        marked_place(raw, &found.dofs)
+    let marked = match known {
+        true => String::new(),
+        false => marked_place(raw, &found.dofs),
     };
     Ok(format!("{HEAD}{text}{marked}"))
 }
@@ -74,14 +66,10 @@ fn default_study(found: &IdentifiedDerivatives) -> Result<Study> {
         })
     };
     let first = groups.iter().position(is_whole);
-    study
-        .models
-        .retain(|m| m.speed_groups.is_none() || first.is_some());
-    for model in &mut study.models {
-        model.speed_groups = model
-            .speed_groups
-            .as_ref()
-            .and(first.map(|group| vec![group + 1]));
+    let models = &mut study.models;
+    models.retain(|m| m.speed_groups.is_none() || first.is_some());
+    for groups in models.iter_mut().filter_map(|m| m.speed_groups.as_mut()) {
+        *groups = first.iter().map(|group| group + 1).collect();
     }
     Ok(study)
 }
@@ -91,10 +79,9 @@ fn marked_place(raw: &RawCampaign, dofs: &[Dof]) -> String {
     let density = raw.runs.first().map(|run| run.air_density_kg_m3);
     let density = density.unwrap_or(STANDARD_AIR_DENSITY_KG_M3);
     let translation = "{ mass_kg_m = ?, frequency_hz = ?, damping_ratio = ? }";
-    let lateral = if dofs.contains(&Dof::Lateral) {
-        format!("# lateral = {translation}\n")
-    } else {
-        String::new()
+    let lateral = match dofs.contains(&Dof::Lateral) {
+        true => format!("# lateral = {translation}\n"),
+        false => String::new(),
     };
     format!(
         "\n# STATE THE SECTION HERE: a campaign does not know the structure that is to be built. Replace every `?`, remove the\n\

@@ -9,8 +9,8 @@ use aerodeck::flutter::{
     FlutterCurves, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };
 use aerodeck::report::{
-    DerivativePlot, DerivativesPlot, Figure, PlottedSeries, TimePanel, derivatives_figure,
-    time_history_figure, vf_vg_figure,
+    DerivativePlot, Figure, PlottedSeries, TimePanel, derivatives_figure, time_history_figure,
+    vf_vg_figure,
 };
 use aerodeck::response::{Inputs, Outputs, Stepper};
 use aerodeck::section::{Dof, SectionModel};
@@ -259,11 +259,12 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
     };
     let jones = RationalModel::jones_flat_plate();
     let two = |d: &Derivative| d.force() != Dof::Lateral && d.motion() != Dof::Lateral;
-    let plot = |derivatives: Vec<Derivative>, lines: bool| DerivativesPlot {
-        title: "Aerodynamic derivatives of the Langenuen deck & flat plate".into(),
-        velocity_label: "V* = V/(fB)".into(),
-        bars_label: "95 % interval".into(),
-        derivatives: derivatives
+    let figure = |all: &[DerivativePlot]| {
+        let title = "Aerodynamic derivatives of the Langenuen deck & flat plate";
+        derivatives_figure(title, "V* = V/(fB)", "95 % interval", all)
+    };
+    let plot = |derivatives: Vec<Derivative>, lines: bool| -> Vec<DerivativePlot> {
+        derivatives
             .into_iter()
             .map(|d| DerivativePlot {
                 name: d.name().to_owned(),
@@ -284,11 +285,11 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
                     Vec::new()
                 },
             })
-            .collect(),
+            .collect()
     };
     let eight = plot(table.derivatives().filter(two).collect(), true);
-    assert_eq!(eight.derivatives.len(), 8);
-    let draw = || derivatives_figure(&eight).unwrap();
+    assert_eq!(eight.len(), 8);
+    let draw = || figure(&eight).unwrap();
     let labels = [
         "Aerodynamic derivatives of the Langenuen deck & flat plate",
         "V* = V/(fB)",
@@ -300,21 +301,21 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
     ];
     check(&draw(), &draw(), "derivatives_8", &labels);
     let eighteen = plot(table.derivatives().collect(), false);
-    assert_eq!(eighteen.derivatives.len(), 18);
-    let draw = || derivatives_figure(&eighteen).unwrap();
+    assert_eq!(eighteen.len(), 18);
+    let draw = || figure(&eighteen).unwrap();
     check(&draw(), &draw(), "derivatives_18", &["P₁*", "H₆*", "A₆*"]);
 
     let mut broken = eight.clone();
-    broken.derivatives[3].measured.clear();
-    broken.derivatives[3].fitted.clear();
-    broken.derivatives[3].reference.clear();
-    broken.derivatives[3].bars.clear();
-    assert!(derivatives_figure(&broken).is_err());
-    broken.derivatives.clear();
-    assert!(derivatives_figure(&broken).is_err());
+    broken[3].measured.clear();
+    broken[3].fitted.clear();
+    broken[3].reference.clear();
+    broken[3].bars.clear();
+    assert!(figure(&broken).is_err());
+    broken.clear();
+    assert!(figure(&broken).is_err());
     let mut broken = eight;
-    broken.derivatives[7].measured[0].points[1].1 = f64::INFINITY;
-    assert!(derivatives_figure(&broken).is_err());
+    broken[7].measured[0].points[1].1 = f64::INFINITY;
+    assert!(figure(&broken).is_err());
 }
 
 #[test]

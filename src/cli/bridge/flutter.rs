@@ -15,8 +15,8 @@ use crate::error::Result;
 use crate::files::text::csv_cell;
 use crate::flutter::{BridgeMotion, ModePoint, NodeMotion};
 use crate::report::{
-    PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, derivatives_figure,
-    flutter_motion_figure, scaled_history_figure,
+    PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, flutter_motion_figure,
+    scaled_history_figure,
 };
 use crate::study::bridge::{
     BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
@@ -268,11 +268,9 @@ fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) ->
     let (table, dofs) = (table.as_ref(), model.dofs());
     let one = |d| beside_models(d, table, dofs, &fitted, &Vec::new(), &intervals);
     let title = format!("{}: measured derivatives and the model", block.name);
-    let bars = "95 % interval of the model".to_owned();
+    let bars = "95 % interval of the model";
     let stem = format!("{DERIVATIVES_FIGURE}{}", number + 1);
-    figures::write(&stem, out, || {
-        derivatives_figure(&over_v_hat(title, bars, one))
-    })
+    figures::write(&stem, out, || over_v_hat(&title, bars, one))
 }
 
 fn motion_csv(motion: &BridgeMotion) -> String {

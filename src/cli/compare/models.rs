@@ -9,8 +9,8 @@ use crate::comparison::forces::{
 use crate::error::{Result, counted};
 use crate::files::text::csv_cell;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve,
-    TransferPlot, derivatives_figure, time_history_figure, transfer_figure,
+    DerivativePlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve, TransferPlot,
+    derivatives_figure, time_history_figure, transfer_figure,
 };
 use crate::section::Dof;
 use std::fmt::Write as _;
@@ -81,28 +81,20 @@ fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
 
 /// Derivatives over reduced velocity (Figures 3.23 to 3.26).
 fn derivatives(results: &ModelsComparison) -> Result<Figure> {
-    derivatives_figure(&DerivativesPlot {
-        title: format!(
-            "{} at {:.2} m/s: aerodynamic derivatives",
-            results.deck, results.speed_m_s
-        ),
-        velocity_label: "V̂ = V/(ωB)".into(),
-        bars_label: String::new(),
-        derivatives: results
-            .derivatives
-            .iter()
-            .map(|d| DerivativePlot {
-                name: d.name.to_owned(),
-                measured: vec![PlottedSeries::new("measured", d.measured.clone())],
-                fitted: d
-                    .models
-                    .iter()
-                    .map(|(model, points)| PlottedSeries::new(model, points.clone()))
-                    .collect(),
-                ..DerivativePlot::default()
-            })
-            .collect(),
-    })
+    let all = results.derivatives.iter().map(|d| {
+        let fitted = d.models.iter();
+        let fitted = fitted.map(|(model, points)| PlottedSeries::new(model, points.clone()));
+        DerivativePlot {
+            name: d.name.to_owned(),
+            measured: vec![PlottedSeries::new("measured", d.measured.clone())],
+            fitted: fitted.collect(),
+            ..DerivativePlot::default()
+        }
+    });
+    let all: Vec<DerivativePlot> = all.collect();
+    let (deck, speed) = (&results.deck, results.speed_m_s);
+    let title = format!("{deck} at {speed:.2} m/s: aerodynamic derivatives");
+    derivatives_figure(&title, "V̂ = V/(ωB)", "", &all)
 }
 
 /// Forces over a few periods, one figure per motion and frequency (Figures 3.29 to 3.32).

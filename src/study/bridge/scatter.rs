@@ -1,12 +1,11 @@
 //! The onset of a bridge whose frequencies, damping and derivatives scatter (Monte Carlo).
 
+use super::BridgeStudy;
 use super::answers::coupled;
 use super::scaled_forces::Scaled;
-use super::{BridgeStudy, SectionForceModels};
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, ensure, non_negative};
-use crate::files::bridge::BridgeSectionBlock;
 use crate::flutter::{NearbyOnset, Onset, OnsetInterval, find_onset_of_modes};
 use crate::numbered::{OnDone, numbered};
 use crate::signal::random_stream;
@@ -155,61 +154,22 @@ impl BridgeStudy {
         }
     }
 
-    /// What the forces of every section are drawn from.
-    fn drawn_forces(&self, scatter: DerivativeScatter) -> Result<Vec<ForceDraws<'_>>> {
-        let sections = self.file.sections.iter().zip(&self.sections);
-        sections
-            .map(|(block, forces)| ForceDraws::new(block, forces, scatter))
-            .collect()
-    }
-}
-
-/// Where the forces of one section are drawn from.
-enum ForceDraws<'a> {
-    /// Entries of the mean times factors with this standard deviation.
-    Scaled(f64),
-    /// The covariance of the fit.
-    Models(ModelDraws<'a>),
-}
-
-impl<'a> ForceDraws<'a> {
-    fn new(
-        block: &BridgeSectionBlock,
-        forces: &'a SectionForceModels,
-        scatter: DerivativeScatter,
-    ) -> Result<Self> {
-        let DerivativeScatter::Relative(part) = scatter else {
-            return match &forces.uncertainty {
+    /// The covariances of the fits from which the forces of the sections are drawn; none for entries of the mean times factors.
+    fn drawn_forces(&self, scatter: DerivativeScatter) -> Result<Vec<Option<ModelDraws<'_>>>> {
+        let mut all = Vec::with_capacity(self.sections.len());
+        for (block, forces) in self.file.sections.iter().zip(&self.sections) {
+            all.push(match (scatter, &forces.uncertainty) {
                 // static coefficients are stated without errors
-                Ok(None) => Ok(Self::Scaled(0.0)),
-                Ok(Some(known)) => ModelDraws::new(&known.coefficients).map(Self::Models),
-                Err(why) => Err(Error::input(
-                    format!("section {}: scatter of the derivatives", block.name),
-                    "a model whose fit left a covariance, or a standard deviation over the mean",
-                    why.clone(),
-                )),
-            };
-        };
-        Ok(Self::Scaled(part))
-    }
-
-    /// The forces that are `part` of the way from the mean to a draw.
-    fn forces(
-        &self,
-        mean: &Arc<dyn Transfer>,
-        random: &mut impl Rng,
-        part: f64,
-    ) -> Result<Arc<dyn Transfer>> {
-        Ok(match self {
-            Self::Scaled(0.0) => mean.clone(),
-            Self::Scaled(deviation) => {
-                let n = mean.dofs().len();
-                let mut normal = || -> f64 { random.sample(StandardNormal) };
-                let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + part * deviation * normal());
-                Arc::new(Scaled::new(mean.as_ref(), &factors)?)
-            }
-            Self::Models(draws) => Arc::new(draws.model(random, part)?),
-        })
+                (DerivativeScatter::Relative(_), _) | (_, Ok(None)) => None,
+                (_, Ok(Some(known))) => Some(ModelDraws::new(&known.coefficients)?),
+                (_, Err(why)) => {
+                    let place = format!("section {}: scatter of the derivatives", block.name);
+                    let expected = "a model whose fit left a covariance, or a standard deviation over the mean";
+                    return Err(Error::input(place, expected, why.clone()));
+                }
+            });
+        }
+        Ok(all)
     }
 }
 
@@ -218,7 +178,7 @@ struct OnsetSampler<'a> {
     study: &'a BridgeStudy,
     scatter: &'a Scatter,
     /// In the order of the sections.
-    forces: Vec<ForceDraws<'a>>,
+    forces: Vec<Option<ModelDraws<'a>>>,
     /// One for the forces of all sections of a sample.
     scale: Option<StudentScale>,
     nearby: NearbyOnset,
@@ -278,12 +238,30 @@ impl OnsetSampler<'_> {
         let mut models = vec![None; self.forces.len()];
         for (group, &section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
             group.forces = match (&self.forces[section], &models[section]) {
-                (ForceDraws::Models(_), Some(drawn)) => Arc::clone(drawn),
-                (of, _) => of.forces(&group.forces, random, part)?,
+                (Some(_), Some(drawn)) => Arc::clone(drawn),
+                (Some(draws), None) => Arc::new(draws.model(random, part)?),
+                (None, _) => self.scaled(&group.forces, random, part)?,
             };
             models[section] = Some(group.forces.clone());
         }
         Ok(())
+    }
+
+    /// The forces that are `part` of the way from the mean to its entries times random factors.
+    fn scaled(
+        &self,
+        mean: &Arc<dyn Transfer>,
+        random: &mut impl Rng,
+        part: f64,
+    ) -> Result<Arc<dyn Transfer>> {
+        let deviation = match self.scatter.derivatives {
+            DerivativeScatter::Relative(deviation) if deviation != 0.0 => deviation,
+            _ => return Ok(mean.clone()),
+        };
+        let n = mean.dofs().len();
+        let mut normal = || -> f64 { random.sample(StandardNormal) };
+        let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + part * deviation * normal());
+        Ok(Arc::new(Scaled::new(mean.as_ref(), &factors)?))
     }
 }
 
