@@ -37,7 +37,6 @@ pub(crate) use plausibility::study_findings;
 pub(crate) use processed::{processed_study_text, read_section};
 pub use records::RecordSet;
 pub(crate) use reference_lines::derivative_lines;
-pub use routes::low_frequency_limit;
 pub(crate) use routes::{Route, RouteTable, route_table};
 pub use speeds::{FlutterBlock, SpeedRange};
 pub use stepped::{SteppedOnset, stepped_onset};

@@ -7,7 +7,7 @@ use crate::buffeting::peak_factor;
 use crate::error::{Error, Result, counted};
 use crate::files::report_block::ReportBlock;
 use crate::report::{
-    PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure, rendered,
+    Figure, PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure, rendered,
 };
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
 use crate::verdict::Verdict;
@@ -88,17 +88,23 @@ fn write(
     out: &mut OutputDir,
 ) -> Result<()> {
     out.write_json("buffeting.json", "buffeting-results", results)?;
+    let mut drawn = Vec::new();
+    let mut draw = |stem: &str, caption: String, figure: Figure| {
+        drawn.push((caption, figure.svg().to_owned()));
+        figures::write(stem, out, || Ok(figure))
+    };
     if !results.responses.is_empty() {
-        figures::write("buffeting", out, || buffeting_rms_figure(name, results))?;
+        let figure = buffeting_rms_figure(name, results)?;
+        draw("buffeting", "RMS over wind speed.".to_owned(), figure)?;
     }
     for spectra in &results.spectra {
-        let title = format!("{name} at {} m/s", spectra.speed_m_s);
-        let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
-        figures::write(&stem, out, || {
-            buffeting_spectra_figure(&title, &results.dofs, &[], spectra)
-        })?;
+        let speed = spectra.speed_m_s;
+        let title = format!("{name} at {speed} m/s");
+        let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
+        let caption = format!("Spectra at {speed} m/s times the frequency.");
+        draw(&format!("buffeting_spectra_{speed}"), caption, figure)?;
     }
-    let page = page(name, key, results, verdict)?;
+    let page = page(name, key, results, verdict, drawn)?;
     out.write(PAGE, rendered(&page)?)
 }
 
@@ -137,6 +143,7 @@ fn page(
     key: &str,
     results: &BuffetingStudy,
     verdict: Option<&Verdict>,
+    figures: Vec<(String, String)>,
 ) -> Result<SectionsPage> {
     let mut rows = Vec::new();
     for r in results.shown() {
@@ -158,17 +165,6 @@ fn page(
             ]);
         }
     }
-    let mut figures = Vec::new();
-    if !results.responses.is_empty() {
-        let figure = buffeting_rms_figure(name, results)?;
-        figures.push(("RMS over wind speed.".to_owned(), figure.svg().to_owned()));
-    }
-    for spectra in &results.spectra {
-        let title = format!("{name} at {} m/s", spectra.speed_m_s);
-        let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
-        let caption = format!("Spectra at {} m/s times the frequency.", spectra.speed_m_s);
-        figures.push((caption, figure.svg().to_owned()));
-    }
     let table = PageSection {
         title: "Response to turbulence".to_owned(),
         text: std::iter::once(format!(
@@ -185,17 +181,14 @@ fn page(
         rows,
         figures,
     };
+    let answered = results.responses.len();
     Ok(SectionsPage {
         title: name.to_owned(),
         subtitle: "Response of a section to turbulence".to_owned(),
         verdict: verdict.cloned().unwrap_or_default(),
         answer: match results.left_out.len() {
-            0 => format!("Response at {} wind speeds", results.responses.len()),
-            none => format!(
-                "Response at {} of {} wind speeds",
-                results.responses.len(),
-                results.responses.len() + none
-            ),
+            0 => format!("Response at {answered} wind speeds"),
+            none => format!("Response at {answered} of {} wind speeds", answered + none),
         },
         of: ReportBlock::default().dated(Some(&today()?)),
         key: key.to_owned(),

@@ -93,10 +93,8 @@ pub(crate) fn train(
         check_groups(study, i, deck, records)?;
         if records.is_none() && block.table.is_none() {
             let reason = "it needs records, which could not be made";
-            failed.push(StageFailure::new(
-                format!("training of {}", block.name),
-                reason,
-            ));
+            let stage = format!("training of {}", block.name);
+            failed.push(StageFailure::new(stage, reason));
             continue;
         }
         let stage = progress.steps(&format!("training {}", block.name));
@@ -215,10 +213,8 @@ pub(crate) fn read_models(
     for block in &study.models {
         let file = format!("{}.json", block.slug());
         let path = directory.join(MODELS).join(file);
-        match read_model(&path)
-            .and_then(of_deck)
-            .map_err(|e| e.in_file(&path))
-        {
+        let model = read_model(&path).and_then(of_deck);
+        match model.map_err(|e| e.in_file(&path)) {
             Ok(model) => models.push(model),
             Err(e) => {
                 failed.push(StageFailure::new(format!("reading {}", block.name), &e));
@@ -234,13 +230,8 @@ pub(crate) fn read_models(
 
 /// Reads one trained model.
 pub(crate) fn read_model(path: &Path) -> Result<TrainedModel> {
-    ensure(
-        path.exists(),
-        "",
-        "a trained model (run `aerodeck train` first)",
-        "no such file",
-    )
-    .map_err(|e| e.in_file(path))?;
+    let expected = "a trained model (run `aerodeck train` first)";
+    ensure(path.exists(), "", expected, "no such file").map_err(|e| e.in_file(path))?;
     let what = "a trained model as written by `aerodeck train`";
     TrainedModel::read(path).map_err(|e| of_a_kind_of_ours(what, path).unwrap_or(e))
 }
@@ -290,30 +281,23 @@ pub(crate) fn export(
         copyright: study.export.copyright.clone(),
         generated: None,
     };
+    let label = label.dated()?;
+    let (model, structure) = (&own.model, own.model.section.structure()?);
+    let section = CoupledSection::with_model(&structure, &model.model)?;
+    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
+    let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
+    let interval = found.onset();
+    let interval = interval.map(|o| interval_of(&structure, model, &own.uncertainty, o));
     let export = Export {
-        label: label.dated()?,
-        bounds: onset_bounds(&own.model, &own.uncertainty)?,
+        label,
+        bounds: interval.as_ref().and_then(OnsetBounds::from_interval),
         verdict: Some(verdict.clone()),
         allow_unstable,
         ..Export::default()
     };
-    let bytes = package(&own.model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
+    let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
     drop(stage);
     Ok(bytes)
-}
-
-/// The interval of the onset of a model's own section, as its archive carries it; none where the data give none.
-pub(crate) fn onset_bounds(
-    model: &TrainedModel,
-    known: &KnownUncertainty,
-) -> Result<Option<OnsetBounds>> {
-    let structure = model.section.structure()?;
-    let section = CoupledSection::with_model(&structure, &model.model)?;
-    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
-    let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
-    Ok(found.onset().and_then(|onset| {
-        OnsetBounds::from_interval(&interval_of(&structure, model, known, onset))
-    }))
 }
 
 /// A refused export with the flag that allows it.

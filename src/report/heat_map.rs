@@ -96,28 +96,16 @@ impl HeatMap {
 
     /// Ends of the colour scale.
     fn ends(&self) -> Result<(f64, f64)> {
-        let usable = |v: &&f64| v.is_finite() && (!self.logarithmic || **v > 0.0);
-        let values: Vec<f64> = self
-            .values
-            .iter()
-            .flatten()
-            .filter(usable)
-            .copied()
-            .collect();
+        let usable = |v: &f64| v.is_finite() && (!self.logarithmic || *v > 0.0);
         // refused models may be anywhere: the scale is for those to choose from
         let kept = |at: usize| self.refused.get(at) != Some(&true);
         let chosen = self.values.iter().enumerate().filter(|(at, _)| kept(*at));
-        let chosen: Vec<f64> = chosen
-            .filter_map(|(_, v)| v.filter(|x| x.is_finite()))
-            .collect();
-        let values = if chosen.is_empty() { values } else { chosen };
-        let (low, high) = ends(values);
-        ensure(
-            low <= high,
-            format!("heat map {}", self.title),
-            "at least one finite value",
-            "none",
-        )?;
+        let (mut low, mut high) = ends(chosen.filter_map(|(_, v)| v.filter(|x| x.is_finite())));
+        if low > high {
+            (low, high) = ends(self.values.iter().copied().flatten().filter(usable));
+        }
+        let place = format!("heat map {}", self.title);
+        ensure(low <= high, place, "at least one finite value", "none")?;
         Ok((low, high))
     }
 
@@ -142,12 +130,8 @@ impl HeatMap {
             if self.refused.get(at) == Some(&true) {
                 let light = known.is_some_and(|v| part(v) < 0.6);
                 let radius = (0.18 * (cell.right - cell.left)).clamp(1.0, 2.5);
-                scene.circle(
-                    cell.middle(),
-                    radius,
-                    if light { "#ffffff" } else { BLACK },
-                    None,
-                );
+                let fill = if light { "#ffffff" } else { BLACK };
+                scene.circle(cell.middle(), radius, fill, None);
             }
         }
         if let Some((column, row)) = self.chosen {
@@ -157,7 +141,10 @@ impl HeatMap {
         }
         self.axes(scene, corner);
         let bar = corner + Px::new(WIDTH + 16.0, 0.0);
-        let value = part_inverse(self.logarithmic, low, high);
+        let value = |part: f64| match self.logarithmic {
+            true => low * (high / low).powf(part),
+            false => low + part * (high - low),
+        };
         colour_bar(scene, bar, self.tall(), &value);
         Ok(())
     }
@@ -197,17 +184,6 @@ impl HeatMap {
         }
         let beside = corner + Px::new(-36.0, 0.5 * tall);
         scene.upright_label(beside, &self.y_label, LABEL);
-    }
-}
-
-/// Value at a part of the colour scale.
-fn part_inverse(logarithmic: bool, low: f64, high: f64) -> impl Fn(f64) -> f64 {
-    move |part| {
-        if logarithmic {
-            low * (high / low).powf(part)
-        } else {
-            low + part * (high - low)
-        }
     }
 }
 

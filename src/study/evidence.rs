@@ -7,8 +7,8 @@ use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, Instability, OnsetMethod, OnsetSearch, QuasiSteadyOnset, StableRange,
-    find_onset, judged_speeds, table_tested_from,
+    FlutterSearch, Instability, OnsetMethod, OnsetSearch, QuasiSteadyOnset, find_onset,
+    judged_speeds, table_tested_from,
 };
 use crate::plausibility::{self, of_trained};
 use crate::section::{SectionModel, Structure};
@@ -39,15 +39,24 @@ pub(crate) fn section_evidence(
         own.map(|m| plausibility::of_model(&m.name, &m.model, m.tested_range, &deck.findings));
     implausible.extend(odd.into_iter().flatten());
     let of_own = own.and_then(|m| of_model(study, results, m));
+    let table = deck.own_model_name();
+    let flutter = of_own.into_iter();
+    let flutter = flutter.chain(of_deck(study, deck, results, &table));
+    let mut growth = results.growth.iter();
+    let growth = growth.find(|g| Some(g.model.as_str()) == name);
+    let of_answer = |model: &str| Some(model) == name || model == table;
+    let divergence = results.divergence.iter().filter(|d| of_answer(&d.model));
+    let divergence = divergence.map(|d| DivergenceReading {
+        lower_m_s: d.lower_m_s,
+        assumed: d.assumed.clone(),
+        ..DivergenceReading::at(&forces(&d.model, &table), d.speed_m_s)
+    });
     let mut evidence = Evidence {
         required: study.flutter.required(),
-        flutter: of_own.into_iter().collect(),
+        flutter: flutter.collect(),
         searched_to_m_s: Some(study.speeds().searched_to_m_s),
-        growth: results
-            .growth
-            .iter()
-            .find(|g| Some(g.model.as_str()) == name)
-            .map(|g| g.growth.clone()),
+        divergence: divergence.collect(),
+        growth: growth.map(|g| g.growth.clone()),
         failures: failures(study, failed, name),
         test_speeds: known.and_then(one_test_speed),
         implausible,
@@ -55,31 +64,12 @@ pub(crate) fn section_evidence(
         remarks: deck.notes.clone(),
         ..Evidence::default()
     };
-    let table = deck.own_model_name();
-    evidence
-        .flutter
-        .extend(of_deck(study, deck, results, &table));
-    let of_answer = |model: &str| Some(model) == name || model == table;
-    let divergence = results.divergence.iter().filter(|d| of_answer(&d.model));
-    evidence.divergence = divergence
-        .map(|d| DivergenceReading {
-            lower_m_s: d.lower_m_s,
-            assumed: d.assumed.clone(),
-            ..DivergenceReading::at(&forces(&d.model, &table), d.speed_m_s)
-        })
-        .collect();
     if let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) {
         let angle_deg = deck.table().and_then(|t| t.header.angle_deg);
         let added = study.section.structure().and_then(|structure| {
             let theory = block.theory(&study.directory, &structure.dofs)?;
-            add_coefficients(
-                &mut evidence,
-                &block.source,
-                &structure,
-                &theory,
-                found,
-                angle_deg,
-            )
+            let source = &block.source;
+            add_coefficients(&mut evidence, source, &structure, &theory, found, angle_deg)
         });
         evidence.failures.extend(added.err().map(of_theory));
     }
@@ -111,21 +101,13 @@ pub(crate) fn saved_evidence(
         onset.warnings.extend(warning);
     }
     let constraints = saved_moved_onset(model, &folders, section, search, &found)?;
-    let at_rest = model
-        .model
-        .transfer(ReducedFrequency::from_full_width(0.0))?;
+    let still = ReducedFrequency::from_full_width(0.0);
+    let (at_rest, name) = (model.model.transfer(still)?, forces(&model.name, ""));
     Ok(Evidence {
         constraints,
         test_speeds: one_test_speed(&known),
         implausible: of_trained(section, model),
-        ..Evidence::of_section(
-            &forces(&model.name, ""),
-            &coupled,
-            &at_rest,
-            tested,
-            search,
-            found,
-        )
+        ..Evidence::of_section(&name, &coupled, &at_rest, tested, search, found)
     })
 }
 
@@ -178,25 +160,19 @@ fn of_deck(
 }
 
 fn failures(study: &Study, failed: &[StageFailure], own: Option<&str>) -> Vec<Failure> {
-    let others: Vec<&str> = study
-        .models
-        .iter()
-        .map(|m| m.name.as_str())
-        .filter(|m| Some(*m) != own)
-        .collect();
+    let names = study.models.iter().map(|m| m.name.as_str());
+    let others: Vec<&str> = names.filter(|m| Some(*m) != own).collect();
     let bears = |stage: &str| {
         let draws = DRAWING.iter().any(|d| stage.starts_with(d));
         let of_another = own.is_some() && others.iter().any(|m| stage.ends_with(&format!(" {m}")));
         !draws && !of_another
     };
-    failed
-        .iter()
-        .map(|f| Failure {
-            stage: f.stage.clone(),
-            reason: f.reason.clone(),
-            bears_on_answer: bears(&f.stage),
-        })
-        .collect()
+    let all = failed.iter().map(|f| Failure {
+        stage: f.stage.clone(),
+        reason: f.reason.clone(),
+        bears_on_answer: bears(&f.stage),
+    });
+    all.collect()
 }
 
 /// 1 where the tests behind an interval are at one mean speed; else not known here.
@@ -224,20 +200,16 @@ pub(super) fn add_coefficients(
     tested_deg: Option<f64>,
 ) -> Result<()> {
     let forces = format!("static coefficients ({source})");
-    let gallops = found.mode.as_ref().is_some_and(|m| {
-        matches!(
-            m.kind,
-            Instability::Galloping | Instability::LateralGalloping
-        )
-    });
+    let kind = found.mode.as_ref().map(|m| m.kind);
+    let gallops = kind
+        .is_some_and(|kind| matches!(kind, Instability::Galloping | Instability::LateralGalloping));
     if let Some(speed_m_s) = found.search.critical_speed_m_s() {
         // quasi-steady theory of coupled motions is no answer beside derivatives
         if gallops || found.search.onset().is_none() {
             evidence.galloping = Some(CriticalSpeed::galloping(&forces, speed_m_s));
         } else {
-            evidence
-                .remarks
-                .push(format!("By {forces}: {}", found.search.explain()));
+            let said = format!("By {forces}: {}", found.search.explain());
+            evidence.remarks.push(said);
         }
     }
     match found.equilibrium_end {
@@ -248,16 +220,13 @@ pub(super) fn add_coefficients(
             });
         }
         Some(end @ EquilibriumEnd::OutsideTable { .. }) => {
-            evidence
-                .remarks
-                .push(format!("By {forces}: {}", end.explain()));
+            let said = format!("By {forces}: {}", end.explain());
+            evidence.remarks.push(said);
         }
         None => {}
     }
-    let critical = evidence
-        .flutter
-        .first()
-        .and_then(|r| r.search.critical_speed_m_s());
+    let first = evidence.flutter.first();
+    let critical = first.and_then(|r| r.search.critical_speed_m_s());
     // without an onset the speed that is required is the one that counts
     if let Some(speed) = critical.or(evidence.required.map(|r| r.speed_m_s)) {
         let path = static_equilibria(structure, theory, &[speed])?;
@@ -273,24 +242,17 @@ pub(super) fn add_coefficients(
 impl FlutterStudy {
     /// The answer of one search.
     pub(crate) fn search_of(&self, model: &str, method: OnsetMethod) -> Option<FlutterSearch> {
-        let onsets = self.onsets.iter().chain(&self.undetermined);
-        let onset = onsets
-            .filter(|o| o.at.model == model && o.at.method == method)
-            .map(|o| FlutterSearch::Onset(Box::new(o.clone())));
-        let starts = self.unstable.iter();
-        let start = starts
-            .filter(|s| s.at.model == model && s.at.method == method)
-            .map(|s| FlutterSearch::UnstableAtOrBelow(Box::new(s.clone())));
-        let stable = self.stable.iter();
-        let stable = stable
-            .filter(|s| s.model == model && s.method == method)
-            .map(|s| {
-                FlutterSearch::StableUpTo(StableRange {
-                    from_m_s: s.stable_from_m_s,
-                    to_m_s: s.stable_up_to_m_s,
-                    not_judged: s.not_judged.clone(),
-                })
-            });
-        onset.chain(start).chain(stable).next()
+        let own = |name: &str, by: OnsetMethod| name == model && by == method;
+        let mut onsets = self.onsets.iter().chain(&self.undetermined);
+        if let Some(onset) = onsets.find(|o| own(&o.at.model, o.at.method)) {
+            return Some(FlutterSearch::Onset(Box::new(onset.clone())));
+        }
+        let mut starts = self.unstable.iter();
+        if let Some(start) = starts.find(|s| own(&s.at.model, s.at.method)) {
+            return Some(FlutterSearch::UnstableAtOrBelow(Box::new(start.clone())));
+        }
+        let mut stable = self.stable.iter();
+        let stable = stable.find(|s| own(&s.model, s.method))?;
+        Some(FlutterSearch::StableUpTo(stable.range()))
     }
 }

@@ -5,9 +5,8 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, MovedOnset, StableRange, divergence_with_forces, find_onset};
 use crate::identification::{FitReport, Fitted, OnProgress};
-use crate::trained_model::{Model, Provenance, TrainedModel};
+use crate::trained_model::{Provenance, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, FormEnsemble, ModelOfData, ModelUncertainty};
-use crate::units::ReducedFrequencyRange;
 
 /// A model with the account of its fit.
 #[derive(Debug, Clone)]
@@ -39,8 +38,11 @@ pub fn train_one(
     if block.table.is_none() {
         report.notes.extend(records.note.clone());
     }
+    let structure = study.section.structure()?;
+    let (range, tested) = (study.speeds().search(), report.tested_range);
+    let search = CoupledSection::with_model(&structure, &model)
+        .and_then(|section| find_onset(&block.name, &section, &range, Some(tested)));
     // a search that fails takes no trained model with it
-    let search = onset_of(study, &block.name, &model, report.tested_range);
     let search = search.unwrap_or_else(|e| {
         report.notes.push(format!("onset: {e}"));
         FlutterSearch::StableUpTo(StableRange {
@@ -50,20 +52,21 @@ pub fn train_one(
         })
     });
     if let Some(constraints) = &mut report.constraints {
-        let structure = study.section.structure()?;
         let alone = constraints.unconstrained.as_deref();
         let alone = alone.and_then(|m| CoupledSection::with_model(&structure, m).ok());
-        let (range, tested) = (study.speeds().search(), report.tested_range);
         constraints.onset = Some(MovedOnset::new(alone.as_ref(), &search, &range, tested));
     }
     let uncertainty = estimate
         .and_then(|estimate| model_uncertainty(study, estimate, &mut report, &search))
-        .and_then(|known| with_forms(study, known, forms, &mut report))
+        .and_then(|known| match FormEnsemble::or_noted(forms, &mut report)? {
+            Some(forms) => known.with_forms(forms, &structure, &range),
+            None => Ok(known),
+        })
         .map(Box::new)
         .map_err(|e| e.to_string());
     let limit_m_s = study.speeds().searched_to_m_s;
     // where it cannot be computed, the stages that follow say why
-    let divergence = divergence_with_forces(&study.section.structure()?, &model);
+    let divergence = divergence_with_forces(&structure, &model);
     let first_m_s = search.first_limit_m_s(divergence.ok().flatten(), limit_m_s);
     let trained = TrainedModel {
         schema_version: model.schema_version(),
@@ -113,33 +116,6 @@ fn fit(
         return Err(Error::input(place, expected, "none"));
     };
     ModelOfData::of_discrete(&chosen, fit, name, progress)
-}
-
-/// Adds their onsets.
-fn with_forms(
-    study: &Study,
-    known: ModelUncertainty,
-    forms: Result<Option<FormEnsemble>>,
-    report: &mut FitReport,
-) -> Result<ModelUncertainty> {
-    match FormEnsemble::or_noted(forms, report)? {
-        Some(forms) => {
-            let (structure, search) = (study.section.structure()?, study.speeds().search());
-            known.with_forms(forms, &structure, &search)
-        }
-        None => Ok(known),
-    }
-}
-
-/// Onset of the coupled section.
-fn onset_of(
-    study: &Study,
-    name: &str,
-    model: &Model,
-    tested: ReducedFrequencyRange,
-) -> Result<FlutterSearch> {
-    let section = CoupledSection::with_model(&study.section.structure()?, model)?;
-    find_onset(name, &section, &study.speeds().search(), Some(tested))
 }
 
 /// The uncertainty of coefficients, derivatives and onset, with what is to be said of it in the report.

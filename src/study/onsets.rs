@@ -123,11 +123,8 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
             assumed: assumed.map(AssumedAtRest::explain),
         })
     });
-    let still = attempt(
-        &mut results.failed,
-        format!("divergence of the {name}"),
-        still,
-    )?;
+    let stage = format!("divergence of the {name}");
+    let still = attempt(&mut results.failed, stage, still)?;
     results.divergence.extend(still);
     if let Some(own) = own {
         results.take(own, &name, OnsetMethod::Determinant);
@@ -138,12 +135,16 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
 impl OnsetSummary {
     /// The answer in words.
     pub(crate) fn explain(&self) -> String {
+        self.range().explain()
+    }
+
+    /// The speeds without an onset.
+    pub(super) fn range(&self) -> StableRange {
         StableRange {
             from_m_s: self.stable_from_m_s,
             to_m_s: self.stable_up_to_m_s,
             not_judged: self.not_judged.clone(),
         }
-        .explain()
     }
 }
 
@@ -235,13 +236,9 @@ fn deviation(
     let total = percent(onset.at.speed_m_s);
     let mut from_fit = None;
     if matches!(model.model.realize(), Realization::Discrete(_)) {
-        let unheld = determinant_onset(
-            &model.name,
-            structure,
-            &model.model,
-            model.tested_range,
-            study.speeds().searched_to_m_s,
-        )?;
+        let (name, tested) = (&model.name, model.tested_range);
+        let highest_m_s = study.speeds().searched_to_m_s;
+        let unheld = determinant_onset(name, structure, &model.model, tested, highest_m_s)?;
         from_fit = unheld.onset().map(|o| percent(o.at.speed_m_s));
     }
     Ok(Deviation {

@@ -5,10 +5,7 @@
 //! structure, and handbook formulas. Two routes on one force model must agree to rounding; between force models the
 //! table shows what the choice of the model does.
 
-mod limit;
 mod steady;
-
-pub use limit::low_frequency_limit;
 
 use super::{Deck, Study};
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Transfer};
@@ -22,8 +19,8 @@ use crate::flutter::{
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use limit::{limit_onset, steady_flat_plate};
 use serde::Serialize;
+use steady::{limit_onset, low_frequency_limit, steady_flat_plate};
 
 /// Reduced frequencies from still air to nearly steady flow.
 const WIDE: (f64, f64) = (0.02, 10.0);
@@ -136,12 +133,10 @@ pub(crate) fn route_table(
             "Selberg, Rocard: the formulas are for sections whose rotation is faster than their heave, about mid-chord with the centre of mass there".into(),
         );
     }
-    table
-        .curves
-        .retain(|c| c.branches.iter().any(|b| !b.points.is_empty()));
     for curves in &mut table.curves {
         curves.branches.retain(|b| !b.points.is_empty());
     }
+    table.curves.retain(|c| !c.branches.is_empty());
     Ok(table)
 }
 
@@ -153,15 +148,12 @@ impl RouteTable {
         method: Option<OnsetMethod>,
         found: Result<T>,
     ) -> Option<T> {
-        found
-            .map_err(|e| {
-                self.failed.push(FailedRoute {
-                    model: model.to_owned(),
-                    method,
-                    reason: e.to_string(),
-                });
-            })
-            .ok()
+        let failed = |reason: crate::Error| FailedRoute {
+            model: model.to_owned(),
+            method,
+            reason: reason.to_string(),
+        };
+        found.map_err(|e| self.failed.push(failed(e))).ok()
     }
 
     /// The route of what a search found, if it found an answer.
@@ -178,17 +170,16 @@ impl RouteTable {
 
     /// Curves over wind speed, with the points inside the tested range marked; or why there are none.
     fn draw(&mut self, forces: &Forces<'_>, curves: Result<FlutterCurves>) {
+        let name = &forces.name;
         match curves {
             Ok(curves) => {
                 let ended = curves.ended.iter();
-                self.left_out
-                    .extend(ended.map(|why| format!("curves of {} end: {why}", forces.name)));
-                self.curves
-                    .push(curves.marked(forces.structure.width_m, forces.tested));
+                let ended = ended.map(|why| format!("curves of {name} end: {why}"));
+                self.left_out.extend(ended);
+                let curves = curves.marked(forces.structure.width_m, forces.tested);
+                self.curves.push(curves);
             }
-            Err(e) => self
-                .left_out
-                .push(format!("curves of {}: {e}", forces.name)),
+            Err(e) => self.left_out.push(format!("curves of {name}: {e}")),
         }
     }
 
@@ -200,10 +191,8 @@ impl RouteTable {
     ) -> Result<()> {
         let section = CoupledSection::with_model(structure, &model.model)?;
         let search = study.speeds().search();
-        let limit = low_frequency_limit(
-            &model.model,
-            ReducedFrequency::from_full_width(NEARLY_STEADY),
-        )?;
+        let k = ReducedFrequency::from_full_width(NEARLY_STEADY);
+        let limit = low_frequency_limit(&model.model, k)?;
         let forces = Forces {
             name: model.name.clone(),
             model: &model.model,
@@ -250,9 +239,8 @@ impl RouteTable {
 
     fn add_deck(&mut self, study: &Study, deck: &Deck, structure: &Structure) -> Result<()> {
         let (model, tested) = deck.model()?;
-        let steady_k = tested.map_or(ReducedFrequency::from_full_width(NEARLY_STEADY), |range| {
-            range.min
-        });
+        let still = ReducedFrequency::from_full_width(NEARLY_STEADY);
+        let steady_k = tested.map_or(still, |range| range.min);
         let (static_transfer, assumed) = deck.static_transfer()?;
         let limit = if tested.is_some() {
             RationalModel {
@@ -273,18 +261,13 @@ impl RouteTable {
         let from = self.routes.len();
         self.add_transfer_routes(study, &forces, false);
         let own = deck.own_onset(structure, study.speeds().searched_to_m_s);
+        let own = own.as_ref().ok().and_then(FlutterSearch::onset);
         for route in &mut self.routes[from..] {
-            if let (FlutterSearch::Onset(onset), Some(own)) = (
-                &mut route.search,
-                own.as_ref().ok().and_then(FlutterSearch::onset),
-            ) {
+            if let (FlutterSearch::Onset(onset), Some(own)) = (&mut route.search, own) {
                 onset.interval = own.interval.clone();
             }
-            route.warnings.extend(
-                assumed
-                    .iter()
-                    .map(|a| format!("divergence: {}", a.explain())),
-            );
+            let assumed = assumed.map(|a| format!("divergence: {}", a.explain()));
+            route.warnings.extend(assumed);
         }
         let speeds = study.speeds().curve_speeds_m_s();
         let curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds);
@@ -307,9 +290,8 @@ impl RouteTable {
         self.add_transfer_routes(study, &forces, false);
         if structure.dofs.len() > two.dofs.len() {
             for route in &mut self.routes[from..] {
-                route
-                    .warnings
-                    .push("heave and rotation only: a plate has no drag".into());
+                let text = "heave and rotation only: a plate has no drag";
+                route.warnings.push(text.to_owned());
             }
         }
         let speeds = study.speeds().curve_speeds_m_s();
@@ -357,14 +339,11 @@ impl Forces<'_> {
         if let (Some(onset), Some(divergence)) = (onset, self.divergence_m_s)
             && divergence < onset.at.speed_m_s
         {
-            warnings.push(format!(
-                "static divergence at {divergence:.3} m/s comes before flutter"
-            ));
+            let text = format!("static divergence at {divergence:.3} m/s comes before flutter");
+            warnings.push(text);
         }
-        warnings.extend(
-            mode.iter()
-                .filter_map(|m| nearly_single(m, onset?.at.speed_m_s)),
-        );
+        let single = mode.as_ref().zip(onset);
+        warnings.extend(single.and_then(|(m, onset)| nearly_single(m, onset.at.speed_m_s)));
         Ok(Route {
             model: self.name.clone(),
             method,

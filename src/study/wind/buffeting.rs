@@ -203,21 +203,16 @@ impl<'a> Setting<'a> {
             angle_deg: None,
             findings: Vec::new(),
         };
-        setting.take(study.aerodynamics.as_str())?;
-        Ok(setting)
-    }
-
-    /// Takes up the self-excited forces that the file names, unless they change with the wind speed.
-    fn take(&mut self, aerodynamics: &str) -> Result<()> {
-        match aerodynamics {
-            QUASI_STEADY => {
-                self.study.static_coefficients()?;
+        match study.aerodynamics.as_str() {
+            // they change with the wind speed
+            QUASI_STEADY => drop(study.static_coefficients()?),
+            FLAT_PLATE => setting.fixed = Some(Box::new(FlatPlate::default())),
+            JONES => setting.fixed = Some(Box::new(RationalModel::jones_flat_plate())),
+            name if is_table_file(name) || embedded::deck(name).is_ok() => {
+                setting.take_table(name)?;
             }
-            FLAT_PLATE => self.fixed = Some(Box::new(FlatPlate::default())),
-            JONES => self.fixed = Some(Box::new(RationalModel::jones_flat_plate())),
-            name if is_table_file(name) || embedded::deck(name).is_ok() => self.take_table(name)?,
             other => {
-                let model = self.study.trained_model()?.ok_or_else(|| {
+                let model = study.trained_model()?.ok_or_else(|| {
                     let decks: Vec<_> = embedded::names().collect();
                     let expected = format!(
                         "`{QUASI_STEADY}`, `{FLAT_PLATE}`, `{JONES}`, a trained model (.json), a table of derivatives (.csv, \
@@ -226,11 +221,11 @@ impl<'a> Setting<'a> {
                     );
                     Error::input("aerodynamics", expected, format!("`{other}`"))
                 })?;
-                self.tested = Some(model.tested_range);
-                self.fixed = Some(Box::new(model.model));
+                setting.tested = Some(model.tested_range);
+                setting.fixed = Some(Box::new(model.model));
             }
         }
-        Ok(())
+        Ok(setting)
     }
 
     /// The table between its points for the frequency domain, a model fitted to it for the time domain where that is asked for.
