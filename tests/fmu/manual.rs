@@ -7,6 +7,7 @@ use crate::three_dof;
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::onset_bounds::OnsetBounds;
 use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::standard::FmiTerm;
 use aerodeck::fmu::variables::{Variable, VariableTable};
 use aerodeck::identification::Form;
 use aerodeck::study::bridge::BridgeExportOptions;
@@ -38,9 +39,7 @@ fn table(title: &str, note: &str, variables: &[Variable]) -> String {
         if !seen.insert(name.clone()) {
             continue;
         }
-        let word = |value: serde_json::Value| value.as_str().unwrap().to_owned();
-        let causality = word(serde_json::to_value(v.causality).unwrap());
-        let variability = word(serde_json::to_value(v.variability).unwrap());
+        let (causality, variability) = (v.causality.word(), v.variability.word());
         let unit = match v.value.type_name() {
             "Real" => v.unit.map_or("–", |u| u.name),
             other => other,

@@ -40,7 +40,15 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
         let inside = safe_path(&name, &mut findings)?;
         let is_plain = !entry.is_symlink();
         ensure(is_plain, &name, "a file or a folder", "a link")?;
-        method(&name, entry.compression(), &mut findings);
+        let method = entry.compression();
+        if ![CompressionMethod::Stored, CompressionMethod::Deflated].contains(&method) {
+            let expected = "compression by deflate or none";
+            findings.error(
+                format!("archive, entry {name:?}"),
+                expected,
+                method.to_string(),
+            );
+        }
         let target = folder.path().join(&inside);
         if entry.is_dir() {
             make_folders(folder.path(), &inside)?;
@@ -89,19 +97,6 @@ fn make_folders(root: &Path, inside: &Path) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn method(name: &str, method: CompressionMethod, findings: &mut FmuFindings) {
-    if !matches!(
-        method,
-        CompressionMethod::Stored | CompressionMethod::Deflated
-    ) {
-        findings.error(
-            format!("archive, entry {name:?}"),
-            "compression by deflate or none",
-            format!("{method}"),
-        );
-    }
 }
 
 /// Writes an entry that is `stated` to have so many bytes, where `left` remain of the limit of the archive; returns how many are left for

@@ -39,38 +39,34 @@ pub use replay::{LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 pub use slave::{FmuState, Slave};
 pub use status::Status;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::xml::Element;
 use description::FILE;
 use findings::FmuFindings;
 use library::{Binary, OwnFunctions};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, OnceLock};
 use tempfile::TempDir;
 
 /// Folders below `binaries/` that may serve this machine, the one of FMI 2.0 first; and the ending of libraries.
-const fn native() -> (&'static [&'static str], &'static str) {
-    if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        (&["linux64", "x86_64-linux"], "so")
-    } else if cfg!(all(target_os = "linux", target_arch = "x86")) {
-        (&["linux32", "x86-linux"], "so")
-    } else if cfg!(all(target_os = "linux", target_arch = "aarch64")) {
+fn native() -> (&'static [&'static str], &'static str) {
+    use std::env::consts::{ARCH, DLL_EXTENSION, OS};
+    let folders: &[&str] = match (OS, ARCH) {
+        ("linux", "x86_64") => &["linux64", "x86_64-linux"],
+        ("linux", "x86") => &["linux32", "x86-linux"],
         // an archive for importers that look for 64-bit Linux alone
-        (&["aarch64-linux", "linux64"], "so")
-    } else if cfg!(all(target_os = "windows", target_arch = "x86_64")) {
-        (&["win64", "x86_64-windows"], "dll")
-    } else if cfg!(all(target_os = "windows", target_arch = "x86")) {
-        (&["win32", "x86-windows"], "dll")
-    } else if cfg!(all(target_os = "macos", target_arch = "x86_64")) {
-        (&["darwin64", "x86_64-darwin"], "dylib")
-    } else if cfg!(all(target_os = "macos", target_arch = "aarch64")) {
-        (&["aarch64-darwin", "darwin64"], "dylib")
-    } else {
-        (&[], "so")
-    }
+        ("linux", "aarch64") => &["aarch64-linux", "linux64"],
+        ("windows", "x86_64") => &["win64", "x86_64-windows"],
+        ("windows", "x86") => &["win32", "x86-windows"],
+        ("macos", "x86_64") => &["darwin64", "x86_64-darwin"],
+        ("macos", "aarch64") => &["aarch64-darwin", "darwin64"],
+        _ => &[],
+    };
+    (folders, DLL_EXTENSION)
 }
 
 /// An unpacked FMU.
+#[derive(Clone)]
 pub struct Fmu {
     path: PathBuf,
     folder: Arc<TempDir>,
@@ -80,7 +76,7 @@ pub struct Fmu {
     findings: FmuFindings,
     /// The folder below `binaries/` to take; the first for this machine where none is named.
     platform: Option<String>,
-    loaded: Mutex<Option<Arc<Binary>>>,
+    loaded: OnceLock<Arc<Binary>>,
 }
 
 impl Fmu {
@@ -97,14 +93,9 @@ impl Fmu {
     fn read(path: &Path) -> Result<Self> {
         let (folder, entries, mut findings) = archive::unpack(path)?;
         let file = folder.path().join(FILE);
-        if !file.is_file() {
-            let found = entries.iter().take(5).cloned().collect::<Vec<_>>();
-            return Err(Error::input(
-                "archive",
-                format!("{FILE} at its root"),
-                found.join(", "),
-            ));
-        }
+        let found = entries.iter().take(5).cloned().collect::<Vec<_>>();
+        let expected = format_args!("{FILE} at its root");
+        ensure(file.is_file(), "archive", expected, found.join(", "))?;
         let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
         let root = decoded(bytes)
             .and_then(|text| Element::parse(&text))
@@ -125,7 +116,7 @@ impl Fmu {
             description: Arc::new(description),
             findings,
             platform: None,
-            loaded: Mutex::new(None),
+            loaded: OnceLock::new(),
         })
     }
 
@@ -133,13 +124,9 @@ impl Fmu {
     #[must_use]
     pub fn on(&self, platform: &str) -> Self {
         Self {
-            path: self.path.clone(),
-            folder: Arc::clone(&self.folder),
-            entries: self.entries.clone(),
-            description: Arc::clone(&self.description),
-            findings: self.findings.clone(),
             platform: Some(platform.to_owned()),
-            loaded: Mutex::new(None),
+            loaded: OnceLock::new(),
+            ..self.clone()
         }
     }
 
@@ -181,31 +168,22 @@ impl Fmu {
     /// [`Error::Input`] when there is none, with the platforms that there are.
     pub fn binary(&self) -> Result<PathBuf> {
         let (folders, ending) = native();
-        let identifier = self
-            .description
-            .co_simulation
-            .as_ref()
-            .map(|c| c.model_identifier.as_str())
-            .unwrap_or_default();
+        let slave = self.description.co_simulation.as_ref();
+        let identifier = slave.map_or("", |c| c.model_identifier.as_str());
+        let binaries = self.folder.path().join("binaries");
         folders
             .iter()
             .filter(|f| self.platform.as_ref().is_none_or(|p| p == *f))
-            .map(|f| self.folder.path().join("binaries").join(f))
-            .map(|f| f.join(format!("{identifier}.{ending}")))
+            .map(|f| binaries.join(f).join(format!("{identifier}.{ending}")))
             .find(|file| file.is_file())
             .ok_or_else(|| {
-                Error::input(
-                    "archive",
-                    format!(
-                        "binaries/{}/{identifier}.{ending}",
-                        folders.first().unwrap_or(&"(this platform)")
-                    ),
-                    match self.platforms() {
-                        none if none.is_empty() => "no binary at all".into(),
-                        others => format!("binaries for {}", others.join(", ")),
-                    },
-                )
-                .in_file(&self.path)
+                let first = folders.first().unwrap_or(&"(this platform)");
+                let expected = format!("binaries/{first}/{identifier}.{ending}");
+                let found = match self.platforms() {
+                    none if none.is_empty() => "no binary at all".into(),
+                    others => format!("binaries for {}", others.join(", ")),
+                };
+                Error::input("archive", expected, found).in_file(&self.path)
             })
     }
 
@@ -247,17 +225,12 @@ impl Fmu {
 
     /// The binary, loaded once.
     fn load(&self) -> Result<Arc<Binary>> {
-        let mut slot = self
-            .loaded
-            .lock()
-            .unwrap_or_else(|poisoned| poisoned.into_inner());
-        if let Some(loaded) = &*slot {
+        if let Some(loaded) = self.loaded.get() {
             return Ok(Arc::clone(loaded));
         }
         let loaded = Binary::load(&self.binary()?, &self.folder, &self.description);
         let loaded = Arc::new(loaded.map_err(|e| e.in_file(&self.path))?);
-        *slot = Some(Arc::clone(&loaded));
-        Ok(loaded)
+        Ok(Arc::clone(self.loaded.get_or_init(|| loaded)))
     }
 }
 

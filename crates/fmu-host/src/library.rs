@@ -5,6 +5,7 @@ use super::findings::FmuFindings;
 use super::reading_fmi3::NUMERIC;
 use crate::error::{Error, Result, ensure};
 use crate::location::location_of;
+use aerodeck_unit::fmi2::types::fmi2CallbackFunctions;
 use libloading::Library;
 use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::Path;
@@ -24,29 +25,9 @@ pub(super) type Truth = u8;
 /// `fmi2String`.
 pub(super) type Text = *const c_char;
 
-/// The logger with its variable arguments, which a C importer would read.
-pub(super) type LoggerPointer = unsafe extern "C" fn(
-    env: *mut c_void,
-    name: Text,
-    status: Int,
-    category: Text,
-    message: Text,
-    ...
-);
-
 /// The logger of FMI 3.0.
 pub(super) type PlainLoggerPointer =
     unsafe extern "C" fn(env: *mut c_void, status: Int, category: Text, message: Text);
-
-/// `fmi2CallbackFunctions`.
-#[repr(C)]
-pub(super) struct CallbackFunctions {
-    pub logger: LoggerPointer,
-    pub allocate_memory: unsafe extern "C" fn(usize, usize) -> *mut c_void,
-    pub free_memory: unsafe extern "C" fn(*mut c_void),
-    pub step_finished: Option<unsafe extern "C" fn(*mut c_void, Int)>,
-    pub environment: *mut c_void,
-}
 
 /// Declares a table of functions and how it is filled, from one list of names and signatures.
 macro_rules! functions {
@@ -115,7 +96,7 @@ functions! { SharedFunctions,
 functions! { Fmi2Functions,
     get_types_platform = "GetTypesPlatform": fn() -> Text;
     set_debug_logging = "SetDebugLogging": fn(Component, Int, usize, *const Text) -> Int;
-    instantiate = "Instantiate": fn(Text, Int, Text, Text, *const CallbackFunctions, Int, Int) -> Component;
+    instantiate = "Instantiate": fn(Text, Int, Text, Text, *const fmi2CallbackFunctions, Int, Int) -> Component;
     setup_experiment = "SetupExperiment": fn(Component, Int, f64, f64, Int, f64) -> Int;
     enter_initialization_mode = "EnterInitializationMode": fn(Component) -> Int;
     get_real = "GetReal": fn(Component, *const ValueReference, usize, *mut f64) -> Int;

@@ -1,7 +1,8 @@
 //! Messages of a running FMU, collected.
 
-use super::library::{Int, LoggerPointer, Text};
+use super::library::{Int, Text};
 use super::status::Status;
+use aerodeck_unit::fmi2::types::fmi2CallbackLogger;
 use std::ffi::{CStr, c_void};
 use std::sync::{Mutex, MutexGuard};
 
@@ -38,9 +39,9 @@ pub(super) fn messages_of(book: &LogBook) -> MutexGuard<'_, Vec<LogMessage>> {
 /// A function that takes variable arguments cannot be written in stable Rust. One with the five named parameters alone
 /// can stand in for it: under the calling conventions of x86_64 and aarch64 (System V, AAPCS64, Apple, Windows) named
 /// arguments come in the same registers either way, and the caller clears away the rest.
-pub(super) fn logger() -> LoggerPointer {
+pub(super) fn logger() -> fmi2CallbackLogger {
     // SAFETY: see above; the arguments that are not named are never read
-    unsafe { std::mem::transmute::<*const (), LoggerPointer>(collect as *const ()) }
+    unsafe { std::mem::transmute::<*const (), fmi2CallbackLogger>(collect as *const ()) }
 }
 
 unsafe extern "C" fn collect(
@@ -96,6 +97,7 @@ pub(super) unsafe fn text(pointer: Text) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use aerodeck_unit::fmi2::types::fmi2Status;
 
     #[test]
     fn messages_arrive_through_the_variadic_pointer() {
@@ -106,7 +108,7 @@ mod tests {
             logger()(
                 environment,
                 c"a".as_ptr(),
-                3,
+                fmi2Status::fmi2Error,
                 c"logStatusError".as_ptr(),
                 c"100 %% of %s, ##".as_ptr(),
                 c"x".as_ptr(),
@@ -115,7 +117,7 @@ mod tests {
             logger()(
                 environment,
                 std::ptr::null(),
-                0,
+                fmi2Status::fmi2OK,
                 std::ptr::null(),
                 std::ptr::null(),
             );

@@ -137,10 +137,12 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
     )
     .map_err(|e| e.in_file(file))?;
     let found = in_new_instance(fmu, &times, values, stimuli.as_ref(), &expected)?;
-    let mut compared = compared(&expected, &found).map_err(|e| e.in_file(file))?;
-    compared.file = file.to_owned();
-    compared.name = experiment.attribute("name").unwrap_or_default().to_owned();
-    Ok(compared)
+    let found = compared(&expected, &found).map_err(|e| e.in_file(file))?;
+    Ok(ReplayedRun {
+        file: file.to_owned(),
+        name: experiment.attribute("name").unwrap_or_default().to_owned(),
+        ..found
+    })
 }
 
 /// Of the latest draft, or of the one before, where the times are the experiment's own.

@@ -7,10 +7,11 @@ mod values;
 pub use states::FmuState;
 
 use super::description::{ModelDescription, ScalarVariable};
-use super::library::{Binary, CallbackFunctions, Component, Int, OwnFunctions, Text, Truth, spelt};
+use super::library::{Binary, Component, Int, OwnFunctions, Text, Truth, spelt};
 use super::log::{LogBook, LogMessage, collect_plain, logger, messages_of};
 use super::status::Status;
 use crate::error::{Error, Result};
+use aerodeck_unit::fmi2::types::fmi2CallbackFunctions;
 use std::cell::Cell;
 use std::ffi::{CString, c_void};
 use std::rc::Rc;
@@ -22,7 +23,7 @@ struct FmuComponent {
     fatal: Cell<bool>,
     binary: Arc<Binary>,
     // the FMU keeps the addresses of both
-    _callbacks: Box<CallbackFunctions>,
+    _callbacks: Box<fmi2CallbackFunctions>,
     log: Box<LogBook>,
 }
 
@@ -54,12 +55,12 @@ impl Slave {
         let (c_name, c_guid) = (c_text("instance name", name)?, c_text("guid", guid)?);
         let c_resources = c_text("resource location", &binary.resources)?;
         let log = Box::new(LogBook::default());
-        let callbacks = Box::new(CallbackFunctions {
-            logger: logger(),
-            allocate_memory: calloc,
-            free_memory: free,
-            step_finished: None,
-            environment: std::ptr::from_ref(&*log).cast_mut().cast::<c_void>(),
+        let callbacks = Box::new(fmi2CallbackFunctions {
+            logger: Some(logger()),
+            allocateMemory: Some(calloc),
+            freeMemory: Some(free),
+            stepFinished: None,
+            componentEnvironment: std::ptr::from_ref(&*log).cast_mut().cast::<c_void>(),
         });
         let texts = [c_name.as_ptr(), c_guid.as_ptr(), c_resources.as_ptr()];
         let component = instantiated(&binary.own, texts, &callbacks, logging);
@@ -254,11 +255,15 @@ fn stated(number: Option<f64>) -> (Truth, f64) {
 fn instantiated(
     functions: &OwnFunctions,
     [name, guid, resources]: [Text; 3],
-    callbacks: &CallbackFunctions,
+    callbacks: &fmi2CallbackFunctions,
     logging: bool,
 ) -> Component {
     const CO_SIMULATION: Int = 1;
-    let (log, none, environment) = (logging.into(), std::ptr::null(), callbacks.environment);
+    let (log, none, environment) = (
+        logging.into(),
+        std::ptr::null(),
+        callbacks.componentEnvironment,
+    );
     // SAFETY: C strings and callbacks live through the call, callbacks and log as long as the instance
     unsafe {
         match functions {

@@ -23,15 +23,11 @@ pub enum Status {
 
 impl Status {
     pub(super) fn from_code(code: Int) -> Self {
-        match code {
-            0 => Self::Ok,
-            1 => Self::Warning,
-            2 => Self::Discard,
-            3 => Self::Error,
-            4 => Self::Fatal,
-            5 => Self::Pending,
-            other => Self::Unknown(other),
-        }
+        use Status::{Discard, Error, Fatal, Ok, Pending, Unknown, Warning};
+        let known = [Ok, Warning, Discard, Error, Fatal, Pending];
+        let index = usize::try_from(code).ok();
+        let status = index.and_then(|index| known.get(index).copied());
+        status.unwrap_or(Unknown(code))
     }
 
     /// Whether the call did what it should.

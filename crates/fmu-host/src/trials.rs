@@ -213,12 +213,9 @@ fn same_start(stated: &Value, found: &Value) -> bool {
 
 fn finite(table: &ValueTable) -> Result<()> {
     for row in &table.rows {
-        if let Some(at) = row.iter().position(|v| !v.is_finite()) {
-            return Err(Error::input(
-                format!("output `{}` at {} s", table.names[at], row[0]),
-                "a finite number",
-                row[at].to_string(),
-            ));
+        for (name, value) in table.names.iter().zip(row) {
+            let place = format_args!("output `{name}` at {} s", row[0]);
+            ensure(value.is_finite(), place, "a finite number", value)?;
         }
     }
     Ok(())
@@ -309,14 +306,9 @@ fn changing_steps(plan: &Plan<'_>) -> Result<String> {
         steps += 1;
     }
     for output in &plan.record {
-        if let Value::Real(v) = slave.get_by_reference(output.kind, output.value_reference)?
-            && !v.is_finite()
-        {
-            return Err(Error::input(
-                format!("output `{}`", output.name),
-                "a finite number",
-                v.to_string(),
-            ));
+        if let Value::Real(v) = slave.get_by_reference(output.kind, output.value_reference)? {
+            let place = format_args!("output `{}`", output.name);
+            ensure(v.is_finite(), place, "a finite number", v)?;
         }
     }
     Ok(format!(

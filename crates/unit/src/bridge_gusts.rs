@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::RationalAdmittance;
 use crate::bridge::{Bridge, GustChannels};
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, Result, ensure, finite, positive};
 use serde::{Deserialize, Serialize};
 
 /// The file of the turbulence in `resources/`; an archive without it brings none of its own.
@@ -56,22 +56,25 @@ impl TurbulenceOptions {
         let field: Self =
             serde_json::from_str(text).map_err(|e| Error::json("a field of turbulence", &e))?;
         positive("step_s", field.step_s)?;
-        if gusts.is_none() {
-            let expected = "a bridge with gust forces";
-            return Err(Error::input("turbulence", expected, "one without"));
-        }
+        let expected = "a bridge with gust forces";
+        ensure(gusts.is_some(), "turbulence", expected, "one without")?;
         let samples = field.samples();
         for (name, rows) in [("u", &field.u), ("w", &field.w)] {
-            if rows.len() != nodes || samples < 2 || rows.iter().any(|r| r.len() != samples) {
-                return Err(Error::input(
-                    name,
-                    format!("{nodes} rows of at least 2 samples, all of one length"),
-                    format!("{} rows, the first of {samples} samples", rows.len()),
-                ));
-            }
-            if let Some(row) = rows.iter().position(|r| !r.iter().all(|x| x.is_finite())) {
-                let expected = "finite gusts";
-                return Err(Error::input(format!("{name}[{row}]"), expected, "others"));
+            let even = rows.iter().all(|r| r.len() == samples);
+            ensure(
+                rows.len() == nodes && samples >= 2 && even,
+                name,
+                format_args!("{nodes} rows of at least 2 samples, all of one length"),
+                format_args!("{} rows, the first of {samples} samples", rows.len()),
+            )?;
+            for (i, row) in rows.iter().enumerate() {
+                let finite = row.iter().all(|x| x.is_finite());
+                ensure(
+                    finite,
+                    format_args!("{name}[{i}]"),
+                    "finite gusts",
+                    "others",
+                )?;
             }
         }
         Ok(field)

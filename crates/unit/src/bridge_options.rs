@@ -6,7 +6,7 @@ use super::onset_start::OnsetStart;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::{Bridge, BridgeMode, Dampers, GustChannels, Node, StripGroup};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::response::Stepper;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -149,39 +149,26 @@ impl BridgeOptions {
             ("modes", self.modes.len(), MAX_MODES),
             ("nodes", self.nodes.len(), MAX_NODES),
         ] {
-            if count == 0 || count > most {
-                return Err(Error::input(
-                    what,
-                    format!("1 to {most}"),
-                    count.to_string(),
-                ));
-            }
+            let in_range = (1..=most).contains(&count);
+            ensure(in_range, what, format_args!("1 to {most}"), count)?;
         }
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         let mut names: Vec<String> = Vec::with_capacity(self.named.len());
         for (i, index) in self.named.iter().enumerate() {
-            if *index >= self.nodes.len() {
-                let expected = format!("a node below {}", self.nodes.len());
-                return Err(Error::input(
-                    "nodes with outputs",
-                    expected,
-                    index.to_string(),
-                ));
-            }
+            let (place, nodes) = ("nodes with outputs", self.nodes.len());
+            let expected = format_args!("a node below {nodes}");
+            ensure(*index < nodes, place, expected, index)?;
             names.push(self.node_name(i));
-            if names[..i].contains(&names[i]) {
-                let found = format!("node {} twice", names[i]);
-                return Err(Error::input("nodes with outputs", "each once", found));
-            }
+            let found = format_args!("node {} twice", names[i]);
+            ensure(!names[..i].contains(&names[i]), place, "each once", found)?;
         }
-        if self.initial.len() != self.modes.len() || !self.initial.iter().all(|x| x.is_finite()) {
-            let expected = format!("{} finite modal coordinates", self.modes.len());
-            return Err(Error::input(
-                "initial",
-                expected,
-                format!("{:?}", self.initial),
-            ));
-        }
+        let all = self.initial.len() == self.modes.len();
+        ensure(
+            all && self.initial.iter().all(|x| x.is_finite()),
+            "initial",
+            format_args!("{} finite modal coordinates", self.modes.len()),
+            format_args!("{:?}", self.initial),
+        )?;
         if let Some(interval) = &self.onset_interval {
             interval.check().map_err(|e| e.at("onset_interval"))?;
         }

@@ -11,7 +11,6 @@
 //! - Texts that are returned live as long as the instance.
 
 mod exports_common;
-mod exports_model_exchange;
 mod exports_state;
 mod exports_stepping;
 mod exports_variables;
@@ -22,7 +21,6 @@ mod tests;
 pub mod types;
 
 pub use exports_common::*;
-pub use exports_model_exchange::*;
 pub use exports_state::*;
 pub use exports_stepping::*;
 pub use exports_variables::*;

@@ -19,7 +19,6 @@ macro_rules! as_in_fmi2 {
 
 mod absent;
 mod life;
-mod model_exchange;
 mod states;
 mod stepping;
 mod structure;
@@ -30,7 +29,6 @@ mod values;
 pub use crate::fmi2::logger::PlainLogger;
 pub use absent::*;
 pub use life::*;
-pub use model_exchange::*;
 pub use states::*;
 pub use stepping::*;
 pub use structure::*;

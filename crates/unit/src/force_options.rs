@@ -1,7 +1,7 @@
 //! What makes an exported unit one of forces alone: its strips, and where their forces act.
 
 use crate::aerodynamics::{GustForce, Realizable};
-use crate::error::{Error, Result, counted, non_negative, positive};
+use crate::error::{Error, Result, counted, ensure, non_negative, positive};
 use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -129,17 +129,18 @@ impl ForceOptions {
         let models: Vec<usize> = self.strips.iter().map(|s| s.model).collect();
         let mut used = models.clone();
         used.dedup();
-        if !used.iter().copied().eq(0..=self.further.len()) {
-            let expected = format!(
+        ensure(
+            used.iter().copied().eq(0..=self.further.len()),
+            "strips: model",
+            format_args!(
                 "strips of {}, those of one after those of another",
                 counted(self.further.len() + 1, "model")
-            );
-            return Err(Error::input("strips: model", expected, format!("{used:?}")));
-        }
-        if !self.further.is_empty() && self.nodes.is_empty() {
-            let expected = "the nodes of a bridge for strips of several models";
-            return Err(Error::input("nodes", expected, "none"));
-        }
+            ),
+            format_args!("{used:?}"),
+        )?;
+        let named = self.further.is_empty() || !self.nodes.is_empty();
+        let expected = "the nodes of a bridge for strips of several models";
+        ensure(named, "nodes", expected, "none")?;
         self.further.iter().try_for_each(|f| f.model.validate())
     }
 
@@ -150,26 +151,18 @@ impl ForceOptions {
     /// negative wind factor, a prediction outside 0 to 3; for models without strips, or whose strips lie between those of another.
     pub fn validate(&self) -> Result<()> {
         let count = self.strips.len();
-        if count == 0 || count > MAX_STRIPS {
-            let expected = format!("1 to {MAX_STRIPS}");
-            return Err(Error::input("strips", expected, count.to_string()));
-        }
-        if count > 1 && !self.named_strips {
-            let found = format!("{count} without");
-            return Err(Error::input("strips", "names for more than one", found));
-        }
+        let in_range = (1..=MAX_STRIPS).contains(&count);
+        ensure(in_range, "strips", format_args!("1 to {MAX_STRIPS}"), count)?;
+        let found = format_args!("{count} without");
+        let named = count == 1 || self.named_strips;
+        ensure(named, "strips", "names for more than one", found)?;
         self.check_models()?;
         let mut nodes = self.nodes.clone();
         nodes.sort_unstable();
         nodes.dedup();
-        if !self.nodes.is_empty() && (nodes.len() != count || !self.named_strips) {
-            let found = format!("{} of {}", nodes.len(), counted(count, "strip"));
-            return Err(Error::input(
-                "nodes",
-                "a node of its own for each strip",
-                found,
-            ));
-        }
+        let each = self.nodes.is_empty() || (nodes.len() == count && self.named_strips);
+        let found = format_args!("{} of {}", nodes.len(), counted(count, "strip"));
+        ensure(each, "nodes", "a node of its own for each strip", found)?;
         for (i, strip) in self.strips.iter().enumerate() {
             let place = |key: &str| format!("strip {}: {key}", i + 1);
             positive(place("width"), strip.width_m)?;
@@ -177,11 +170,12 @@ impl ForceOptions {
             non_negative(place("wind factor"), strip.wind_factor)?;
         }
         let prediction = self.prediction_steps;
-        if !(0.0..=MAX_PREDICTION).contains(&prediction) {
-            let expected = format!("0 to {MAX_PREDICTION} communication steps");
-            return Err(Error::input("prediction", expected, prediction.to_string()));
-        }
-        Ok(())
+        ensure(
+            (0.0..=MAX_PREDICTION).contains(&prediction),
+            "prediction",
+            format_args!("0 to {MAX_PREDICTION} communication steps"),
+            prediction,
+        )
     }
 
     /// Reads and checks the options.

@@ -7,8 +7,7 @@
 
 mod access;
 mod bridge_built;
-mod bridge_followed;
-mod bridge_search;
+mod bridge_onset;
 mod bridge_unit;
 mod calculated;
 mod coupled;
@@ -27,7 +26,6 @@ mod force_unit;
 mod integration;
 mod layout;
 mod memory;
-mod resizing;
 mod saving;
 mod section;
 mod section_unit;
@@ -51,25 +49,24 @@ use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::VariableLayout;
+use memory::Now;
 use section_unit::SectionUnit;
+use std::collections::HashMap;
 use trust::shown;
 use unit::Unit;
 
 /// One instance; instances share nothing.
 #[derive(Debug)]
 pub struct Instance {
-    resources: Resources,
+    pub(crate) now: Now,
     interface: Interface,
     layout: VariableLayout,
     unit: Box<dyn Unit>,
-    memory: Memory,
     /// The memory at the beginning.
     fresh: Memory,
     outputs_current: bool,
     /// Cached rates of the states.
     rates: Vec<f64>,
-    /// Remarks that have come up since they were last asked for.
-    pub(crate) notices: Vec<String>,
     /// The table with its dependencies, once they have been asked for.
     described: Option<VariableTable>,
 }
@@ -91,37 +88,39 @@ impl Instance {
         // a section that cannot be coupled is no model to run: say so now
         unit.prepared(&resources, &mut memory)?;
         Ok(Self {
-            memory: fresh.clone(),
+            now: Now {
+                memory: fresh.clone(),
+                notices: Vec::new(),
+                resources,
+            },
             fresh,
             unit,
             interface: Interface::CoSimulation,
             outputs_current: false,
             rates: Vec::new(),
-            notices: Vec::new(),
             described: None,
             layout,
-            resources,
         })
     }
 
     /// Where the instance stands.
     pub fn state(&self) -> State {
-        self.memory.state
+        self.now.memory.state
     }
 
     /// Its variables.
     pub fn table(&self) -> &VariableTable {
-        &self.resources.table
+        &self.now.resources.table
     }
 
     /// Point of time reached, s.
     pub fn time_s(&self) -> f64 {
-        self.memory.time
+        self.now.memory.time
     }
 
     /// Remarks that have come up since they were last asked for.
     pub fn take_notices(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.notices)
+        std::mem::take(&mut self.now.notices)
     }
 
     /// Whether `call` is legal now.
@@ -130,16 +129,16 @@ impl Instance {
     /// A [`Refusal`] naming the state.
     pub(crate) fn admit(&self, call: Call) -> CallResult<()> {
         let legal = LEGAL_CALLS[call as usize].1[self.interface as usize];
-        if legal.contains(self.memory.state) {
+        if legal.contains(self.now.memory.state) {
             return Ok(());
         }
-        Err(not_legal(legal, self.memory.state))
+        Err(not_legal(legal, self.now.memory.state))
     }
 
     /// Takes note that a call was refused: an error ends the run.
     pub fn note(&mut self, refusal: &Refusal) {
         if refusal.severity == RefusalEffect::Error {
-            self.memory.state = State::Error;
+            self.now.memory.state = State::Error;
         }
     }
 
@@ -154,22 +153,22 @@ impl Instance {
                 "expected a finite start time and a stop time not before it, found start {start}, stop {stop}"
             )));
         }
-        self.memory.experiment = Some((start, stop));
-        self.memory.time = start;
+        self.now.memory.experiment = Some((start, stop));
+        self.now.memory.time = start;
         Ok(())
     }
 
     /// Begins the initialisation. An experiment that was not set up starts at the start time of the description, zero,
     /// with a warning.
     pub fn enter_initialization(&mut self) {
-        if self.memory.experiment.is_none() {
-            self.memory.experiment = Some((0.0, None));
-            self.memory.time = 0.0;
-            self.notices.push(
+        if self.now.memory.experiment.is_none() {
+            self.now.memory.experiment = Some((0.0, None));
+            self.now.memory.time = 0.0;
+            self.now.notices.push(
                 "the experiment has not been set up: the run starts at 0 s and has no end".into(),
             );
         }
-        self.memory.state = State::Initialization;
+        self.now.memory.state = State::Initialization;
         self.unit.begin_initialization();
         self.outputs_current = false;
     }
@@ -179,12 +178,12 @@ impl Instance {
     /// # Errors
     /// When parameters and initial values give no section that can move.
     pub fn exit_initialization(&mut self) -> CallResult<()> {
-        self.unit.prepared(&self.resources, &mut self.memory)?;
+        let now = &mut self.now;
+        self.unit.prepared(&now.resources, &mut now.memory)?;
         // whatever is read between steps is read without a further look
-        sensitivity::check_finite(&self.memory.system.all())?;
-        self.unit
-            .watch(&self.resources, &self.memory, &mut self.notices);
-        self.memory.state = match self.interface {
+        sensitivity::check_finite(&now.memory.system.all())?;
+        self.unit.watch(now);
+        self.now.memory.state = match self.interface {
             Interface::CoSimulation => State::StepComplete,
             Interface::ModelExchange => State::EventMode,
         };
@@ -193,13 +192,42 @@ impl Instance {
 
     /// Ends the run.
     pub fn terminate(&mut self) {
-        self.memory.state = State::Terminated;
+        self.now.memory.state = State::Terminated;
     }
 
     /// Restores every default.
     pub fn reset(&mut self) {
         let fresh = self.fresh.clone();
         self.replace_memory(fresh);
+    }
+
+    /// The same with so many strips, or as many as were exported; those beyond them are like the last. What has been set stays where there
+    /// still is such a variable.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for what has no strips to count, and for too many.
+    pub(crate) fn resized(&self, strips: Option<usize>) -> Result<Self> {
+        let mut resized = Self::new(self.now.resources.with_strips(strips)?)?;
+        resized.interface = self.interface;
+        let variables = self.table().variables().iter();
+        let values = variables.zip(&self.now.memory.values);
+        let old: HashMap<&str, f64> = values.map(|(v, x)| (v.name.as_str(), *x)).collect();
+        for index in 0..resized.table().variables().len() {
+            let name = resized.table().variables()[index].name.as_str();
+            if let Some(value) = old.get(name)
+                && resized.layout.access[index]
+                    .settable
+                    .contains(State::Instantiated)
+            {
+                resized.now.memory.values[index] = *value;
+            }
+        }
+        Ok(resized)
+    }
+
+    /// Whether it has another number of strips than was exported.
+    pub(crate) fn is_resized(&self) -> bool {
+        self.now.resources.exported_force.is_some()
     }
 }
 

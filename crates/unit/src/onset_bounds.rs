@@ -1,6 +1,6 @@
 //! What the scatter of the data leaves open of the onset, as an archive carries it.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::flutter::OnsetInterval;
 use serde::{Deserialize, Serialize};
 
@@ -54,14 +54,12 @@ impl OnsetBounds {
         let Self {
             low_m_s, high_m_s, ..
         } = self;
-        if *low_m_s >= 0.0 && low_m_s <= high_m_s && high_m_s.is_finite() {
-            return Ok(());
-        }
-        Err(Error::input(
+        ensure(
+            *low_m_s >= 0.0 && low_m_s <= high_m_s && high_m_s.is_finite(),
             "low_m_s, high_m_s",
             "0 <= low_m_s <= high_m_s",
-            format!("{low_m_s}, {high_m_s}"),
-        ))
+            format_args!("{low_m_s}, {high_m_s}"),
+        )
     }
 }
 

@@ -30,28 +30,24 @@ impl Refusal {
     /// The run cannot go on.
     #[cold]
     pub fn error(message: impl Into<String>) -> Self {
-        Self {
-            severity: RefusalEffect::Error,
-            message: message.into(),
-        }
+        Self::new(RefusalEffect::Error, message)
     }
 
     /// The call was wrong but touches nothing.
     #[cold]
     pub fn call(message: impl Into<String>) -> Self {
-        Self {
-            severity: RefusalEffect::Call,
-            message: message.into(),
-        }
+        Self::new(RefusalEffect::Call, message)
     }
 
     /// Nothing has changed.
     #[cold]
     pub(crate) fn discard(message: impl Into<String>) -> Self {
-        Self {
-            severity: RefusalEffect::Discard,
-            message: message.into(),
-        }
+        Self::new(RefusalEffect::Discard, message)
+    }
+
+    fn new(severity: RefusalEffect, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self { severity, message }
     }
 }
 

@@ -10,7 +10,7 @@ use super::standard::each_once;
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
 use crate::bridge::GustChannels;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::response::Stepper;
 use crate::trained_model::{Model, TrainedModel};
 use std::io::ErrorKind;
@@ -222,14 +222,15 @@ impl Resources {
 /// A model that samples the motion so often is none that can be stepped: its step is cut into more samples than a step may
 /// have, and its eigenvalues are rounding.
 fn check_sampling(model: &TrainedModel) -> Result<()> {
-    match &model.model {
-        Model::DiscreteLaguerre(m) if m.delta_s < SHORTEST_SAMPLE => Err(Error::input(
-            "model: delta_s",
-            format!("at least {SHORTEST_SAMPLE} widths from sample to sample in an FMU"),
-            m.delta_s.to_string(),
-        )),
-        _ => Ok(()),
-    }
+    let Model::DiscreteLaguerre(m) = &model.model else {
+        return Ok(());
+    };
+    ensure(
+        m.delta_s >= SHORTEST_SAMPLE,
+        "model: delta_s",
+        format_args!("at least {SHORTEST_SAMPLE} widths from sample to sample in an FMU"),
+        m.delta_s,
+    )
 }
 
 /// A further model is one that can be stepped, and its strips feel gusts where the others do.

@@ -15,7 +15,6 @@ mod force;
 mod listing;
 mod parameters;
 mod real;
-mod response;
 mod section;
 #[cfg(test)]
 mod tests;
@@ -28,8 +27,9 @@ pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
 pub use listing::Listing;
 pub use parameters::SectionParameter;
-pub use response::Response;
-pub use variable::{Dependency, DependencyKind, Role, StartValue, StripParameter, Variable};
+pub use variable::{
+    Dependency, DependencyKind, Response, Role, StartValue, StripParameter, Variable,
+};
 
 use super::bridge_options::BridgeOptions;
 use super::force_options::ForceOptions;
@@ -167,13 +167,10 @@ fn check_start(variable: &Variable) -> Result<()> {
         return Ok(());
     }
     let limit = |value: Option<f64>| value.map_or_else(|| "none".into(), |v| v.to_string());
+    let [min, max] = [variable.min, variable.max].map(limit);
     Err(Error::input(
         format!("start value of {}", variable.name),
-        format!(
-            "a finite number (minimum {}, maximum {})",
-            limit(variable.min),
-            limit(variable.max)
-        ),
+        format!("a finite number (minimum {min}, maximum {max})"),
         start.to_string(),
     ))
 }

@@ -12,13 +12,16 @@ use std::collections::HashMap;
 
 impl Slave {
     pub(super) fn set_numbers(&mut self, places: &[u32], values: &[f64]) -> Result<()> {
-        let elements = &self.core.binary.description.elements;
-        let element = |place: u32| elements[place as usize];
-        let first = |place: u32| place as usize - element(place).element;
-        if self.begun && places.iter().any(|p| element(*p).size > places.len()) {
+        let elements = self.elements(places)?;
+        let wanted = || places.iter().zip(&elements);
+        let array = |place: u32, e: &ArrayElement| {
+            let first = place as usize - e.element;
+            first..first + e.size
+        };
+        if self.begun && elements.iter().any(|e| e.size > places.len()) {
             // the other elements stay as they are, wherever a restored state has put them
-            for place in places {
-                let all = first(*place)..first(*place) + element(*place).size;
+            for (place, e) in wanted() {
+                let all = array(*place, e);
                 let whole: Vec<u32> = all.clone().map(|p| p as u32).collect();
                 if let Ok(now) = self.numbers(&whole) {
                     self.kept[all].copy_from_slice(&now);
@@ -29,24 +32,27 @@ impl Slave {
             self.kept[*place as usize] = *value;
         }
         let mut done = usize::MAX;
-        for place in places {
-            let from = first(*place);
-            if from == done {
+        for (place, e) in wanted() {
+            let all = array(*place, e);
+            if all.start == done {
                 continue;
             }
-            done = from;
-            let now = &self.kept[from..from + element(*place).size];
-            self.set_array(element(*place), now)?;
+            done = all.start;
+            self.set_array(*e, &self.kept[all])?;
         }
         Ok(())
     }
 
-    fn element(&self, place: u32) -> Result<ArrayElement> {
+    /// Where variables stand.
+    fn elements(&self, places: &[u32]) -> Result<Vec<ArrayElement>> {
         let all = &self.core.binary.description.elements;
-        all.get(place as usize).copied().ok_or_else(|| {
-            let expected = format!("a place below {}", all.len());
-            Error::input("variable", expected, place.to_string())
-        })
+        let element = |place: &u32| {
+            all.get(*place as usize).copied().ok_or_else(|| {
+                let expected = format!("a place below {}", all.len());
+                Error::input("variable", expected, place.to_string())
+            })
+        };
+        places.iter().map(element).collect()
     }
 
     /// Arrays that hold some elements, as one call reads them: their references, the place of each element among all their values, and
@@ -58,8 +64,7 @@ impl Slave {
         let (mut references, mut count) = (Vec::new(), 0);
         let mut begins: HashMap<u32, usize> = HashMap::new();
         let mut all = Vec::with_capacity(places.len());
-        for place in places {
-            let e = self.element(*place)?;
+        for e in self.elements(places)? {
             let begin = *begins.entry(e.reference).or_insert_with(|| {
                 references.push(e.reference);
                 count += e.size;
@@ -72,12 +77,9 @@ impl Slave {
 
     /// Numbers of any types.
     pub(super) fn numbers(&self, places: &[u32]) -> Result<Vec<f64>> {
-        let mut values = vec![0.0; places.len()];
+        let (elements, mut values) = (self.elements(places)?, vec![0.0; places.len()]);
         for (function, (name, _)) in NUMERIC.iter().enumerate() {
-            let of_type = |i: &usize| {
-                let element = self.element(places[*i]);
-                element.is_ok_and(|e| e.function == Some(function))
-            };
+            let of_type = |i: &usize| elements[*i].function == Some(function);
             let chosen: Vec<usize> = (0..places.len()).filter(of_type).collect();
             if chosen.is_empty() {
                 continue;

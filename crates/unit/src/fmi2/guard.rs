@@ -118,7 +118,7 @@ pub(crate) unsafe fn guarded(
     }));
     match outcome {
         Ok(Ok(())) => {
-            if !component.instance.notices.is_empty() {
+            if !component.instance.now.notices.is_empty() {
                 component.report_notices();
             }
             fmi2Status::fmi2OK

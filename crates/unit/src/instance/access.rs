@@ -20,7 +20,7 @@ impl Instance {
     /// Access to a variable that may be read now.
     pub(super) fn readable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (index, access) = self.typed(reference, wanted)?;
-        match access.gettable.contains(self.memory.state) {
+        match access.gettable.contains(self.now.memory.state) {
             true => Ok((index, access)),
             false => Err(self.not_in_state(index, "read", access.gettable)),
         }
@@ -29,7 +29,7 @@ impl Instance {
     /// Access to a variable that may be set now.
     pub(super) fn writable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (index, access) = self.typed(reference, wanted)?;
-        match access.settable.contains(self.memory.state) {
+        match access.settable.contains(self.now.memory.state) {
             true => Ok((index, access)),
             false => Err(self.not_in_state(index, "set", access.settable)),
         }
@@ -51,7 +51,7 @@ impl Instance {
             true => "in any state".to_owned(),
             false => format!(
                 "in the state `{}`, only {}",
-                self.memory.state.name(),
+                self.now.memory.state.name(),
                 allowed.names()
             ),
         };

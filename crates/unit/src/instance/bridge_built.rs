@@ -4,7 +4,7 @@ use super::coupled::Built;
 use super::damping::PresentDamping;
 use crate::bridge::{Bridge, GustChannels};
 use crate::bridge_gusts::GustRecord;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::flutter::NearbyOnset;
 use crate::resources::Resources;
 use crate::response::{Inputs, SectionState, Stepper};
@@ -25,7 +25,7 @@ pub(super) struct TunedBridge {
     /// Strokes of the dampers by unit coordinates.
     pub strokes: DMatrix<f64>,
     gusts: Option<GustChannels>,
-    turbulence: Option<GustRecord>,
+    pub turbulence: Option<GustRecord>,
     /// State before the step at hand, and inputs within it.
     before: SectionState,
     now: Inputs,
@@ -110,14 +110,6 @@ impl TunedBridge {
         channels.add(rates, &mut inputs.gust_rate_m_s2);
     }
 
-    /// Adds the turbulence of the archive at a time.
-    pub(super) fn add_turbulence(&self, inputs: &mut Inputs, time: f64, factor: f64) {
-        if let Some(record) = &self.turbulence {
-            let (gust, rate) = (&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
-            record.add(time, factor, gust, rate);
-        }
-    }
-
     /// A step from `time` with the inputs that hold there, turbulence apart, cut where that has its samples. On an error the
     /// state is as it was.
     pub(super) fn advance(
@@ -131,13 +123,12 @@ impl TunedBridge {
             return stepper.advance(state, inputs, step);
         };
         let pieces = record.pieces(step);
-        if pieces.is_nan() || pieces > MAX_PIECES {
-            return Err(Error::input(
-                "step size",
-                format!("at most {MAX_PIECES} samples of the turbulence in a step"),
-                format!("{step} s"),
-            ));
-        }
+        ensure(
+            pieces <= MAX_PIECES,
+            "step size",
+            format_args!("at most {MAX_PIECES} samples of the turbulence in a step"),
+            format_args!("{step} s"),
+        )?;
         self.before.set_to(state);
         let mut done = 0.0;
         while done < step {

@@ -4,10 +4,9 @@
 //! blow.
 
 use super::bridge_built::{BuiltBridge, TunedBridge};
-use super::bridge_followed::SearchedOnset;
-use super::bridge_search::slow_wind;
+use super::bridge_onset::{SearchedOnset, slow_wind};
 use super::coupled::{Built, Coupled, CoupledKind};
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use super::section::OnsetCard;
 use super::unit::Prepared;
 use crate::bridge_options::BridgeOptions;
@@ -101,7 +100,7 @@ impl BridgeUnit {
     /// Loads wind, and forces and gusts on the modes, without the turbulence of the archive.
     fn load_without_turbulence(&mut self, memory: &Memory) {
         let rates = &memory.input_rates;
-        self.inputs.wind_speed_m_s = self.indices.wind_speed(memory);
+        self.inputs.wind_speed_m_s = memory.values[self.indices.wind_speed];
         self.inputs.wind_speed_rate_m_s2 = rates[0];
         self.inputs.force.fill(0.0);
         self.inputs.force_rate.fill(0.0);
@@ -182,8 +181,11 @@ impl CoupledKind for ModalBridge {
         unit.inputs_stay = false;
         unit.load_without_turbulence(memory);
         if let Some(index) = unit.indices.turbulence_factor {
-            let (factor, own) = (memory.values[index], &unit.built.own);
-            own.add_turbulence(&mut unit.inputs, memory.time, factor);
+            let (factor, inputs) = (memory.values[index], &mut unit.inputs);
+            if let Some(record) = &unit.built.own.turbulence {
+                let (gust, rate) = (&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
+                record.add(memory.time, factor, gust, rate);
+            }
         }
     }
 
@@ -250,15 +252,10 @@ impl CoupledKind for ModalBridge {
         gap.unknown().map(|(from, to)| [at_one / to, at_one / from])
     }
 
-    fn wind_is_tested(
-        unit: &mut BridgeUnit,
-        resources: &Resources,
-        memory: &mut Memory,
-        notices: &mut Vec<String>,
-    ) -> bool {
-        unit.calculate(resources, memory, notices);
+    fn wind_is_tested(unit: &mut BridgeUnit, now: &mut Now) -> bool {
+        unit.calculate(now);
         let onset = unit.calculated.onset();
-        let wind = unit.indices.wind_speed(memory);
+        let wind = now.memory.values[unit.indices.wind_speed];
         let (hertz, width) = (onset.frequency_hz.value, unit.built.own.bridge.width_m());
         let k = ReducedFrequency::from_hertz(hertz, width, wind);
         onset.found && wind > 0.0 && unit.own.tested.is_some_and(|r| r.contains(k))
@@ -266,14 +263,14 @@ impl CoupledKind for ModalBridge {
 
     fn searched(unit: &BridgeUnit, _: &Resources, memory: &Memory) -> OnsetCard {
         let (own, built) = (&unit.own, &unit.built);
-        let limit = unit.indices.limit(memory);
+        let limit = memory.values[unit.indices.limit];
         OnsetCard::of_bridge(built, own.tested, own.slow_wind(built), limit).0
     }
 
     /// Followed, where it can be.
     fn found(unit: &mut BridgeUnit, _: &Resources, memory: &Memory) -> OnsetCard {
         unit.take_start();
-        let limit = unit.indices.limit(memory);
+        let limit = memory.values[unit.indices.limit];
         let (own, built) = (&mut unit.own, &mut unit.built);
         let known = own.searched.as_ref();
         let onset = known.and_then(|known| known.followed(built, limit));

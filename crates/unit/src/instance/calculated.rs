@@ -1,7 +1,7 @@
 //! What is calculated from the parameters, and when it has to be calculated anew.
 
 use super::layout::Source;
-use super::memory::{Memory, starts};
+use super::memory::{Memory, Now, starts};
 use super::section::OnsetCard;
 use crate::variables::{Causality, ComputedNumber, OnsetNumbers, Present, Role, VariableTable};
 
@@ -71,12 +71,8 @@ impl CalculatedNumbers {
     }
 
     /// Tells, once, what a reader must know of the numbers.
-    pub(super) fn tell(
-        &mut self,
-        table: &VariableTable,
-        values: &[f64],
-        notices: &mut Vec<String>,
-    ) {
+    pub(super) fn tell(&mut self, now: &mut Now) {
+        let (table, notices) = (&now.resources.table, &mut now.notices);
         if std::mem::replace(&mut self.told, true) {
             return;
         }
@@ -93,7 +89,7 @@ impl CalculatedNumbers {
             let undetermined = bounds.undetermined.iter();
             notices.extend(undetermined.map(|why| format!("onset_speed as exported: {why}")));
         }
-        if !*other && !is_as_exported(table, values) {
+        if !*other && !is_as_exported(table, &now.memory.values) {
             *other = true;
             notices.push(OTHER_INTERVAL.into());
         }

@@ -4,7 +4,7 @@ use super::calculated::CalculatedNumbers;
 use super::coupled_indices::CoupledIndices;
 use super::damping::PresentDamping;
 use super::layout::Source;
-use super::memory::{Memory, starts};
+use super::memory::{Memory, Now, starts};
 use super::section::OnsetCard;
 use super::sensitivity::SectionValues;
 use super::trust::{beyond_linear, shown};
@@ -89,13 +89,8 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     /// Between which winds, m/s, around this one a motion is far from every test, although slower and faster ones were tested.
     fn untested_gap(unit: &Coupled<Self>, wind: f64) -> Option<[f64; 2]>;
 
-    fn wind_is_tested(
-        unit: &mut Coupled<Self>,
-        _resources: &Resources,
-        memory: &mut Memory,
-        _notices: &mut Vec<String>,
-    ) -> bool {
-        let wind = unit.indices.wind_speed(memory);
+    fn wind_is_tested(unit: &mut Coupled<Self>, now: &mut Now) -> bool {
+        let wind = now.memory.values[unit.indices.wind_speed];
         let between = unit.beside_tests(wind) == Some(Ordering::Equal);
         between && Self::untested_gap(unit, wind).is_none()
     }
@@ -109,13 +104,7 @@ pub(super) trait CoupledKind: Debug + Send + Sized + 'static {
     }
 
     /// See [`Unit::watch`]; of wind and rotation it is said for both.
-    fn watch(
-        _unit: &mut Coupled<Self>,
-        _resources: &Resources,
-        _memory: &Memory,
-        _notices: &mut Vec<String>,
-    ) {
-    }
+    fn watch(_unit: &mut Coupled<Self>, _now: &mut Now) {}
 
     /// See [`Prepared::advance`], in so many times the turbulence of an archive that has some.
     fn advance_in_turbulence(
@@ -256,27 +245,27 @@ impl<S: CoupledKind> Unit for Coupled<S> {
         Some(&mut self.calculated)
     }
 
-    fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        let wind = self.indices.wind_speed(memory);
+    fn watch(&mut self, now: &mut Now) {
+        let wind = now.memory.values[self.indices.wind_speed];
         if self.beside_tests(wind) != self.wind_was {
-            self.watch_wind(wind, notices);
+            self.watch_wind(wind, &mut now.notices);
         }
         if !self.gap_met
             && let Some([from, to]) = S::untested_gap(self, wind)
         {
             self.gap_met = true;
-            notices.push(format!(
+            now.notices.push(format!(
                 "wind_speed = {} m/s is in a gap, {from:.3} to {to:.3} m/s, between the speeds at which {}: the forces are \
                  interpolated over it",
                 shown(wind),
                 S::TESTED_AT
             ));
         }
-        S::watch(self, resources, memory, notices);
-        let rotation = S::rotation(self, memory);
+        S::watch(self, now);
+        let rotation = S::rotation(self, &now.memory);
         if rotation.abs() > LINEAR_ROTATION_RAD && !self.rotation_left {
             self.rotation_left = true;
-            notices.push(beyond_linear(rotation));
+            now.notices.push(beyond_linear(rotation));
         }
     }
 

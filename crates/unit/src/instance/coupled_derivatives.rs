@@ -4,13 +4,12 @@
 
 use super::coupled::{Coupled, CoupledKind};
 use super::layout::Source;
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use super::sensitivity::{SectionValues, add, central_difference, check_finite, parameter_step};
 use super::unit::Prepared;
 use crate::error::Result;
 use crate::lifecycle::State;
 use crate::refusal::CallResult;
-use crate::resources::Resources;
 use crate::variables::{ComputedNumber, Role};
 
 impl<S: CoupledKind> Prepared for Coupled<S> {
@@ -44,26 +43,20 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
     }
 
     /// Onset and divergence. A search that fails is no reason to end a run.
-    fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
+    fn calculate(&mut self, now: &mut Now) {
         if self.calculated.are_known() {
             return;
         }
         if self.calculated.card.is_none() {
-            let card = S::found(self, resources, memory);
-            self.calculated.enter(card, memory);
+            let card = S::found(self, &now.resources, &now.memory);
+            self.calculated.enter(card, &mut now.memory);
         }
-        self.calculated
-            .tell(&resources.table, &memory.values, notices);
+        self.calculated.tell(now);
     }
 
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
-    fn output_rates(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-        notices: &mut Vec<String>,
-    ) -> CallResult<Vec<f64>> {
+    fn output_rates(&mut self, now: &mut Now, outputs: &[Role]) -> CallResult<Vec<f64>> {
+        let memory = &now.memory;
         S::load_inputs(self, memory);
         let (stepper, inputs) = (&mut self.built.stepper, &mut self.inputs);
         let velocity = stepper.state_derivative(&memory.system, inputs)?;
@@ -78,9 +71,7 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
         check_finite(rates.outputs.lists().into_iter().flatten())?;
         let by_outputs = Some(&rates.outputs);
         let rate = |role: &Role| match role {
-            Role::Computed(number) => {
-                Ok(self.slope(resources, memory, number, wind_rate, by_outputs, notices)?)
-            }
+            Role::Computed(number) => Ok(self.slope(now, number, wind_rate, by_outputs)?),
             response => Ok(self.pick(&rates, *response)),
         };
         outputs.iter().map(rate).collect()
@@ -88,12 +79,11 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
 
     fn derivatives(
         &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
+        now: &mut Now,
         known: usize,
         unknowns: &[Role],
-        notices: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
+        let (resources, memory) = (&now.resources, &now.memory);
         let role = resources.table.variables()[known].role;
         let instant = match (Source::from_role(role), role) {
             (Source::Section | Source::Turbulence, _) => {
@@ -114,24 +104,14 @@ impl<S: CoupledKind> Prepared for Coupled<S> {
         let by_wind = f64::from(u8::from(role == Role::WindSpeed));
         let outputs = instant.as_ref().map(|i| &i.outputs);
         let derivative = |unknown: &Role| match unknown {
-            Role::Computed(number) => {
-                self.slope(resources, memory, number, by_wind, outputs, notices)
-            }
+            Role::Computed(number) => self.slope(now, number, by_wind, outputs),
             other => Ok(instant.as_ref().map_or(0.0, |i| self.pick(i, *other))),
         };
         Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
     }
 
-    fn present(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        number: &ComputedNumber,
-        notices: &mut Vec<String>,
-    ) -> f64 {
-        number
-            .evaluate(&self.read(resources, memory, number, notices))
-            .value
+    fn present(&mut self, now: &mut Now, number: &ComputedNumber) -> f64 {
+        number.evaluate(&self.read(now, number)).value
     }
 }
 

@@ -1,7 +1,6 @@
 //! Where the variables of a section or bridge stand.
 
 use super::layout::index_of;
-use super::memory::Memory;
 use crate::error::Result;
 use crate::section::Dof;
 use crate::variables::{Causality, Response, Role, Variable, VariableTable};
@@ -9,6 +8,7 @@ use crate::variables::{Causality, Response, Role, Variable, VariableTable};
 /// Indices in the table.
 #[derive(Debug)]
 pub(super) struct CoupledIndices {
+    pub wind_speed: usize,
     /// Wind speed, then forces, then gusts: the inputs.
     pub inputs: Vec<usize>,
     /// Where the gusts begin among them.
@@ -50,6 +50,7 @@ impl CoupledIndices {
             _ => None,
         });
         Ok(Self {
+            wind_speed: index_of(table, Role::WindSpeed)?,
             first_gust: inputs.len() - gusts,
             inputs,
             initial,
@@ -58,14 +59,6 @@ impl CoupledIndices {
             turbulence_factor: table.find(Role::TurbulenceFactor),
             state_entry: entries.collect(),
         })
-    }
-
-    pub(super) fn wind_speed(&self, memory: &Memory) -> f64 {
-        memory.values[self.inputs[0]]
-    }
-
-    pub(super) fn limit(&self, memory: &Memory) -> f64 {
-        memory.values[self.limit]
     }
 
     pub(super) fn forces(&self) -> &[usize] {

@@ -1,7 +1,7 @@
 //! Numbers of the present moment of a section or bridge.
 
 use super::coupled::{Built, Coupled, CoupledKind};
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use super::trust::shown;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
@@ -65,14 +65,8 @@ impl<S: CoupledKind> Coupled<S> {
     }
 
     /// What a number reads of the present.
-    pub(super) fn read(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        number: &ComputedNumber,
-        notices: &mut Vec<String>,
-    ) -> Present {
-        let wind = self.indices.wind_speed(memory);
+    pub(super) fn read(&mut self, now: &mut Now, number: &ComputedNumber) -> Present {
+        let wind = now.memory.values[self.indices.wind_speed];
         let mut present = Present {
             wind_m_s: wind.into(),
             ..Present::default()
@@ -80,56 +74,55 @@ impl<S: CoupledKind> Coupled<S> {
         for known in number.reads {
             match known {
                 Known::Onset => {
-                    self.calculate(resources, memory, notices);
+                    self.calculate(now);
                     present.onset = self.calculated.onset();
                 }
                 Known::Wind | Known::Length => {}
-                Known::Damping => present.damping_ratio = self.damping(wind, notices).into(),
-                Known::TestedWind => {
-                    present.wind_is_tested = S::wind_is_tested(self, resources, memory, notices);
+                Known::Damping => {
+                    let Built {
+                        stepper, damping, ..
+                    } = &mut self.built;
+                    match damping.at(stepper, wind) {
+                        Ok(ratio) => present.damping_ratio = ratio.into(),
+                        // zero
+                        Err(why) => now.notices.push(format!("damping_now is not known: {why}")),
+                    }
                 }
-                Known::Rotation => present.rotation_rad = S::rotation(self, memory).into(),
-                Known::Motion(response, dof) => match self.outputs(memory) {
+                Known::TestedWind => {
+                    present.wind_is_tested = S::wind_is_tested(self, now);
+                }
+                Known::Rotation => present.rotation_rad = S::rotation(self, &now.memory).into(),
+                Known::Motion(response, dof) => match self.outputs(&mut now.memory) {
                     Ok(()) => {
-                        let value = S::motion(self, &memory.system, &self.outputs, *response, *dof);
+                        let value =
+                            S::motion(self, &now.memory.system, &self.outputs, *response, *dof);
                         *present.motion_mut(*response, *dof) = value.into();
                     }
-                    Err(why) => notices.push(format!("{} is not known: {why}", number.name)),
+                    Err(why) => now
+                        .notices
+                        .push(format!("{} is not known: {why}", number.name)),
                 },
             }
         }
         present
     }
 
-    /// Smallest damping ratio; 0, with the reason, where it is not known.
-    fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
-        let Built {
-            stepper, damping, ..
-        } = &mut self.built;
-        damping.at(stepper, wind).unwrap_or_else(|why| {
-            notices.push(format!("damping_now is not known: {why}"));
-            0.0
-        })
-    }
-
     /// Derivative of such a number, as the wind and the outputs of the coordinates change with what is asked for; without outputs that is
     /// the upper end of the search for the onset.
     pub(super) fn slope(
         &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
+        now: &mut Now,
         number: &ComputedNumber,
         by_wind: f64,
         by_outputs: Option<&Outputs>,
-        notices: &mut Vec<String>,
     ) -> Result<f64> {
         if number.is_flag() {
             return Ok(0.0);
         }
-        let mut present = self.read(resources, memory, number, notices);
+        let mut present = self.read(now, number);
         present.wind_m_s.slope = by_wind;
         let slope = |response, dof| {
-            let found = |outputs| S::motion(self, &memory.system, outputs, response, dof);
+            let found = |outputs| S::motion(self, &now.memory.system, outputs, response, dof);
             by_outputs.map_or(0.0, found)
         };
         for known in number.reads {
@@ -147,7 +140,7 @@ impl<S: CoupledKind> Coupled<S> {
             present.onset.follow_limit();
         }
         if by_wind != 0.0 && number.reads(Known::Damping) {
-            let wind = self.indices.wind_speed(memory);
+            let wind = now.memory.values[self.indices.wind_speed];
             let slope = damping_slope(self.section(), wind);
             present.damping_ratio.slope = by_wind * slope.unwrap_or(0.0);
         }
@@ -164,7 +157,7 @@ impl<S: CoupledKind> Coupled<S> {
         S::load_inputs(self, memory);
         let state = self.release(&memory.values)?;
         let instant = self.instant(&state)?;
-        let wind = self.indices.wind_speed(memory);
+        let wind = memory.values[self.indices.wind_speed];
         let mut present = Present {
             wind_m_s: wind.into(),
             ..Present::default()

@@ -84,14 +84,12 @@ impl Sampled {
     /// Where a sample lasts longer than half a period, `ln z` is that of another motion.
     fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<Option<f64>> {
         if wind_m_s < self.lowest_m_s {
-            return Err(Error::input(
-                "wind speed",
-                format!(
-                    "{:.3} m/s or more, below which a sample lasts half a period",
-                    self.lowest_m_s
-                ),
-                format!("{} m/s", shown(wind_m_s)),
-            ));
+            let expected = format!(
+                "{:.3} m/s or more, below which a sample lasts half a period",
+                self.lowest_m_s
+            );
+            let found = format!("{} m/s", shown(wind_m_s));
+            return Err(Error::input("wind speed", expected, found));
         }
         self.steady.wind_speed_m_s = wind_m_s;
         let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;

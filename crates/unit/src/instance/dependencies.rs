@@ -48,7 +48,7 @@ impl Instance {
     pub(crate) fn described_table(&mut self) -> Result<&VariableTable> {
         let table = match self.described.take() {
             Some(table) => table,
-            None => self.resources.described_table()?,
+            None => self.now.resources.described_table()?,
         };
         Ok(self.described.insert(table))
     }

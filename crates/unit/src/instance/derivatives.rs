@@ -45,9 +45,9 @@ impl Instance {
         if outputs.is_empty() {
             return Ok(());
         }
-        let (resources, memory) = (&self.resources, &mut self.memory);
-        let unit = self.unit.prepared(resources, memory)?;
-        let found = unit.output_rates(resources, memory, &outputs, &mut self.notices)?;
+        let now = &mut self.now;
+        let unit = self.unit.prepared(&now.resources, &mut now.memory)?;
+        let found = unit.output_rates(now, &outputs)?;
         rates.copy_from_slice(&found);
         Ok(())
     }
@@ -74,12 +74,11 @@ impl Instance {
             .map(|r| self.known(*r))
             .collect::<CallResult<Vec<_>>>()?;
         check_seed(seeds)?;
-        let (resources, memory) = (&self.resources, &mut self.memory);
-        let unit = self.unit.prepared(resources, memory)?;
+        let now = &mut self.now;
+        let unit = self.unit.prepared(&now.resources, &mut now.memory)?;
         let mut sums = vec![0.0; unknowns.len()];
         for (known, seed) in knowns.into_iter().zip(seeds) {
-            let column =
-                unit.derivatives(resources, memory, known, &unknowns, &mut self.notices)?;
+            let column = unit.derivatives(now, known, &unknowns)?;
             for (sum, derivative) in sums.iter_mut().zip(column) {
                 *sum += seed * derivative;
             }
@@ -105,7 +104,9 @@ impl Instance {
         let variable = &self.table().variables()[index];
         match access.source {
             Source::Response | Source::Status | Source::State | Source::Rate => Ok(variable.role),
-            Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
+            Source::Calculated if self.now.memory.state == State::Initialization => {
+                Ok(variable.role)
+            }
             _ => Err(self.refused(index, "unknown")),
         }
     }
@@ -113,7 +114,7 @@ impl Instance {
     /// Index of a known.
     fn known(&self, reference: u32) -> CallResult<usize> {
         let (index, access) = self.typed(reference, DataType::Real)?;
-        let initializing = self.memory.state == State::Initialization;
+        let initializing = self.now.memory.state == State::Initialization;
         match access.source {
             Source::Input => Ok(index),
             Source::Section | Source::Turbulence if initializing => Ok(index),
@@ -134,7 +135,7 @@ impl Instance {
         Refusal::error(format!(
             "directional derivative: `{}` is no {what} in the state `{}`",
             self.table().variables()[index].name,
-            self.memory.state.name()
+            self.now.memory.state.name()
         ))
     }
 }

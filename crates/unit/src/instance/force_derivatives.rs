@@ -1,7 +1,7 @@
 //! What forces alone are computed to be, and their derivatives: they are linear in motion, states and gusts; wind and parameters are differenced.
 
 use super::force_unit::{ForceUnit, NOT_SET, SET};
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use super::sensitivity::central_difference;
 use super::trust::shown;
 use super::unit::Prepared;
@@ -70,13 +70,8 @@ impl Prepared for ForceUnit {
         Ok(())
     }
 
-    fn output_rates(
-        &mut self,
-        _: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-        _: &mut Vec<String>,
-    ) -> CallResult<Vec<f64>> {
+    fn output_rates(&mut self, now: &mut Now, outputs: &[Role]) -> CallResult<Vec<f64>> {
+        let memory = &now.memory;
         self.ahead(memory, self.renewed(memory))?;
         let rate = |role: &Role| self.rate(memory, *role);
         Ok(outputs.iter().map(rate).collect())
@@ -84,12 +79,11 @@ impl Prepared for ForceUnit {
 
     fn derivatives(
         &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
+        now: &mut Now,
         known: usize,
         unknowns: &[Role],
-        _: &mut Vec<String>,
     ) -> CallResult<Vec<f64>> {
+        let (resources, memory) = (&now.resources, &now.memory);
         let mut found = self.base_derivatives(resources, memory, known, unknowns)?;
         let role = resources.table.variables()[known].role;
         for (found, unknown) in found.iter_mut().zip(unknowns) {

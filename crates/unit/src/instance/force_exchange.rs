@@ -5,13 +5,13 @@
 
 use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET};
-use super::memory::Memory;
-use crate::error::{Error, Result};
+use super::memory::{Memory, Now};
+use crate::error::{Result, ensure};
 use crate::lifecycle::State;
 use crate::refusal::{CallResult, Refusal};
 use crate::response::ForceAhead;
 use crate::section::Dof;
-use crate::variables::{Role, VariableTable};
+use crate::variables::Role;
 use std::ops::Range;
 
 /// A displacement that has changed between events.
@@ -160,23 +160,17 @@ impl ForceUnit {
             dofs.any(|dof| part.forces.feels(dof)[0])
         };
         let rates = self.parts.iter().any(feels);
-        if memory.values[self.derivatives] == 0.0 && rates {
-            return Err(Error::input(
-                "motion_derivatives",
-                "-1, 1 or 2 in model exchange, where the forces of an instant need the rates of the motion",
-                "0",
-            ));
-        }
-        Ok(())
+        ensure(
+            memory.values[self.derivatives] != 0.0 || !rates,
+            "motion_derivatives",
+            "-1, 1 or 2 in model exchange, where the forces of an instant need the rates of the motion",
+            "0",
+        )
     }
 
     /// Looks whether what moves has its rate, once the importer has taken a step.
-    pub(super) fn check_moving(
-        &mut self,
-        table: &VariableTable,
-        memory: &Memory,
-        notices: &mut Vec<String>,
-    ) -> CallResult<()> {
+    pub(super) fn check_moving(&mut self, now: &mut Now) -> CallResult<()> {
+        let (table, memory, notices) = (&now.resources.table, &now.memory, &mut now.notices);
         if memory.values[self.derivatives] >= 0.0 {
             return Ok(());
         }

@@ -5,7 +5,7 @@
 
 use super::force_parts::{StripsUnderModel, coordinate};
 use super::layout::{Source, index_of};
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use super::trust::beyond_linear;
 use super::unit::{Prepared, Unit};
 use crate::error::Result;
@@ -243,25 +243,20 @@ impl Unit for ForceUnit {
         self.integrated = true;
     }
 
-    fn step_taken(
-        &mut self,
-        table: &VariableTable,
-        memory: &Memory,
-        notices: &mut Vec<String>,
-    ) -> CallResult<()> {
-        self.check_moving(table, memory, notices)
+    fn step_taken(&mut self, now: &mut Now) -> CallResult<()> {
+        self.check_moving(now)
     }
 
-    fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+    fn watch(&mut self, now: &mut Now) {
         let rotations = self.parts.iter().flat_map(|part| {
             let n = part.forces.dofs().len();
             part.coordinates.clone().skip(n - 1).step_by(n)
         });
-        let largest = rotations.map(|i| memory.values[self.inputs[1 + 3 * i]].abs());
+        let largest = rotations.map(|i| now.memory.values[self.inputs[1 + 3 * i]].abs());
         let largest = largest.fold(0.0, f64::max);
         if largest > LINEAR_ROTATION_RAD && !self.warned {
             self.warned = true;
-            notices.push(beyond_linear(largest));
+            now.notices.push(beyond_linear(largest));
         }
     }
 

@@ -35,7 +35,7 @@ impl Instance {
 
     /// Moves between events and integration.
     pub fn enter(&mut self, mode: State) {
-        self.memory.state = mode;
+        self.now.memory.state = mode;
     }
 
     /// Whether states have been set at an event since this was asked last: those of a parameter that counts them in other units.
@@ -53,7 +53,7 @@ impl Instance {
                 "time: expected a finite number, found {time}"
             )));
         }
-        self.memory.time = time;
+        self.now.memory.time = time;
         // turbulence that is in the archive goes on
         self.outputs_current = false;
         Ok(())
@@ -69,7 +69,7 @@ impl Instance {
             return Err(Refusal::discard("states: expected finite numbers"));
         }
         for (entry, state) in self.layout.state_entries.iter().zip(states) {
-            self.memory.system.set_number(*entry, *state);
+            self.now.memory.system.set_number(*entry, *state);
         }
         self.outputs_current = false;
         Ok(())
@@ -81,9 +81,10 @@ impl Instance {
     /// Room for another number of them; parameters that give nothing that can be simulated.
     pub(crate) fn continuous_states(&mut self, states: &mut [f64]) -> CallResult<()> {
         self.check_states("states", states.len())?;
-        self.unit.prepared(&self.resources, &mut self.memory)?;
+        self.unit
+            .prepared(&self.now.resources, &mut self.now.memory)?;
         for (state, entry) in states.iter_mut().zip(&self.layout.state_entries) {
-            *state = self.memory.system.number(*entry);
+            *state = self.now.memory.system.number(*entry);
         }
         Ok(())
     }
@@ -94,9 +95,9 @@ impl Instance {
     /// Room for another number of them; rates that cannot be computed.
     pub(crate) fn state_rates(&mut self, rates: &mut [f64]) -> CallResult<()> {
         self.check_states("derivatives", rates.len())?;
-        let (resources, memory) = (&self.resources, &mut self.memory);
-        let unit = self.unit.prepared(resources, memory)?;
-        unit.state_rates(memory, rates)
+        let now = &mut self.now;
+        let unit = self.unit.prepared(&now.resources, &mut now.memory)?;
+        unit.state_rates(&now.memory, rates)
     }
 
     /// Their usual sizes.
@@ -118,18 +119,18 @@ impl Instance {
     /// # Errors
     /// A step that the inputs do not allow.
     pub(crate) fn step_taken(&mut self) -> CallResult<()> {
-        let (resources, notices) = (&self.resources, &mut self.notices);
-        self.unit.watch(resources, &self.memory, notices);
-        self.unit
-            .step_taken(&resources.table, &self.memory, notices)
+        self.unit.watch(&mut self.now);
+        self.unit.step_taken(&mut self.now)
     }
 
     /// Rate of the state to which the variable at `index` belongs.
     pub(super) fn rate_at(&mut self, index: usize) -> CallResult<f64> {
         let role = self.table().variables()[index].role;
-        let unit = self.unit.prepared(&self.resources, &mut self.memory)?;
+        let unit = self
+            .unit
+            .prepared(&self.now.resources, &mut self.now.memory)?;
         if let Role::FilterRate(i) = role
-            && let Some(rate) = unit.filter_rate(&self.memory, i)
+            && let Some(rate) = unit.filter_rate(&self.now.memory, i)
             && rate.is_finite()
         {
             return Ok(rate);

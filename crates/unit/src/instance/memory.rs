@@ -6,6 +6,15 @@ use crate::response::SectionState;
 use crate::variables::{StartValue, VariableTable};
 use uuid::Uuid;
 
+/// What the methods of a unit work on.
+#[derive(Debug)]
+pub(crate) struct Now {
+    pub resources: Resources,
+    pub memory: Memory,
+    /// Remarks that have come up since they were last asked for.
+    pub notices: Vec<String>,
+}
+
 /// A saved state is a clone of this, a reset the clone of the first one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory {

@@ -8,7 +8,7 @@ use crate::refusal::{CallResult, Refusal};
 impl Instance {
     /// A copy of everything that changes.
     pub fn snapshot(&self) -> Memory {
-        self.memory.clone()
+        self.now.memory.clone()
     }
 
     /// Goes back to a snapshot.
@@ -22,14 +22,14 @@ impl Instance {
     }
 
     pub(super) fn check_owner(&self, snapshot: &Memory) -> CallResult<()> {
-        let own = self.resources.guid;
+        let own = self.now.resources.guid;
         if snapshot.guid != own {
             return Err(Refusal::error(format!(
                 "saved state: expected one of the model {own}, found one of {}",
                 snapshot.guid
             )));
         }
-        let numbers = [&self.memory, snapshot].map(|m| m.values.len());
+        let numbers = [&self.now.memory, snapshot].map(|m| m.values.len());
         if numbers[0] != numbers[1] {
             return Err(Refusal::error(format!(
                 "saved state: expected one of as many strips, {} numbers, found {}",
@@ -49,19 +49,19 @@ impl Instance {
 
     /// Whatever the parameters of both memories share stays computed.
     pub(super) fn replace_memory(&mut self, mut memory: Memory) {
-        let (layout, old) = (&self.layout, &self.memory);
+        let (layout, old) = (&self.layout, &self.now.memory);
         let same = [Source::Section, Source::Limit].map(|source| {
             let mut each = old.values.iter().zip(&memory.values).zip(&layout.access);
             each.all(|((a, b), access)| access.source != source || a.to_bits() == b.to_bits())
         });
         self.unit.replace(&mut memory, same);
-        self.memory = memory;
+        self.now.memory = memory;
         self.outputs_current = false;
     }
 
     /// Length in bytes of a serialised state.
     pub(crate) fn serialized_length(&self) -> usize {
-        serialized::length(&self.memory)
+        serialized::length(&self.now.memory)
     }
 
     /// A snapshot as bytes.

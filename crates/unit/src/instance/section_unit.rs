@@ -4,7 +4,7 @@
 use super::coupled::{Built, Coupled, CoupledKind};
 use super::damping::PresentDamping;
 use super::layout::index_of;
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use super::section::{self, OnsetCard};
 use crate::aerodynamics::{Realizable, Realization};
 use crate::aeroelastic::CoupledSection;
@@ -71,10 +71,11 @@ impl SectionUnit {
     }
 
     #[cold]
-    fn watch_growth(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+    fn watch_growth(&mut self, now: &mut Now) {
+        let notices = &mut now.notices;
         self.own.growth_known = true;
         self.own.growth_searches_left -= 1;
-        match self.growth(resources, &memory.values) {
+        match self.growth(&now.resources, &now.memory.values) {
             Ok(growth) if growth.is_none() => {}
             Ok(growth) => notices.push(format!(
                 "with these parameters the section {}",
@@ -182,7 +183,7 @@ impl CoupledKind for SuspendedSection {
     }
 
     fn searched(unit: &SectionUnit, resources: &Resources, memory: &Memory) -> OnsetCard {
-        let (model, limit) = (&resources.model, unit.indices.limit(memory));
+        let (model, limit) = (&resources.model, memory.values[unit.indices.limit]);
         match unit.own.coupled(resources, &memory.values) {
             Ok((section, coupled)) => {
                 let plain = section::plain_onset(model, &section, &coupled, limit);
@@ -195,14 +196,9 @@ impl CoupledKind for SuspendedSection {
     }
 
     /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
-    fn watch(
-        unit: &mut SectionUnit,
-        resources: &Resources,
-        memory: &Memory,
-        notices: &mut Vec<String>,
-    ) {
+    fn watch(unit: &mut SectionUnit, now: &mut Now) {
         if !unit.own.growth_known && unit.own.growth_searches_left > 0 {
-            unit.watch_growth(resources, memory, notices);
+            unit.watch_growth(now);
         }
     }
 

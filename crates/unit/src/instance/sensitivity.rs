@@ -54,12 +54,7 @@ impl SectionValues {
 
     /// An entry of the whole state `[q, q̇, x]`.
     pub(super) fn of_state(&self, entry: usize) -> f64 {
-        let n = self.outputs.displacement.len();
-        match entry {
-            i if i < n => self.outputs.displacement[i],
-            i if i < 2 * n => self.outputs.rate[i - n],
-            i => self.state.get(i).copied().unwrap_or(0.0),
-        }
+        self.state.get(entry).copied().unwrap_or(0.0)
     }
 
     /// Its rate.

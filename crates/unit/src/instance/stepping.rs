@@ -23,16 +23,15 @@ impl Instance {
     #[inline]
     pub fn do_step(&mut self, point: f64, step: f64) -> CallResult<()> {
         // most steps need no more, nor a closer look at a step that is positive and finite
-        let stop = self.memory.experiment.and_then(|(_, stop)| stop);
-        if (point - self.memory.time).abs() <= CLOCK_TOLERANCE_OF_STEP * step
+        let stop = self.now.memory.experiment.and_then(|(_, stop)| stop);
+        if (point - self.now.memory.time).abs() <= CLOCK_TOLERANCE_OF_STEP * step
             && stop.is_none_or(|stop| point + step <= stop)
-            && let Some(news) = self.unit.repeat(&mut self.memory, step)
+            && let Some(news) = self.unit.repeat(&mut self.now.memory, step)
         {
             self.outputs_current = false;
-            self.memory.time = point + step;
+            self.now.memory.time = point + step;
             if news {
-                self.unit
-                    .watch(&self.resources, &self.memory, &mut self.notices);
+                self.unit.watch(&mut self.now);
             }
             return Ok(());
         }
@@ -41,27 +40,7 @@ impl Instance {
 
     #[inline(never)]
     fn do_step_anew(&mut self, point: f64, step: f64) -> CallResult<()> {
-        self.check_step(point, step)?;
-        let (resources, memory) = (&self.resources, &mut self.memory);
-        let prepared = self.unit.prepared(resources, memory);
-        let advanced = prepared
-            .map_err(Refusal::from)
-            .and_then(|unit| unit.advance(memory, step));
-        self.outputs_current = advanced.map_err(|refusal| {
-            memory.state = State::StepFailed;
-            Refusal::discard(refusal.message)
-        })?;
-        // after the step: one that is refused is refused at once
-        self.unit.watch(resources, memory, &mut self.notices);
-        if memory.input_rates.iter().any(|rate| *rate != 0.0) {
-            self.run_inputs_on(step);
-        }
-        self.memory.time = point + step;
-        Ok(())
-    }
-
-    fn check_step(&self, point: f64, step: f64) -> CallResult<()> {
-        let time = self.memory.time;
+        let time = self.now.memory.time;
         if !(step.is_finite() && step > 0.0) {
             return Err(no_step(step));
         }
@@ -72,21 +51,36 @@ impl Instance {
             return Err(elsewhere(point, time));
         }
         let end = point + step;
-        if let Some((start, Some(stop))) = self.memory.experiment {
+        if let Some((start, Some(stop))) = self.now.memory.experiment {
             // what rounding takes from this step, it takes from each of a sum of such steps
             let summed = (point - start) / step * (end - point - step).abs();
             if end > stop + tolerance + summed {
                 return Err(too_late(end, stop));
             }
         }
+        let now = &mut self.now;
+        let prepared = self.unit.prepared(&now.resources, &mut now.memory);
+        let advanced = prepared
+            .map_err(Refusal::from)
+            .and_then(|unit| unit.advance(&mut now.memory, step));
+        self.outputs_current = advanced.map_err(|refusal| {
+            now.memory.state = State::StepFailed;
+            Refusal::discard(refusal.message)
+        })?;
+        // after the step: one that is refused is refused at once
+        self.unit.watch(now);
+        if now.memory.input_rates.iter().any(|rate| *rate != 0.0) {
+            self.run_inputs_on(step);
+        }
+        self.now.memory.time = end;
         Ok(())
     }
 
     fn run_inputs_on(&mut self, step: f64) {
-        let values = &mut self.memory.values;
+        let values = &mut self.now.memory.values;
         let inputs = self.unit.inputs();
         let before = values[inputs[0]];
-        for (index, rate) in inputs.iter().zip(&self.memory.input_rates) {
+        for (index, rate) in inputs.iter().zip(&self.now.memory.input_rates) {
             if *rate != 0.0 {
                 values[*index] += rate * step;
             }

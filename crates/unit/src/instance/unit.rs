@@ -2,12 +2,12 @@
 
 use super::calculated::CalculatedNumbers;
 use super::layout::Source;
-use super::memory::Memory;
+use super::memory::{Memory, Now};
 use crate::error::Result;
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::SectionState;
-use crate::variables::{ComputedNumber, Role, VariableTable};
+use crate::variables::{ComputedNumber, Role};
 use std::fmt::Debug;
 
 /// The system behind an instance. Everything that changes in time stands in the [`Memory`]; a unit holds what follows
@@ -41,12 +41,7 @@ pub(super) trait Unit: Debug + Send {
     ///
     /// # Errors
     /// A step that the inputs do not allow.
-    fn step_taken(
-        &mut self,
-        _table: &VariableTable,
-        _memory: &Memory,
-        _notices: &mut Vec<String>,
-    ) -> CallResult<()> {
+    fn step_taken(&mut self, _now: &mut Now) -> CallResult<()> {
         Ok(())
     }
 
@@ -74,7 +69,7 @@ pub(super) trait Unit: Debug + Send {
     }
 
     /// Says what a user must know of the parameters and of the present state, each thing once.
-    fn watch(&mut self, _resources: &Resources, _memory: &Memory, _notices: &mut Vec<String>) {}
+    fn watch(&mut self, now: &mut Now);
 
     /// The last step once more, where nothing has been set since and no input runs on: most steps, without the work that
     /// the others need. Returns whether there may be something to say of it; `None`, with everything as it was, where
@@ -90,9 +85,7 @@ pub(super) trait Unit: Debug + Send {
     }
 
     /// Entry of the state of what is simulated that the output at `index` is, if it is one.
-    fn state_index(&self, _index: usize) -> Option<usize> {
-        None
-    }
+    fn state_index(&self, index: usize) -> Option<usize>;
 }
 
 /// What a unit computes, with what follows from the parameters as they are, and derivatives of that in time and with respect to inputs,
@@ -123,25 +116,13 @@ pub(super) trait Prepared: Unit {
     fn outputs(&mut self, memory: &mut Memory) -> CallResult<()>;
 
     /// Writes what is calculated from the parameters into the memory.
-    fn calculate(
-        &mut self,
-        _resources: &Resources,
-        _memory: &mut Memory,
-        _notices: &mut Vec<String>,
-    ) {
-    }
+    fn calculate(&mut self, _now: &mut Now) {}
 
     /// First time derivatives of these outputs, per second.
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn output_rates(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-        notices: &mut Vec<String>,
-    ) -> CallResult<Vec<f64>>;
+    fn output_rates(&mut self, now: &mut Now, outputs: &[Role]) -> CallResult<Vec<f64>>;
 
     /// Derivatives of these unknowns with respect to the value at `known`.
     ///
@@ -149,21 +130,13 @@ pub(super) trait Prepared: Unit {
     /// When they do not exist.
     fn derivatives(
         &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
+        now: &mut Now,
         known: usize,
         unknowns: &[Role],
-        notices: &mut Vec<String>,
     ) -> CallResult<Vec<f64>>;
 
     /// One number of the present moment; what cannot be found is zero, with a notice.
-    fn present(
-        &mut self,
-        _resources: &Resources,
-        _memory: &mut Memory,
-        _number: &ComputedNumber,
-        _notices: &mut Vec<String>,
-    ) -> f64 {
+    fn present(&mut self, _now: &mut Now, _number: &ComputedNumber) -> f64 {
         0.0
     }
 }

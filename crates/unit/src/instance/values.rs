@@ -28,10 +28,10 @@ impl Instance {
     #[inline]
     fn read_cached(&self, references: &[u32], values: &mut [f64]) -> usize {
         // ahead of its release a section is not yet where its initial values put it
-        if self.memory.state != State::StepComplete {
+        if self.now.memory.state != State::StepComplete {
             return 0;
         }
-        let (memory, current) = (&self.memory, self.outputs_current);
+        let (memory, current) = (&self.now.memory, self.outputs_current);
         let mut read = 0;
         for (reference, value) in references.iter().zip(values) {
             let Some(cached) = self.layout.read_fast(*reference, memory, current) else {
@@ -46,8 +46,8 @@ impl Instance {
     /// Reads one that needs work, after which others may need none.
     #[inline(never)]
     fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> CallResult<()> {
-        if self.memory.state == State::StepComplete && !self.outputs_current {
-            self.outputs_current = self.unit.repeat_outputs(&mut self.memory);
+        if self.now.memory.state == State::StepComplete && !self.outputs_current {
+            self.outputs_current = self.unit.repeat_outputs(&mut self.now.memory);
             let read = self.read_cached(references, values);
             (references, values) = (&references[read..], &mut values[read..]);
         }
@@ -76,45 +76,45 @@ impl Instance {
 
     pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> CallResult<f64> {
         let (index, access) = self.readable(reference, wanted)?;
-        let (resources, memory) = (&self.resources, &mut self.memory);
+        let now = &mut self.now;
         match access.source {
             Source::Response => {
-                let unit = self.unit.prepared(resources, memory)?;
+                let unit = self.unit.prepared(&now.resources, &mut now.memory)?;
                 // what is part of the state needs no output equation
                 if let Some(entry) = self.layout.state_index(index) {
-                    return state_number(memory, entry);
+                    return state_number(&now.memory, entry);
                 }
                 if !self.outputs_current {
-                    unit.outputs(memory)?;
+                    unit.outputs(&mut now.memory)?;
                     self.outputs_current = true;
                 }
             }
             Source::Status => {
-                let Role::Computed(number) = resources.table.variables()[index].role else {
+                let Role::Computed(number) = now.resources.table.variables()[index].role else {
                     return Ok(0.0);
                 };
-                let unit = self.unit.prepared(resources, memory)?;
-                return Ok(unit.present(resources, memory, number, &mut self.notices));
+                let unit = self.unit.prepared(&now.resources, &mut now.memory)?;
+                return Ok(unit.present(now, number));
             }
             Source::State => {
-                self.unit.prepared(resources, memory)?;
+                self.unit.prepared(&now.resources, &mut now.memory)?;
                 let entry = self.layout.state_index(index);
-                return entry.map_or(Ok(0.0), |entry| state_number(memory, entry));
+                return entry.map_or(Ok(0.0), |entry| state_number(&now.memory, entry));
             }
             Source::Rate => return self.rate_at(index),
-            Source::Calculated => match self.unit.prepared(resources, memory) {
-                Ok(unit) => unit.calculate(resources, memory, &mut self.notices),
+            Source::Calculated => match self.unit.prepared(&now.resources, &mut now.memory) {
+                Ok(unit) => unit.calculate(now),
                 Err(why) => {
                     let calculated = self.unit.calculated();
                     if let Some(numbers) = calculated.filter(|numbers| !numbers.are_known()) {
-                        numbers.enter(OnsetCard::unknown(&why), memory);
-                        numbers.tell(&self.resources.table, &memory.values, &mut self.notices);
+                        numbers.enter(OnsetCard::unknown(&why), &mut now.memory);
+                        numbers.tell(now);
                     }
                 }
             },
             _ => {}
         }
-        Ok(self.memory.values[index])
+        Ok(self.now.memory.values[index])
     }
 
     /// Sets real variables: all of them or, when one is refused, none.
@@ -136,9 +136,9 @@ impl Instance {
         for (reference, value) in references.iter().zip(values) {
             let index = *reference as usize;
             let value = stored(index, *value);
-            let before = std::mem::replace(&mut self.memory.values[index], value);
+            let before = std::mem::replace(&mut self.now.memory.values[index], value);
             let changed = before.to_bits() != value.to_bits();
-            let (source, memory) = (self.layout.access[index].source, &mut self.memory);
+            let (source, memory) = (self.layout.access[index].source, &mut self.now.memory);
             let before = changed.then_some(before);
             if self.unit.value_set(memory, index, source, before) || changed {
                 self.outputs_current = false;
@@ -179,8 +179,8 @@ impl Instance {
         }
         for (reference, rate) in references.iter().zip(rates) {
             let index = self.input_index(*reference)?;
-            self.memory.input_rates[index] = *rate;
-            self.unit.input_rate_set(&mut self.memory, index);
+            self.now.memory.input_rates[index] = *rate;
+            self.unit.input_rate_set(&mut self.now.memory, index);
         }
         Ok(())
     }

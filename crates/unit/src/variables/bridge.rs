@@ -161,28 +161,20 @@ fn motions(options: &BridgeOptions, named: usize) -> impl Iterator<Item = Variab
 fn mode(options: &BridgeOptions, m: usize) -> [Variable; 3] {
     let of = &options.modes[m];
     let number = of.number;
-    let output = |name: &str, which, text: String| {
-        real(format!("mode[{number}].{name}"), Role::Mode(m, which), text)
-    };
     let coordinate = format!(
         "Coordinate of mode {number} ({} Hz, generalised mass {} kg)",
         of.frequency_hz, of.generalised_mass
     );
+    let rate = format!("Rate of the coordinate of mode {number}, per second");
+    let force = format!(
+        "Self-excited generalised force on mode {number}: work per unit of its coordinate, added mass included"
+    );
     [
-        output("coordinate", Response::Displacement, coordinate),
-        output(
-            "rate",
-            Response::Rate,
-            format!("Rate of the coordinate of mode {number}, per second"),
-        ),
-        output(
-            "force",
-            Response::SelfExcitedForce,
-            format!(
-                "Self-excited generalised force on mode {number}: work per unit of its coordinate, added mass included"
-            ),
-        ),
+        ("coordinate", Response::Displacement, coordinate),
+        ("rate", Response::Rate, rate),
+        ("force", Response::SelfExcitedForce, force),
     ]
+    .map(|(name, which, text)| real(format!("mode[{number}].{name}"), Role::Mode(m, which), text))
 }
 
 fn initial(options: &BridgeOptions, m: usize) -> Variable {

@@ -1,5 +1,6 @@
 //! The dampers of a bridge as variables: strokes, and what may be tuned.
 
+use super::dof_names::names_of;
 use super::real::{SMALLEST, real};
 use super::{Response, Role, Variable};
 use crate::bridge::Dampers;
@@ -11,32 +12,23 @@ pub(super) fn strokes(dampers: &Dampers) -> impl Iterator<Item = Variable> {
     let masses = dampers.masses.iter().enumerate();
     masses.flat_map(|(d, damper)| {
         let of = [
-            ("stroke", "Stroke", "Position", &si::METRE),
-            (
-                "stroke_rate",
-                "Rate of the stroke",
-                "Velocity",
-                &si::METRE_PER_SECOND,
-            ),
+            ("stroke", "Stroke", "Position"),
+            ("stroke_rate", "Rate of the stroke", "Velocity"),
             (
                 "stroke_acceleration",
                 "Second rate of the stroke",
                 "Acceleration",
-                &si::METRE_PER_SECOND2,
             ),
         ];
-        let all = Response::MOTION.into_iter().zip(of);
-        all.map(move |(response, (name, what, quantity, unit))| {
+        let units = names_of(Dof::Vertical).units;
+        let all = Response::MOTION.into_iter().zip(of).zip(units);
+        all.map(move |((response, (name, what, quantity)), unit)| {
             let text = format!(
                 "{what}, displacement less that of the girder, of {}",
                 damper.name
             );
-            real(
-                format!("damper[{}].{name}", d + 1),
-                Role::Damper(d, response),
-                text,
-            )
-            .quantity(quantity, Some(unit))
+            let name = format!("damper[{}].{name}", d + 1);
+            real(name, Role::Damper(d, response), text).quantity(quantity, Some(unit))
         })
     })
 }

@@ -96,13 +96,12 @@ impl DofNames {
         }
     }
 
-    /// The same in words.
+    /// A motion, or a rate of it, in words.
     pub(super) fn describe(&self, response: Response) -> String {
         match response {
             Response::Displacement => capitalized(self.motion),
             Response::Rate => format!("Rate of the {}", self.motion),
-            Response::Acceleration => format!("Second rate of the {}", self.motion),
-            Response::SelfExcitedForce => format!("Self-excited {}", self.force),
+            _ => format!("Second rate of the {}", self.motion),
         }
     }
 }

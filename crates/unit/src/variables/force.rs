@@ -3,7 +3,7 @@
 use super::computed_rows::{OF_A_STRIP, fill_computed_dependencies};
 use super::dof_names::names_of;
 use super::real::{SMALLEST, constants, force_scale, nominal, real};
-use super::section::{air_density, filter, gust_filter, gust_inputs, wind_speed};
+use super::section::{air_density, filter, gust_filter, gust_inputs, name_rates, wind_speed};
 use super::{Dependency, Response, Role, StripParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
@@ -27,11 +27,9 @@ pub(super) fn variables(
     let mut table = vec![wind_speed(model)];
     for (model, s) in each() {
         table.extend(motion(model, s, options));
-        table.extend(
-            gusts
-                .iter()
-                .flat_map(|_| gust_inputs(s, |of| name(options, s, of))),
-        );
+        if gusts.is_some() {
+            table.extend(gust_inputs(s, |of| name(options, s, of)));
+        }
     }
     for (model, s) in each() {
         table.extend(forces(model, s, options, gusts.is_some()));
@@ -50,6 +48,7 @@ pub(super) fn variables(
     let sampled = |m: &&TrainedModel| matches!(m.model.realize(), Realization::Discrete(_));
     if !models.iter().any(sampled) {
         add_states(&mut table, options, &states);
+        name_rates(&mut table);
     }
     fill_dependencies(&mut table, options.strips.len(), &states);
     fill_computed_dependencies(&mut table);
@@ -90,19 +89,13 @@ pub(crate) fn strip_states(parts: &[StripsOfModel<'_>]) -> Vec<StripState> {
 fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, states: &[StripState]) {
     for (i, state) in states.iter().enumerate() {
         let of = |kind: &str| {
-            name(
-                options,
-                state.strip,
-                &format!("{kind}[{}]", state.number + 1),
-            )
+            let kind = format!("{kind}[{}]", state.number + 1);
+            name(options, state.strip, &kind)
         };
-        let pair = match state.lags {
+        table.extend(match state.lags {
             false => filter(i, &of("filter")),
             true => gust_filter(i, &of("gust_filter")),
-        };
-        let index = table.len();
-        table.extend(pair);
-        table[index + 1].derivative_of = Some(index);
+        });
     }
 }
 
@@ -170,31 +163,26 @@ fn forces<'a>(
 
 fn strip(s: usize, options: &ForceOptions) -> [Variable; 3] {
     let of = &options.strips[s];
-    let parameter = |of, which, text: &str| {
-        let role = Role::Strip(s, which);
-        real(name(options, s, of), role, text)
-    };
     let metre: Option<&SiUnit> = Some(&si::METRE);
+    let parameter = |which, key, text: &str, start| {
+        real(name(options, s, key), Role::Strip(s, which), text).start(start)
+    };
+    let wind = "Wind speed at the strip over wind_speed";
+    let (width, length) = ("Full deck width B", "Length of span of the strip");
     [
-        parameter("width", StripParameter::Width, "Full deck width B")
+        parameter(StripParameter::Width, "width", width, of.width_m)
             .quantity("Length", metre)
-            .min(SMALLEST)
-            .start(of.width_m),
+            .min(SMALLEST),
+        parameter(StripParameter::Length, "length", length, of.length_m)
+            .quantity("Length", metre)
+            .min(SMALLEST),
         parameter(
-            "length",
-            StripParameter::Length,
-            "Length of span of the strip",
-        )
-        .quantity("Length", metre)
-        .min(SMALLEST)
-        .start(of.length_m),
-        parameter(
-            "wind_factor",
             StripParameter::WindFactor,
-            "Wind speed at the strip over wind_speed",
+            "wind_factor",
+            wind,
+            of.wind_factor,
         )
-        .min(0.0)
-        .start(of.wind_factor),
+        .min(0.0),
     ]
 }
 

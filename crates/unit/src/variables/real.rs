@@ -1,7 +1,7 @@
 //! Real variables, and the constants that every exported unit has.
 
 use super::parameters::SectionParameter;
-use super::{Causality, Initial, Response, Role, StartValue, Variable};
+use super::{Causality, Initial, Response, Role, StartValue, Variability, Variable};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::si::{self, SiUnit};
@@ -19,9 +19,9 @@ pub(super) fn real(
     description: impl Into<String>,
 ) -> Variable {
     let (causality, variability) = role.kind();
-    let initial = match causality {
-        Causality::Input => None,
-        Causality::Parameter => Some(Initial::Exact),
+    let initial = match (causality, variability) {
+        (Causality::Input, _) => None,
+        (Causality::Parameter, _) | (_, Variability::Constant) => Some(Initial::Exact),
         _ => Some(Initial::Calculated),
     };
     Variable {
@@ -89,7 +89,6 @@ pub(super) const SPEED: Option<&SiUnit> = Some(&si::METRE_PER_SECOND);
 /// `filters` is the number of the states of the forces, the largest of several models.
 pub(super) fn constants(models: &[&TrainedModel], filters: usize) -> Result<Vec<Variable>> {
     let constant = |name, value, text: &str| Variable {
-        initial: Some(Initial::Exact),
         value,
         ..real(name, Role::Constant, text)
     };

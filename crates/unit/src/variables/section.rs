@@ -4,7 +4,7 @@ use super::computed_rows::{OF_THE_PRESENT, SEARCHED};
 use super::dof_names::{DofNames, names_of};
 use super::parameters::SectionParameter;
 use super::real::{SMALLEST, SPEED, constants, force_scale, nominal, real};
-use super::{ComputedNumber, Initial, Response, Role, Variable};
+use super::{ComputedNumber, Response, Role, Variable};
 use crate::aerodynamics::{GustComponent, GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::onset_bounds::OnsetBounds;
@@ -30,17 +30,12 @@ pub(super) fn variables(
     let realization = model.model.realize();
     let mut table = Vec::with_capacity(USUAL_VARIABLES);
     table.extend(inputs(model, &dofs));
-    table.extend(
-        gusts
-            .iter()
-            .flat_map(|_| gust_inputs(0, |name| name.to_owned())),
-    );
+    if gusts.is_some() {
+        table.extend(gust_inputs(0, str::to_owned));
+    }
     table.extend(outputs(model, &dofs));
-    table.extend(
-        SectionParameter::all(&model.section)
-            .into_iter()
-            .map(|p| section_parameter(p, &model.section)),
-    );
+    let parameters = SectionParameter::all(&model.section).into_iter();
+    table.extend(parameters.map(|p| section_parameter(p, &model.section)));
     table.extend(dofs.iter().flat_map(|&dof| initial_values(dof, model)));
     table.push(search_limit(model));
     table.extend(SEARCHED.iter().map(ComputedNumber::variable));
@@ -63,12 +58,9 @@ pub(super) fn onset_bounds(bounds: &OnsetBounds, of: &str) -> [Variable; 2] {
         let text = format!(
             "{end} end of the 95 % interval of the flutter onset by the scatter of the data and the form of the model, for the {of} as exported"
         );
-        Variable {
-            initial: Some(Initial::Exact),
-            ..real(name, Role::Constant, text)
-        }
-        .start(value)
-        .quantity("Velocity", SPEED)
+        real(name, Role::Constant, text)
+            .start(value)
+            .quantity("Velocity", SPEED)
     };
     [
         end("onset_speed_low", "Lower", bounds.low_m_s),
@@ -123,7 +115,7 @@ fn inner_state(i: usize, name: &str, text: &str) -> [Variable; 2] {
 }
 
 /// Enters which variable is the rate of which state: that before it.
-fn name_rates(table: &mut [Variable]) {
+pub(super) fn name_rates(table: &mut [Variable]) {
     for (before, variable) in table[1..].iter_mut().enumerate() {
         if let Role::Response(Response::Rate | Response::Acceleration, _) | Role::FilterRate(_) =
             variable.role

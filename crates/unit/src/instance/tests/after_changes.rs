@@ -17,7 +17,7 @@ fn parameters(instance: &Instance, state: State) -> Vec<(u32, f64)> {
             && settable_in(v.causality, v.variability).contains(state)
     });
     free.map(|(index, v)| {
-        let start = instance.memory.values[index];
+        let start = instance.now.memory.values[index];
         let other = if start == 0.0 { 0.003 } else { 1.28 * start };
         let allowed = v.min.is_none_or(|min| other >= min) && v.max.is_none_or(|max| other <= max);
         (index as u32, if allowed { other } else { 1.0 })

@@ -3,7 +3,7 @@
 use super::{Exported, index, resources, start};
 use crate::instance::Instance;
 use crate::instance::bridge_built::BuiltBridge;
-use crate::instance::bridge_followed::SearchedOnset;
+use crate::instance::bridge_onset::SearchedOnset;
 use crate::instance::memory::starts;
 use crate::instance::section::OnsetCard;
 use crate::onset_start::OnsetStart;
