@@ -23,7 +23,7 @@ use onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use resources::{GUST_FILE, OptionFiles, Resources};
 use standard::{FmiTerm, FmiVersion, each_once};
 use variables::{
-    Causality, Dependency, DependencyKind, ForceOutput, Listing, Response, Role, SectionParameter,
-    StartValue, Variable, VariableTable,
+    Causality, Dependency, DependencyKind, Listing, Response, Role, SectionParameter, StartValue,
+    Variable, VariableTable,
 };
 use xml::Element;
