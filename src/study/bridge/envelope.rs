@@ -103,18 +103,18 @@ fn section_forces(
 ) -> Result<Vec<SectionForceResponse>> {
     let forces = read_section_forces(path)?;
     let mut all = Vec::new();
-    for of in &forces.elements {
+    for (element, by_mode) in &forces.elements {
         for (i, force) in forces.names.iter().enumerate() {
             let row = bridge.modes.iter().map(|m| {
-                let stated = of.by_mode.get(&m.number).ok_or_else(|| {
-                    let expected = format!("forces of mode {} in {}", m.number, of.element);
+                let stated = by_mode.get(&m.number).ok_or_else(|| {
+                    let expected = format!("forces of mode {} in {element}", m.number);
                     Error::input("buffeting.section_forces", expected, "none").in_file(path)
                 })?;
                 Ok(stated[i] / m.generalised_mass.sqrt())
             });
             let rms = rms_of(covariances, &row.collect::<Result<Vec<f64>>>()?);
             all.push(SectionForceResponse {
-                element: of.element.clone(),
+                element: element.clone(),
                 force: force.clone(),
                 rms: rms[0],
                 peak_factor: peak(rms, duration_s),

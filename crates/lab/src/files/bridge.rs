@@ -26,7 +26,7 @@ pub use dampers::DamperBlock;
 pub use field::FieldTable;
 pub use modal_data::BridgeModes;
 pub use section_block::{BridgeSectionBlock, StaticBlock};
-pub use section_forces::{ElementForces, ModalSectionForces, read_section_forces};
+pub use section_forces::{ModalSectionForces, read_section_forces};
 pub use single_file::write_modes;
 pub use toml_file::{BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock};
 pub use wind_block::{ProfilePoint, WindBlock};
@@ -87,10 +87,7 @@ pub mod embedded {
                 return single_file::parse(text);
             }
         }
-        Err(Error::input(
-            "modes",
-            "one of the embedded bridges langenuen, goland and iabse-2a",
-            format!("`{name}`"),
-        ))
+        let expected = "one of the embedded bridges langenuen, goland and iabse-2a";
+        Err(Error::input("modes", expected, format!("`{name}`")))
     }
 }

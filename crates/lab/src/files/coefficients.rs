@@ -35,11 +35,10 @@ pub fn gust_force(
 ) -> Result<Option<GustForce>> {
     match (name, admittance) {
         (None, None) => Ok(None),
-        (None, Some(_)) => Err(Error::input(
-            "admittance",
-            "a table of static coefficients with it, through which gusts act",
-            "none",
-        )),
+        (None, Some(_)) => {
+            let expected = "a table of static coefficients with it, through which gusts act";
+            Err(Error::input("admittance", expected, "none"))
+        }
         (Some(name), admittance) => {
             let table = named_coefficients(name, Path::new("."))?;
             GustForce::quasi_steady(table, dofs, admittance.unwrap_or_default()).map(Some)

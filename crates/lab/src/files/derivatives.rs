@@ -82,12 +82,9 @@ pub fn named_table_in(
         };
         return read_table_with(directory.join(name), &options).map(|(table, _)| table);
     }
-    ensure(
-        convention.is_empty(),
-        place,
-        "a table in a file (.csv, .xlsx, .xls, .ods)",
-        format_args!("`{name}`, whose convention is known"),
-    )?;
+    let expected = "a table in a file (.csv, .xlsx, .xls, .ods)";
+    let found = format_args!("`{name}`, whose convention is known");
+    ensure(convention.is_empty(), place, expected, found)?;
     embedded::deck_where_files_are_taken(name)
 }
 

@@ -65,13 +65,9 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
         along.push(u);
         vertical.push(w);
     }
-    let (samples, end) = (along.len(), header.lines() + 1 + along.len());
-    ensure(
-        samples >= 2,
-        Place::line(end),
-        "at least 2 samples",
-        samples,
-    )?;
+    let samples = along.len();
+    let end = Place::line(header.lines() + 1 + samples);
+    ensure(samples >= 2, end, "at least 2 samples", samples)?;
     GustSeries::new(step, along, vertical)
 }
 

@@ -34,12 +34,8 @@ pub(crate) fn parsed<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T>) -> R
 /// Refuses a file, in words, of more bytes than these.
 pub(crate) fn check_mebibytes(what: &str, bytes: u64, at_most: u64) -> Result<()> {
     let expected = format_args!("{what} of at most {} MiB", at_most >> 20);
-    ensure(
-        bytes <= at_most,
-        "",
-        expected,
-        format_args!("{} MiB", bytes >> 20),
-    )
+    let found = format_args!("{} MiB", bytes >> 20);
+    ensure(bytes <= at_most, "", expected, found)
 }
 
 /// Whether a line of a table is empty, or has only the separators that a spreadsheet leaves of empty cells.
@@ -50,15 +46,13 @@ pub(crate) fn is_blank(line: &str) -> bool {
 
 /// Refuses a text in UTF-16 by the mark before it, as Windows calls "Unicode", or by the empty byte of its first letter.
 pub(crate) fn refuse_utf16(bytes: &[u8]) -> Result<()> {
-    ensure(
-        !matches!(
-            bytes,
-            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, ..] | [_, 0, ..]
-        ),
-        "",
-        "text in UTF-8",
-        "text in UTF-16 (\"Unicode\" of Windows)",
-    )
+    let found = "text in UTF-16 (\"Unicode\" of Windows)";
+    match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, ..] | [_, 0, ..] => {
+            Err(Error::input("", "text in UTF-8", found))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// First characters of cells that spreadsheets take for formulas.
@@ -74,15 +68,10 @@ const FORMULA: [char; 4] = ['=', '+', '-', '@'];
 /// ```
 pub fn csv_cell(text: &str) -> String {
     let formula = text.starts_with(FORMULA) && text.parse::<f64>().is_err();
-    let text = if formula {
-        format!("'{text}")
-    } else {
-        text.to_owned()
-    };
-    if text.contains([',', '"', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text
+    let text = [if formula { "'" } else { "" }, text].concat();
+    match text.contains([',', '"', '\n']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text,
     }
 }
 
@@ -95,10 +84,8 @@ pub fn of_csv_cell(cell: &str) -> &str {
 /// A name that can be part of a path everywhere: nothing in it leads to another folder.
 pub fn file_name(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let text: String = name
-        .chars()
-        .map(|c| if plain(c) { c } else { '_' })
-        .collect();
+    let letters = name.chars().map(|c| if plain(c) { c } else { '_' });
+    let text: String = letters.collect();
     let trimmed = text.trim_matches('.');
     if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
 }

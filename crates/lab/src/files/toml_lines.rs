@@ -8,10 +8,8 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 fn line_of(text: &str, offset: usize) -> usize {
-    1 + text.as_bytes()[..offset.min(text.len())]
-        .iter()
-        .filter(|b| **b == b'\n')
-        .count()
+    let before = &text.as_bytes()[..offset.min(text.len())];
+    1 + before.iter().filter(|b| **b == b'\n').count()
 }
 
 /// The file at `path` by `parse`, which is given its text and its directory.
@@ -48,13 +46,11 @@ pub fn only_blocks(text: &str) -> Result<()> {
         let list = value.as_array();
         list.is_some_and(|all| all.is_empty() || !all.iter().all(toml::Value::is_table))
     };
-    match root.iter().find(|(_, value)| is_list(value)) {
-        None => Ok(()),
-        Some((key, _)) => {
-            let expected = format!("a block [{key}]");
-            Err(with_line(text, Error::input(key, expected, "a list")))
-        }
-    }
+    let list = root.iter().find(|(_, value)| is_list(value));
+    list.map_or(Ok(()), |(key, _)| {
+        let expected = format!("a block [{key}]");
+        Err(with_line(text, Error::input(key, expected, "a list")))
+    })
 }
 
 /// Files with a command of their own: what they are, a key that no other of them has, and the command.

@@ -17,12 +17,9 @@ use crate::section::Dof;
 pub fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<Vec<Vec<f64>>> {
     let h = &record.header;
     let place = |what: &str| format!("record {}: {what}", h.name);
-    ensure(
-        model.dofs() == h.dofs,
-        place("dofs"),
-        format_args!("those of the model, {}", Dof::names(model.dofs())),
-        Dof::names(&h.dofs),
-    )?;
+    let (own, found) = (Dof::names(model.dofs()), Dof::names(&h.dofs));
+    let expected = format_args!("those of the model, {own}");
+    ensure(found == own, place("dofs"), expected, &found)?;
     let width = positive(place("width_m"), h.width_m)?;
     let speed = positive(place("mean_speed_m_s"), h.mean_speed_m_s)?;
     let sampling = positive(place("sampling_hz"), h.sampling_hz)?;

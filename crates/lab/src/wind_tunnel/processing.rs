@@ -76,10 +76,8 @@ pub fn process(
     let mut prepared = all_or_errors(prepared.collect())?;
     let mut judged = Vec::new();
     for dof in Dof::THREE {
-        let mut of_dof: Vec<_> = prepared
-            .iter_mut()
-            .filter(|p| p.report.dof == dof)
-            .collect();
+        let of_dof = prepared.iter_mut().filter(|p| p.report.dof == dof);
+        let mut of_dof: Vec<_> = of_dof.collect();
         judged.extend(prepare::judge_still_air(dof, &campaign.rig, &mut of_dof));
     }
     all_or_errors(judged)?;

@@ -103,12 +103,10 @@ impl LoadCell {
             .iter()
             .all(|e| e.abs() <= 1e-4)
             && axes.determinant() > 0.0;
-        ensure(
-            is_rotation,
-            format_args!("rig.cells `{}`.axes", self.name),
-            "a rotation (orthonormal rows, right-handed)",
-            format_args!("{:?}", self.axes),
-        )
+        let place = format_args!("rig.cells `{}`.axes", self.name);
+        let expected = "a rotation (orthonormal rows, right-handed)";
+        let found = format_args!("{:?}", self.axes);
+        ensure(is_rotation, place, expected, found)
     }
 }
 

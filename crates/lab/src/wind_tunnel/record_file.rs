@@ -59,7 +59,7 @@ impl RecordSource for RecordFile {
                 break;
             }
             rows.push(&line).map_err(|e| e.in_file(&self.path))?;
-            if rows.is_full() {
+            if rows.motion[0].len() == BLOCK_SAMPLES {
                 rows.pass_on(f)?;
             }
         }
@@ -89,12 +89,8 @@ pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()
     write_head(header, out).map_err(io)?;
     let mut first = 0;
     record.for_each_block(&mut |block| {
-        let channels: Vec<&[f64]> = block
-            .motion
-            .iter()
-            .chain(block.force)
-            .map(Vec::as_slice)
-            .collect();
+        let channels = block.motion.iter().chain(block.force);
+        let channels: Vec<&[f64]> = channels.map(Vec::as_slice).collect();
         write_rows(out, header.sampling_hz, first, &channels).map_err(io)?;
         first += channels.first().map_or(0, |c| c.len());
         Ok(())
@@ -171,22 +167,14 @@ impl<'a> RecordRows<'a> {
         }
     }
 
-    fn is_full(&self) -> bool {
-        self.motion[0].len() == BLOCK_SAMPLES
-    }
-
     fn pass_on(&mut self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
         if self.motion[0].is_empty() {
             return Ok(());
         }
-        f(RecordBlock {
-            motion: &self.motion,
-            force: &self.force,
-        })?;
-        self.motion
-            .iter_mut()
-            .chain(&mut self.force)
-            .for_each(Vec::clear);
+        let (motion, force) = (&self.motion, &self.force);
+        f(RecordBlock { motion, force })?;
+        let channels = self.motion.iter_mut().chain(&mut self.force);
+        channels.for_each(Vec::clear);
         Ok(())
     }
 
@@ -222,29 +210,20 @@ impl<'a> RecordRows<'a> {
     }
 
     fn unequal(&self, line: &str) -> Error {
-        Error::input(
-            Place::line(self.line),
-            counted(self.file.channels.len(), "column"),
-            line.split(',').count().to_string(),
-        )
+        let expected = counted(self.file.channels.len(), "column");
+        let found = line.split(',').count().to_string();
+        Error::input(Place::line(self.line), expected, found)
     }
 
     fn check_time(&mut self, time_s: f64) -> Result<()> {
+        let (sampling, step) = (self.file.header.sampling_hz, time_s - self.last_time);
         if self.read == 0 {
             self.first_time = time_s;
-        } else {
-            let step = time_s - self.last_time;
-            if (step * self.file.header.sampling_hz - 1.0).abs() > JITTER {
-                let sampling = self.file.header.sampling_hz;
-                return Err(Error::input(
-                    Place::line(self.line).column("time_s"),
-                    format!(
-                        "{} s after the sample before ({sampling} Hz)",
-                        1.0 / sampling
-                    ),
-                    format!("{step:.6} s"),
-                ));
-            }
+        } else if (step * sampling - 1.0).abs() > JITTER {
+            let place = Place::line(self.line).column("time_s");
+            let usual = 1.0 / sampling;
+            let expected = format!("{usual} s after the sample before ({sampling} Hz)");
+            return Err(Error::input(place, expected, format!("{step:.6} s")));
         }
         self.last_time = time_s;
         Ok(())
@@ -252,23 +231,15 @@ impl<'a> RecordRows<'a> {
 
     /// What can only be known at the end.
     fn check_length(&self) -> Result<()> {
-        ensure(
-            self.read >= SAMPLES_AT_LEAST,
-            "end of the file",
-            format_args!("at least {SAMPLES_AT_LEAST} samples"),
-            self.read,
-        )?;
-        let mean = (self.read - 1) as f64 / (self.last_time - self.first_time);
-        ensure(
-            (mean / self.file.header.sampling_hz - 1.0).abs() <= DRIFT,
-            "column time_s",
-            format_args!(
-                "samples at {} Hz as in the header",
-                self.file.header.sampling_hz
-            ),
-            format_args!("{mean:.4} Hz"),
-        )?;
-        self.file.header.check_ends(self.read)
+        let (read, header) = (self.read, &self.file.header);
+        let expected = format_args!("at least {SAMPLES_AT_LEAST} samples");
+        ensure(read >= SAMPLES_AT_LEAST, "end of the file", expected, read)?;
+        let mean = (read - 1) as f64 / (self.last_time - self.first_time);
+        let (stated, found) = (header.sampling_hz, format_args!("{mean:.4} Hz"));
+        let expected = format_args!("samples at {stated} Hz as in the header");
+        let holds = (mean / stated - 1.0).abs() <= DRIFT;
+        ensure(holds, "column time_s", expected, found)?;
+        header.check_ends(read)
     }
 }
 

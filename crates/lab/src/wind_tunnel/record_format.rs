@@ -102,23 +102,16 @@ pub(super) fn read_head(path: &Path, reader: &mut dyn BufRead) -> Result<RecordF
     let (mut start, mut line) = (0, Vec::new());
     let names = loop {
         line.clear();
-        let read = reader
-            .read_until(b'\n', &mut line)
-            .map_err(|e| Error::io(path, e))?;
+        let read = reader.read_until(b'\n', &mut line);
+        let read = read.map_err(|e| Error::io(path, e))?;
         start += read as u64;
         let place = || Place::line(head.lines() + 1);
         let text = text(&line).map_err(|found| Error::input(place(), "a line of text", found))?;
-        ensure(
-            read != 0,
-            place(),
-            "a line of column names",
-            "the end of the file",
-        )?;
+        let expected = "a line of column names";
+        ensure(read != 0, place(), expected, "the end of the file")?;
         if !head.take(text)? {
-            break text
-                .split(',')
-                .map(|n| n.trim().to_owned())
-                .collect::<Vec<_>>();
+            let names = text.split(',').map(|name| name.trim().to_owned());
+            break names.collect::<Vec<_>>();
         }
     };
     let header = record_header(&head)?;
@@ -155,8 +148,7 @@ fn dofs(entry: &HeaderLine) -> Result<Vec<Dof>> {
     let mut dofs: Option<Vec<Dof>> = entry.value.split(',').map(one).collect();
     // columns go by their names: in every file the channels come in one order
     dofs.iter_mut().for_each(|dofs| dofs.sort());
-    let is_new = |dofs: &[Dof], i: usize| !dofs[..i].contains(&dofs[i]);
-    dofs.filter(|dofs| (0..dofs.len()).all(|i| is_new(dofs, i)))
+    dofs.filter(|dofs| dofs.windows(2).all(|pair| pair[0] != pair[1]))
         .ok_or_else(|| {
             entry.wrong("a list with commas of vertical, lateral, torsion, each at most once")
         })

@@ -117,10 +117,8 @@ impl RecordHeader {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) naming the record and the segment.
     pub fn check_frequency(&self, segment: &Segment, middle: &[Vec<f64>]) -> Result<()> {
-        let mut moves = middle
-            .iter()
-            .filter(|x| largest_about_mean(x) > 0.0)
-            .peekable();
+        let moves = middle.iter().filter(|x| largest_about_mean(x) > 0.0);
+        let mut moves = moves.peekable();
         let is_stated = |x: &Vec<f64>| {
             let fit = fit_sine(x, 0..x.len(), self.sampling_hz, segment.frequency_hz);
             fit.is_ok_and(|fit| {
@@ -128,12 +126,10 @@ impl RecordHeader {
                 sine >= OF_ITS_FREQUENCY * (sine + fit.residual_rms.powi(2))
             })
         };
-        ensure(
-            moves.peek().is_none() || moves.any(is_stated),
-            self.place(segment),
-            "the frequency of the motion, to 5 %",
-            format_args!("{} Hz, which no motion has there", segment.frequency_hz),
-        )
+        let holds = moves.peek().is_none() || moves.any(is_stated);
+        let (place, stated) = (self.place(segment), segment.frequency_hz);
+        let found = format_args!("{stated} Hz, which no motion has there");
+        ensure(holds, place, "the frequency of the motion, to 5 %", found)
     }
 
     /// What is odd about the density of the air.
@@ -142,11 +138,8 @@ impl RecordHeader {
         unusual_air(&key, self.air_density_kg_m3).map(|odd| odd.to_string())
     }
 
-    fn place(&self, segment: &Segment) -> String {
-        format!(
-            "record {}: segment at {} Hz",
-            self.name, segment.frequency_hz
-        )
+    fn place(&self, Segment { frequency_hz, .. }: &Segment) -> String {
+        format!("record {}: segment at {frequency_hz} Hz", self.name)
     }
 }
 
@@ -227,9 +220,7 @@ impl RecordSource for Record {
     }
 
     fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
-        f(RecordBlock {
-            motion: &self.motion,
-            force: &self.force,
-        })
+        let (motion, force) = (&self.motion, &self.force);
+        f(RecordBlock { motion, force })
     }
 }

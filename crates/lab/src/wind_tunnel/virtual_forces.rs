@@ -48,11 +48,8 @@ impl TransferColumn {
             return Self::interpolated(group, dofs, motion);
         }
         let mean_k = |i: usize| {
-            let sum: f64 = all
-                .iter()
-                .map(|d| group.points(*d)[i].k().full_width())
-                .sum();
-            ReducedFrequency::from_full_width(sum / all.len() as f64)
+            let k = all.iter().map(|d| group.points(*d)[i].k().full_width());
+            ReducedFrequency::from_full_width(k.sum::<f64>() / all.len() as f64)
         };
         let part = |d: Derivative, i: usize| {
             let point = group.points(d)[i];
@@ -60,9 +57,8 @@ impl TransferColumn {
         };
         let row = |force: &Dof| {
             let at = |p| Derivative::from_entry(*force, motion, p);
-            (0..reference.len())
-                .map(|i| Complex::new(part(at(Part::Real), i), part(at(Part::Imaginary), i)))
-                .collect()
+            let g = |i| Complex::new(part(at(Part::Real), i), part(at(Part::Imaginary), i));
+            (0..reference.len()).map(g).collect()
         };
         Ok(Self {
             k: (0..reference.len()).map(mean_k).collect(),
@@ -79,17 +75,14 @@ impl TransferColumn {
         let first = Derivative::from_entry(dofs[0], motion, Part::Real);
         let points = group.points(first).iter().map(DerivativePoint::k);
         let k: Vec<ReducedFrequency> = points.filter(|k| range.contains(*k)).collect();
-        ensure(
-            !k.is_empty(),
-            format_args!("table {}", group.name),
-            format_args!("a test point of {first} in the range of all other derivatives"),
-            "none: no record can show all of them",
-        )?;
+        let place = format_args!("table {}", group.name);
+        let expected =
+            format_args!("a test point of {first} in the range of all other derivatives");
+        let found = "none: no record can show all of them";
+        ensure(!k.is_empty(), place, expected, found)?;
         let j = dofs.iter().position(|d| *d == motion).unwrap_or(0);
-        let at: Vec<_> = k
-            .iter()
-            .map(|k| model.transfer(*k))
-            .collect::<Result<_>>()?;
+        let at = k.iter().map(|k| model.transfer(*k));
+        let at: Vec<_> = at.collect::<Result<_>>()?;
         let row = |i: usize| at.iter().map(|g| g[(i, j)]).collect();
         Ok(Self {
             g: (0..dofs.len()).map(row).collect(),

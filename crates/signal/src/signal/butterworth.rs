@@ -73,36 +73,23 @@ impl ButterworthLowPass {
     pub fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
         positive("sampling_hz", sampling_hz)?;
         positive("low-pass cutoff_hz", cutoff_hz)?;
-        ensure(
-            (1..=ORDER_AT_MOST).contains(&order),
-            "low-pass order",
-            format_args!("1 to {ORDER_AT_MOST}"),
-            order,
-        )?;
-        ensure(
-            cutoff_hz < 0.5 * sampling_hz,
-            "low-pass cutoff_hz",
-            format_args!(
-                "below the Nyquist frequency, {} Hz at {sampling_hz} Hz",
-                0.5 * sampling_hz
-            ),
-            format_args!("{cutoff_hz} Hz"),
-        )?;
+        let fits = (1..=ORDER_AT_MOST).contains(&order);
+        let expected = format_args!("1 to {ORDER_AT_MOST}");
+        ensure(fits, "low-pass order", expected, order)?;
+        let (nyquist, found) = (0.5 * sampling_hz, format_args!("{cutoff_hz} Hz"));
+        let expected =
+            format_args!("below the Nyquist frequency, {nyquist} Hz at {sampling_hz} Hz");
+        ensure(cutoff_hz < nyquist, "low-pass cutoff_hz", expected, found)?;
         let warped = 4.0 * (PI * cutoff_hz / sampling_hz).tan();
         let away_from_one = |k: usize| {
             let angle = PI * (2 * k + order - 1) as f64 / (2 * order) as f64;
             let s = Complex::from_polar(warped, angle);
             s * -2.0 / (Complex::new(4.0, 0.0) - s)
         };
-        let mut sections: Vec<SecondOrderSection> = (1..=order / 2)
-            .map(|k| SecondOrderSection::pair(away_from_one(k)))
-            .collect();
-        if order % 2 == 1 {
-            sections.insert(
-                0,
-                SecondOrderSection::single(away_from_one(order.div_ceil(2)).re),
-            );
-        }
+        let middle = (order % 2 == 1).then(|| away_from_one(order.div_ceil(2)).re);
+        let single = middle.into_iter().map(SecondOrderSection::single);
+        let pairs = (1..=order / 2).map(|k| SecondOrderSection::pair(away_from_one(k)));
+        let sections = single.chain(pairs).collect();
         Ok(Self { order, sections })
     }
 
@@ -133,12 +120,8 @@ impl ButterworthLowPass {
     /// [`Error::Input`](crate::error::Error::Input) for a signal not longer than [`Self::padding`].
     pub fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
         let (n, pad) = (signal.len(), self.padding());
-        ensure(
-            n > pad,
-            "signal to be filtered",
-            format_args!("more than {}", counted(pad, "sample")),
-            n,
-        )?;
+        let expected = format_args!("more than {}", counted(pad, "sample"));
+        ensure(n > pad, "signal to be filtered", expected, n)?;
         let (first, last) = (signal[0], signal[n - 1]);
         let before = (1..=pad).rev().map(|k| 2.0 * first - signal[k]);
         let after = (1..=pad).map(|k| 2.0 * last - signal[n - 1 - k]);

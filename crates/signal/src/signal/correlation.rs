@@ -36,10 +36,9 @@ impl CrossCorrelation {
         let [first, second] = &self.cumulated_energy;
         let head = |energy: &[f64]| energy[count - shift];
         let tail = |energy: &[f64]| energy[count] - energy[shift];
-        let product = if lag >= 0 {
-            head(first) * tail(second)
-        } else {
-            tail(first) * head(second)
+        let product = match lag >= 0 {
+            true => head(first) * tail(second),
+            false => tail(first) * head(second),
         };
         product.max(0.0).sqrt()
     }

@@ -31,10 +31,9 @@ pub fn delay(reference: &[f64], compared: &[f64]) -> Option<(f64, f64)> {
         return None;
     }
     let curvature = at(whole - 1) - 2.0 * at(whole) + at(whole + 1);
-    let vertex = if curvature < 0.0 {
-        0.5 * (at(whole - 1) - at(whole + 1)) / curvature
-    } else {
-        0.0
+    let vertex = match curvature < 0.0 {
+        true => 0.5 * (at(whole - 1) - at(whole + 1)) / curvature,
+        false => 0.0,
     };
     let parabolic_samples = whole as f64 + vertex.clamp(-0.5, 0.5);
     let samples = by_phase_slope(&first, &second, parabolic_samples);

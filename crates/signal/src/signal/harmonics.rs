@@ -76,12 +76,10 @@ pub fn fit_harmonics(
     harmonics: usize,
     used: &dyn Fn(usize) -> bool,
 ) -> Result<HarmonicFit> {
-    ensure(
-        range.end <= signal.len() && !range.is_empty(),
-        "stretch of a signal",
-        format_args!("samples within 0 to {}", signal.len()),
-        format_args!("{} to {}", range.start, range.end),
-    )?;
+    let inside = range.end <= signal.len() && !range.is_empty();
+    let expected = format_args!("samples within 0 to {}", signal.len());
+    let found = format_args!("{} to {}", range.start, range.end);
+    ensure(inside, "stretch of a signal", expected, found)?;
     let angle = TAU * frequency_hz / sampling_hz;
     let mut regressors = HarmonicRegressors::new(&range, angle, harmonics);
     let unknowns = regressors.unknowns();
@@ -204,9 +202,7 @@ pub fn refine_frequency(
     let distance_s = (range.len() / 2) as f64 / sampling_hz;
     let mut frequency = frequency_hz;
     for _ in 0..4 {
-        let half = |r: Range<usize>| {
-            fit_sine(signal, r, sampling_hz, frequency).map(|fit| fit.fundamental())
-        };
+        let half = |r| fit_sine(signal, r, sampling_hz, frequency).map(|fit| fit.fundamental());
         let advance = half(middle..range.end)? * half(range.start..middle)?.conj();
         frequency += advance.arg() / (TAU * distance_s);
     }
@@ -239,11 +235,8 @@ pub fn plateau(
     let amplitudes: Vec<f64> = starts.iter().map(amplitude).collect();
     let largest = amplitudes.iter().copied().fold(0.0, f64::max);
     // the median of what is near full amplitude: one wild period does not raise the bar
-    let near: Vec<f64> = amplitudes
-        .iter()
-        .copied()
-        .filter(|a| *a > 0.5 * largest)
-        .collect();
+    let near = amplitudes.iter().copied().filter(|a| *a > 0.5 * largest);
+    let near: Vec<f64> = near.collect();
     let full = share * super::median(&near);
     let mut best: Option<(usize, usize)> = None;
     let mut at = 0;

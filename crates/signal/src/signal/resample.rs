@@ -39,11 +39,8 @@ pub(crate) fn value_at(signal: &[f64], at: f64) -> f64 {
     // two nodes before and three after, but none outside
     let window = (at as usize).saturating_sub(2).min(last + 1 - NODES);
     let weights = lagrange_weights(at - window as f64);
-    signal[window..window + NODES]
-        .iter()
-        .zip(weights)
-        .map(|(x, w)| x * w)
-        .sum()
+    let nodes = signal[window..window + NODES].iter().zip(weights);
+    nodes.map(|(x, w)| x * w).sum()
 }
 
 /// `y[k] = x(k − delay)`: the signal later by `delay` samples, which may be a fraction and negative.

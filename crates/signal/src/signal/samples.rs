@@ -41,9 +41,8 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 /// Largest distance of a value from the mean of all.
 pub fn largest_about_mean(values: &[f64]) -> f64 {
     let mean = mean(values);
-    values
-        .iter()
-        .fold(0.0, |m, v| f64::max(m, (v - mean).abs()))
+    let distances = values.iter().map(|v| (v - mean).abs());
+    distances.fold(0.0, f64::max)
 }
 
 /// Least and greatest value.
@@ -76,13 +75,11 @@ pub fn robust_deviation(values: &[f64]) -> f64 {
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) at the first of them.
 pub fn check_finite(channel: &str, before: usize, samples: &[f64]) -> Result<()> {
-    match samples.iter().position(|x| !x.is_finite()) {
-        None => Ok(()),
-        Some(bad) => {
-            let place = format!("{channel}, sample {}", before + bad);
-            finite(place, samples[bad]).map(|_| ())
-        }
-    }
+    let bad = samples.iter().position(|x| !x.is_finite());
+    bad.map_or(Ok(()), |bad| {
+        let place = format!("{channel}, sample {}", before + bad);
+        finite(place, samples[bad]).map(drop)
+    })
 }
 
 /// So many equal samples at the extreme of a channel are a converter at its limit: 0.04 s at 200 Hz.
@@ -101,11 +98,8 @@ const SHORT_ONES_AT_LEAST: usize = 8;
 /// A rest at the end of the range (a motion to one side) is none: the channel must have come there from elsewhere and go back.
 pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
     let (low, high) = extremes(samples.iter().copied());
-    let smallest = samples
-        .windows(2)
-        .map(|w| (w[1] - w[0]).abs())
-        .filter(|step| *step > 0.0)
-        .fold(f64::INFINITY, f64::min);
+    let steps = samples.windows(2).map(|w| (w[1] - w[0]).abs());
+    let (smallest, _) = extremes(steps.filter(|step| *step > 0.0));
     let mut found: Vec<(usize, usize)> = Vec::new();
     let mut at = 0;
     while at < samples.len() && low < high {
@@ -148,16 +142,11 @@ pub fn check_clipping(
     let stretches = clipped_stretches(samples);
     let total: usize = stretches.iter().map(|s| s.1).sum();
     let first = before + stretches.first().map_or(0, |s| s.0);
-    ensure(
-        total as f64 <= CLIPPED_PART * samples.len() as f64,
-        format_args!("{channel}, sample {first}"),
-        "a channel that is not clipped",
-        format_args!(
-            "{total} samples at its limit in {} stretches",
-            stretches.len()
-        ),
-    )?;
-    Ok(stretches)
+    let holds = total as f64 <= CLIPPED_PART * samples.len() as f64;
+    let place = format_args!("{channel}, sample {first}");
+    let count = stretches.len();
+    let found = format_args!("{total} samples at its limit in {count} stretches");
+    ensure(holds, place, "a channel that is not clipped", found).map(|()| stretches)
 }
 
 /// Weights of the differences over two, four and six samples.

@@ -8,7 +8,7 @@
 //!
 //! `examples/export_modes_abaqus.py` writes them from an output database.
 
-use super::axes::MotionDirections;
+use super::axes::{Frame, mode};
 use super::modal_data::PlacedNodes;
 use super::table::{Table, TableRow};
 use super::tables;
@@ -18,10 +18,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Reads the folder.
-pub(super) fn read(
-    folder: &Path,
-    frame: &MotionDirections,
-) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
+pub(super) fn read(folder: &Path, frame: &Frame) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let nodes = Table::read(&folder.join("nodes.csv"), tables::nodes)?;
     let frequencies = Table::read(&folder.join("eigenfrequencies.csv"), |table| {
         column(table, "a positive frequency in Hz")
@@ -35,7 +32,7 @@ pub(super) fn read(
     for (number, (frequency_hz, mass)) in (1..).zip(frequencies.into_iter().zip(masses)) {
         let path = folder.join(format!("mode_{number}.csv"));
         let shape = Table::read(&path, |table| shape(table, &nodes))?;
-        modes.push(frame.mode(number, frequency_hz, mass, &shape));
+        modes.push(mode(frame, number, frequency_hz, mass, &shape));
     }
     Ok((nodes, modes))
 }
@@ -49,14 +46,10 @@ fn column(table: &Table, expected: &str) -> Result<Vec<f64>> {
     let one = |(i, row): (usize, &TableRow)| {
         let last = row.cells.len() - 1;
         if let Some(mode) = mode.filter(|mode| *mode < last) {
-            let (is_next, found) = (row.count(mode)? == i + 1, &row.cells[mode]);
+            let is_next = row.count(mode)? == i + 1;
             let expected = format_args!("mode {}, in the order of the modes", i + 1);
-            ensure(
-                is_next,
-                Place::line(row.line),
-                expected,
-                format_args!("`{found}`"),
-            )?;
+            let found = format_args!("`{}`", row.cells[mode]);
+            ensure(is_next, Place::line(row.line), expected, found)?;
         }
         row.positive(last, expected)
     };
@@ -78,14 +71,9 @@ fn shape(table: &Table, nodes: &[(String, [f64; 3])]) -> Result<Vec<[f64; 6]>> {
     table.each_once(names.iter().map(String::as_str))?;
     let known: HashSet<&str> = nodes.iter().map(|n| n.0.as_str()).collect();
     for (row, name) in table.rows.iter().zip(names) {
-        let found = format_args!("node {name}");
+        let (expected, found) = ("a node of nodes.csv", format_args!("node {name}"));
         let is_known = known.contains(name.as_str());
-        ensure(
-            is_known,
-            Place::line(row.line),
-            "a node of nodes.csv",
-            found,
-        )?;
+        ensure(is_known, Place::line(row.line), expected, found)?;
         at.insert(name, row.numbers(columns)?);
     }
     let of_node = |(name, _): &(String, [f64; 3])| {

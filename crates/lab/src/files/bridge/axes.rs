@@ -2,7 +2,7 @@
 
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, ensure};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Directions closer to one line than this (cosine) are no two axes.
@@ -31,13 +31,8 @@ pub struct WindAxes {
     pub downwind: Direction,
 }
 
-/// Unit vectors of vertical and lateral motion, and the axis about which a right-handed rotation lifts the windward edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct MotionDirections {
-    up: Vector3<f64>,
-    downwind: Vector3<f64>,
-    nose_up: Vector3<f64>,
-}
+/// Takes directions of the model to up, downwind and along the girder, about which a right-handed rotation lifts the windward edge.
+pub(super) type Frame = Matrix3<f64>;
 
 impl Direction {
     fn unit(&self, place: &str) -> Result<Vector3<f64>> {
@@ -70,7 +65,7 @@ impl WindAxes {
     ///
     /// # Errors
     /// [`Error::Input`] for directions that are none, or not square to each other.
-    pub(super) fn frame(&self) -> Result<MotionDirections> {
+    pub(super) fn frame(&self) -> Result<Frame> {
         let up = self.up.unit("modes.axes.up")?;
         let downwind = self.downwind.unit("modes.axes.downwind")?;
         let cosine = up.dot(&downwind);
@@ -78,52 +73,32 @@ impl WindAxes {
         let found = format_args!("an angle with the cosine {cosine:.4}");
         ensure(cosine.abs() <= SQUARE, place, expected, found)?;
         // about a, the windward edge -d moves along a × (-d); that is up for a = up × d
-        Ok(MotionDirections {
-            up,
-            downwind,
-            nose_up: up.cross(&downwind),
-        })
+        Ok(Matrix3::from_columns(&[up, downwind, up.cross(&downwind)]).transpose())
     }
 }
 
-impl MotionDirections {
-    /// Vertical, lateral displacement and rotation of displacements and rotations along the axes of the model.
-    pub(super) fn motion(&self, u: &[f64; 6]) -> [f64; 3] {
-        let [x, y, z, rotation @ ..] = *u;
-        let translation = Vector3::new(x, y, z);
-        [
-            self.up.dot(&translation),
-            self.downwind.dot(&translation),
-            self.nose_up.dot(&Vector3::from(rotation)),
-        ]
-    }
+/// Vertical, lateral displacement and rotation of displacements and rotations along the axes of the model.
+pub(super) fn motion(frame: &Frame, u: &[f64; 6]) -> [f64; 3] {
+    let [x, y, z, rotation @ ..] = *u;
+    let translation = frame * Vector3::new(x, y, z);
+    let rotation = frame * Vector3::from(rotation);
+    [translation.x, translation.y, rotation.z]
+}
 
-    /// A mode with displacements and rotations along the axes of the model; its damping is not known.
-    pub(super) fn mode(
-        &self,
-        number: usize,
-        frequency_hz: f64,
-        generalised_mass: f64,
-        shape: &[[f64; 6]],
-    ) -> BridgeMode {
-        BridgeMode {
-            number,
-            frequency_hz,
-            generalised_mass,
-            damping_ratio: 0.0,
-            shape: shape.iter().map(|u| self.motion(u)).collect(),
-        }
-    }
-
-    /// Place of a point along the girder, m.
-    pub(super) fn along(&self, point: &[f64; 3]) -> f64 {
-        self.nose_up.dot(&Vector3::from(*point))
-    }
-
-    /// Place of a point downwind and up, m.
-    pub(super) fn across(&self, point: &[f64; 3]) -> [f64; 2] {
-        let point = Vector3::from(*point);
-        [self.downwind.dot(&point), self.up.dot(&point)]
+/// A mode with displacements and rotations along the axes of the model; its damping is not known.
+pub(super) fn mode(
+    frame: &Frame,
+    number: usize,
+    frequency_hz: f64,
+    generalised_mass: f64,
+    shape: &[[f64; 6]],
+) -> BridgeMode {
+    BridgeMode {
+        number,
+        frequency_hz,
+        generalised_mass,
+        damping_ratio: 0.0,
+        shape: shape.iter().map(|u| motion(frame, u)).collect(),
     }
 }
 
@@ -142,14 +117,14 @@ mod tests {
     #[test]
     fn the_windward_edge_rises() {
         let frame = axes("z", "-y").frame().unwrap();
-        assert_eq!(frame.nose_up, Vector3::x());
+        assert_eq!(frame.row(2), Vector3::x().transpose());
         assert_eq!(
-            frame.motion(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            motion(&frame, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             [3.0, -2.0, 4.0]
         );
         let other = axes("z", "y").frame().unwrap();
         assert_eq!(
-            other.motion(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            motion(&other, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
             [3.0, 2.0, -4.0]
         );
     }

@@ -70,7 +70,7 @@ impl DamperBlock {
     }
 
     /// Adds what the block stands for; `place` is that of the block.
-    fn add(&self, place: &str, modes: &BridgeModes, all: &mut Dampers) -> Result<()> {
+    pub(super) fn add(&self, place: &str, modes: &BridgeModes, all: &mut Dampers) -> Result<()> {
         let point = |key: &str, name: &str, motion: Dof, offset_m: f64| {
             let node = modes.index_of(format!("{place}.{key}"), name)?;
             Ok::<_, Error>(DampedPoint {
@@ -109,16 +109,4 @@ impl DamperBlock {
         }
         Ok(())
     }
-}
-
-/// The dampers of these blocks at the nodes of a bridge.
-///
-/// # Errors
-/// [`Error::Input`] with the key for a node that is none.
-pub(super) fn dampers(blocks: &[DamperBlock], modes: &BridgeModes) -> Result<Dampers> {
-    let mut all = Dampers::default();
-    for (i, block) in blocks.iter().enumerate() {
-        block.add(&format!("damper[{i}]"), modes, &mut all)?;
-    }
-    Ok(all)
 }

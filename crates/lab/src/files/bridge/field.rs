@@ -43,12 +43,9 @@ impl FieldTable {
             return Ok(None);
         };
         let off = (speed_m_s / mean - 1.0).abs();
-        ensure(
-            off <= ANOTHER_SPEED,
-            "mean wind speed",
-            format_args!("about the {mean:.3} m/s of the turbulence"),
-            format_args!("{speed_m_s} m/s{}", ratio_hint(speed_m_s / mean)),
-        )?;
+        let expected = format_args!("about the {mean:.3} m/s of the turbulence");
+        let found = format_args!("{speed_m_s} m/s{}", ratio_hint(speed_m_s / mean));
+        ensure(off <= ANOTHER_SPEED, "mean wind speed", expected, found)?;
         let odd = off > SPEED_OFF_AT_MOST;
         Ok(odd.then(|| {
             format!("the turbulence is that of {mean:.3} m/s, the response at {speed_m_s} m/s")
@@ -129,24 +126,21 @@ fn parse(table: &Table) -> Result<FieldTable> {
             let inner = h.strip_prefix(name)?.strip_prefix('[')?.strip_suffix(']')?;
             Some((i, inner))
         });
-        named
-            .map(|(i, place)| {
-                let along = place.parse().map_err(|_| {
-                    let at = format!("heading, column {}", i + 1);
-                    Error::input(at, "a place along the girder, m", format!("`{place}`"))
-                })?;
-                Ok((i, along))
-            })
-            .collect()
+        let along = |(i, place): (usize, &str)| {
+            let at = format!("heading, column {}", i + 1);
+            let expected = "a place along the girder, m";
+            let along = place.parse();
+            let along = along.map_err(|_| Error::input(at, expected, format!("`{place}`")));
+            Ok((i, along?))
+        };
+        named.map(along).collect()
     };
     let (u, w) = (columns("u")?, columns("w")?);
     let places = |columns: &[(usize, f64)]| -> Vec<f64> { columns.iter().map(|c| c.1).collect() };
-    ensure(
-        !u.is_empty() && places(&u) == places(&w),
-        "heading",
-        "columns u[x] and w[x] at the same places",
-        format_args!("{} columns u[…] and {} columns w[…]", u.len(), w.len()),
-    )?;
+    let same = !u.is_empty() && places(&u) == places(&w);
+    let expected = "columns u[x] and w[x] at the same places";
+    let found = format_args!("{} columns u[…] and {} columns w[…]", u.len(), w.len());
+    ensure(same, "heading", expected, found)?;
     let column =
         |c: usize| -> Result<Vec<f64>> { table.rows.iter().map(|r| r.number(c)).collect() };
     let step_s = step(&column(time)?, table)?;

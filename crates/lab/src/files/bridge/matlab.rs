@@ -52,12 +52,8 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
             let omega = wn[at];
             let is_positive = |x: f64| x > 0.0 && x.is_finite();
             let place = format_args!("wn({}, {})", row + 1, mode + 1);
-            ensure(
-                is_positive(omega),
-                place,
-                "a positive frequency, rad/s",
-                omega,
-            )?;
+            let expected = "a positive frequency, rad/s";
+            ensure(is_positive(omega), place, expected, omega)?;
             let values = phi.iter().skip(at).step_by(3 * modes).take(points);
             let found = mode_of(omega, motion, values.copied().collect(), &lengths, span);
             let mass = found.generalised_mass;

@@ -1,9 +1,10 @@
 //! Nodes and modes as finite-element programs write them, and as the bridge takes them.
 
-use super::axes::MotionDirections;
+use super::axes::Frame;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{Finding, FindingKind, of_modes};
+use nalgebra::Vector3;
 
 /// Name of each node, and its place in x, y, z of the program, m.
 pub(super) type PlacedNodes = Vec<(String, [f64; 3])>;
@@ -29,20 +30,21 @@ impl BridgeModes {
     /// Nodes and modes of a program, with tributary lengths by the trapezoidal rule. Nodes that all run against up × downwind, since
     /// the wind blows from the other side, are taken in the opposite order.
     pub(super) fn in_frame(
-        frame: &MotionDirections,
+        frame: &Frame,
         mut placed: PlacedNodes,
         mut modes: Vec<BridgeMode>,
         source: String,
     ) -> Result<Self> {
+        let place = |(_, p): &(String, [f64; 3])| frame * Vector3::from(*p);
         let mut pairs = placed.windows(2);
-        let reversed =
-            placed.len() > 1 && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
+        let reversed = placed.len() > 1 && pairs.all(|pair| place(&pair[1]).z < place(&pair[0]).z);
         if reversed {
             placed.reverse();
             modes.iter_mut().for_each(|m| m.shape.reverse());
         }
-        let along: Vec<f64> = placed.iter().map(|(_, p)| frame.along(p)).collect();
-        let offsets_m = placed.iter().map(|(_, p)| frame.across(p)).collect();
+        let places: Vec<_> = placed.iter().map(place).collect();
+        let along: Vec<f64> = places.iter().map(|p| p.z).collect();
+        let offsets_m = places.iter().map(|p| [p.y, p.x]).collect();
         let lengths = tributary_lengths(&along);
         let nodes = placed.into_iter().zip(along.into_iter().zip(lengths));
         let nodes = nodes.map(|((name, _), (along_m, length_m))| Node {
@@ -96,14 +98,12 @@ impl BridgeModes {
             shape: kept.iter().map(|i| m.shape[*i]).collect(),
             ..m.clone()
         });
+        let offsets_m = kept.iter().filter_map(|i| self.offsets_m.get(*i).copied());
         Self {
             left_out: Vec::new(),
             source: self.source.clone(),
             nodes: nodes.collect(),
-            offsets_m: kept
-                .iter()
-                .filter_map(|i| self.offsets_m.get(*i).copied())
-                .collect(),
+            offsets_m: offsets_m.collect(),
             modes: modes.collect(),
             reversed: self.reversed,
         }
@@ -119,21 +119,16 @@ impl BridgeModes {
             let (a, b) = (&self.nodes[0].name, &self.nodes[self.nodes.len() - 1].name);
             let away =
                 |n: &Node| Some((n.name.parse::<f64>().ok()? - name.parse::<f64>().ok()?).abs());
-            let mut near: Vec<(f64, &str)> = self
-                .nodes
-                .iter()
-                .filter_map(|n| Some((away(n)?, n.name.as_str())))
-                .collect();
+            let near = self.nodes.iter();
+            let near = near.filter_map(|n| Some((away(n)?, n.name.as_str())));
+            let mut near: Vec<(f64, &str)> = near.collect();
             near.sort_by(|a, b| a.0.total_cmp(&b.0));
             let nearest = match near.as_slice() {
                 [(_, first), (_, second), ..] => format!("; next to it are {first} and {second}"),
                 _ => String::new(),
             };
-            Error::input(
-                key,
-                format!("a node of the bridge, {a} to {b}{nearest}"),
-                format!("`{name}`"),
-            )
+            let expected = format!("a node of the bridge, {a} to {b}{nearest}");
+            Error::input(key, expected, format!("`{name}`"))
         })
     }
 

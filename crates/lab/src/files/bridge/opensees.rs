@@ -8,20 +8,16 @@
 //!
 //! `examples/export_modes_opensees.py` writes them.
 
-use super::axes::MotionDirections;
+use super::axes::{Frame, mode};
 use super::modal_data::PlacedNodes;
 use super::table::{Table, TableRow};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};
-use crate::signal::extremes;
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Reads the folder.
-pub(super) fn read(
-    folder: &Path,
-    frame: &MotionDirections,
-) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
+pub(super) fn read(folder: &Path, frame: &Frame) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let nodes = Table::read(&folder.join("nodes.out"), nodes)?;
     let path = folder.join("eigenvalues.out");
     let eigenvalues = Table::read(&path, Table::all_numbers)?;
@@ -33,7 +29,7 @@ pub(super) fn read(
         ensure(square > 0.0, place, expected, square).map_err(|e| e.in_file(&path))?;
         let path = folder.join(format!("mode_{number}.out"));
         let shape = Table::read(&path, |table| shape(table, nodes.len()))?;
-        modes.push(frame.mode(number, square.sqrt() / TAU, mass, &shape));
+        modes.push(mode(frame, number, square.sqrt() / TAU, mass, &shape));
     }
     Ok((nodes, modes))
 }
@@ -49,7 +45,8 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
     }
     Table::read(path, |table| {
         let masses = table.all_numbers()?;
-        let (count, least) = (masses.len(), extremes(masses.iter().copied()).0);
+        let least = masses.iter().copied().fold(f64::INFINITY, f64::min);
+        let count = masses.len();
         ensure(
             count == modes && masses.iter().all(|m| *m > 0.0),
             "",
@@ -66,11 +63,8 @@ fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {
     let found = row.cells.len();
     let Some(leading) = found.checked_sub(wanted).filter(|time| *time <= 1) else {
         let expected = format!("{wanted} numbers, six for each of the {nodes} nodes of nodes.out");
-        return Err(Error::input(
-            Place::line(row.line),
-            expected,
-            found.to_string(),
-        ));
+        let place = Place::line(row.line);
+        return Err(Error::input(place, expected, found.to_string()));
     };
     let part = |n: usize| row.numbers(std::array::from_fn(|d| leading + 6 * n + d));
     (0..nodes).map(part).collect()

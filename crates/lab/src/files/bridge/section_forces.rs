@@ -9,17 +9,8 @@ use std::path::Path;
 pub struct ModalSectionForces {
     /// Names of the forces, as the columns say them (`my_nm`).
     pub names: Vec<String>,
-    /// Elements in the order of the file; for each force one number a mode, by the number of the mode.
-    pub elements: Vec<ElementForces>,
-}
-
-/// Those of one element.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ElementForces {
-    /// Its name.
-    pub element: String,
-    /// By the number of the mode, one number a force.
-    pub by_mode: BTreeMap<usize, Vec<f64>>,
+    /// Elements by name in the order of the file, each with one number a force by the number of the mode.
+    pub elements: Vec<(String, BTreeMap<usize, Vec<f64>>)>,
 }
 
 /// Reads `mode,element,…`, with a column per force.
@@ -77,15 +68,12 @@ fn parsed(text: &str) -> Result<ModalSectionForces> {
             value.ok_or_else(|| wrong(i + 1, "a number", cell))
         };
         let forces = row[2..].iter().map(number).collect::<Result<Vec<f64>>>()?;
-        let known = all.elements.iter().position(|e| e.element == row[1]);
+        let known = all.elements.iter().position(|(name, _)| *name == row[1]);
         let at = known.unwrap_or_else(|| {
-            all.elements.push(ElementForces {
-                element: row[1].clone(),
-                by_mode: BTreeMap::new(),
-            });
+            all.elements.push((row[1].clone(), BTreeMap::new()));
             all.elements.len() - 1
         });
-        if all.elements[at].by_mode.insert(mode, forces).is_some() {
+        if all.elements[at].1.insert(mode, forces).is_some() {
             return Err(wrong(i + 1, "a mode and an element once", line));
         }
     }
@@ -100,7 +88,7 @@ mod tests {
     fn forces_are_read_and_what_is_wrong_has_a_line() {
         let all = parsed("mode,element,my_nm\n1,mid,2.5\n2,mid,-1\n").unwrap();
         assert_eq!(all.names, ["my_nm"]);
-        assert_eq!(all.elements[0].by_mode[&2], [-1.0]);
+        assert_eq!(all.elements[0].1[&2], [-1.0]);
         for wrong in [
             "mode,element\n",
             "mode,element,my\n1,a,1\n",

@@ -79,10 +79,9 @@ impl Table {
                 table.heading = by_itself;
                 continue;
             }
-            table
-                .fit(&mut cells, between)
-                .map_err(|e| e.at(Place::line(i + 1)))?;
             let (line, expected) = (i + 1, format_args!("at most {ROWS_AT_MOST} rows"));
+            let fits = table.fit(&mut cells, between);
+            fits.map_err(|e| e.at(Place::line(line)))?;
             let is_room = table.rows.len() != ROWS_AT_MOST;
             ensure(is_room, Place::line(line), expected, "more")?;
             table.rows.push(TableRow { line, cells });

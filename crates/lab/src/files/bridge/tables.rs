@@ -6,7 +6,7 @@
 //!
 //! Lines that begin with `#` are comments; columns stand in any order and others are ignored.
 
-use super::axes::MotionDirections;
+use super::axes::{Frame, motion};
 use super::modal_data::PlacedNodes;
 use super::table::{Table, TableRow};
 use crate::bridge::BridgeMode;
@@ -19,10 +19,7 @@ const MODES: &str = "modes.csv";
 const SHAPES: &str = "shapes.csv";
 
 /// Reads the folder.
-pub(super) fn read(
-    folder: &Path,
-    frame: &MotionDirections,
-) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
+pub(super) fn read(folder: &Path, frame: &Frame) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let nodes = Table::read(&folder.join(NODES), nodes)?;
     let mut modes = Table::read(&folder.join(MODES), |table| modes(table, nodes.len()))?;
     Table::read(&folder.join(SHAPES), |table| {
@@ -63,23 +60,14 @@ fn modes(table: &Table, nodes: usize) -> Result<Vec<BridgeMode>> {
     let modes: Vec<BridgeMode> = table.rows.iter().map(one).collect::<Result<_>>()?;
     for (i, BridgeMode { number, .. }) in modes.iter().enumerate() {
         let is_new = modes[..i].iter().all(|before| before.number != *number);
+        let place = Place::line(table.rows[i].line);
         let found = format_args!("mode {number} twice");
-        ensure(
-            is_new,
-            Place::line(table.rows[i].line),
-            "each mode once",
-            found,
-        )?;
+        ensure(is_new, place, "each mode once", found)?;
     }
     Ok(modes)
 }
 
-fn fill(
-    table: &Table,
-    frame: &MotionDirections,
-    nodes: &PlacedNodes,
-    modes: &mut [BridgeMode],
-) -> Result<()> {
+fn fill(table: &Table, frame: &Frame, nodes: &PlacedNodes, modes: &mut [BridgeMode]) -> Result<()> {
     let [mode, node] = table.columns([&["mode"], &["node"]])?;
     let parts = table.columns([&["ux"], &["uy"], &["uz"], &["rx"], &["ry"], &["rz"]])?;
     let places = nodes.iter().enumerate().map(|(i, n)| (n.0.as_str(), i));
@@ -97,13 +85,10 @@ fn fill(
         let at = place_of.get(name.as_str());
         let at = at.ok_or_else(|| unknown(format!("a node of {NODES}"), format!("node {name}")))?;
         let values = &mut modes[*of_mode].shape[*at];
-        ensure(
-            values[0].is_nan(),
-            Place::line(row.line),
-            "each node once in a mode",
-            format_args!("node {name} of mode {number} twice"),
-        )?;
-        *values = frame.motion(&row.numbers(parts)?);
+        let place = Place::line(row.line);
+        let found = format_args!("node {name} of mode {number} twice");
+        ensure(values[0].is_nan(), place, "each node once in a mode", found)?;
+        *values = motion(frame, &row.numbers(parts)?);
     }
     for m in modes {
         if let Some(missing) = m.shape.iter().position(|u| u[0].is_nan()) {

@@ -1,6 +1,6 @@
 //! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
 
-use super::dampers::{self, DamperBlock};
+use super::dampers::DamperBlock;
 use super::matlab::SpanBlock;
 use super::modal_data::BridgeModes;
 use super::section_block::BridgeSectionBlock;
@@ -108,12 +108,10 @@ impl DampingRatios {
         match self {
             Self::Same(ratio) => modes.iter_mut().for_each(|m| m.damping_ratio = *ratio),
             Self::Each(all) => {
-                ensure(
-                    all.len() == modes.len(),
-                    "modes.damping_ratio",
-                    format_args!("one number, or {}, one per mode", modes.len()),
-                    format_args!("{} numbers", all.len()),
-                )?;
+                let (count, stated) = (modes.len(), all.len());
+                let expected = format_args!("one number, or {count}, one per mode");
+                let found = format_args!("{stated} numbers");
+                ensure(stated == count, "modes.damping_ratio", expected, found)?;
                 for (mode, ratio) in modes.iter_mut().zip(all) {
                     mode.damping_ratio = *ratio;
                 }
@@ -240,7 +238,11 @@ impl BridgeFile {
     /// # Errors
     /// [`Error::Input`] with the key for a node that is none.
     pub fn dampers(&self, modes: &BridgeModes) -> Result<Dampers> {
-        dampers::dampers(&self.dampers, modes)
+        let mut all = Dampers::default();
+        for (i, block) in self.dampers.iter().enumerate() {
+            block.add(&format!("damper[{i}]"), modes, &mut all)?;
+        }
+        Ok(all)
     }
 
     /// The same error with the file, and the line of the key that it names.

@@ -2,7 +2,7 @@
 //!
 //! `phi.full` has six rows per node, in the order of `node_matrix`, and one column per mode; axes are those of the nodes.
 
-use super::axes::MotionDirections;
+use super::axes::{Frame, mode};
 use super::modal_data::PlacedNodes;
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, counted, ensure};
@@ -33,10 +33,7 @@ struct WawiElement {
 }
 
 /// Reads the folder.
-pub(super) fn read(
-    folder: &Path,
-    frame: &MotionDirections,
-) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
+pub(super) fn read(folder: &Path, frame: &Frame) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let element: WawiElement = json(&folder.join("element.json"))?;
     let path = folder.join("modal.json");
     let modal: Modal = json(&path)?;
@@ -51,7 +48,7 @@ fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
 fn data(
     element: WawiElement,
     modal: Modal,
-    frame: &MotionDirections,
+    frame: &Frame,
 ) -> Result<(PlacedNodes, Vec<BridgeMode>)> {
     let expected = "shapes along global axes (`false`)";
     ensure(!modal.local, "local", expected, "`true`")?;
@@ -77,12 +74,12 @@ fn data(
             counted(rows[i].len(), "column"),
         ));
     }
-    let mode = |(m, omega): (usize, f64)| {
+    let of_number = |(m, omega): (usize, f64)| {
         let at = |n: usize| std::array::from_fn(|d| rows[6 * n + d][m]);
         let shape: Vec<[f64; 6]> = (0..nodes.len()).map(at).collect();
-        frame.mode(m + 1, omega / TAU, modal.m[m], &shape)
+        mode(frame, m + 1, omega / TAU, modal.m[m], &shape)
     };
-    let modes = omega.into_iter().enumerate().map(mode).collect();
+    let modes = omega.into_iter().enumerate().map(of_number).collect();
     Ok((nodes, modes))
 }
 

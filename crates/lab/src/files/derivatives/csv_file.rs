@@ -206,9 +206,8 @@ fn read_rows(
 
 /// The argument that the file has a column of.
 fn find_argument(names: &csv::StringRecord, line: usize) -> Result<Argument> {
-    let mut found = Argument::ALL
-        .into_iter()
-        .filter(|a| names.iter().any(|name| name == a.name()));
+    let is_there = |a: &Argument| names.iter().any(|name| name == a.name());
+    let mut found = Argument::ALL.into_iter().filter(is_there);
     match (found.next(), found.next()) {
         (Some(argument), None) => Ok(argument),
         (None, _) => Err(missing_column(names, line, Argument::VHat.name())),

@@ -106,9 +106,8 @@ pub(super) fn width_m(head: &CommentHeader, stated: Option<f64>) -> Result<f64> 
 
 /// Width `B`, m, if the file or the caller states it; they may not contradict each other.
 pub(super) fn width_stated(head: &CommentHeader, stated: Option<f64>) -> Result<Option<f64>> {
-    let stated = stated
-        .map(|width| crate::error::positive("width_m", width))
-        .transpose()?;
+    let stated = stated.map(|width| crate::error::positive("width_m", width));
+    let stated = stated.transpose()?;
     let Some(entry) = head.optional("width_m") else {
         return Ok(stated);
     };
@@ -123,17 +122,14 @@ pub(super) fn width_stated(head: &CommentHeader, stated: Option<f64>) -> Result<
 pub(super) fn provenance(head: &CommentHeader) -> Result<TableHeader> {
     let texts = |key| head.all(key).map(|e| e.value.clone()).collect();
     let stated = |key| head.optional(key).filter(|e| !e.value.is_empty());
+    let positive = |key| stated(key).map(HeaderLine::positive).transpose();
     Ok(TableHeader {
         source: head.text("source"),
         licence: head.text("licence"),
         generator: head.text("generator"),
-        model_length_m: stated("model_length_m")
-            .map(HeaderLine::positive)
-            .transpose()?,
+        model_length_m: positive("model_length_m")?,
         angle_deg: stated("angle_deg").map(angle_deg).transpose()?,
-        rotation_amplitude_deg: stated("rotation_amplitude_deg")
-            .map(HeaderLine::positive)
-            .transpose()?,
+        rotation_amplitude_deg: positive("rotation_amplitude_deg")?,
         notes: texts("note"),
         doubts: texts("doubt"),
     })
@@ -172,9 +168,8 @@ pub(super) fn write_head(
     header: &TableHeader,
     convention: &Convention,
 ) -> std::io::Result<()> {
-    let length = header
-        .model_length_m
-        .map_or_else(String::new, |l| l.to_string());
+    let length = header.model_length_m.map(|l| l.to_string());
+    let length = length.unwrap_or_default();
     let width = width_m.to_string();
     let entries = [
         ("name", name),

@@ -45,10 +45,8 @@ struct WideColumns<'a> {
 
 /// The separator that the first row uses.
 fn separator(row: &str) -> char {
-    [';', '\t']
-        .into_iter()
-        .find(|c| row.contains(*c))
-        .unwrap_or(',')
+    let mut others = [';', '\t'].into_iter();
+    others.find(|c| row.contains(*c)).unwrap_or(',')
 }
 
 fn cells(row: &str, separator: char) -> Vec<&str> {
@@ -76,13 +74,10 @@ pub(super) fn parse(
 ) -> Result<(DerivativeTable, Convention)> {
     let text = text.trim_start_matches('\u{feff}');
     let head = read_head(text)?;
-    let mut lines = (1..)
-        .zip(text.lines())
-        .skip(head.lines())
-        .filter(|l| !is_blank(l.1));
-    let (line, row) = lines
-        .next()
-        .ok_or_else(|| Error::input("", "a row of column names", "an empty file"))?;
+    let lines = (1..).zip(text.lines()).skip(head.lines());
+    let mut lines = lines.filter(|l| !is_blank(l.1));
+    let empty = || Error::input("", "a row of column names", "an empty file");
+    let (line, row) = lines.next().ok_or_else(empty)?;
     let between = separator(row);
     let names: Vec<&str> = cells(row, between).into_iter().map(without_unit).collect();
     let mut in_file = stated(&head)?;
@@ -134,12 +129,9 @@ impl WideColumns<'_> {
             return Ok(None);
         }
         // 1.234 among them may be a thousand
-        ensure(
-            !self.decimal_comma || !text.contains('.'),
-            &place,
-            "a number with a decimal comma, as others of the file have",
-            format_args!("`{text}`"),
-        )?;
+        let fits = !self.decimal_comma || !text.contains('.');
+        let expected = "a number with a decimal comma, as others of the file have";
+        ensure(fits, &place, expected, format_args!("`{text}`"))?;
         let text = match self.decimal_comma {
             true => text.replace(',', "."),
             false => text.to_owned(),
@@ -274,12 +266,9 @@ fn find_columns<'a>(
     for (i, name) in names.iter().enumerate() {
         let plain = plain_name(name, convention.notation);
         if let Ok(derivative) = convention.notation.derivative(&plain) {
-            ensure(
-                columns.derivatives.iter().all(|(_, d)| *d != derivative),
-                Place::line(line),
-                format_args!("`{name}` once"),
-                "it twice",
-            )?;
+            let is_new = columns.derivatives.iter().all(|(_, d)| *d != derivative);
+            let expected = format_args!("`{name}` once");
+            ensure(is_new, Place::line(line), expected, "it twice")?;
             columns.derivatives.push((i, derivative));
         } else if is_argument(name, convention.argument) {
             columns.argument = i;
@@ -304,12 +293,10 @@ fn find_columns<'a>(
         columns.argument = only;
         unnamed.clear();
     }
-    ensure(
-        !columns.derivatives.is_empty(),
-        Place::line(line),
-        format_args!("columns of derivatives, {}", convention.notation.names()),
-        format_args!("`{}`", names.join(",")),
-    )?;
+    let any = !columns.derivatives.is_empty();
+    let expected = format_args!("columns of derivatives, {}", convention.notation.names());
+    let found = format_args!("`{}`", names.join(","));
+    ensure(any, Place::line(line), expected, found)?;
     columns.others = unnamed.into_iter().map(|i| names[i].to_owned()).collect();
     Ok(columns)
 }

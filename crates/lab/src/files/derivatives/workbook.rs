@@ -160,12 +160,8 @@ fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Point
     let given: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_given).collect();
     let place = format_args!("sheet {}, first row", DERIVATIVES.0);
     let expected = format_args!("columns named {}", convention.notation.names());
-    ensure(
-        !given.is_empty(),
-        place,
-        expected,
-        sheets[2].0.title_words(),
-    )?;
+    let found = sheets[2].0.title_words();
+    ensure(!given.is_empty(), place, expected, found)?;
     let columns = |i: usize| {
         let (sheet, (name, prefix)) = &sheets[i];
         read_columns(sheet, name, prefix, &given, convention)
@@ -176,13 +172,8 @@ fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Point
         let (count, of) = (speeds.len(), SPEEDS.0);
         let expected = format_args!("{count} test points as in sheet {of}");
         for ((sheet, _), column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
-            let found = column.len();
-            ensure(
-                found == count,
-                format_args!("sheet {sheet}"),
-                expected,
-                found,
-            )?;
+            let (place, found) = (format_args!("sheet {sheet}"), column.len());
+            ensure(found == count, place, expected, found)?;
         }
         let point = |((speed, argument), value): ((&f64, &f64), &f64)| {
             let point = ExpressedPoint {
@@ -263,10 +254,8 @@ fn table_from(
 ) -> Result<DerivativeTable> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let bare = stem.trim_start_matches("AerodynamicDerivatives_");
-    let name = options
-        .name
-        .clone()
-        .unwrap_or_else(|| bare.replace('_', "-"));
+    let name = options.name.clone();
+    let name = name.unwrap_or_else(|| bare.replace('_', "-"));
     if header.source.is_empty() {
         header.source = format!("workbook {stem}.xlsx");
     }

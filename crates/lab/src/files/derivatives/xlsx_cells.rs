@@ -195,16 +195,10 @@ fn check_size(file: File) -> Result<()> {
         let bytes = std::io::copy(&mut part.take(PART_BYTES_AT_MOST + 1), &mut std::io::sink())
             .map_err(|e| no_workbook(&e))?;
         total += bytes;
-        ensure(
-            bytes <= PART_BYTES_AT_MOST && total <= BYTES_AT_MOST,
-            format_args!("part {name}"),
-            format_args!(
-                "parts of at most {} MiB, {} MiB in all, when unpacked",
-                PART_BYTES_AT_MOST >> 20,
-                BYTES_AT_MOST >> 20
-            ),
-            "more",
-        )?;
+        let fits = bytes <= PART_BYTES_AT_MOST && total <= BYTES_AT_MOST;
+        let (part, all) = (PART_BYTES_AT_MOST >> 20, BYTES_AT_MOST >> 20);
+        let expected = format_args!("parts of at most {part} MiB, {all} MiB in all, when unpacked");
+        ensure(fits, format_args!("part {name}"), expected, "more")?;
     }
     Ok(())
 }

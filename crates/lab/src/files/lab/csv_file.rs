@@ -168,11 +168,8 @@ impl ChannelTable {
         let mut surplus = self.names.len()..row.len();
         if row.len() < self.names.len() || surplus.any(|c| !row[c].trim_ascii().is_empty()) {
             let expected = format!("{} as in the header", counted(self.names.len(), "column"));
-            return Err(Error::input(
-                Place::line(line),
-                expected,
-                row.len().to_string(),
-            ));
+            let found = row.len().to_string();
+            return Err(Error::input(Place::line(line), expected, found));
         }
         if self.rows == 0 && self.take_units(row) {
             return Ok(());

@@ -31,8 +31,7 @@ pub(super) fn is_hdf5(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`Error::Input`] for a file that is truncated or corrupt, or lacks the `group`.
 pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>, separator: &str) -> Result<ChannelSet> {
-    let length = bytes.len() as u64;
-    guarded(|| read(bytes, length, group, separator)).unwrap_or_else(|| Err(corrupt("", "a part")))
+    guarded(|| read(bytes, group, separator)).unwrap_or_else(|| Err(corrupt("", "a part")))
 }
 
 fn corrupt(place: &str, found: impl std::fmt::Display) -> Error {
@@ -85,12 +84,8 @@ fn drop_soft_links(bytes: &mut [u8]) -> usize {
     dropped
 }
 
-fn read(
-    mut bytes: Vec<u8>,
-    length: u64,
-    group: Option<&str>,
-    separator: &str,
-) -> Result<ChannelSet> {
+fn read(mut bytes: Vec<u8>, group: Option<&str>, separator: &str) -> Result<ChannelSet> {
+    let length = bytes.len() as u64;
     let links = drop_soft_links(&mut bytes);
     let file = File::from_bytes(bytes).map_err(|e| corrupt("", e))?;
     let root = file.root();

@@ -36,12 +36,8 @@ pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSet> {
     let expected = "a MATLAB file of version 5 to 7 (saving it with `-v7.3`, or as CSV, may help)";
     let corrupt = || Error::input("", expected, "a part that cannot be read");
     let file = variables(bytes)?;
-    ensure(
-        file.is_empty() || file.iter().any(|(_, value)| value.is_some()),
-        "",
-        expected,
-        "no variable that can be read",
-    )?;
+    let any = file.is_empty() || file.iter().any(|(_, value)| value.is_some());
+    ensure(any, "", expected, "no variable that can be read")?;
     guarded(|| channels(&file, group)).ok_or_else(corrupt)?
 }
 
@@ -50,19 +46,12 @@ pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSet> {
 /// # Errors
 /// [`Error::Input`] for a file that is no MATLAB file, truncated or corrupt, or lacks the array.
 pub(crate) fn matlab_array(bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
-    let missing = || {
-        Error::input(
-            name,
-            "a real array of this name in a MATLAB file of version 5 to 7",
-            "none",
-        )
-    };
+    let expected = "a real array of this name in a MATLAB file of version 5 to 7";
+    let missing = || Error::input(name, expected, "none");
     let file = variables(bytes)?;
     let variable = file.iter().find(|(own, _)| own == name);
-    let value = variable
-        .and_then(|(_, value)| value.as_ref())
-        .map(uncompressed);
-    let Some(MatVariable::NumericArray(array)) = value else {
+    let value = variable.and_then(|(_, value)| value.as_ref());
+    let Some(MatVariable::NumericArray(array)) = value.map(uncompressed) else {
         return Err(missing());
     };
     check_count(name, count(&MatVariable::NumericArray(array.clone())))?;
@@ -80,13 +69,10 @@ fn variables(mut bytes: Vec<u8>) -> Result<Vec<(String, Option<MatVariable>)>> {
     let little = header[126] == b'I';
     let mut read = Vec::with_capacity(elements.len());
     for Range { start, end } in elements {
-        let element = MatlabElement {
-            bytes: &bytes[start..end],
-            little,
-        };
-        let head = element.inflated(NAME_WITHIN);
+        let own = &bytes[start..end];
+        let head = &MatlabElement { bytes: own, little }.inflated(NAME_WITHIN);
         let name = MatlabElement {
-            bytes: &head,
+            bytes: head,
             little,
         }
         .name();
@@ -115,13 +101,10 @@ fn check_inflated(place: &str, packed: &[u8], before: u64) -> Result<u64> {
     let mut stream = flate2::read::ZlibDecoder::new(packed).take(at_most + 1 - before.min(at_most));
     // what is corrupt is said by the reader proper
     let inflated = std::io::copy(&mut stream, &mut std::io::sink()).unwrap_or(0);
-    ensure(
-        before + inflated <= at_most,
-        place,
-        format_args!("compressed variables of at most {at_most} bytes (cut the recording)"),
-        "more",
-    )?;
-    Ok(before + inflated)
+    let all = before + inflated;
+    let expected =
+        format_args!("compressed variables of at most {at_most} bytes (cut the recording)");
+    ensure(all <= at_most, place, expected, "more").map(|()| all)
 }
 
 /// Where the elements lie, checked so that a truncated one is named as such, and what compressed ones become.

@@ -239,12 +239,8 @@ impl TdmsFile {
         let place = format_args!("byte {at}");
         let expected = format_args!("whole blocks of {block} bytes");
         let is_whole = block != 0 && raw.is_multiple_of(block);
-        ensure(
-            is_whole,
-            place,
-            expected,
-            format_args!("{raw} bytes of samples"),
-        )?;
+        let found = format_args!("{raw} bytes of samples");
+        ensure(is_whole, place, expected, found)?;
         let blocks = raw / block;
         self.samples += samples.saturating_mul(blocks) as u64;
         check_count(place, self.samples)?;
@@ -341,11 +337,11 @@ fn common_rate(rates: &[f64]) -> Result<Option<f64>> {
     };
     match rates.iter().find(|r| (*r / first - 1.0).abs() > 1e-6) {
         None => Ok(Some(*first)),
-        Some(other) => Err(Error::input(
-            "wf_increment",
-            "channels of one sampling frequency",
-            format!("{first} Hz and {other} Hz"),
-        )),
+        Some(other) => {
+            let expected = "channels of one sampling frequency";
+            let found = format!("{first} Hz and {other} Hz");
+            Err(Error::input("wf_increment", expected, found))
+        }
     }
 }
 

@@ -30,16 +30,14 @@ impl Air {
     /// pressure that are common out of force, and the other way round.
     pub(crate) fn over(own: Self, common: Self) -> Self {
         let by_gas_law = own.temperature_c.is_some() || own.pressure_pa.is_some();
+        let by_density = own.density_kg_m3.is_some();
+        let density = common.density_kg_m3.filter(|_| !by_gas_law);
+        let temperature = common.temperature_c.filter(|_| !by_density);
+        let pressure = common.pressure_pa.filter(|_| !by_density);
         Self {
-            density_kg_m3: own
-                .density_kg_m3
-                .or(common.density_kg_m3.filter(|_| !by_gas_law)),
-            temperature_c: own
-                .temperature_c
-                .or(common.temperature_c.filter(|_| own.density_kg_m3.is_none())),
-            pressure_pa: own
-                .pressure_pa
-                .or(common.pressure_pa.filter(|_| own.density_kg_m3.is_none())),
+            density_kg_m3: own.density_kg_m3.or(density),
+            temperature_c: own.temperature_c.or(temperature),
+            pressure_pa: own.pressure_pa.or(pressure),
             relative_humidity: own.relative_humidity.or(common.relative_humidity),
         }
     }
@@ -67,10 +65,8 @@ impl Air {
                 let saturated = 611.21 * ((18.678 - t / 234.5) * (t / (257.14 + t))).exp();
                 let vapour = humidity * saturated;
                 let kelvin = t + ZERO_CELSIUS;
-                positive(
-                    place,
-                    (p - vapour) / (DRY_AIR * kelvin) + vapour / (VAPOUR * kelvin),
-                )
+                let dry = (p - vapour) / (DRY_AIR * kelvin);
+                positive(place, dry + vapour / (VAPOUR * kelvin))
             }
             stated => {
                 let found = match stated {
@@ -78,24 +74,17 @@ impl Air {
                     (None, None, None) => "neither",
                     _ => "one of temperature and pressure only",
                 };
-                Err(Error::input(
-                    place,
-                    "either density_kg_m3, or temperature_c and pressure_pa",
-                    found,
-                ))
+                let expected = "either density_kg_m3, or temperature_c and pressure_pa";
+                Err(Error::input(place, expected, found))
             }
         }
     }
 }
 
 fn within(place: &str, value: f64, range: RangeInclusive<f64>) -> Result<f64> {
-    ensure(
-        range.contains(&value),
-        place,
-        format_args!("a number from {} to {}", range.start(), range.end()),
-        value,
-    )?;
-    Ok(value)
+    let (least, most) = (range.start(), range.end());
+    let expected = format_args!("a number from {least} to {most}");
+    ensure(range.contains(&value), place, expected, value).map(|()| value)
 }
 
 #[cfg(test)]

@@ -53,12 +53,9 @@ impl ChannelRef {
         if let Some(unit) = &self.unit {
             quantity.factor(&format!("{place}.unit"), unit)?;
         }
-        ensure(
-            self.scale.is_finite() && self.scale != 0.0,
-            format_args!("{place}.scale"),
-            "a number other than zero",
-            self.scale,
-        )
+        let is_one = self.scale.is_finite() && self.scale != 0.0;
+        let place = format_args!("{place}.scale");
+        ensure(is_one, place, "a number other than zero", self.scale)
     }
 
     /// The samples in SI units.
@@ -103,11 +100,11 @@ impl ChannelRef {
         let in_name = unit_in_name(&self.name).filter(|u| quantity.factor_of(u).is_some());
         match stated.or(in_name).filter(differs) {
             None => Ok(self.scale * factor),
-            Some(by_file) => Err(Error::input(
-                &place,
-                format!("the unit `{by_file}` that the file states"),
-                format!("`{unit}` in the map"),
-            )),
+            Some(by_file) => {
+                let expected = format!("the unit `{by_file}` that the file states");
+                let found = format!("`{unit}` in the map");
+                Err(Error::input(place, expected, found))
+            }
         }
     }
 }

@@ -62,11 +62,8 @@ impl ChannelMap {
         ];
         let mut stated = Vec::new();
         for (key, channel, quantity) in all {
-            stated.extend(
-                channel
-                    .as_ref()
-                    .map(|c| (format!("channels.{key}"), c, quantity)),
-            );
+            let key = format!("channels.{key}");
+            stated.extend(channel.as_ref().map(|c| (key, c, quantity)));
         }
         stated
     }
@@ -102,12 +99,9 @@ impl ChannelMap {
         for (key, channel, quantity) in self.single() {
             channel.validate(&key, quantity)?;
         }
-        ensure(
-            !self.section.as_ref().is_some_and(|s| s.dofs().is_empty()),
-            "channels.section",
-            "at least one of lift, drag, moment",
-            "none",
-        )?;
+        let any = self.section.as_ref().is_none_or(|s| !s.dofs().is_empty());
+        let expected = "at least one of lift, drag, moment";
+        ensure(any, "channels.section", expected, "none")?;
         self.each_once()?;
         let names: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
         if let Some(unknown) = self.cells.keys().find(|n| !names.contains(&n.as_str())) {

@@ -5,8 +5,8 @@ use super::file::Campaign;
 use super::wind_speed::other_than_one_wind;
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{
-    DECK_WIDTH, FindingSeverity, Limits, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond,
-    ratio_hint,
+    DECK_WIDTH, Finding, FindingSeverity, Limits, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED,
+    beyond, ratio_hint,
 };
 use crate::section::Dof;
 use crate::signal::{clipped_stretches, extremes, largest_magnitude, mean};
@@ -101,11 +101,8 @@ impl RunFinding {
 /// First stretch of samples that are no numbers: where it begins and how long it is.
 pub(super) fn first_gap(samples: &[f64]) -> Option<(usize, usize)> {
     let first = samples.iter().position(|x| !x.is_finite())?;
-    let length = samples[first..]
-        .iter()
-        .take_while(|x| !x.is_finite())
-        .count();
-    Some((first, length))
+    let gap = samples[first..].iter().take_while(|x| !x.is_finite());
+    Some((first, gap.count()))
 }
 
 /// What is odd about one channel: clipped at its highest or lowest value, or not moving at all where it should.
@@ -119,12 +116,8 @@ pub(super) fn channel_findings(
     let finding = |stretch, what| RunFinding::of_channel(run, recording, name, stretch, what);
     let (low, high) = extremes(samples.iter().copied());
     if low == high {
-        let what = format!("is {low} all the time");
-        return if must_change {
-            vec![finding(None, what)]
-        } else {
-            Vec::new()
-        };
+        let silent = finding(None, format!("is {low} all the time"));
+        return must_change.then_some(silent).into_iter().collect();
     }
     let stretches = clipped_stretches(samples);
     let Some((first, longest)) = stretches.first().copied() else {
@@ -150,7 +143,9 @@ pub(super) fn run_findings(run: &RawRun, width_m: f64) -> Result<Vec<RunFinding>
     let mut say = |severity, what| found.push(RunFinding::of_run(&run.name, severity, what));
     let measured = &run.in_wind.wind_speed_m_s;
     let air = beyond("air density", run.air_density_kg_m3, &AIR_OF_A_LABORATORY);
-    air.into_iter().for_each(|odd| say(Doubt, odd.to_string()));
+    if let Some(odd) = air {
+        say(Doubt, odd.to_string());
+    }
     if let Some(still) = &run.still_air {
         let (in_wind, still_air) = (run.in_wind.sample_count(), still.sample_count());
         if in_wind != still_air {
@@ -161,26 +156,21 @@ pub(super) fn run_findings(run: &RawRun, width_m: f64) -> Result<Vec<RunFinding>
             say(Note, what);
         }
     }
-    let off = match measured.is_empty() {
-        true => 0.0,
-        false => (run.mean_speed_m_s / mean(measured) - 1.0).abs(),
-    };
-    if off > SPEED_OFF_AT_MOST {
-        let hint = ratio_hint(run.mean_speed_m_s / mean(measured));
-        let (stated, channel) = (run.mean_speed_m_s, mean(measured));
-        ensure(
-            off <= ANOTHER_SPEED,
-            format_args!("run `{}`: mean_speed_m_s", run.name),
-            format_args!("about the {channel:.3} m/s of the channel `wind_speed`"),
-            format_args!("{stated:.3} m/s{hint}"),
-        )?;
+    let (stated, channel) = (run.mean_speed_m_s, mean(measured));
+    let off = (stated / channel - 1.0).abs();
+    if !measured.is_empty() && off > SPEED_OFF_AT_MOST {
+        let hint = ratio_hint(stated / channel);
+        let place = format_args!("run `{}`: mean_speed_m_s", run.name);
+        let expected = format_args!("about the {channel:.3} m/s of the channel `wind_speed`");
+        let found = format_args!("{stated:.3} m/s{hint}");
+        ensure(off <= ANOTHER_SPEED, place, expected, found)?;
         let what =
             format!("the mean speed is {stated:.3} m/s, its channel says {channel:.3} m/s{hint}");
         say(Doubt, what);
     }
-    other_than_one_wind(measured)
-        .into_iter()
-        .for_each(|what| say(Doubt, what));
+    if let Some(what) = other_than_one_wind(measured) {
+        say(Doubt, what);
+    }
     if let Some(still) = &run.still_air
         && !still.wind_speed_m_s.is_empty()
         && mean(&still.wind_speed_m_s) > SPEED_OFF_AT_MOST * run.mean_speed_m_s
@@ -263,10 +253,8 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<RunFinding> {
         let key = format!("run[{i}].mean_speed_m_s");
         said.extend(run.mean_speed_m_s.map(|v| beyond(&key, v, &WIND_SPEED)));
     }
-    said.into_iter()
-        .flatten()
-        .map(|odd| RunFinding::of_run("", odd.severity, odd.to_string()))
-        .collect()
+    let finding = |odd: Finding| RunFinding::of_run("", odd.severity, odd.to_string());
+    said.into_iter().flatten().map(finding).collect()
 }
 
 /// What is odd about the amplitude of a motion in the recording `name`, which is meant to be there where it `is_stated`.

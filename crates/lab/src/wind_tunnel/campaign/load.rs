@@ -8,7 +8,7 @@ use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, ensure, positive};
 use crate::plausibility::FindingSeverity;
 use crate::signal::mean;
-use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
+use crate::wind_tunnel::{RawCampaign, RawRun, Rig};
 use aerodeck_core::threads;
 
 /// A campaign with all its recordings, and what is odd about them.
@@ -73,16 +73,20 @@ impl Campaign {
         let still_air = still_air.transpose()?.map(|(recording, _)| recording);
         let wind_hz = in_wind.sampling_hz;
         let still_hz = still_air.as_ref().map_or(wind_hz, |s| s.sampling_hz);
-        ensure(
-            (wind_hz / still_hz - 1.0).abs() <= SAME_RATE,
-            format_args!("run `{}`", run.name),
-            "one sampling frequency in wind and in still air",
-            format_args!("{wind_hz} Hz and {still_hz} Hz"),
-        )?;
+        let same = (wind_hz / still_hz - 1.0).abs() <= SAME_RATE;
+        let place = format_args!("run `{}`", run.name);
+        let expected = "one sampling frequency in wind and in still air";
+        let found = format_args!("{wind_hz} Hz and {still_hz} Hz");
+        ensure(same, place, expected, found)?;
+        let measured = || {
+            let place = format_args!("run `{}`, mean of the wind speed", run.name);
+            positive(place, mean(&in_wind.wind_speed_m_s))
+        };
+        let mean_speed_m_s = run.mean_speed_m_s.map_or_else(measured, Ok)?;
         let raw = RawRun {
             name: run.name.clone(),
             motion: run.motion.clone(),
-            mean_speed_m_s: mean_speed(run, &in_wind)?,
+            mean_speed_m_s,
             air_density_kg_m3: self.density(map, run, air)?,
             in_wind,
             still_air,
@@ -120,14 +124,4 @@ fn each_once(runs: &[RawRun]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn mean_speed(run: &RunBlock, wind: &RawRecording) -> Result<f64> {
-    match run.mean_speed_m_s {
-        Some(speed) => Ok(speed),
-        None => {
-            let place = format!("run `{}`, mean of the wind speed", run.name);
-            positive(&place, mean(&wind.wind_speed_m_s))
-        }
-    }
 }

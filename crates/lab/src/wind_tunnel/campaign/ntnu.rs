@@ -138,10 +138,8 @@ fn forces(recording: &RawRecording, rig: &Rig, about_centre: bool) -> Vec<f64> {
     let to_lab = Matrix3::from_fn(|i, j| AXES[j][i]);
     let mut rows = Vec::with_capacity(recording.sample_count() * 6 * CELLS);
     for i in 0..recording.sample_count() {
-        let theta = recording.motion[Dof::Torsion as usize]
-            .get(i)
-            .copied()
-            .unwrap_or(0.0);
+        let theta = recording.motion[Dof::Torsion as usize].get(i);
+        let theta = theta.copied().unwrap_or(0.0);
         for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
             let to_global = cell.axes_at(theta);
             let [fx, fy, fz, mx, my, mz] = channels;

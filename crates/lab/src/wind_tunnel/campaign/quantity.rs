@@ -75,11 +75,8 @@ impl Quantity {
     /// Factor from `unit` to SI (°C for temperatures).
     pub(crate) fn factor(self, place: &str, unit: &str) -> Result<f64> {
         self.factor_of(unit).ok_or_else(|| {
-            let own: Vec<&str> = UNITS
-                .iter()
-                .filter(|(_, quantity, _)| *quantity == self)
-                .map(|(name, ..)| *name)
-                .collect();
+            let own = UNITS.iter().filter(|(_, quantity, _)| *quantity == self);
+            let own: Vec<&str> = own.map(|(name, ..)| *name).collect();
             let expected = format!("a unit of {}: {}", self.name(), own.join(", "));
             Error::input(place, expected, format!("`{unit}`"))
         })
@@ -88,10 +85,9 @@ impl Quantity {
     /// The same; `None` for a unit that does not fit.
     pub(crate) fn factor_of(self, unit: &str) -> Option<f64> {
         let plain = normalised(unit);
-        UNITS
-            .iter()
-            .find(|(name, quantity, _)| *quantity == self && *name == plain)
-            .map(|(.., factor)| *factor)
+        let mut units = UNITS.iter();
+        let unit = units.find(|(name, quantity, _)| *quantity == self && *name == plain);
+        unit.map(|(.., factor)| *factor)
     }
 }
 
@@ -115,16 +111,13 @@ pub(super) fn unit_in_name(name: &str) -> Option<&str> {
 
 /// Spellings of one unit as one: `N·m`, `N m`, `N*m`, `kg/m^3`, `kg/m³`, `degC`.
 fn normalised(unit: &str) -> String {
-    let mut plain: String = unit
-        .trim()
-        .chars()
-        .filter(|c| !matches!(c, ' ' | '·' | '*' | '.' | '^'))
-        .map(|c| match c {
-            '³' => '3',
-            'µ' | 'μ' => 'u',
-            c => c,
-        })
-        .collect();
+    let letter = |c: char| match c {
+        ' ' | '·' | '*' | '.' | '^' => None,
+        '³' => Some('3'),
+        'µ' | 'μ' => Some('u'),
+        c => Some(c),
+    };
+    let plain: String = unit.trim().chars().filter_map(letter).collect();
     // words for symbols, in any case and number
     let word = plain.to_lowercase();
     let symbol = match word.trim_end_matches('s') {
@@ -135,7 +128,7 @@ fn normalised(unit: &str) -> String {
         "millimetre" | "millimeter" => "mm",
         "newton" => "N",
         "second" | "sec" => "s",
-        _ => return std::mem::take(&mut plain),
+        _ => return plain,
     };
     symbol.to_owned()
 }

@@ -148,28 +148,22 @@ impl ChannelExtraction<'_> {
         quantity: Quantity,
         must_change: bool,
     ) -> Result<Vec<f64>> {
-        let samples = channel
-            .samples(key, quantity, self.set)
-            .map_err(|e| below(self.place, e))?;
+        let samples = channel.samples(key, quantity, self.set);
+        let samples = samples.map_err(|e| below(self.place, e))?;
         let own = self.set.channel(&channel.name).map(described);
         let own = own.unwrap_or_default();
         match &self.first {
             Some((length, first)) if *length != samples.len() => {
-                return Err(Error::input(
-                    self.place,
-                    format!("channels of one length ({first} samples)"),
-                    own,
-                ));
+                let expected = format!("channels of one length ({first} samples)");
+                return Err(Error::input(self.place, expected, own));
             }
             Some(_) => {}
             None => self.first = Some((samples.len(), own)),
         }
         if let Some((first, length)) = first_gap(&samples) {
-            return Err(Error::input(
-                format!("{}, `{}`, sample {first}", self.place, channel.name),
-                "a finite number",
-                format!("{} for {length} samples", samples[first]),
-            ));
+            let place = format!("{}, `{}`, sample {first}", self.place, channel.name);
+            let found = format!("{} for {length} samples", samples[first]);
+            return Err(Error::input(place, "a finite number", found));
         }
         let found = channel_findings(self.of.0, self.of.1, &channel.name, &samples, must_change);
         self.findings.extend(found);
@@ -179,43 +173,35 @@ impl ChannelExtraction<'_> {
 
     /// The one sampling frequency of campaign file, recording and time channel, Hz.
     fn sampling(&self, stated: Option<f64>) -> Result<f64> {
-        let by_time = match &self.map.time {
-            None => None,
-            Some(channel) => {
-                let time = channel
-                    .samples("channels.time", Quantity::Time, self.set)
-                    .map_err(|e| below(self.place, e))?;
-                let place = format!("{}, `{}`", self.place, channel.name);
-                Some(sampling_of(&place, &time)?)
-            }
+        let by_channel = |channel: &ChannelRef| {
+            let time = channel.samples("channels.time", Quantity::Time, self.set);
+            let time = time.map_err(|e| below(self.place, e))?;
+            sampling_of(&format!("{}, `{}`", self.place, channel.name), &time)
         };
+        let by_time = self.map.time.as_ref().map(by_channel).transpose()?;
         let known = [
             (stated, "the campaign file"),
             (self.set.sampling_hz, "the file"),
             (by_time, "the time channel"),
         ];
         // a time that the map leaves out is no statement of its own, but may not contradict
-        let beside =
-            sampling_by_time(self.set, stated.or(self.set.sampling_hz)).and_then(Result::ok);
-        let beside = beside.filter(|_| by_time.is_none());
-        let beside = (beside, "a time column that `channels.time` does not name");
-        let mut stated = known.iter().filter_map(|(hz, who)| hz.map(|hz| (hz, *who)));
-        let first = stated.next();
-        let mut known = stated.chain(beside.0.map(|hz| (hz, beside.1)));
-        let Some((hz, who)) = first else {
-            return Err(Error::input(
-                self.place,
-                "a sampling frequency: `recording.sampling_hz`, `channels.time` or one in the file",
-                "none",
-            ));
+        let beside = sampling_by_time(self.set, stated.or(self.set.sampling_hz));
+        let beside = beside.and_then(Result::ok).filter(|_| by_time.is_none());
+        let beside = beside.map(|hz| (hz, "a time column that `channels.time` does not name"));
+        let mut known = known.into_iter().filter_map(|(hz, who)| Some((hz?, who)));
+        let Some((hz, who)) = known.next() else {
+            let expected =
+                "a sampling frequency: `recording.sampling_hz`, `channels.time` or one in the file";
+            return Err(Error::input(self.place, expected, "none"));
         };
+        let mut known = known.chain(beside);
         match known.find(|(other, _)| (other / hz - 1.0).abs() > SAME_RATE) {
             None => Ok(hz),
-            Some((other, says)) => Err(Error::input(
-                self.place,
-                format!("the sampling frequency {hz} Hz of {who}"),
-                format!("{other:.4} Hz by {says}"),
-            )),
+            Some((other, says)) => {
+                let expected = format!("the sampling frequency {hz} Hz of {who}");
+                let found = format!("{other:.4} Hz by {says}");
+                Err(Error::input(self.place, expected, found))
+            }
         }
     }
 
@@ -223,20 +209,15 @@ impl ChannelExtraction<'_> {
     fn air(&self, is_needed: bool) -> Result<Air> {
         let number = |key: &str, channel: &Option<ChannelRef>, quantity| {
             let channel = channel.as_ref().filter(|_| is_needed);
-            let number = channel.map(|c| c.number(key, quantity, self.set));
+            let number = channel.map(|c| c.number(&format!("channels.{key}"), quantity, self.set));
             number.transpose().map_err(|e| below(self.place, e))
         };
         let map = self.map;
-        let air = Air {
-            density_kg_m3: number("channels.air_density", &map.air_density, Quantity::Density)?,
-            temperature_c: number(
-                "channels.temperature",
-                &map.temperature,
-                Quantity::Temperature,
-            )?,
-            pressure_pa: number("channels.pressure", &map.pressure, Quantity::Pressure)?,
+        Ok(Air {
+            density_kg_m3: number("air_density", &map.air_density, Quantity::Density)?,
+            temperature_c: number("temperature", &map.temperature, Quantity::Temperature)?,
+            pressure_pa: number("pressure", &map.pressure, Quantity::Pressure)?,
             relative_humidity: None,
-        };
-        Ok(air)
+        })
     }
 }

@@ -28,10 +28,8 @@ pub(super) fn other_than_one_wind(wind_m_s: &[f64]) -> Option<String> {
 
 /// The mean, and its standard error as the means of its parts scatter.
 fn mean_and_error(wind_m_s: &[f64]) -> (f64, f64) {
-    let parts: Vec<f64> = wind_m_s
-        .chunks(wind_m_s.len().div_ceil(PARTS).max(1))
-        .map(mean)
-        .collect();
-    let (mean, deviation) = mean_and_deviation(parts.iter().copied());
-    (mean, deviation / (parts.len() as f64).sqrt())
+    let parts = wind_m_s.chunks(wind_m_s.len().div_ceil(PARTS).max(1));
+    let count = parts.len() as f64;
+    let (mean, deviation) = mean_and_deviation(parts.map(mean));
+    (mean, deviation / count.sqrt())
 }

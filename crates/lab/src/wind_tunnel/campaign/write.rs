@@ -47,9 +47,8 @@ pub fn write_virtual_campaign(
         FileFormat::Csv => {
             for (run, block) in made.raw.runs.iter().zip(&campaign.runs) {
                 let still = block.still_air.iter().zip(&run.still_air);
-                for (file, recording) in
-                    std::iter::once((&block.in_wind, &run.in_wind)).chain(still)
-                {
+                let in_wind = std::iter::once((&block.in_wind, &run.in_wind));
+                for (file, recording) in in_wind.chain(still) {
                     write_csv(recording, &made.raw.rig, &place(file.file())?)?;
                 }
             }
@@ -77,25 +76,18 @@ fn write_truth(
 ) -> Result<()> {
     let mut table = format!("{TRUTH_COLUMNS}\n");
     for p in &made.points {
-        let line = format!(
-            "{},{},{},{},{},{},{}\n",
-            csv_cell(&p.run),
-            p.motion.name(),
-            p.force.name(),
-            p.frequency_hz,
-            p.k,
-            p.real,
-            p.imaginary
-        );
-        table.push_str(&line);
+        let (run, motion, force) = (csv_cell(&p.run), p.motion.name(), p.force.name());
+        let (at, g) = ([p.frequency_hz, p.k], [p.real, p.imaginary]);
+        let numbers = at.iter().chain(&g).map(f64::to_string).collect::<Vec<_>>();
+        table.push_str(&format!("{run},{motion},{force},{}\n", numbers.join(",")));
     }
     write_text(&place(Path::new("truth.csv"))?, &table)?;
     let runs = BTreeMap::from([("runs", &made.disturbances)]);
     let applied = json::write("disturbances", &runs)?;
     write_text(&place(Path::new("disturbances.json"))?, &applied)?;
     for record in &made.records {
-        let path =
-            place(&Path::new("truth").join(format!("{}.csv", file_name(&record.header.name))))?;
+        let name = format!("{}.csv", file_name(&record.header.name));
+        let path = place(&Path::new("truth").join(name))?;
         let file = File::create(&path).map_err(|e| Error::io(&path, e))?;
         write_record(record, &mut BufWriter::new(file))?;
     }
@@ -192,18 +184,16 @@ fn csv_map(rig: &Rig) -> ChannelMap {
 fn write_csv(recording: &RawRecording, rig: &Rig, path: &Path) -> Result<()> {
     let io = |e| Error::io(path, e);
     let mut out = BufWriter::new(File::create(path).map_err(io)?);
-    let names: Vec<String> = csv_columns(rig)
-        .into_iter()
+    let names = csv_columns(rig).into_iter();
+    let names: Vec<String> = names
         .map(|(name, unit)| format!("{name} [{unit}]"))
         .collect();
     writeln!(out, "# sampling_hz: {}", recording.sampling_hz).map_err(io)?;
     writeln!(out, "time [s],{}", names.join(",")).map_err(io)?;
     let motion = recording.motion.iter();
-    let channels: Vec<&[f64]> = motion
-        .chain([&recording.wind_speed_m_s])
-        .chain(recording.cells.iter().flatten())
-        .map(Vec::as_slice)
-        .collect();
+    let channels = motion.chain([&recording.wind_speed_m_s]);
+    let channels = channels.chain(recording.cells.iter().flatten());
+    let channels: Vec<&[f64]> = channels.map(Vec::as_slice).collect();
     write_rows(&mut out, recording.sampling_hz, 0, &channels).map_err(io)?;
     out.flush().map_err(io)
 }

@@ -70,12 +70,9 @@ pub(super) fn check_run(run: &RawRun, rig: &Rig) -> Result<(Vec<ClippedStretch>,
 fn check_pair(run: &str, wind: &RawRecording, still: &RawRecording) -> Result<()> {
     let place = |what: &str| format!("run {run}, {what}");
     let (f1, f2) = (wind.sampling_hz, still.sampling_hz);
-    ensure(
-        (f1 / f2 - 1.0).abs() <= SAME_RATE,
-        place("still air"),
-        format_args!("the sampling frequency of the recording in wind, {f1} Hz"),
-        format_args!("{f2} Hz"),
-    )?;
+    let same = (f1 / f2 - 1.0).abs() <= SAME_RATE;
+    let expected = format_args!("the sampling frequency of the recording in wind, {f1} Hz");
+    ensure(same, place("still air"), expected, format_args!("{f2} Hz"))?;
     for dof in Dof::THREE {
         let recorded = |r: &RawRecording| !r.motion[super::index(dof)].is_empty();
         let (with, without) = match recorded(wind) {
@@ -137,15 +134,14 @@ fn clipped(
     for (name, samples) in channels(recording, rig) {
         let channel = format!("{what}, {name}");
         let stretches = check_clipping(&format!("run {run}, {channel}"), 0, samples)?;
-        found.extend(
-            stretches
-                .into_iter()
-                .map(|(first, samples)| ClippedStretch {
-                    channel: channel.clone(),
-                    first,
-                    samples,
-                }),
-        );
+        for (first, samples) in stretches {
+            let channel = channel.clone();
+            found.push(ClippedStretch {
+                channel,
+                first,
+                samples,
+            });
+        }
     }
     Ok(found)
 }

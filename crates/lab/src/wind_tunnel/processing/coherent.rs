@@ -43,10 +43,8 @@ impl Regressors {
             x.into_iter().map(|v| v * factor).collect::<Vec<f64>>()
         };
         let count = motion.len();
-        let mut stretches: Vec<Range<usize>> = segments
-            .iter()
-            .map(|s| s.range(sampling_hz, count))
-            .collect();
+        let stretches = segments.iter().map(|s| s.range(sampling_hz, count));
+        let mut stretches: Vec<Range<usize>> = stretches.collect();
         if stretches.is_empty() {
             stretches.push(0..count);
         }

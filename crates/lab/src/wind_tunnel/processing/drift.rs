@@ -43,10 +43,9 @@ pub(crate) fn remove_cell_drift(
 ) -> Result<Vec<CellDrift>> {
     let regressors = Regressors::new(motion, recording.sampling_hz, segments, degree);
     let ramps = ramps(segments, recording.sampling_hz, motion.len());
-    let global = if degree == 0 {
-        Vec::new()
-    } else {
-        cells::to_global(recording, rig, rotation_rad)
+    let global = match degree {
+        0 => Vec::new(),
+        _ => cells::to_global(recording, rig, rotation_rad),
     };
     let none = |cell: &LoadCell| CellDrift {
         cell: cell.name.clone(),
@@ -92,10 +91,8 @@ fn ramps(segments: &[HarmonicSegment], sampling_hz: f64, count: usize) -> Vec<bo
 fn drift_of(channel: &[f64], regressors: &Regressors, ramps: &[bool]) -> Result<Vec<f64>> {
     let first = regressors.fit(channel, ramps)?;
     let residual = |k: usize| channel[k] - first.coherent[k] - first.drift[k];
-    let counted: Vec<f64> = (0..channel.len())
-        .filter(|k| !ramps[*k])
-        .map(residual)
-        .collect();
+    let counted = (0..channel.len()).filter(|k| !ramps[*k]);
+    let counted: Vec<f64> = counted.map(residual).collect();
     let limit = OUTLIER * robust_deviation(&counted);
     let far = |k: usize| limit > 0.0 && residual(k).abs() > limit;
     let outliers: Vec<bool> = (0..channel.len()).map(|k| ramps[k] || far(k)).collect();

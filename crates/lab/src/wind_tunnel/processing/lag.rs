@@ -182,23 +182,21 @@ fn ratios(
     sampling_hz: f64,
     segments: &[HarmonicSegment],
 ) -> Result<Vec<Ratio>> {
-    segments
-        .iter()
-        .map(|s| {
-            let range = s.plateau.range();
-            let fit = |x: &[f64]| fit_sine(x, range.clone(), sampling_hz, s.segment.frequency_hz);
-            let (x, f) = (fit(motion)?, fit(force)?);
-            let size = x.fundamental().norm_sqr();
-            let noise = f.residual_rms.powi(2) * 2.0 / (range.len() as f64 * size);
-            let value = f.fundamental() / x.fundamental();
-            Ok(Ratio {
-                omega: TAU * s.segment.frequency_hz,
-                value,
-                // rounding of a noiseless record
-                variance: noise.max(1e-24 * value.norm_sqr()).max(f64::MIN_POSITIVE),
-            })
+    let ratio = |s: &HarmonicSegment| {
+        let range = s.plateau.range();
+        let fit = |x: &[f64]| fit_sine(x, range.clone(), sampling_hz, s.segment.frequency_hz);
+        let (x, f) = (fit(motion)?, fit(force)?);
+        let size = x.fundamental().norm_sqr();
+        let noise = f.residual_rms.powi(2) * 2.0 / (range.len() as f64 * size);
+        let value = f.fundamental() / x.fundamental();
+        Ok(Ratio {
+            omega: TAU * s.segment.frequency_hz,
+            value,
+            // rounding of a noiseless record
+            variance: noise.max(1e-24 * value.norm_sqr()).max(f64::MIN_POSITIVE),
         })
-        .collect()
+    };
+    segments.iter().map(ratio).collect()
 }
 
 /// The inertia of each of the `runs` of one motion in the force of `dof`. Runs of less than three frequencies do not tell stiffness

@@ -77,10 +77,8 @@ fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<I
     };
     let body = runs.iter().filter(told).find(|p| p.report.dof == other);
     let body = body.and_then(|p| p.report.still_air.as_ref());
-    let of_dof = runs
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| p.report.dof == dof && told(p));
+    let of_dof = runs.iter().enumerate();
+    let of_dof = of_dof.filter(|(_, p)| p.report.dof == dof && told(p));
     // a force that nobody measures is zero
     let measured = |r: &&Ratios| r.total[index(other)].iter().any(|r| r.value.norm() > 0.0);
     let (at, ratios): (Vec<usize>, Vec<&Ratios>) = of_dof

@@ -139,12 +139,9 @@ impl ProcessingOptions {
         }
         finite("processing.lag_s", self.lag_s.unwrap_or(0.0))?;
         let degree = self.drift_degree;
-        ensure(
-            degree <= DRIFT_DEGREE_AT_MOST,
-            "processing.drift_degree",
-            format_args!("at most {DRIFT_DEGREE_AT_MOST}"),
-            degree,
-        )?;
+        let expected = format_args!("at most {DRIFT_DEGREE_AT_MOST}");
+        let fits = degree <= DRIFT_DEGREE_AT_MOST;
+        ensure(fits, "processing.drift_degree", expected, degree)?;
         if let Some(cutoff) = self.low_pass.cutoff_hz {
             positive("processing.low_pass.cutoff_hz", cutoff)?;
         }

@@ -50,12 +50,10 @@ impl<'a> PreparedRun<'a> {
         let mut ratios = None;
         if let Some(still) = &run.still_air {
             let in_still_air = moving(still, "still air")?;
-            ensure(
-                in_still_air == dof,
-                format_args!("run {}, still air", run.name),
-                format_args!("the {} motion of the recording in wind", dof.name()),
-                format_args!("a {} motion", in_still_air.name()),
-            )?;
+            let place = format_args!("run {}, still air", run.name);
+            let expected = format_args!("the {} motion of the recording in wind", dof.name());
+            let found = format_args!("a {} motion", in_still_air.name());
+            ensure(in_still_air == dof, place, expected, found)?;
             body::check_force(&run.name, rig, still, dof)?;
             still_segments = find(still);
             ratios = Some(Ratios::new(&run.name, still, rig, dof, &still_segments)?);
@@ -80,36 +78,31 @@ impl RunReport {
         let rate = self.sampling_hz;
         let shift_s = covered.start as f64 / rate;
         let last_s = covered.len() as f64 / rate;
-        self.segments
-            .iter()
-            .map(|s| {
-                let p = s.plateau.range();
-                let mut moved = *s;
-                let common = p.start.max(covered.start)..p.end.min(covered.end);
-                if common != p {
-                    let period = rate / s.segment.frequency_hz;
-                    moved.plateau.periods = (common.len() as f64 / period) as usize;
-                    moved.plateau.samples =
-                        (moved.plateau.periods as f64 * period).round() as usize;
-                }
-                ensure(
-                    moved.plateau.periods as f64 >= COVERED * s.plateau.periods as f64,
-                    format_args!("run {}, still air", self.run),
-                    format_args!(
-                        "a recording as long as the motion at {:.3} Hz (samples {} to {})",
-                        s.segment.frequency_hz, p.start, p.end
-                    ),
-                    format_args!(
-                        "one that covers samples {} to {}",
-                        covered.start, covered.end
-                    ),
-                )?;
-                moved.plateau.first = common.start - covered.start;
-                moved.segment.start_s = (s.segment.start_s - shift_s).max(0.0);
-                moved.segment.end_s = (s.segment.end_s - shift_s).min(last_s);
-                Ok(moved)
-            })
-            .collect()
+        let Range { start: first, end } = *covered;
+        let moved = |s: &HarmonicSegment| {
+            let (p, frequency) = (s.plateau.range(), s.segment.frequency_hz);
+            let mut moved = *s;
+            let common = p.start.max(first)..p.end.min(end);
+            if common != p {
+                let period = rate / frequency;
+                moved.plateau.periods = (common.len() as f64 / period) as usize;
+                moved.plateau.samples = (moved.plateau.periods as f64 * period).round() as usize;
+            }
+            let Range { start, end: last } = p;
+            ensure(
+                moved.plateau.periods as f64 >= COVERED * s.plateau.periods as f64,
+                format_args!("run {}, still air", self.run),
+                format_args!(
+                    "a recording as long as the motion at {frequency:.3} Hz (samples {start} to {last})"
+                ),
+                format_args!("one that covers samples {first} to {end}"),
+            )?;
+            moved.plateau.first = common.start - first;
+            moved.segment.start_s = (s.segment.start_s - shift_s).max(0.0);
+            moved.segment.end_s = (s.segment.end_s - shift_s).min(last_s);
+            Ok(moved)
+        };
+        self.segments.iter().map(moved).collect()
     }
 
     /// Clipped stretches of both recordings in samples from the first covered one, that in still air being aligned.

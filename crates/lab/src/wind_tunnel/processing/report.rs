@@ -287,12 +287,10 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) -> Resul
     // what is clipped is said of its channel
     let others = report.replaced.iter().filter(|r| r.reason != CLIPPED);
     for r in others {
+        let (first, last) = (r.first, r.first + r.samples - 1);
+        let (start_s, reason) = (r.start_s, &r.reason);
         warnings.push(format!(
-            "samples {} to {} ({:.2} s) replaced: {}",
-            r.first,
-            r.first + r.samples - 1,
-            r.start_s,
-            r.reason
+            "samples {first} to {last} ({start_s:.2} s) replaced: {reason}"
         ));
     }
     report.warnings.extend(warnings);

@@ -24,8 +24,8 @@ pub struct CrossTalk {
     pub removed: [bool; 3],
 }
 
-/// Sets to zero what is no motion; nothing without segments.
-pub(crate) fn still_the_rest(
+/// Stage 11: sets to zero what is no motion; nothing without segments.
+pub(super) fn still_the_rest(
     signals: &mut SectionSignals,
     driven: Dof,
     segments: &[HarmonicSegment],
@@ -36,13 +36,11 @@ pub(crate) fn still_the_rest(
     let size = |d: Dof| root_mean_square(&signals.motion[index(d)]) * d.motion_scale(width_m);
     let own = size(driven).max(f64::MIN_POSITIVE);
     let parts = Dof::THREE.map(|d| size(d) / own);
-    let removed = parts.map(|p| p < negligible);
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else {
-        return CrossTalk {
-            parts,
-            removed: [false; 3],
-        };
+        let removed = [false; 3];
+        return CrossTalk { parts, removed };
     };
+    let removed = parts.map(|p| p < negligible);
     let rate = signals.sampling_hz;
     let (from, to) = (first.range(rate, count).start, last.range(rate, count).end);
     for (motion, removed) in signals.motion.iter_mut().zip(removed) {

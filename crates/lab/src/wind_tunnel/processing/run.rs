@@ -32,7 +32,9 @@ pub(super) fn process_run(
     run.remove_means();
     run.subtract_still_air()?;
     run.clean_and_filter()?;
-    run.still_the_rest();
+    let (dof, segments) = (run.report.dof, &run.report.segments);
+    let (width, negligible) = (campaign.rig.model_width_m, options.negligible_motion);
+    run.report.cross_talk = still_the_rest(&mut run.signals, dof, segments, width, negligible);
     report::warn(&mut run.report, options)?;
     let (segments, ramps) = (&run.report.segments, options.segments.ramps);
     let records = signals::records(campaign, dofs, &run.signals, segments, raw, ramps);
@@ -157,16 +159,13 @@ impl<'a> RunInProgress<'a> {
 
     /// Stage 8.
     fn subtract_still_air(&mut self) -> Result<()> {
+        let (signals, still_air) = (&mut self.signals, &self.still_air);
+        let (segments, dof) = (&self.report.segments, index(self.report.dof));
         let mismatch = match self.report.alignment {
-            Some(_) => still_air::mismatch(
-                &self.signals,
-                &self.still_air,
-                &self.report.segments,
-                index(self.report.dof),
-            )?,
+            Some(_) => still_air::mismatch(signals, still_air, segments, dof)?,
             None => RemovedInertia::default(),
         };
-        self.report.inertia = still_air::subtract(&mut self.signals, &self.still_air, mismatch);
+        self.report.inertia = still_air::subtract(signals, still_air, mismatch);
         self.done("still air subtracted");
         Ok(())
     }
@@ -225,17 +224,6 @@ impl<'a> RunInProgress<'a> {
         self.report.drift = RemovedDrift { degree, range };
         self.done("drift removed");
         Ok(parts)
-    }
-
-    /// Stage 11.
-    fn still_the_rest(&mut self) {
-        self.report.cross_talk = still_the_rest(
-            &mut self.signals,
-            self.report.dof,
-            &self.report.segments,
-            self.rig.model_width_m,
-            self.options.negligible_motion,
-        );
     }
 }
 

@@ -26,10 +26,8 @@ const SAME_FREQUENCY: f64 = 0.05;
 /// The degree of freedom that moves most: displacements over the width of the model, rotation in rad.
 pub(crate) fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
     let size = |d: Dof| largest_about_mean(&motion[super::index(d)]) * d.motion_scale(width_m);
-    Dof::THREE
-        .into_iter()
-        .filter(|d| size(*d) > 0.0)
-        .max_by(|a, b| size(*a).total_cmp(&size(*b)))
+    let moving = Dof::THREE.into_iter().filter(|d| size(*d) > 0.0);
+    moving.max_by(|a, b| size(*a).total_cmp(&size(*b)))
 }
 
 /// Whether a motion meets a stated frequency.
@@ -92,19 +90,15 @@ pub(crate) fn find_segments(
 pub(crate) fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
     let motion = super::still_air::from_rest(&recording.motion[super::index(dof)]);
     let amplitude = largest_magnitude(&motion);
-    let periods = upward_passages(&motion, HYSTERESIS * amplitude)
-        .len()
-        .saturating_sub(1);
-    let seconds = motion.len() as f64 / recording.sampling_hz;
-    ensure(
-        periods >= PERIODS_AT_LEAST,
-        place,
-        format_args!(
-            "a record of at least {PERIODS_AT_LEAST} whole periods of the {} motion",
-            dof.name()
-        ),
-        format_args!("{periods} in {} samples ({seconds:.3} s)", motion.len()),
-    )
+    let passages = upward_passages(&motion, HYSTERESIS * amplitude).len();
+    let (periods, samples) = (passages.saturating_sub(1), motion.len());
+    let seconds = samples as f64 / recording.sampling_hz;
+    let expected = format_args!(
+        "a record of at least {PERIODS_AT_LEAST} whole periods of the {} motion",
+        dof.name()
+    );
+    let found = format_args!("{periods} in {samples} samples ({seconds:.3} s)");
+    ensure(periods >= PERIODS_AT_LEAST, place, expected, found)
 }
 
 /// Places (in samples) at which the motion passes zero upwards between −`level` and `level`.
@@ -180,10 +174,9 @@ fn first_motion(motion: &[f64], first: f64, quiet: f64, rest: f64, sampling_hz: 
     let (rest, ramp) = (rest as usize, (0.5 * sampling_hz) as usize);
     let mut quiet_for = 0;
     for k in (0..(first as usize).min(motion.len())).rev() {
-        quiet_for = if motion[k].abs() <= quiet {
-            quiet_for + 1
-        } else {
-            0
+        quiet_for = match motion[k].abs() <= quiet {
+            true => quiet_for + 1,
+            false => 0,
         };
         if quiet_for == rest {
             return (k + rest).saturating_sub(ramp);

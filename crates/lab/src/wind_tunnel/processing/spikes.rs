@@ -60,9 +60,8 @@ pub(crate) fn remove_spikes(
     for _ in 0..ROUNDS {
         let mut added = false;
         let scale = |d: usize| Dof::THREE[d].force_scale(width_m) / width_m;
-        let greatest = (0..parts.len())
-            .map(|d| largest_magnitude(&parts[d].coherent) / scale(d))
-            .fold(0.0, f64::max);
+        let size = |d: usize| largest_magnitude(&parts[d].coherent) / scale(d);
+        let greatest = (0..parts.len()).map(size).fold(0.0, f64::max);
         for (d, part) in parts.iter().enumerate() {
             let least = NEGLIGIBLE * greatest * scale(d);
             let residual = residual(&signals.force[d], part, &reasons);
@@ -109,21 +108,18 @@ fn fit_all(
     reasons: &[Option<&'static str>],
 ) -> Result<[Parts; 3]> {
     let outliers: Vec<bool> = reasons.iter().map(Option::is_some).collect();
-    let [lift, drag, moment] = signals
-        .force
-        .each_ref()
-        .map(|f| regressors.fit(f, &outliers));
+    let force = signals.force.each_ref();
+    let [lift, drag, moment] = force.map(|f| regressors.fit(f, &outliers));
     Ok([lift?, drag?, moment?])
 }
 
 /// What is left of a force; zero where it is already known to be an outlier.
 fn residual(force: &[f64], part: &Parts, reasons: &[Option<&'static str>]) -> Vec<f64> {
-    (0..force.len())
-        .map(|k| match reasons[k] {
-            Some(_) => 0.0,
-            None => force[k] - part.coherent[k] - part.drift[k],
-        })
-        .collect()
+    let left = |k: usize| match reasons[k] {
+        Some(_) => 0.0,
+        None => force[k] - part.coherent[k] - part.drift[k],
+    };
+    (0..force.len()).map(left).collect()
 }
 
 /// Samples of `residual` that are too far out, segment by segment and in between.
@@ -157,9 +153,8 @@ fn outliers(
             1 => largest_magnitude(&part.coherent[range.clone()]),
             _ => overall,
         };
-        let limit = (options.deviations * deviation)
-            .max(options.least_part * follows)
-            .max(least);
+        let limit = (options.deviations * deviation).max(options.least_part * follows);
+        let limit = limit.max(least);
         found.extend(range.filter(|k| residual[*k].abs() > limit));
     }
     found

@@ -60,9 +60,8 @@ pub(crate) fn align(
     let moved_still = still_air.map(|x| moved(x, late, count));
     // an offset of rounding costs no sample
     let first = (-late - ROUNDING).ceil().max(0.0) as usize;
-    let end = (still_air.sample_count() as f64 - late + ROUNDING)
-        .floor()
-        .max(0.0) as usize;
+    let end = still_air.sample_count() as f64 - late + ROUNDING;
+    let end = end.floor().max(0.0) as usize;
     let covered = first.min(count)..end.min(count);
     let aligned_motion = moved(&compared, late, count);
     let inside = |x: &[f64]| x[covered.clone()].to_vec();
@@ -70,12 +69,11 @@ pub(crate) fn align(
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
     // over what both cover: a recording that ends early is alike, and reported as short where it matters
     let correlation = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
-    ensure(
-        correlation.is_finite() && correlation >= ALIKE,
-        place(),
-        format_args!("the motion of the recording in wind, correlation at least {ALIKE}"),
-        format_args!("correlation {correlation:.3}"),
-    )?;
+    let alike = correlation.is_finite() && correlation >= ALIKE;
+    let expected =
+        format_args!("the motion of the recording in wind, correlation at least {ALIKE}");
+    let found = format_args!("correlation {correlation:.3}");
+    ensure(alike, place(), expected, found)?;
     let alignment = Alignment {
         offset_s: late / in_wind.sampling_hz,
         offset_samples: late,
@@ -133,14 +131,9 @@ pub(crate) fn mismatch(
         }
     };
     for at in segments {
-        let (steady, frequency_hz) = (at.plateau.range(), at.segment.frequency_hz);
+        let (rate, frequency_hz) = (in_wind.sampling_hz, at.segment.frequency_hz);
         let of = |signals: &[Vec<f64>; 3]| {
-            let fit = fit_sine(
-                &signals[dof],
-                steady.clone(),
-                in_wind.sampling_hz,
-                frequency_hz,
-            );
+            let fit = fit_sine(&signals[dof], at.plateau.range(), rate, frequency_hz);
             fit.map(|fit| fit.fundamental())
         };
         let motion = of(&still_air.motion)? / of(&in_wind.motion)?;

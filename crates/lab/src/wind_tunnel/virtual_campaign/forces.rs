@@ -93,10 +93,9 @@ pub(super) fn noise([drag, lift, moment]: [f64; 3], random: &mut ChaCha8Rng) -> 
 /// Drift of each channel of one cell, drawn once: the size of a rise over the recording and that of half a wave.
 pub(super) fn drift(plan: &Disturbances, random: &mut ChaCha8Rng) -> [[f64; 2]; 6] {
     std::array::from_fn(|channel| {
-        let size = if channel < 3 {
-            plan.drift_n
-        } else {
-            plan.drift_n_m
+        let size = match channel {
+            0..3 => plan.drift_n,
+            _ => plan.drift_n_m,
         };
         [
             size * random.random_range(-1.0..1.0),
@@ -133,9 +132,8 @@ pub(super) fn place_spike(
 
 /// The force of a spike at a sample.
 pub(super) fn spike_at(spike: &AppliedSpike, sample: usize) -> Option<Wrench> {
-    let inside = sample
-        .checked_sub(spike.first)
-        .filter(|i| *i < spike.samples)?;
+    let inside = sample.checked_sub(spike.first);
+    let inside = inside.filter(|i| *i < spike.samples)?;
     let shape = (PI * (inside as f64 + 0.5) / spike.samples as f64).sin();
     Some(section_wrench(spike.height.map(|height| height * shape)))
 }
@@ -149,10 +147,7 @@ pub(super) fn readings(support: &Support, on_model: &Wrench, theta_rad: f64) -> 
     let clamping: [Vector3<f64>; 2] = [support.clamping_n.into(), support.clamping_n_m.into()];
     let shares = [support.share_of_first, 1.0 - support.share_of_first];
     let shared = |what: Vector3<f64>, clamping: Vector3<f64>| {
-        [
-            what * shares[0] + clamping * 1.0,
-            what * shares[1] + clamping * -1.0,
-        ]
+        [what * shares[0] + clamping, what * shares[1] - clamping]
     };
     let forces = shared(on_model.fixed_rows::<3>(0).into_owned(), clamping[0]);
     let places = support.cells.iter().zip(&forces);

@@ -140,6 +140,7 @@ impl<'a> RunInMaking<'a> {
         let forces = [Dof::Lateral, Dof::Vertical, Dof::Torsion].map(|d| force_of(record, d));
         let length = plan.support.model_length_m;
         let rms = |force: Option<&[f64]>| root_mean_square(force.unwrap_or(&[]));
+        let spike = d.spike.as_ref();
         let mut run = Self {
             plan,
             index,
@@ -151,10 +152,7 @@ impl<'a> RunInMaking<'a> {
                 noise: forces.map(|f| plan.tunnel.noise_fraction * length * rms(f)),
                 force_lag_s: d.force_lag_s,
                 still_air_offset_s: d.still_air_offset_s,
-                spike: d
-                    .spike
-                    .as_ref()
-                    .and_then(|s| place_spike(s, record, forces, length)),
+                spike: spike.and_then(|s| place_spike(s, record, forces, length)),
             },
         };
         run.applied.static_wind = run.wind_load(0.0, 0.0);
@@ -213,12 +211,8 @@ impl<'a> RunInMaking<'a> {
         let seen = self.motion(offset_s);
         let felt = self.motion(offset_s + self.applied.force_lag_s);
         let travelled = header.mean_speed_m_s / header.sampling_hz;
-        let gusts = gusts(
-            turbulence,
-            seen.len(),
-            travelled,
-            &mut self.random(in_wind, 0),
-        );
+        let mut random = self.random(in_wind, 0);
+        let gusts = gusts(turbulence, seen.len(), travelled, &mut random);
         RawRecording {
             source: format!("{}, {what}", header.name),
             sampling_hz: header.sampling_hz,

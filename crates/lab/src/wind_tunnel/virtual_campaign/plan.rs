@@ -289,12 +289,8 @@ impl Support {
     }
 
     fn validate(&self) -> Result<()> {
-        ensure(
-            self.cells.len() == 2,
-            "support.cells",
-            "two load cells",
-            self.cells.len(),
-        )?;
+        let cells = self.cells.len();
+        ensure(cells == 2, "support.cells", "two load cells", cells)?;
         // the width is the deck's and checked with it
         self.rig(1.0).validate()?;
         finite("support.share_of_first", &[self.share_of_first])?;
