@@ -11,7 +11,7 @@ use aerodeck::plausibility::{Finding, of_model};
 use aerodeck::section::SectionModel;
 use aerodeck::study::{ExportBlock, uncertainty_beside};
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
-use aerodeck::uncertainty::{CoefficientUncertainty, FormEnsemble, KnownData, ModelUncertainty};
+use aerodeck::uncertainty::{CoefficientUncertainty, Design, FormEnsemble, ModelUncertainty};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
@@ -85,11 +85,7 @@ impl Model {
     fn _from_state(state: &str) -> PyResult<Self> {
         let (model, of_data, stored, name, findings) = restored(state)?;
         let (tested, provenance, report, known) = of_data;
-        type Known = (
-            CoefficientUncertainty,
-            Option<KnownData>,
-            Option<FormEnsemble>,
-        );
+        type Known = (CoefficientUncertainty, Option<Design>, Option<FormEnsemble>);
         let known: Result<Known, String> = known;
         let of_data = |(mut coefficients, data, forms): Known| {
             coefficients.data = data;

@@ -3,7 +3,7 @@
 use crate::bridges::{TWO, langenuen_text, read};
 use aerodeck::bridge::Bridge;
 use aerodeck::files::bridge::embedded;
-use aerodeck::plausibility::{TurbulenceFigures, of_bridge, of_turbulence};
+use aerodeck::plausibility::{of_bridge, of_turbulence};
 
 fn langenuen() -> Bridge {
     read(&langenuen_text("LN21-5200", TWO, "modified_akima")).by_model
@@ -91,37 +91,30 @@ fn half_a_girder_is_doubted() {
 #[test]
 fn turbulence_that_is_none_of_this_wind_is_doubted() {
     let modes = langenuen().modes;
-    let right = TurbulenceFigures {
-        step_s: 0.1,
-        duration_s: 600.0,
-        deviations_m_s: [3.6, 1.8],
-    };
+    let right = [3.6, 1.8];
     let stated = [Some(0.12), Some(0.06)];
-    let found = |figures: &TurbulenceFigures| -> Vec<String> {
-        let found = of_turbulence(&modes, figures, Some(30.0), stated);
+    let found = |step_s, duration_s, deviations_m_s| -> Vec<String> {
+        let found = of_turbulence(
+            &modes,
+            step_s,
+            duration_s,
+            deviations_m_s,
+            Some(30.0),
+            stated,
+        );
         found.iter().map(ToString::to_string).collect()
     };
-    assert!(found(&right).is_empty());
-    let in_km_h = found(&TurbulenceFigures {
-        deviations_m_s: [12.96, 6.48],
-        ..right
-    });
+    assert!(found(0.1, 600.0, right).is_empty());
+    let in_km_h = found(0.1, 600.0, [12.96, 6.48]);
     assert_eq!(
         in_km_h[0],
         "u: standard deviation = 12.96: that is 0.432 of the mean wind of 30 m/s; the intensity that is stated is 0.12; in km/h it \
          would be 3.6 m/s"
     );
     assert_eq!(in_km_h.len(), 2);
-    let in_ms = found(&TurbulenceFigures {
-        step_s: 100.0,
-        duration_s: 6e5,
-        ..right
-    });
+    let in_ms = found(100.0, 6e5, right);
     assert!(in_ms[0].ends_with("in ms it would be 0.1 s"), "{in_ms:?}");
-    let short = found(&TurbulenceFigures {
-        duration_s: 0.5,
-        ..right
-    });
+    let short = found(0.1, 0.5, right);
     assert!(
         short[0].contains("which does not come into motion in it"),
         "{short:?}"

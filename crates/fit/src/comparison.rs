@@ -38,7 +38,7 @@ pub use bicoherence::{BicoherenceDetails, BicoherenceParameters, Coupling, bicoh
 pub use density::{DensityDetails, probability_density};
 pub use dtw::{WarpingPath, warping_path};
 pub use morlet::WaveletParameters;
-pub use phase::{LagEstimate, PhaseDetails, PhaseParameters, phase};
+pub use phase::{PhaseDetails, PhaseParameters, phase};
 pub use stationarity::{
     StationarityDetails, StationarityParameters, StationarityTest, stationarity,
 };

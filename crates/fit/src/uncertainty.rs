@@ -38,8 +38,9 @@ mod speed_scatter;
 mod statistics;
 mod table_covariance;
 
-pub use coefficients::{CoefficientUncertainty, KnownData};
+pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, coverage};
+pub use design::Design;
 pub use draws::ModelDraws;
 pub use family::{DeckOutcome, FamilyPlan, FamilyRange, FamilyReport, RangeCount, family_coverage};
 pub use forms::{AdmissibleForm, FormEnsemble, FormOnset, FormSpread};

@@ -11,10 +11,7 @@ mod model;
 mod section;
 mod table;
 
-pub use bridge::{
-    TurbulenceFigures, is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile,
-    of_turbulence,
-};
+pub use bridge::{is_same_mode, of_bridge, of_modes, of_modes_left_out, of_profile, of_turbulence};
 pub use coefficients::of_coefficients;
 pub use limits::{
     DECK_WIDTH, Limits, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,

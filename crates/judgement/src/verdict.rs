@@ -20,7 +20,6 @@ mod doubt;
 mod doubts;
 mod evidence;
 mod outcome;
-mod reach;
 mod reasons;
 mod searched;
 mod sentences;
@@ -32,10 +31,9 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation, ModesLeftOut,
-    RequiredSpeed, UntestedPart, UntestedParts,
+    Reach, RequiredSpeed, UntestedPart, UntestedParts,
 };
 pub use outcome::{Below, Outcome};
-pub use reach::Reach;
 
 use sentences::{explanation, headline};
 use serde::{Deserialize, Serialize};
@@ -105,11 +103,9 @@ impl Verdict {
 fn suggestion(evidence: &Evidence, critical: &Critical) -> Option<f64> {
     let found = evidence.flutter.first().and_then(FlutterReading::best_m_s);
     let searched = evidence.searched_to_m_s.filter(|_| found.is_none());
-    let least = critical
-        .least_m_s()
-        .into_iter()
-        .chain(searched.map(RequiredSpeed::of_search))
-        .fold(critical.judged_to_m_s, f64::min);
+    let searched = searched.map(RequiredSpeed::of_search);
+    let ends = critical.least_m_s().into_iter().chain(searched);
+    let least = ends.fold(critical.judged_to_m_s, f64::min);
     let met = |&speed_m_s: &f64| {
         let required = Evidence {
             required: Some(RequiredSpeed { speed_m_s }),
@@ -119,8 +115,7 @@ fn suggestion(evidence: &Evidence, critical: &Critical) -> Option<f64> {
         is_speed && Verdict::unworded(&required).outcome == Some(Outcome::Met)
     };
     // half of an onset whose interval is not known
-    [least, RequiredSpeed::of_search(least)]
-        .map(|speed_m_s| (10.0 * speed_m_s).floor() / 10.0)
-        .into_iter()
-        .find(met)
+    let speeds = [least, RequiredSpeed::of_search(least)];
+    let rounded = speeds.map(|speed_m_s| (10.0 * speed_m_s).floor() / 10.0);
+    rounded.into_iter().find(met)
 }

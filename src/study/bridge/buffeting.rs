@@ -243,7 +243,9 @@ impl BridgeStudy {
         let block = block.as_ref();
         let stated = [block.and_then(|b| b.along), block.and_then(|b| b.vertical)];
         let stated = stated.map(|gust| gust.map(|g| g.spectrum.intensity));
-        of_turbulence(&self.by_model.modes, &field.figures(), speed_m_s, stated)
+        let (modes, deviations_m_s) = (&self.by_model.modes, field.deviations_m_s());
+        let (step_s, duration_s) = (field.step_s, field.duration_s());
+        of_turbulence(modes, step_s, duration_s, deviations_m_s, speed_m_s, stated)
     }
 
     /// Response to the turbulence of a file, at the nodes of the bridge.

@@ -29,10 +29,8 @@ pub struct DistanceDetails {
 /// # Errors
 /// [`crate::Error::Input`] if the reference is zero throughout.
 pub fn peak(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
-    levels(
-        largest_magnitude(pair.reference()),
-        largest_magnitude(pair.compared()),
-    )
+    let [reference, compared] = [pair.reference(), pair.compared()].map(largest_magnitude);
+    levels(reference, compared)
 }
 
 /// RMS metric `M_rms = exp(−|rms₁ − rms₂|/rms₁)`; means are not removed.
@@ -87,10 +85,8 @@ pub(super) fn content_metric(
             reference_norm: 0.0,
         },
     };
-    match (
-        pairs.clone().any(|p| p.0 > 0.0),
-        pairs.clone().any(|p| p.1 > 0.0),
-    ) {
+    let all = || pairs.clone();
+    match (all().any(|p| p.0 > 0.0), all().any(|p| p.1 > 0.0)) {
         (true, true) => distance_metric(pairs),
         (false, false) => Ok(nothing(1.0)),
         _ => Ok(nothing(0.0)),

@@ -134,9 +134,8 @@ impl<'a> CostMatrix<'a> {
     fn path(&self, interval: usize) -> Result<WarpingPath> {
         let (distance, checkpoints) = self.sweep(interval as isize);
         if !distance.is_finite() {
-            return Err(Error::Numerical(
-                "the cost of warping is too large for double precision".into(),
-            ));
+            let what = "the cost of warping is too large for double precision";
+            return Err(Error::Numerical(what.into()));
         }
         let cells = self.backtrack(checkpoints);
         let touches = |r| cells.iter().any(|&(i, j)| i.abs_diff(j) as isize == r);

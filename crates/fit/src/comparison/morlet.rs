@@ -61,11 +61,7 @@ pub(super) struct LevelGroup<'a> {
 }
 
 /// Memory of [`LevelGroup::row`], kept from one level and signal to the next.
-#[derive(Default)]
-pub(super) struct RowBuffer {
-    values: Vec<Complex64>,
-    scratch: Vec<Complex64>,
-}
+pub(super) type RowBuffer = [Vec<Complex64>; 2];
 
 /// Levels in a group.
 const GROUP: usize = 16;
@@ -185,7 +181,7 @@ impl LevelGroup<'_> {
         spectrum: &[Complex64],
         buffer: &'b mut RowBuffer,
     ) -> &'b [Complex64] {
-        let RowBuffer { values, scratch } = buffer;
+        let [values, scratch] = buffer;
         values.resize(kernel.len(), Complex64::default());
         at_level(values, kernel, spectrum);
         self.fourier.inverse_in(values, scratch);
@@ -236,12 +232,9 @@ const MOST_LEVELS: usize = 100_000;
 
 fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
     let p = parameters;
-    ensure(
-        (1..=MOST_LEVELS).contains(&p.level_count),
-        "number of wavelet levels",
-        format_args!("1 to {MOST_LEVELS}"),
-        p.level_count,
-    )?;
+    let (levels, most) = (1..=MOST_LEVELS, format_args!("1 to {MOST_LEVELS}"));
+    let usual = levels.contains(&p.level_count);
+    ensure(usual, "number of wavelet levels", most, p.level_count)?;
     positive("lowest wavelet frequency, Hz", p.frequency_min_hz)?;
     positive("central frequency of the wavelet", p.central_frequency)?;
     positive("truncation of the wavelet", p.truncation)?;

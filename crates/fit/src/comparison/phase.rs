@@ -8,28 +8,20 @@ use serde::Serialize;
 use std::convert::Infallible;
 use std::f64::consts::PI;
 
-/// How finely the lag of the largest correlation is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum LagEstimate {
-    /// Whole samples, as in the published toolbox: at 200 Hz one sample is 3.6° of 2 Hz.
-    WholeSample,
-    /// Maximum of the band-limited (sinc) interpolation of the correlation; exact for band-limited signals.
-    BandLimited,
-}
-
 /// Parameters of [`phase`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PhaseParameters {
     /// Delay `T_c` that brings the metric to 1/e, s; default 1 s. A phase of 5° at `f` is `5/(360 f)`.
     pub significant_delay_s: f64,
-    /// Resolution of the lag; default [`LagEstimate::BandLimited`].
-    pub lag: LagEstimate,
+    /// Lag in whole samples, as in the published toolbox: at 200 Hz one sample is 3.6° of 2 Hz. Else, by default, the maximum of the
+    /// band-limited (sinc) interpolation of the correlation, which is exact for band-limited signals.
+    pub whole_samples: bool,
     /// Refine the lag on the correlation divided by `√(Σ X₁² Σ X₂²)` of the overlapping samples; default `true`.
     ///
     /// The published correlation is not divided. Then fewer samples overlap at larger lags, which draws the lag of
     /// a harmonic of circular frequency ω and phase φ in a record of whole periods and duration T towards zero by
     /// `(1 + cos²φ)/(ω²T)`: 0.9° at 2 Hz and 10 s. Divided, it is largest, 1, at the delay of any delayed signal.
-    /// No effect on [`LagEstimate::WholeSample`].
+    /// No effect on whole samples.
     pub overlap_normalised: bool,
 }
 
@@ -38,7 +30,7 @@ impl PhaseParameters {
     pub const fn published(significant_delay_s: f64) -> Self {
         Self {
             significant_delay_s,
-            lag: LagEstimate::WholeSample,
+            whole_samples: true,
             overlap_normalised: false,
         }
     }
@@ -48,7 +40,7 @@ impl Default for PhaseParameters {
     fn default() -> Self {
         Self {
             significant_delay_s: 1.0,
-            lag: LagEstimate::BandLimited,
+            whole_samples: false,
             overlap_normalised: true,
         }
     }
@@ -94,9 +86,9 @@ pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metr
         let value = correlation.at(lag);
         if divisor > 0.0 { value / divisor } else { 0.0 }
     };
-    let lag = match parameters.lag {
-        LagEstimate::WholeSample => whole as f64,
-        LagEstimate::BandLimited => {
+    let lag = match parameters.whole_samples {
+        true => whole as f64,
+        false => {
             let reach = (correlation.sample_count() / 16) as isize;
             band_limited(&divided, climb(&divided, whole, reach)?)
         }
@@ -143,9 +135,8 @@ fn band_limited(correlation: &dyn Fn(isize) -> f64, top: isize) -> f64 {
     const HALF_WIDTH: isize = 32;
     const WINDOW_SIGMA: f64 = HALF_WIDTH as f64 / 6.0;
     let sign = correlation(top).signum();
-    let values: Vec<(f64, f64)> = (-HALF_WIDTH..=HALF_WIDTH)
-        .map(|k| (k as f64, sign * correlation(top + k)))
-        .collect();
+    let value = |k| (k as f64, sign * correlation(top + k));
+    let values: Vec<(f64, f64)> = (-HALF_WIDTH..=HALF_WIDTH).map(value).collect();
     let interpolated = |offset: f64| -> f64 {
         let part = |(k, value): &(f64, f64)| {
             let x = offset - k;
@@ -195,12 +186,16 @@ mod tests {
         (reference, compared)
     }
 
-    fn lag_of(phase_rad: f64, lag: LagEstimate, overlap_normalised: bool) -> Metric<PhaseDetails> {
+    fn lag_of(
+        phase_rad: f64,
+        whole_samples: bool,
+        overlap_normalised: bool,
+    ) -> Metric<PhaseDetails> {
         let (x1, x2) = harmonics(0.7, phase_rad);
         let pair = SignalPair::new(&x1, &x2, STEP_S).unwrap();
         let parameters = PhaseParameters {
             significant_delay_s: 5.0 / 360.0 / 2.0,
-            lag,
+            whole_samples,
             overlap_normalised,
         };
         phase(&pair, &parameters).unwrap()
@@ -211,7 +206,7 @@ mod tests {
         // Lags of 0.4, 1.7 and 3 samples: sub-sample resolution, and 0.015 s = 10.8° → exp(−10.8/5).
         for samples in [0.4, 1.7, 3.0] {
             let phi = TAU * 2.0 * STEP_S * samples;
-            let metric = lag_of(phi, LagEstimate::BandLimited, true);
+            let metric = lag_of(phi, false, true);
             // The ends of the record are not band-limited: ringing of one sample's size in 20 000.
             assert_abs_diff_eq!(
                 metric.details.lag_s,
@@ -228,7 +223,7 @@ mod tests {
         let omega = TAU * 2.0;
         // Far from zero lag, where the undivided correlation has a kink.
         let phi = omega * STEP_S * 12.3;
-        let lag_s = lag_of(phi, LagEstimate::BandLimited, false).details.lag_s;
+        let lag_s = lag_of(phi, false, false).details.lag_s;
         let expected = phi / omega - (1.0 + phi.cos().powi(2)) / (omega * omega * 100.0);
         // Sums instead of integrals: the ends lie half a sample off, ωΔt/2 = 0.03 rad.
         assert_abs_diff_eq!(lag_s, expected, epsilon = 0.05 * (phi / omega - expected));
@@ -236,7 +231,7 @@ mod tests {
 
     #[test]
     fn whole_samples_are_quantised() {
-        let metric = lag_of(TAU * 2.0 * STEP_S * 2.9, LagEstimate::WholeSample, false);
+        let metric = lag_of(TAU * 2.0 * STEP_S * 2.9, true, false);
         assert_eq!(metric.details.whole_lag_samples, 3);
         assert_eq!(metric.details.lag_s, 3.0 * STEP_S);
         // 0.015 s at 2 Hz is 10.8°: exp(−10.8/5) = 0.115.
@@ -245,7 +240,7 @@ mod tests {
 
     #[test]
     fn antiphase_locks_to_the_nearest_multiple_of_pi() {
-        let metric = lag_of(2.0 * FRAC_PI_2, LagEstimate::WholeSample, false);
+        let metric = lag_of(2.0 * FRAC_PI_2, true, false);
         assert_eq!(metric.details.whole_lag_samples, 0);
         assert_abs_diff_eq!(metric.details.correlation, -1.0, epsilon = 1e-12);
         assert_eq!(metric.value, 1.0);

@@ -3,7 +3,7 @@
 use super::amplitude::{DistanceDetails, content_metric};
 use super::morlet::{LevelGroup, Morlet, RowBuffer, WaveletParameters};
 use super::scalogram::{Moments, Scalogram};
-use super::surrogates::{Gamma, phase_randomised};
+use super::surrogates::{gamma_cumulative, gamma_fit, phase_randomised};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, ensure, non_negative};
 use crate::signal::{Complex64, mean_and_deviation};
@@ -172,7 +172,7 @@ impl<'a> Surrogates<'a> {
     fn test(&self, place: &str, parameters: &StationarityParameters) -> Result<StationarityTest> {
         let (_, deviation) = mean_and_deviation(self.others.iter().copied());
         let scaled: Vec<f64> = self.others.iter().map(|x| x / deviation).collect();
-        let Some(gamma) = Gamma::fit(&scaled) else {
+        let Some([shape, scale]) = gamma_fit(&scaled) else {
             return Err(Error::input(
                 place,
                 "a signal with power at several frequencies",
@@ -180,7 +180,7 @@ impl<'a> Surrogates<'a> {
             ));
         };
         let statistic = self.own / deviation;
-        let probability = gamma.cumulative(statistic);
+        let probability = gamma_cumulative(shape, scale, statistic);
         Ok(StationarityTest {
             statistic,
             probability,

@@ -24,12 +24,7 @@ pub(crate) struct Basis {
 impl Basis {
     /// The basis of `form` with the poles `poles`, one per filter.
     pub(crate) fn new(form: &Form, poles: &[f64]) -> Result<Self> {
-        let lags = match form {
-            Form::Rational { .. } | Form::RationalPerForce { .. } | Form::MinimumState { .. } => {
-                true
-            }
-            Form::Laguerre { .. } | Form::TakenakaMalmquist { .. } => false,
-        };
+        let lags = form.has_lags();
         let basis = Self::orthonormal(form, poles)?;
         Ok(Self { lags, ..basis })
     }
@@ -104,11 +99,9 @@ impl Basis {
             true => ("a", 1, "a", 4),
         };
         let filters = (0..self.poles().len()).map(|l| format!("{filter}{}", first + l));
-        self.feed
-            .orders()
-            .map(|order| format!("{feed}{}", order + shift))
-            .chain(filters)
-            .collect()
+        let orders = self.feed.orders();
+        let names = orders.map(|order| format!("{feed}{}", order + shift));
+        names.chain(filters).collect()
     }
 
     /// The filters in dimensionless time, `x' = A x + b r + b₁ r'`: `A`, and `b` beside `b₁`; their outputs are their states.
@@ -141,26 +134,22 @@ pub(crate) fn assemble(
     let feed = form.feed_through();
     let part = |order: usize| {
         let column = feed.orders().position(|o| o == order);
-        DMatrix::from_fn(n, n, |i, j| {
-            column.map_or(0.0, |c| coefficients[i * n + j][c])
-        })
+        let entry = |i: usize, j: usize| column.map_or(0.0, |c| coefficients[i * n + j][c]);
+        DMatrix::from_fn(n, n, entry)
     };
     let filter = |i: usize, j: usize, l: usize| coefficients[i * n + j][feed.count() + l];
     if let Form::Rational { .. } | Form::RationalPerForce { .. } = form {
-        let count = poles[0].len();
-        let lags = if form.poles_per_force() {
-            Lags::PerForce(poles.iter().step_by(n).cloned().collect())
-        } else {
-            Lags::Shared(poles[0].clone())
+        let term = |l| DMatrix::from_fn(n, n, |i, j| filter(i, j, l));
+        let lags = match form.poles_per_force() {
+            true => Lags::PerForce(poles.iter().step_by(n).cloned().collect()),
+            false => Lags::Shared(poles[0].clone()),
         };
         let model = RationalModel {
             dofs: dofs.to_vec(),
             a1: part(0),
             a2: part(1),
             a3: part(2),
-            lag_terms: (0..count)
-                .map(|l| DMatrix::from_fn(n, n, |i, j| filter(i, j, l)))
-                .collect(),
+            lag_terms: (0..poles[0].len()).map(term).collect(),
             lags,
         };
         model.validate()?;
@@ -177,15 +166,13 @@ pub(crate) fn assemble(
             coefficients: DMatrix::from_fn(n, chain.len(), coefficient),
         })
     };
+    let chains = once_an_input(n, poles).into_iter();
     let model = LaguerreModel {
         dofs: dofs.to_vec(),
         e0: part(0),
         e1: part(1),
         e2: part(2),
-        terms: once_an_input(n, poles)
-            .into_iter()
-            .map(term)
-            .collect::<Result<_>>()?,
+        terms: chains.map(term).collect::<Result<_>>()?,
     };
     model.validate()?;
     Ok(Model::Laguerre(model))

@@ -60,10 +60,8 @@ impl LinearProblem {
         let unknowns = space.spread.ncols();
         enough_rows(place, self.rows.len(), unknowns)?;
         let norms = self.norms();
-        let ridge: Vec<(usize, f64)> = (0..self.columns())
-            .filter(|&c| self.ridge[c] > 0.0)
-            .map(|c| (c, self.ridge[c] * norms[c]))
-            .collect();
+        let with_ridge = (0..self.columns()).filter(|&c| self.ridge[c] > 0.0);
+        let ridge: Vec<(usize, f64)> = with_ridge.map(|c| (c, self.ridge[c] * norms[c])).collect();
         let (measured, n) = (self.rows.len(), self.columns());
         let all = DMatrix::from_fn(measured + ridge.len(), n, |r, c| match self.rows.get(r) {
             Some(row) => row[c],
@@ -112,13 +110,11 @@ impl LinearProblem {
         if largest == 0.0 {
             return 0.0;
         }
-        let dot = |row: &Vec<f64>| {
-            row.iter()
-                .zip(coefficients)
-                .map(|(a, c)| a * c)
-                .sum::<f64>()
+        let fitted = |row: &Vec<f64>| -> f64 {
+            let terms = row.iter().zip(coefficients).map(|(a, c)| a * c);
+            terms.sum::<f64>().powi(2)
         };
-        let fitted: f64 = self.rows.iter().map(|r| dot(r).powi(2)).sum();
+        let fitted: f64 = self.rows.iter().map(fitted).sum();
         largest / fitted.sqrt()
     }
 
@@ -153,9 +149,8 @@ impl LinearProblem {
 impl LinearSolution {
     /// Residuals of the ridge with given coefficients, of the columns that have one.
     pub(crate) fn penalty<'a>(&'a self, coefficients: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        self.ridge
-            .iter()
-            .map(|(c, factor)| factor * coefficients[*c])
+        let ridge = self.ridge.iter();
+        ridge.map(|(c, factor)| factor * coefficients[*c])
     }
 
     /// What the coefficients become when the free unknowns leave their best values by one unit of the weighted residual,

@@ -5,9 +5,7 @@
 //! that lags which were given are judged as well.
 
 use crate::aerodynamics::{Lags, MinimumStateModel};
-use crate::section::Dof;
 use crate::trained_model::Model;
-use nalgebra::DMatrix;
 
 /// Lags closer than this ratio have columns that differ by less than 2 % of their size at any K.
 pub(crate) const NEAR_EQUAL_RATIO: f64 = 1.05;
@@ -23,17 +21,14 @@ pub(crate) fn note_lags(model: &Model, notes: &mut Vec<String>) {
             Lags::Shared(lags) => note_pairs(lags, "", &|_, _| true, notes),
             Lags::PerForce(rows) => {
                 for (force, lags) in m.dofs.iter().zip(rows) {
-                    note_pairs(lags, &whose(*force), &|_, _| true, notes);
+                    let whose = format!("{} force: ", force.name());
+                    note_pairs(lags, &whose, &|_, _| true, notes);
                 }
             }
         },
         Model::MinimumState(m) => note_states(m, notes),
         _ => {}
     }
-}
-
-fn whose(force: Dof) -> String {
-    format!("{} force: ", force.name())
 }
 
 fn note_pairs(
@@ -63,11 +58,8 @@ fn note_states(model: &MinimumStateModel, notes: &mut Vec<String>) {
         a.dot(&b).abs() > PARALLEL * a.norm() * b.norm()
     };
     note_pairs(&model.lags, "", &parallel, notes);
-    let strength =
-        |matrix: &DMatrix<f64>, l: usize| matrix.column(l).norm() * model.e.row(l).norm();
-    let strengths: Vec<f64> = (0..model.lags.len())
-        .map(|l| strength(&model.d, l))
-        .collect();
+    let strength = |l: usize| model.d.column(l).norm() * model.e.row(l).norm();
+    let strengths: Vec<f64> = (0..model.lags.len()).map(strength).collect();
     let largest = strengths.iter().copied().fold(0.0, f64::max);
     for (lag, strength) in model.lags.iter().zip(&strengths) {
         if *strength <= IDLE * largest {
@@ -82,6 +74,7 @@ fn note_states(model: &MinimumStateModel, notes: &mut Vec<String>) {
 mod tests {
     use super::*;
     use crate::aerodynamics::RationalModel;
+    use nalgebra::DMatrix;
 
     fn notes(model: Model) -> Vec<String> {
         let mut notes = Vec::new();

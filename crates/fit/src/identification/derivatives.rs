@@ -38,10 +38,8 @@ pub fn identify_derivatives(
     options: &DerivativeOptions,
 ) -> Result<IdentifiedDerivatives> {
     options.validate()?;
-    let first = records
-        .first()
-        .ok_or_else(|| Error::input("records", "at least one", "none"))?
-        .header();
+    let none = || Error::input("records", "at least one", "none");
+    let first = records.first().ok_or_else(none)?.header();
     let mut result = IdentifiedDerivatives {
         width_m: first.width_m,
         dofs: first.dofs.clone(),

@@ -33,7 +33,6 @@ use conic::shortest;
 pub use equations::Constraints;
 pub(crate) use equations::FitRequirements;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use report::GrowthLimit;
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport};
 
@@ -52,15 +51,6 @@ const AGREEMENT: f64 = 1e-8;
 /// Times that further `K` are stated; two or three are the rule.
 const ROUNDS: usize = 30;
 
-/// Where condition 3 is to hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Strictness {
-    /// At the `K` that are stated first: for the search of poles.
-    Sampled,
-    /// At every `K ≥ K_max`.
-    Everywhere,
-}
-
 /// The fit under the conditions.
 pub(crate) struct Solution {
     /// The free numbers; without constraints they are zero.
@@ -74,6 +64,7 @@ pub(crate) struct Solution {
 }
 
 /// The least of the joint objective of transfer functions under what is asked of them; `None` when least squares alone satisfy it.
+/// Condition 3 holds `everywhere`, at every `K ≥ K_max`, or, for the search of poles, at the `K` that are stated first.
 ///
 /// # Errors
 /// Limits at K → 0 that the columns cannot meet, and conditions that no coefficients satisfy.
@@ -81,13 +72,13 @@ pub(crate) fn constrained(
     entries: &[AffineMap],
     bases: &[Basis],
     requirements: &FitRequirements,
-    strictness: Strictness,
+    everywhere: bool,
 ) -> Result<Option<Solution>> {
-    Dissipation::new(bases, requirements, entries).solve(strictness)
+    Dissipation::new(bases, requirements, entries).solve(everywhere)
 }
 
 impl Dissipation<'_> {
-    fn solve(mut self, strictness: Strictness) -> Result<Option<Solution>> {
+    fn solve(mut self, everywhere: bool) -> Result<Option<Solution>> {
         let equalities = self.satisfied()?;
         let start = &equalities.start;
         let at = |free: &DVector<f64>| -> Vec<Vec<f64>> {
@@ -100,7 +91,7 @@ impl Dissipation<'_> {
         let broken = |s: &Condition| self.excesses(s, &at_start).0.max() > TOLERANCE;
         let mut more = match conditions.iter().any(broken) {
             true => None,
-            false => Some(self.broken_between(&at_start, strictness)),
+            false => Some(self.broken_between(&at_start, everywhere)),
         };
         for _ in 0..=ROUNDS {
             if more.as_ref().is_some_and(Vec::is_empty) {
@@ -118,7 +109,7 @@ impl Dissipation<'_> {
             let (further, holding) = shortest(&cones, self.width)?;
             (free, holds) = (start + further, holding);
             coefficients = at(&free);
-            more = Some(self.broken_between(&coefficients, strictness));
+            more = Some(self.broken_between(&coefficients, everywhere));
         }
         Err(Error::Numerical(format!(
             "dissipative fit: damping for every K not reached after {ROUNDS} rounds; `constraints = \"none\"` fits without"
@@ -152,16 +143,13 @@ impl Dissipation<'_> {
     }
 
     /// Condition 3 where it is broken although it is not stated there.
-    fn broken_between(&self, coefficients: &[Vec<f64>], strictness: Strictness) -> Vec<Condition> {
-        let parts = match strictness {
-            Strictness::Sampled => 0,
-            Strictness::Everywhere => self.edges.len(),
-        };
+    fn broken_between(&self, coefficients: &[Vec<f64>], everywhere: bool) -> Vec<Condition> {
         let of_part = |part| {
             let ks = self.broken_at(part, coefficients).into_iter();
             ks.map(move |k| self.above(k, k / self.k_max, part))
         };
-        (0..parts).flat_map(of_part).collect()
+        let parts = 0..self.edges.len();
+        parts.filter(|_| everywhere).flat_map(of_part).collect()
     }
 
     /// Eigenvalues of a condition's matrix beyond what it may have, over its scale, and eigenvectors.
@@ -236,10 +224,7 @@ impl Dissipation<'_> {
             direction: whole.collect(),
             alone: value(&self.alone),
             held: value(coefficients),
-            limit: follows.map(|weights| GrowthLimit {
-                k_max: self.k_max,
-                weights: DMatrix::from_fn(n, n, |i, j| weight(&weights, i, j)),
-            }),
+            limit: follows.map(|w| (self.k_max, DMatrix::from_fn(n, n, |i, j| weight(&w, i, j)))),
         }
     }
 
@@ -251,12 +236,12 @@ impl Dissipation<'_> {
     ) -> Option<DVector<f64>> {
         let v = DVector::from_column_slice(&constraint.direction);
         let held = self.gradient(condition, &(&v * v.transpose()));
-        let Some(limit) = &constraint.limit else {
+        let Some((_, weights)) = &constraint.limit else {
             return Some(held);
         };
         let follows = self.above(self.k_max, 1.0, condition.part);
         let norm = held.norm();
-        let free = held - self.gradient(&follows, &limit.weights);
+        let free = held - self.gradient(&follows, weights);
         (free.norm() > NOTHING_HELD * norm).then_some(free)
     }
 }

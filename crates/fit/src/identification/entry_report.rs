@@ -53,16 +53,13 @@ impl EntryReport {
         values: &[f64],
         covariance: Option<DMatrix<f64>>,
     ) -> Self {
-        self.coefficients = names
-            .into_iter()
-            .zip(values)
-            .enumerate()
-            .map(|(c, (name, value))| Coefficient {
-                name,
-                value: *value,
-                standard_error: covariance.as_ref().map(|m| m[(c, c)].max(0.0).sqrt()),
-            })
-            .collect();
+        let named = names.into_iter().zip(values).enumerate();
+        let coefficient = |(c, (name, value)): (usize, (String, &f64))| Coefficient {
+            name,
+            value: *value,
+            standard_error: covariance.as_ref().map(|m| m[(c, c)].max(0.0).sqrt()),
+        };
+        self.coefficients = named.map(coefficient).collect();
         self.covariance = covariance.map_or_else(Vec::new, |m| {
             m.row_iter().map(|r| r.iter().copied().collect()).collect()
         });

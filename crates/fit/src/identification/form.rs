@@ -129,6 +129,11 @@ impl Form {
         }
     }
 
+    /// Whether the poles are those of lag terms instead of filters.
+    pub(crate) fn has_lags(&self) -> bool {
+        !matches!(self, Self::Laguerre { .. } | Self::TakenakaMalmquist { .. })
+    }
+
     /// How many numbers a search of the poles has to find.
     pub(crate) fn free_poles(&self) -> usize {
         match self {
@@ -190,16 +195,14 @@ impl Form {
     /// The form in words.
     pub fn describe(&self) -> String {
         let feed = self.feed_through();
-        let own = if self.pole_per_transfer_function() {
-            ", poles per transfer function"
-        } else {
-            ""
+        let own = match self.pole_per_transfer_function() {
+            true => ", poles per transfer function",
+            false => "",
         };
         let terms: Vec<_> = feed.orders().map(|o| format!("e{o}")).collect();
-        let with = if terms.is_empty() {
-            "no feed-through".into()
-        } else {
-            terms.join(" ")
+        let with = match terms.is_empty() {
+            true => "no feed-through".into(),
+            false => terms.join(" "),
         };
         match self {
             Self::Laguerre { filters, .. } => {
@@ -262,13 +265,15 @@ impl Form {
         matches!(self, Self::RationalPerForce { .. })
     }
 
+    /// Whether it is fitted to tables only.
+    pub(super) fn is_of_tables(&self) -> bool {
+        self.poles_per_force() || matches!(self, Self::MinimumState { .. })
+    }
+
     /// Checks the form for a fit to records.
     pub(super) fn validate_for_records(&self) -> Result<()> {
         ensure(
-            !matches!(
-                self,
-                Self::RationalPerForce { .. } | Self::MinimumState { .. }
-            ),
+            !self.is_of_tables(),
             "form.kind",
             "laguerre, takenaka_malmquist or rational for a fit to records",
             format_args!("{}, which is fitted to tables", self.describe()),
@@ -323,18 +328,11 @@ impl PoleSearch {
         for (key, list) in [("fixed", &self.fixed), ("start", &self.start)] {
             let Some(list) = list else { continue };
             let place = format_args!("poles.{key}");
+            let (count, one) = (list.len(), form.free_poles());
             let several = key == "fixed" && form.poles_per_force();
-            let fits = if several {
-                !list.is_empty() && list.len().is_multiple_of(form.free_poles())
-            } else {
-                list.len() == form.free_poles()
-            };
-            ensure(
-                fits,
-                place,
-                format_args!("{} number(s) for {}", form.free_poles(), form.describe()),
-                list.len(),
-            )?;
+            let fits = count == one || several && count > 0 && count.is_multiple_of(one);
+            let expected = format_args!("{one} number(s) for {}", form.describe());
+            ensure(fits, place, expected, count)?;
             for p in list {
                 positive(place, *p)?;
             }
@@ -347,18 +345,10 @@ impl PoleSearch {
         if let (Some(min), Some(max)) = (self.min, self.max) {
             ensure(min < max, "poles.max", "more than poles.min", max)?;
         }
-        ensure(
-            self.min_ratio > 1.0 && self.min_ratio.is_finite(),
-            "poles.min_ratio",
-            "more than 1",
-            self.min_ratio,
-        )?;
-        ensure(
-            self.grid_points >= 5,
-            "poles.grid_points",
-            "at least 5",
-            self.grid_points,
-        )
+        let (ratio, points) = (self.min_ratio, self.grid_points);
+        let apart = ratio > 1.0 && ratio.is_finite();
+        ensure(apart, "poles.min_ratio", "more than 1", ratio)?;
+        ensure(points >= 5, "poles.grid_points", "at least 5", points)
     }
 }
 
@@ -370,14 +360,9 @@ const MOST_FILTERS: usize = 100;
 /// # Errors
 /// [`Error::Input`](crate::error::Error::Input) naming `place` for none, and for more than any data could support.
 pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
-    ensure(
-        (1..=MOST_FILTERS).contains(&count),
-        place,
-        if count == 0 {
-            "at least 1".into()
-        } else {
-            format!("at most {MOST_FILTERS}")
-        },
-        count,
-    )
+    let expected = match count {
+        0 => "at least 1".to_owned(),
+        _ => format!("at most {MOST_FILTERS}"),
+    };
+    ensure((1..=MOST_FILTERS).contains(&count), place, expected, count)
 }

@@ -5,10 +5,10 @@ mod poles;
 
 use super::basis::model_of;
 use super::degenerate::note_lags;
-use super::dissipative::{ConstraintReport, Constraints, Strictness};
+use super::dissipative::{ConstraintReport, Constraints};
 use super::form::Form;
-use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
+use super::options::{FrequencyFit, FrequencyWeights};
 use super::own::{describe_own, entry_forms};
 use super::report::{FitReport, Fitted};
 use super::samples::{EntrySamples, sort_by_entry, state_requirements};
@@ -91,9 +91,8 @@ fn tested_range(
         let number = (s.force, s.motion, s.part == Part::Real);
         tested.entry(number).or_default().push(s.k);
     }
-    let ranges = tested
-        .into_values()
-        .filter_map(ReducedFrequencyRange::spanning);
+    let ranges = tested.into_values();
+    let ranges = ranges.filter_map(ReducedFrequencyRange::spanning);
     ReducedFrequencyRange::common(ranges).unwrap_or(Ok(spanned))
 }
 
@@ -116,11 +115,9 @@ fn fit_linear(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    let (requirements, shares) = (
-        fit.requirements(dofs, tested),
-        by_themselves.shares_by_noise(),
-    );
-    let bound = by_themselves.held(&requirements, &shares, Strictness::Everywhere)?;
+    let requirements = fit.requirements(dofs, tested);
+    let shares = by_themselves.shares_by_noise();
+    let bound = by_themselves.held(&requirements, &shares, true)?;
     if bound.solution().is_none() {
         return Ok(alone);
     }
@@ -128,12 +125,12 @@ fn fit_linear(
     let native = fit.regularization > 0.0;
     let residuals = |poles: &[Vec<f64>]| {
         let alone = EntryFits::alone(entries, &fit.form, poles, native)?;
-        let held = alone.held(&requirements, &shares, Strictness::Sampled)?;
+        let held = alone.held(&requirements, &shares, false)?;
         Ok(held.residuals(&shares))
     };
     let (poles, search) = choose_poles(entries, &forms, fit, tested, Some((&residuals, poles)))?;
     let together = EntryFits::alone(entries, &fit.form, &poles, true)?;
-    let together = together.held(&requirements, &shares, Strictness::Everywhere)?;
+    let together = together.held(&requirements, &shares, true)?;
     let reports = together.reports()?;
     let model = model_of(&fit.form, dofs, &reports)?;
     let active = together.solution().map(|solution| solution.active.clone());

@@ -7,7 +7,6 @@ use super::basis::{Basis, assemble};
 use super::discrete::discrete_pass;
 use super::form::{Form, number_of_filters};
 use super::joint::JointFit;
-use super::least_squares::Factor;
 use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
 use super::time::continuous::RecordFit;
@@ -115,32 +114,22 @@ impl Grid {
     /// # Errors
     /// Stretches that do not determine the coefficients: as an entry of the list.
     pub fn fits(&self, value: usize, keep: &dyn Fn(usize) -> bool) -> Vec<Result<CellFit>> {
-        let chosen = self
-            .pass
-            .stretches
-            .iter()
-            .enumerate()
-            .filter(|(s, _)| keep(*s));
-        let systems = Systems::new(self.pass.order, chosen.map(|(_, c)| c), value);
-        let systems = Rc::new(systems);
-        (1..=self.filters_max)
-            .map(|filters| self.cell(&systems, value, filters))
-            .collect()
+        let stretches = self.pass.stretches.iter().enumerate();
+        let chosen = stretches.filter(|(s, _)| keep(*s)).map(|(_, c)| c);
+        let systems = Rc::new(Systems::new(self.pass.order, chosen, value));
+        let cell = |filters| self.cell(&systems, value, filters);
+        (1..=self.filters_max).map(cell).collect()
     }
 
     fn leading(&self, filters: usize) -> usize {
-        let feed = self.pass.order.per_input - self.filters_max;
-        feed + filters
+        self.pass.order.per_input - self.filters_max + filters
     }
 
     fn cell(&self, systems: &Rc<Systems>, value: usize, filters: usize) -> Result<CellFit> {
         let per_input = self.leading(filters);
         let leading = self.pass.order.leading(per_input, self.dofs.len());
-        let mut coefficients = systems
-            .whole
-            .iter()
-            .map(|factor| factor.solve(leading))
-            .collect::<Result<Vec<_>>>()?;
+        let each = systems.whole.iter().map(|factor| factor.solve(leading));
+        let mut coefficients = each.collect::<Result<Vec<_>>>()?;
         let mut objective = systems.objective(per_input, &|_, _| true);
         if let Some((constrained, own)) = self.constrained(systems, value, filters)? {
             objective = own;
@@ -232,7 +221,7 @@ impl Grid {
     ) -> Option<Vec<(f64, f64)>> {
         let stretch = &self.pass.stretches[stretch];
         let &j = stretch.set.first()?;
-        let factor: &Factor = &stretch.factors[value];
+        let factor = &stretch.factors[value];
         let sums = fit.coefficients.iter().enumerate().map(|(i, all)| {
             let per_input = (all.len() - usize::from(self.pass.order.constant)) / self.dofs.len();
             let mut own = self.own(j, per_input, all);

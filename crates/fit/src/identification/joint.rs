@@ -2,7 +2,7 @@
 
 use super::affine::AffineMap;
 use super::basis::Basis;
-use super::dissipative::{FitRequirements, Solution, Strictness, constrained};
+use super::dissipative::{FitRequirements, Solution, constrained};
 use crate::error::Result;
 use nalgebra::DMatrix;
 
@@ -36,9 +36,9 @@ impl JointFit {
         entries: Vec<AffineMap>,
         bases: &[Basis],
         requirements: &FitRequirements,
-        strictness: Strictness,
+        everywhere: bool,
     ) -> Result<Self> {
-        self.constrained = constrained(&entries, bases, requirements, strictness)?;
+        self.constrained = constrained(&entries, bases, requirements, everywhere)?;
         self.entries = entries;
         Ok(self)
     }

@@ -22,11 +22,10 @@ impl<S: RecordSource> KeptRecord<S> {
     pub fn new(source: S, dofs: &[Dof]) -> Self {
         let mut header = source.header().clone();
         header.dofs.retain(|dof| dofs.contains(dof));
-        let kept = Mutex::new(None);
         Self {
             source,
             header,
-            kept,
+            kept: Mutex::default(),
         }
     }
 

@@ -105,12 +105,10 @@ impl StreamingQr {
     /// The factorisation of all rows so far.
     pub(crate) fn finish(mut self) -> Factor {
         reflect_pending(&mut self);
+        let right = self.upper.columns(self.columns, self.right_hand_sides);
         Factor {
             r: self.upper.columns(0, self.columns).into_owned(),
-            qtb: self
-                .upper
-                .columns(self.columns, self.right_hand_sides)
-                .into_owned(),
+            qtb: right.into_owned(),
             rest: self.rest,
             rows: self.rows,
         }
@@ -144,12 +142,8 @@ vectorised! {
                 subtract(column, along, v);
             }
         }
-        let reached = qr.columns * BLOCK_ROWS;
-        for (rest, column) in qr
-            .rest
-            .iter_mut()
-            .zip(qr.pending[reached..].chunks_exact(BLOCK_ROWS))
-        {
+        let right = qr.pending[qr.columns * BLOCK_ROWS..].chunks_exact(BLOCK_ROWS);
+        for (rest, column) in qr.rest.iter_mut().zip(right) {
             *rest += dot(&column[..rows], &column[..rows]);
         }
         qr.pending_rows = 0;
@@ -237,10 +231,10 @@ impl Factor {
                 self.rows
             )));
         }
-        self.r
-            .view((0, 0), (leading, leading))
-            .solve_upper_triangular(&self.qtb.rows(0, leading))
-            .ok_or_else(|| Error::Numerical("least squares: singular triangular factor".into()))
+        let upper = self.r.view((0, 0), (leading, leading));
+        let solution = upper.solve_upper_triangular(&self.qtb.rows(0, leading));
+        let singular = || Error::Numerical("least squares: singular triangular factor".into());
+        solution.ok_or_else(singular)
     }
 
     /// Sum of squared residuals of right-hand side `m` with the best coefficients of the `leading` columns.
@@ -283,12 +277,10 @@ impl Factor {
     /// # Errors
     /// [`Error::Numerical`] when a column is not determined by the rows.
     pub(crate) fn inverse_upper(&self, leading: usize) -> Result<DMatrix<f64>> {
-        let identity = DMatrix::identity(leading, leading);
-        self.r
-            .view((0, 0), (leading, leading))
-            .solve_upper_triangular(&identity)
-            .filter(|_| self.undetermined(leading).is_none())
-            .ok_or_else(|| Error::Numerical("covariance: singular triangular factor".into()))
+        let upper = self.r.view((0, 0), (leading, leading));
+        let inverse = upper.solve_upper_triangular(&DMatrix::identity(leading, leading));
+        let inverse = inverse.filter(|_| self.undetermined(leading).is_none());
+        inverse.ok_or_else(|| Error::Numerical("covariance: singular triangular factor".into()))
     }
 
     /// `(RᵀR)⁻¹` of the `leading` columns: the covariance of the coefficients for white residuals of unit variance.
@@ -304,11 +296,9 @@ impl Factor {
     /// right-hand side. Near one for a sound fit; large numbers mean differences of large terms.
     pub(crate) fn cancellation(&self, coefficients: &[f64], m: usize) -> f64 {
         let fitted = self.qtb.column(m).rows_range(..coefficients.len()).norm();
-        let largest = coefficients
-            .iter()
-            .enumerate()
-            .map(|(j, c)| (c * self.column_norm(j)).abs())
-            .fold(0.0, f64::max);
+        let each = coefficients.iter().enumerate();
+        let sizes = each.map(|(j, c)| (c * self.column_norm(j)).abs());
+        let largest = sizes.fold(0.0, f64::max);
         if largest == 0.0 {
             0.0
         } else {

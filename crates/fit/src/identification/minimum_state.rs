@@ -9,10 +9,10 @@ mod constrained;
 
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
-use super::dissipative::{ActiveConstraint, Constraints, FitRequirements, Strictness};
+use super::dissipative::{ActiveConstraint, Constraints, FitRequirements};
 use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
-use super::frequency_options::FrequencyFit;
+use super::options::FrequencyFit;
 use super::report::{FitReport, Fitted, SearchPoint, SearchReport};
 use super::samples::{EntrySamples, shares};
 use super::search::{Bounds, descend, search_poles};
@@ -101,11 +101,9 @@ impl LagSearch<'_> {
             return Ok((best, points));
         }
         // the first start says what is wrong
-        let start = self.starts(fit)?.swap_remove(0);
-        self.residuals(&start)?;
-        Err(Error::Numerical(
-            "minimum-state form: no start leads to a finite fit".into(),
-        ))
+        self.residuals(&self.starts(fit)?[0])?;
+        let what = "minimum-state form: no start leads to a finite fit";
+        Err(Error::Numerical(what.into()))
     }
 
     /// Where descents that follow each other end.
@@ -161,10 +159,8 @@ impl LagSearch<'_> {
         }
         let mut e = Vec::new();
         for term in terms {
-            let svd = term.svd(false, true);
-            let v = svd.v_t.ok_or_else(|| {
-                Error::Numerical("minimum-state form: no singular vectors".into())
-            })?;
+            let none = || Error::Numerical("minimum-state form: no singular vectors".into());
+            let v = term.svd(false, true).v_t.ok_or_else(none)?;
             e.extend(v.row(0).iter());
         }
         Ok(e)
@@ -173,9 +169,8 @@ impl LagSearch<'_> {
     /// State `l` driven by the motion `l + shift`, with a little of the others so that none stays zero by symmetry.
     fn driven_by_one(&self, shift: usize) -> Vec<f64> {
         let entry = |l: usize, j: usize| if (l + shift) % self.n == j { 1.0 } else { 0.1 };
-        (0..self.states)
-            .flat_map(|l| (0..self.n).map(move |j| entry(l, j)))
-            .collect()
+        let rows = (0..self.states).flat_map(|l| (0..self.n).map(move |j| entry(l, j)));
+        rows.collect()
     }
 
     fn lags_at(&self, x: &[f64]) -> Vec<f64> {
@@ -195,10 +190,8 @@ impl LagSearch<'_> {
         let at = x.len() - self.states * self.n;
         for row in x[at..].chunks_mut(self.n) {
             let norm = row.iter().map(|e| e * e).sum::<f64>().sqrt();
-            let largest = row
-                .iter()
-                .copied()
-                .fold(0.0, |a: f64, e| if e.abs() > a.abs() { e } else { a });
+            let larger = |a: f64, e: &f64| if e.abs() > a.abs() { *e } else { a };
+            let largest = row.iter().fold(0.0, larger);
             if norm > 0.0 {
                 row.iter_mut().for_each(|e| *e /= norm * largest.signum());
             }
@@ -207,7 +200,7 @@ impl LagSearch<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Result<DVector<f64>> {
-        let rows = self.rows(x, Strictness::Sampled)?;
+        let rows = self.rows(x, false)?;
         let mut all = Vec::new();
         for (i, problem) in rows.problems.iter().enumerate() {
             let values = &rows.values[i];
@@ -221,16 +214,13 @@ impl LagSearch<'_> {
     }
 
     fn solve(&self, i: usize, problem: &LinearProblem) -> Result<LinearSolution> {
-        let place = format!(
-            "samples of the {} force",
-            self.entries[i * self.n].force.name()
-        );
+        let force = self.entries[i * self.n].force.name();
         let per_entry = self.feed.count();
         let name = |c: usize| match c.checked_sub(self.n * per_entry) {
             Some(l) => format!("D of state {}", l + 1),
             None => format!("the feed-through of motion {}", c / per_entry + 1),
         };
-        problem.solve(&place, &name)
+        problem.solve(&format!("samples of the {force} force"), &name)
     }
 
     /// Least squares for one force: the feed-through of each motion, then its row of `D`.
@@ -254,9 +244,8 @@ impl LagSearch<'_> {
                     columns[self.n * feed + l] = p / (p + d) * e[(l, j)];
                 }
                 let weight = row.weight * share;
-                problem
-                    .rows
-                    .push(row.seen(&columns).map(|x| weight * x).collect());
+                let seen = row.seen(&columns).map(|x| weight * x);
+                problem.rows.push(seen.collect());
                 problem.right.push(weight * row.value);
             }
             for (order, target) in entry.limit.into_iter().enumerate() {
@@ -285,7 +274,7 @@ impl LagSearch<'_> {
         tested: ReducedFrequencyRange,
         search: Vec<SearchReport>,
     ) -> Result<(Fitted, Option<Vec<ActiveConstraint>>)> {
-        let rows = self.rows(x, Strictness::Everywhere)?;
+        let rows = self.rows(x, true)?;
         let model = self.model_of(dofs, x, &rows.values);
         model.validate()?;
         let reports = self.reports(&model, &rows.values, &rows.solutions)?;

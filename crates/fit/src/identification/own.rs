@@ -4,8 +4,7 @@
 //! filters and their poles or decay factor may differ from one transfer function to the other.
 
 use super::basis::index_of;
-use super::form::Form;
-use super::form::PoleSearch;
+use super::form::{Form, PoleSearch};
 use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -75,15 +74,12 @@ pub(crate) fn describe_own(count: usize) -> String {
 pub(crate) fn each_once(named: impl Iterator<Item = (Dof, Dof)>) -> Result<()> {
     let mut seen = Vec::new();
     for (force, motion) in named {
+        let (row, column) = (force.name(), motion.name());
         ensure(
             !seen.contains(&(force, motion)),
             "own",
             "every transfer function at most once",
-            format_args!(
-                "{} force due to {} motion twice",
-                force.name(),
-                motion.name()
-            ),
+            format_args!("{row} force due to {column} motion twice"),
         )?;
         seen.push((force, motion));
     }
@@ -100,9 +96,9 @@ pub(crate) fn place_of(dofs: &[Dof], force: Dof, motion: Dof) -> Result<usize> {
 pub(crate) fn validate_own(form: &Form, own: &[OwnFilters]) -> Result<()> {
     each_once(own.iter().map(|o| (o.force, o.motion)))?;
     for one in own {
-        let form = one.form(form)?;
+        let (form, fixed) = (one.form(form)?, one.poles.clone());
         let search = PoleSearch {
-            fixed: one.poles.clone(),
+            fixed,
             ..PoleSearch::default()
         };
         form.validate()?;

@@ -104,8 +104,8 @@ impl<'a> RecordFit<'a> {
     /// The pass over every sample, then least squares: a fit at the unconstrained poles and, where the constrained ones
     /// are others, one at those.
     fn least_squares_at(&'a self, chosen: &[EntryPoles]) -> Result<Vec<FittedSystems<'a>>> {
-        let mut sets: Vec<Vec<Vec<f64>>> =
-            chosen.iter().map(|(chains, _)| chains.clone()).collect();
+        let chains = chosen.iter().map(|(chains, _)| chains.clone());
+        let mut sets: Vec<Vec<Vec<f64>>> = chains.collect();
         sets.dedup();
         let feed = self.fit.form.feed_through().count();
         let longest = sets.iter().flatten().map(Vec::len).max().unwrap_or(0);

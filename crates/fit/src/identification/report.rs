@@ -183,39 +183,33 @@ impl FitReport {
     /// The form that was asked for, with the number of filters that the fit has chosen where it was left open and no force has
     /// filters of its own.
     pub(crate) fn form_fitted(&self, asked: &Form, own: &[OwnFilters]) -> Form {
-        let first = self
-            .entries
-            .first()
-            .filter(|_| own.is_empty() && asked.is_open());
+        let first = self.entries.first();
+        let first = first.filter(|_| own.is_empty() && asked.is_open());
         let fitted = first.and_then(|entry| asked.with_filters(entry.poles.len()));
         fitted.unwrap_or_else(|| asked.clone())
     }
 
     /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
     pub(crate) fn judge(&mut self, poles: &PoleSearch) {
-        let mut notes = Vec::new();
+        let notes = &mut self.notes;
         // whether nothing before the record is remembered when the motion starts
         let sufficient = |m: &&MemoryReport| m.available_samples >= m.memory_samples;
         for memory in self.memory.iter().filter(|m| !sufficient(m)) {
+            let (own, rest) = (memory.memory_samples, memory.available_samples);
             notes.push(format!(
-                "record {}: the filters remember {} samples ({:.2} s), but the motion starts after {} ({:.2} s): forces of \
+                "record {}: the filters remember {own} samples ({:.2} s), but the motion starts after {rest} ({:.2} s): forces of \
                  a motion before the record may have entered the fit; record more rest, or discard_s",
                 memory.record,
-                memory.memory_samples,
-                memory.memory_samples as f64 * memory.step_s,
-                memory.available_samples,
-                memory.available_samples as f64 * memory.step_s,
+                own as f64 * memory.step_s,
+                rest as f64 * memory.step_s,
             ));
         }
         for search in &self.search {
-            search.judge(poles.min_ratio, &mut notes);
+            search.judge(poles.min_ratio, notes);
         }
         for entry in &self.entries {
-            let name = format!(
-                "{} force due to {} motion",
-                entry.force.name(),
-                entry.motion.name()
-            );
+            let (force, motion) = (entry.force.name(), entry.motion.name());
+            let name = format!("{force} force due to {motion} motion");
             if entry.cancellation > CANCELLATION_LIMIT {
                 notes.push(format!(
                     "{name}: coefficients cancel (the largest term is {:.0} times the fit): over-fitted, use fewer \
@@ -230,7 +224,6 @@ impl FitReport {
                 ));
             }
         }
-        self.notes.append(&mut notes);
     }
 }
 
@@ -260,13 +253,10 @@ impl SearchReport {
             (None, Some(f)) => format!("{} force: ", f.name()),
             (None, None) => String::new(),
         };
+        let poles = self.chosen.poles.iter();
         for (bound, value) in [("lower", self.min), ("upper", self.max)] {
-            if let Some(p) = self
-                .chosen
-                .poles
-                .iter()
-                .find(|p| (*p / value).ln().abs() < 0.01)
-            {
+            let near = |p: &&f64| (*p / value).ln().abs() < 0.01;
+            if let Some(p) = poles.clone().find(near) {
                 notes.push(format!(
                     "{whose}the pole {p:.4} lies at its {bound} bound: the data do not determine it"
                 ));
@@ -286,12 +276,10 @@ impl SearchReport {
 
 /// The point with the smallest objective.
 pub(super) fn best_of(points: &[SearchPoint]) -> Result<SearchPoint> {
-    points
-        .iter()
-        .filter(|p| p.objective.is_finite())
-        .min_by(|a, b| a.objective.total_cmp(&b.objective))
-        .cloned()
-        .ok_or_else(|| Error::Numerical("pole search: no point has a finite objective".into()))
+    let finite = points.iter().filter(|p| p.objective.is_finite());
+    let best = finite.min_by(|a, b| a.objective.total_cmp(&b.objective));
+    let none = || Error::Numerical("pole search: no point has a finite objective".into());
+    best.cloned().ok_or_else(none)
 }
 
 /// A degree-of-freedom count that leaves something to estimate the variance from.

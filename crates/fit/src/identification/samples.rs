@@ -3,10 +3,10 @@
 use super::basis::{Basis, index_of};
 use super::constrained::{LinearProblem, LinearSolution};
 use super::entry_report::EntryReport;
-use super::frequency_options::{FrequencyFit, FrequencyWeights, limits_by_entry};
+use super::options::{FrequencyFit, FrequencyWeights, limits_by_entry};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
-use crate::error::{Result, ensure};
+use crate::error::{Result, ensure, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
@@ -103,10 +103,9 @@ impl EntrySamples {
     /// Fewer samples than columns, columns they do not determine, limits that the basis cannot meet.
     pub(crate) fn fit(&self, basis: &Basis) -> Result<LinearSolution> {
         let feed = basis.feed().count();
+        let ridge = (0..basis.len()).map(|c| if c < feed { 0.0 } else { self.ridge });
         let mut problem = LinearProblem {
-            ridge: (0..basis.len())
-                .map(|c| if c < feed { 0.0 } else { self.ridge })
-                .collect(),
+            ridge: ridge.collect(),
             ..LinearProblem::default()
         };
         for row in &self.rows {
@@ -115,11 +114,9 @@ impl EntrySamples {
             problem.rows.push(weighted);
             problem.right.push(row.weight * row.value);
         }
-        for (functional, target) in basis.at_zero().into_iter().zip(self.limit) {
-            if let Some(target) = target {
-                problem.constraints.push((functional, target));
-            }
-        }
+        let limits = basis.at_zero().into_iter().zip(self.limit);
+        let stated = limits.filter_map(|(functional, target)| Some((functional, target?)));
+        problem.constraints = stated.collect();
         problem.solve(&self.name(), &|c| basis.names()[c].clone())
     }
 
@@ -144,13 +141,10 @@ impl EntrySamples {
     ) -> EntryReport {
         let sum: f64 = residuals.iter().map(|r| r * r).sum();
         let total: f64 = self.rows.iter().map(|r| r.value * r.value).sum();
-        let relative = residuals
-            .iter()
-            .zip(&self.rows)
-            .filter(|(_, row)| row.magnitude > 0.0);
-        let worst = relative
-            .map(|(r, row)| r.abs() / row.magnitude)
-            .fold(0.0, f64::max);
+        let rows = residuals.iter().zip(&self.rows);
+        let sized = rows.filter(|(_, row)| row.magnitude > 0.0);
+        let relative = sized.map(|(r, row)| r.abs() / row.magnitude);
+        let worst = relative.fold(0.0, f64::max);
         let rms = if total > 0.0 {
             (sum / total).sqrt()
         } else {
@@ -171,15 +165,12 @@ impl EntrySamples {
 
     /// Residuals of given coefficients, unweighted, in the order of the rows.
     pub(crate) fn residuals(&self, basis: &Basis, coefficients: &[f64]) -> Vec<f64> {
-        self.rows
-            .iter()
-            .map(|row| {
-                let columns = basis.columns(Complex::new(0.0, row.k));
-                let terms = row.seen(&columns).zip(coefficients);
-                let fit: f64 = terms.map(|(x, c)| x * c).sum();
-                row.value - fit
-            })
-            .collect()
+        let residual = |row: &EntrySample| {
+            let columns = basis.columns(Complex::new(0.0, row.k));
+            let terms = row.seen(&columns).zip(coefficients);
+            row.value - terms.map(|(x, c)| x * c).sum::<f64>()
+        };
+        self.rows.iter().map(residual).collect()
     }
 }
 
@@ -192,23 +183,21 @@ pub(crate) fn sort_by_entry(
     dofs: &[Dof],
     weights: FrequencyWeights,
 ) -> Result<(Vec<EntrySamples>, Vec<String>)> {
-    let mut entries: Vec<EntrySamples> = dofs
-        .iter()
-        .flat_map(|&force| dofs.iter().map(move |&motion| (force, motion)))
-        .map(|(force, motion)| EntrySamples {
-            force,
-            motion,
-            rows: Vec::new(),
-            weight: 1.0,
-            ridge: 0.0,
-            limit: [None; 2],
-        })
-        .collect();
+    let pairs = dofs.iter().flat_map(|f| dofs.iter().map(move |m| (*f, *m)));
+    let empty = |(force, motion)| EntrySamples {
+        force,
+        motion,
+        rows: Vec::new(),
+        weight: 1.0,
+        ridge: 0.0,
+        limit: [None; 2],
+    };
+    let mut entries: Vec<EntrySamples> = pairs.map(empty).collect();
     for (at, s) in samples.iter().enumerate() {
         let place = format!("sample {at}");
         let i = index_of(dofs, s.force, &place)?;
         let j = index_of(dofs, s.motion, &place)?;
-        let k = crate::error::positive(format!("{place}: K"), s.k.full_width())?;
+        let k = positive(format!("{place}: K"), s.k.full_width())?;
         ensure(s.value.is_finite(), place, "a finite value", s.value)?;
         entries[i * dofs.len() + j].rows.push(EntrySample {
             k,
@@ -257,21 +246,17 @@ pub(crate) fn state_requirements(
 
 /// Sets the magnitude of `G` from the nearest sample of the other part; returns how many have none.
 fn pair(rows: &mut [EntrySample]) -> usize {
-    let others: Vec<Option<f64>> = rows
-        .iter()
-        .map(|row| {
-            rows.iter()
-                .filter(|other| other.part != row.part)
-                .map(|other| ((other.k / row.k).ln().abs(), other.value))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|(distance, _)| *distance < PAIRING_TOLERANCE)
-                .map(|(_, value)| value)
-        })
-        .collect();
+    let nearest = |row: &EntrySample| {
+        let others = rows.iter().filter(|other| other.part != row.part);
+        let apart = others.map(|other| ((other.k / row.k).ln().abs(), other.value));
+        let nearest = apart.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.filter(|(distance, _)| *distance < PAIRING_TOLERANCE)
+    };
+    let others: Vec<Option<(f64, f64)>> = rows.iter().map(nearest).collect();
     let mut unpaired = 0;
     for (row, other) in rows.iter_mut().zip(others) {
         match other {
-            Some(other) => row.magnitude = row.value.hypot(other),
+            Some((_, value)) => row.magnitude = row.value.hypot(value),
             None => unpaired += 1,
         }
     }
@@ -291,17 +276,20 @@ fn weigh(rows: &mut [EntrySample], weights: FrequencyWeights) {
     }
 }
 
+/// What brings data of this sum of squares to a sum of one; one where there are none.
+pub(crate) fn unit_scale(total: f64) -> f64 {
+    match total > 0.0 {
+        true => total.sqrt().recip(),
+        false => 1.0,
+    }
+}
+
 /// What the weighted residuals of each entry are multiplied with where entries share something: its weight over its
 /// weighted size.
 pub(super) fn shares(entries: &[&EntrySamples]) -> Vec<f64> {
-    let share = |entry: &&EntrySamples| {
-        let total = entry.total();
-        let size = if total > 0.0 {
-            (total * entries.len() as f64).sqrt()
-        } else {
-            1.0
-        };
-        entry.weight / size
+    let share = |entry: &&EntrySamples| match entry.total() * entries.len() as f64 {
+        total if total > 0.0 => entry.weight / total.sqrt(),
+        _ => entry.weight,
     };
     entries.iter().map(share).collect()
 }

@@ -54,14 +54,12 @@ impl Bounds {
             // a stated upper bound may leave no room above it
             least: if least < max { least } else { min },
         };
+        let ratio = bounds.min_ratio;
         ensure(
             bounds.slack(count) > 0.0,
             "poles.min, poles.max",
-            format_args!(
-                "room for {count} pole(s) a factor {} apart",
-                bounds.min_ratio
-            ),
-            format_args!("{} to {}", bounds.min, bounds.max),
+            format_args!("room for {count} pole(s) a factor {ratio} apart"),
+            format_args!("{min} to {max}"),
         )?;
         Ok(bounds)
     }
@@ -79,27 +77,23 @@ impl Bounds {
         let shares: Vec<f64> = free.iter().map(|x| (x - top).exp()).collect();
         let total: f64 = (-top).exp() + shares.iter().sum::<f64>();
         let mut at = self.min.ln() - self.min_ratio.ln();
-        shares
-            .iter()
-            .map(|share| {
-                at += self.min_ratio.ln() + slack * share / total;
-                at.exp()
-            })
-            .collect()
+        let pole = |share: &f64| {
+            at += self.min_ratio.ln() + slack * share / total;
+            at.exp()
+        };
+        shares.iter().map(pole).collect()
     }
 
     /// Free variables of ordered poles; poles on or beyond a bound are taken a little inside.
     pub(crate) fn free(&self, poles: &[f64]) -> Vec<f64> {
         let slack = self.slack(poles.len());
         let mut before = self.min.ln() - self.min_ratio.ln();
-        let mut shares: Vec<f64> = poles
-            .iter()
-            .map(|p| {
-                let share = (p.ln() - before - self.min_ratio.ln()) / slack;
-                before = p.ln();
-                share.max(1e-3)
-            })
-            .collect();
+        let share = |p: &f64| {
+            let share = (p.ln() - before - self.min_ratio.ln()) / slack;
+            before = p.ln();
+            share.max(1e-3)
+        };
+        let mut shares: Vec<f64> = poles.iter().map(share).collect();
         let used: f64 = shares.iter().sum();
         let last = (1.0 - used).max(1e-3);
         shares.iter_mut().for_each(|s| *s = (*s / last).ln());
@@ -125,37 +119,30 @@ impl Bounds {
         let axis = self.axis(points);
         let mut sets: Vec<Vec<f64>> = vec![Vec::new()];
         for _ in 0..count {
-            sets = sets
-                .iter()
-                .flat_map(|set| {
-                    axis.iter()
-                        .filter(|p| set.last().is_none_or(|q| **p >= q * self.min_ratio))
-                        .map(|p| set.iter().copied().chain([*p]).collect())
-                })
-                .collect();
+            let apart = |set: &[f64], p: f64| set.last().is_none_or(|q| p >= q * self.min_ratio);
+            let longer = sets.iter().flat_map(|set| {
+                let next = axis.iter().filter(|p| apart(set, **p));
+                next.map(|p| [&set[..], &[*p]].concat())
+            });
+            sets = longer.collect();
         }
         if sets.is_empty() {
-            let even = vec![0.0; count];
-            sets.push(self.poles(&even));
+            sets.push(self.poles(&vec![0.0; count]));
         }
         sets
     }
 
     /// A start, brought between the bounds.
     pub(crate) fn inside(&self, start: &[f64]) -> Vec<f64> {
-        start
-            .iter()
-            .map(|p| p.clamp(self.least, self.max))
-            .collect()
+        let clamped = start.iter().map(|p| p.clamp(self.least, self.max));
+        clamped.collect()
     }
 
     /// Whether the poles are ordered, apart and inside.
     pub(crate) fn admits(&self, poles: &[f64]) -> bool {
         let inside = |p: &f64| *p >= self.least * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
-        poles.iter().all(inside)
-            && poles
-                .windows(2)
-                .all(|w| w[1] >= w[0] * self.min_ratio * (1.0 - 1e-12))
+        let apart = |w: &[f64]| w[1] >= w[0] * self.min_ratio * (1.0 - 1e-12);
+        poles.iter().all(inside) && poles.windows(2).all(apart)
     }
 }
 
@@ -208,10 +195,9 @@ fn golden(
 ) -> Result<()> {
     let centre = best_of(points)?.poles[0].ln();
     let (low, high) = (bounds.min.ln(), bounds.max.ln());
-    let step = if points.len() == 1 {
-        high - low
-    } else {
-        (high - low) / (grid_points as f64 - 1.0)
+    let step = match points.len() {
+        1 => high - low,
+        _ => (high - low) / (grid_points as f64 - 1.0),
     };
     let ends = (centre - step).max(bounds.least.ln())..(centre + step).min(high);
     let at = |x: f64| {
@@ -290,9 +276,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Descent<'_> {
             let (ahead, behind) = rayon::join(|| moved_to(ahead), || moved_to(behind));
             Some((ahead? - behind?) / (2.0 * DIFFERENCE_STEP))
         };
-        let columns: Option<Vec<_>> = threads::numbered(at.len(), true, column)
-            .into_iter()
-            .collect();
+        let columns = threads::numbered(at.len(), true, column).into_iter();
+        let columns: Option<Vec<_>> = columns.collect();
         Some(DMatrix::from_columns(&columns?))
     }
 }

@@ -97,15 +97,12 @@ pub fn select(
         cell.cross_validation = errors.and_then(|errors| combine(errors, &left_out));
     }
     let filters_max = grid.filters_max;
-    let free = (0..filters_max)
-        .map(|l| {
-            (0..grid.values().len())
-                .map(|v| v * filters_max + l)
-                .filter_map(|at| Some((at, cells[at].residual?)))
-                .min_by(|a, b| a.1.total_cmp(&b.1))
-                .map(|(at, _)| at)
-        })
-        .collect();
+    let closest = |l: usize| {
+        let places = (0..grid.values().len()).map(|v| v * filters_max + l);
+        let fitted = places.filter_map(|at| Some((at, cells[at].residual?)));
+        fitted.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
+    };
+    let free = (0..filters_max).map(closest).collect();
     let mut selection = Selection {
         symbol: grid.symbol().to_owned(),
         values: grid.values().to_vec(),
@@ -165,8 +162,8 @@ impl Selection {
             found.table_onset_m_s = Some(table_m_s);
             let percent = found.onset_m_s.map(|own| 100.0 * (own / table_m_s - 1.0));
             found.above_table_percent = percent;
-            self.reason
-                .extend(found.beside_table().map(|said| format!(" {said}")));
+            let said = found.beside_table();
+            self.reason.extend(said.map(|said| format!(" {said}")));
         }
     }
 }
@@ -261,14 +258,11 @@ fn onsets_in_words(within: &[&Cell]) -> String {
 fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
     let symbol = &selection.symbol;
     let (own, error) = (name(chosen, symbol), percent(chosen.score()));
-    let mut reason = if std::ptr::eq(chosen, best) {
-        format!(
-            "{own}: its error on data left out, {error}, is the least of all models that may be used"
-        )
+    let why = if std::ptr::eq(chosen, best) {
+        format!("its error on data left out, {error}, is the least of all models that may be used")
     } else {
         format!(
-            "{own}: the fewest filters whose error on data left out, {error}, is within one standard error of the least ({} with \
-             {}) and {}",
+            "the fewest filters whose error on data left out, {error}, is within one standard error of the least ({} with {}) and {}",
             percent(best.score()),
             name(best, symbol),
             match best.onset_m_s {
@@ -277,11 +271,8 @@ fn explain(selection: &Selection, chosen: &Cell, best: &Cell) -> String {
             }
         )
     };
-    if let Some(onset) = chosen.onset_m_s {
-        reason.push_str(&format!("; onset {onset:.3} m/s"));
-    }
-    reason.push('.');
-    reason
+    let onset = chosen.onset_m_s.map(|v| format!("; onset {v:.3} m/s"));
+    format!("{own}: {why}{}.", onset.unwrap_or_default())
 }
 
 /// What speaks for a wider grid, and what fits better but is refused.
@@ -298,12 +289,11 @@ fn why_not_others(selection: &Selection, chosen: usize) -> String {
     let free = selection.free.iter().flatten();
     let free = free.map(|at| &selection.cells[*at]);
     for refused in free.filter(|c| !c.rejected.is_empty()) {
+        let residual = refused.residual.map(|r| format!("to {}", percent(r)));
         reason.push_str(&format!(
             " {} fits the records {}, but is refused: {}.",
             name(refused, symbol),
-            refused
-                .residual
-                .map_or_else(|| "closely".into(), |r| format!("to {}", percent(r))),
+            residual.as_deref().unwrap_or("closely"),
             refused.rejected.join("; ")
         ));
     }
@@ -315,9 +305,9 @@ fn most_common_reason(selection: &Selection) -> String {
     let kind = |r: &str| r.chars().take(16).collect::<String>();
     let all: Vec<&String> = selection.cells.iter().flat_map(|c| &c.rejected).collect();
     let count = |r: &str| all.iter().filter(|o| kind(o) == kind(r)).count();
-    all.iter()
-        .max_by_key(|r| count(r))
-        .map_or_else(|| "nothing could be left out".to_owned(), |r| (*r).clone())
+    let most = all.iter().max_by_key(|r| count(r));
+    most.map_or("nothing could be left out", |r| r.as_str())
+        .to_owned()
 }
 
 fn name(cell: &Cell, symbol: &str) -> String {

@@ -57,10 +57,9 @@ pub(super) fn validate(
         }
         of_filters
     });
+    let some = |parts: &HeldOut| parts.iter().any(|p| !p.is_empty());
     let pairs = speeds.into_iter().zip(frequencies);
-    pairs
-        .map(|(s, f)| Some([s?, f?]).filter(|parts| parts.iter().any(|p| !p.is_empty())))
-        .collect()
+    pairs.map(|(s, f)| Some([s?, f?]).filter(some)).collect()
 }
 
 /// Mean squared relative error of each transfer function, by force and motion, in the stretches left out.
@@ -90,11 +89,8 @@ pub(super) fn unpredicted<'a>(
         for (least, folds) in least.iter_mut().zip(cell) {
             let entries: BTreeSet<_> = folds.iter().flat_map(Errors::keys).copied().collect();
             for entry in entries {
-                let all: Vec<f64> = folds
-                    .iter()
-                    .filter_map(|e| e.get(&entry))
-                    .copied()
-                    .collect();
+                let all = folds.iter().filter_map(|e| e.get(&entry));
+                let all: Vec<f64> = all.copied().collect();
                 let least = least.entry(entry).or_insert(f64::INFINITY);
                 *least = least.min(mean(&all));
             }
@@ -125,12 +121,11 @@ pub(super) fn combine(
     let used = || parts.iter().filter(|part| !part.is_empty());
     let count = used().count() as f64;
     let square = used().map(|e| mean(e)).sum::<f64>() / count;
-    let variance: f64 = used()
-        .map(|e| {
-            let (m, n) = (mean(e), e.len() as f64);
-            e.iter().map(|x| (x - m).powi(2)).sum::<f64>() / (n - 1.0) / n
-        })
-        .sum();
+    let of_mean = |e: &Vec<f64>| {
+        let (m, n) = (mean(e), e.len() as f64);
+        e.iter().map(|x| (x - m).powi(2)).sum::<f64>() / (n - 1.0) / n
+    };
+    let variance: f64 = used().map(of_mean).sum();
     let root = |part: &Vec<f64>| (!part.is_empty()).then(|| mean(part).sqrt());
     (count > 0.0).then(|| CrossValidation {
         across_speeds: root(&parts[0]),

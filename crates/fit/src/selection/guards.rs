@@ -25,10 +25,7 @@ impl Cell {
     ) {
         let fit = match fit {
             Ok(fit) => fit,
-            Err(error) => {
-                let reason = format!("it cannot be fitted ({error})");
-                return self.rejected.push(reason);
-            }
+            Err(error) => return self.rejected.push(format!("it cannot be fitted ({error})")),
         };
         self.residual = Some(fit.objective);
         self.cancellation = Some(fit.cancellation);
@@ -95,12 +92,8 @@ impl Cell {
 fn unstable_below(section: &CoupledSection, onset_m_s: f64) -> Result<Option<f64>> {
     for part in CALM_PARTS {
         let speed = part * onset_m_s;
-        let beyond = |x: f64, z: &Complex<f64>| x > ROUNDING * z.norm();
-        let poles = section.at(speed)?.eigenvalues()?;
-        if poles
-            .iter()
-            .any(|z| beyond(z.im.abs(), z) && beyond(z.re, z))
-        {
+        let grows = |z: &Complex<f64>| z.im.abs().min(z.re) > ROUNDING * z.norm();
+        if section.at(speed)?.eigenvalues()?.iter().any(grows) {
             return Ok(Some(speed));
         }
     }

@@ -111,10 +111,8 @@ impl SteadySegment {
                 continue;
             };
             let speed = header.mean_speed_m_s;
-            if best
-                .as_ref()
-                .is_none_or(|(b, _)| speed > b.header.mean_speed_m_s)
-            {
+            let faster = |(b, _): &(Record, usize)| speed > b.header.mean_speed_m_s;
+            if best.as_ref().is_none_or(faster) {
                 let whole = Record::whole(*record)?;
                 if whole.motion[channel].iter().any(|x| *x != 0.0) {
                     best = Some((whole, segment));
@@ -159,12 +157,11 @@ impl SteadySegment {
         let (a, b) = self.motion;
         // q = Re(G) r + Im(G) r'/K, with r'/K a quarter of a period ahead
         let (sine, cosine) = (g.re * a - g.im * b, g.re * b + g.im * a);
-        let predicted: Vec<f64> = (0..self.force.len())
-            .map(|k| {
-                let (s, c) = (angle * k as f64).sin_cos();
-                sine * s + cosine * c
-            })
-            .collect();
+        let at = |k| {
+            let (s, c) = (angle * k as f64).sin_cos();
+            sine * s + cosine * c
+        };
+        let predicted: Vec<f64> = (0..self.force.len()).map(at).collect();
         let pair = SignalPair::new(&self.force, &predicted, self.step_s)?;
         let lag = PhaseParameters {
             significant_delay_s: SIGNIFICANT_PHASE_DEG / 360.0 / self.frequency_hz,
@@ -190,9 +187,7 @@ fn harmonic(samples: &[f64], angle: f64) -> Result<(f64, f64)> {
     });
     let gram = basis.transpose() * &basis;
     let right = basis.transpose() * nalgebra::DVector::from_column_slice(samples);
-    let solution = gram
-        .cholesky()
-        .ok_or_else(|| Error::Numerical("metrics: a segment without steady motion".into()))?
-        .solve(&right);
+    let still = || Error::Numerical("metrics: a segment without steady motion".into());
+    let solution = gram.cholesky().ok_or_else(still)?.solve(&right);
     Ok((solution[0], solution[1]))
 }

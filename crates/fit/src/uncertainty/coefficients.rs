@@ -42,14 +42,7 @@ pub struct CoefficientUncertainty {
     pub speeds: Option<SpeedScatter>,
     /// The data it was made from; files leave them out.
     #[serde(skip)]
-    pub data: Option<KnownData>,
-}
-
-/// The data that an estimate was made from, for another process.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct KnownData {
-    pub(super) design: Design,
-    pub(super) effects: Vec<Effect>,
+    pub data: Option<Design>,
 }
 
 impl CoefficientUncertainty {
@@ -62,7 +55,7 @@ impl CoefficientUncertainty {
         dofs: Vec<Dof>,
         coordinates: Coordinates,
         parameters: Vec<Parameter>,
-        design: Design,
+        mut design: Design,
     ) -> Result<Self> {
         let contributions = design.contributions();
         let mut estimate = Self {
@@ -75,14 +68,14 @@ impl CoefficientUncertainty {
             speeds: None,
             data: None,
         };
-        let effects = match tested {
-            Some(tested) => estimate.add_speeds(&design, tested, SpeedPrior::measured(deck))?,
-            None => Vec::new(),
-        };
+        if let Some(tested) = tested {
+            let prior = SpeedPrior::measured(deck);
+            design.effects = estimate.add_speeds(&design, tested, prior)?;
+        }
         for (i, parameter) in estimate.parameters.iter_mut().enumerate() {
             parameter.standard_error = estimate.covariance[(i, i)].max(0.0).sqrt();
         }
-        estimate.data = Some(KnownData { design, effects });
+        estimate.data = Some(design);
         Ok(estimate)
     }
 
@@ -120,19 +113,18 @@ impl CoefficientUncertainty {
             };
             pairs.push((moved(step)?, moved(-step)?, 2.0 * step));
         }
-        ks.iter()
-            .map(|&k| {
-                let slope = |(up, down, step): &(Model, Model, f64)| {
-                    Ok((up.transfer(k)? - down.transfer(k)?).unscale(*step))
-                };
-                let slopes = pairs.iter().map(slope).collect::<Result<_>>()?;
-                Ok(Slopes {
-                    k: k.full_width(),
-                    value: model.transfer(k)?,
-                    slopes,
-                })
+        let at = |&k: &ReducedFrequency| {
+            let slope = |(up, down, step): &(Model, Model, f64)| {
+                Ok((up.transfer(k)? - down.transfer(k)?).unscale(*step))
+            };
+            let slopes = pairs.iter().map(slope).collect::<Result<_>>()?;
+            Ok(Slopes {
+                k: k.full_width(),
+                value: model.transfer(k)?,
+                slopes,
             })
-            .collect()
+        };
+        ks.iter().map(at).collect()
     }
 
     /// Places of the coefficients of every transfer function, row by row; poles and static terms are nobody's.
@@ -141,7 +133,7 @@ impl CoefficientUncertainty {
             Coordinates::Continuous { searched, .. } => self.parameters.len() - searched.len(),
             Coordinates::Discrete { .. } => self.parameters.len(),
         };
-        let of = |force: Dof, motion: Dof| -> Vec<usize> {
+        let of = |(force, motion): (Dof, Dof)| -> Vec<usize> {
             let is_own = |p: &usize| {
                 let q = &self.parameters[*p];
                 (q.force, q.motion) == (Some(force), Some(motion))
@@ -150,7 +142,7 @@ impl CoefficientUncertainty {
         };
         let dofs = &self.dofs;
         let pairs = dofs.iter().flat_map(|f| dofs.iter().map(|m| (*f, *m)));
-        pairs.map(|(f, m)| of(f, m)).collect()
+        pairs.map(of).collect()
     }
 
     /// What is wrong with the form of the model whatever the data, if anything: its onset is biased, and no scatter shows it.
@@ -227,11 +219,9 @@ impl CoefficientUncertainty {
     /// Degrees of freedom of that standard error; `None` for an estimate that was read from a file, which no longer knows
     /// its data.
     pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
-        let KnownData { design, effects } = self.data.as_ref()?;
         let gradient = DVector::from_column_slice(gradient);
-        Some(speed_scatter::degrees_of_freedom(
-            design, effects, &gradient,
-        ))
+        let design = self.data.as_ref()?;
+        Some(speed_scatter::degrees_of_freedom(design, &gradient))
     }
 
     /// The estimates and a step from them.
@@ -255,7 +245,7 @@ impl CoefficientUncertainty {
     ///
     /// The second value is why a speed alone does not tell.
     pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
-        let Some(KnownData { design, .. }) = &self.data else {
+        let Some(design) = &self.data else {
             return Vec::new();
         };
         let Some((groups, speeds_m_s)) = speed_groups(&design.blocks) else {
@@ -267,7 +257,7 @@ impl CoefficientUncertainty {
 
     /// Reduced frequencies of the blocks, where they have one and are known.
     pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
-        let ks = self.data.as_ref()?.design.blocks.iter().filter_map(|b| b.k);
+        let ks = self.data.as_ref()?.blocks.iter().filter_map(|b| b.k);
         ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
     }
 
@@ -311,7 +301,6 @@ impl CoefficientUncertainty {
 pub(super) fn spread_over(range: ReducedFrequencyRange, points: usize) -> Vec<ReducedFrequency> {
     let (low, high) = (range.min.full_width(), range.max.full_width());
     let last = points.max(2) as f64 - 1.0;
-    (0..points)
-        .map(|i| ReducedFrequency::from_full_width(low * (high / low).powf(i as f64 / last)))
-        .collect()
+    let all = (0..points).map(|i| low * (high / low).powf(i as f64 / last));
+    all.map(ReducedFrequency::from_full_width).collect()
 }

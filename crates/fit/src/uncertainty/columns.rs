@@ -58,10 +58,8 @@ impl Expansion {
         if !searched.is_empty() {
             extended.extend(form.collapse(chain));
         }
-        let (own, longer) = (
-            Basis::new(form, chain)?,
-            Basis::orthonormal(form, &extended)?,
-        );
+        let own = Basis::new(form, chain)?;
+        let longer = Basis::orthonormal(form, &extended)?;
         let native = express(&longer, chain, own.len(), &|p| own.columns(p))?;
         let mut slopes = DMatrix::zeros(longer.len(), searched.len());
         if !searched.is_empty() {
@@ -72,15 +70,13 @@ impl Expansion {
                 columns.iter().zip(values).map(|(z, c)| z * *c).sum()
             };
             let all = express(&longer, chain, count, &|p| {
-                let pairs = pairs.iter().zip(chain);
-                pairs
-                    .map(|((up, down), pole)| (sum(up, p) - sum(down, p)) / (2.0 * STEP * pole))
-                    .collect()
+                let slope = |((up, down), pole): (&(Basis, Basis), &f64)| {
+                    (sum(up, p) - sum(down, p)) / (2.0 * STEP * pole)
+                };
+                pairs.iter().zip(chain).map(slope).collect()
             })?;
-            let own = searched
-                .iter()
-                .enumerate()
-                .filter(|(_, pole)| pole.is_of(i, j));
+            let searched = searched.iter().enumerate();
+            let own = searched.filter(|(_, pole)| pole.is_of(i, j));
             for (m, pole) in own {
                 slopes.column_mut(m).copy_from(&all.column(pole.index));
             }
@@ -121,10 +117,10 @@ fn express(
         column.unscale_mut(*s);
     }
     let values = table(functions, count);
-    let solution = columns
-        .try_svd(true, true, f64::EPSILON, 10_000)
-        .and_then(|svd| svd.solve(&values, 1e-13).ok())
-        .ok_or_else(|| Error::Numerical("covariance: columns of a chain of filters".into()))?;
+    let svd = columns.try_svd(true, true, f64::EPSILON, 10_000);
+    let solution = svd.and_then(|svd| svd.solve(&values, 1e-13).ok());
+    let none = || Error::Numerical("covariance: columns of a chain of filters".into());
+    let solution = solution.ok_or_else(none)?;
     Ok(DMatrix::from_fn(scale.len(), count, |i, j| {
         solution[(i, j)] / scale[i]
     }))

@@ -88,6 +88,7 @@ impl<'a> KnownDeck<'a> {
             noise_fraction: 0.0,
             ..plan.tunnel.clone()
         };
+        let [low, high] = [0.02, 10.0].map(ReducedFrequency::from_full_width);
         let records = |m: &dyn Transfer| quiet.records_from_model(m, "truth", section.width_m);
         let mut campaign = Self {
             plan,
@@ -98,10 +99,7 @@ impl<'a> KnownDeck<'a> {
                 false => Vec::new(),
             },
             model,
-            tested: ReducedFrequencyRange::between(
-                ReducedFrequency::from_full_width(0.02),
-                ReducedFrequency::from_full_width(10.0),
-            ),
+            tested: ReducedFrequencyRange::between(low, high),
             true_onset_m_s: 0.0,
             bias_m_s: 0.0,
         };
@@ -112,15 +110,13 @@ impl<'a> KnownDeck<'a> {
             campaign.tested,
             SPEED_MAX_M_S,
         )?;
-        campaign.true_onset_m_s = found
-            .onset()
-            .ok_or_else(|| Error::Numerical("coverage: the truth does not flutter".into()))?
-            .at
-            .speed_m_s;
+        let none = |what: &str| Error::Numerical(format!("coverage: {what}"));
+        let truth = found.onset();
+        let truth = truth.ok_or_else(|| none("the truth does not flutter"))?;
+        campaign.true_onset_m_s = truth.at.speed_m_s;
         let (_, onset, tested) = campaign.fitted(&campaign.straight)?;
         campaign.tested = tested;
-        let onset = onset
-            .ok_or_else(|| Error::Numerical("coverage: the fit without noise is stable".into()))?;
+        let onset = onset.ok_or_else(|| none("the fit without noise is stable"))?;
         campaign.bias_m_s = onset.at.speed_m_s - campaign.true_onset_m_s;
         Ok(campaign)
     }
@@ -178,14 +174,11 @@ impl<'a> KnownDeck<'a> {
         let Some(onset) = onset else {
             return Ok(None);
         };
-        let error = onset_error(&estimate, &self.structure, &onset, None)?;
+        let ratio = estimate.speeds.as_ref().and_then(|s| s.ratio);
         Ok(Some(Repetition {
-            error,
+            error: onset_error(&estimate, &self.structure, &onset, None)?,
             derivatives_inside: self.derivatives(&estimate)?,
-            speeds_differ: estimate
-                .speeds
-                .as_ref()
-                .is_some_and(|s| s.ratio.is_some_and(|r| r > 1.0)),
+            speeds_differ: ratio.is_some_and(|r| r > 1.0),
         }))
     }
 
@@ -207,9 +200,8 @@ impl<'a> KnownDeck<'a> {
     fn summary(&self, runs: &[Option<Repetition>]) -> Result<CoverageReport> {
         let good: Vec<&Repetition> = runs.iter().flatten().collect();
         if good.len() < 2 {
-            return Err(Error::Numerical(
-                "coverage: fewer than two repetitions have an onset".into(),
-            ));
+            let what = "coverage: fewer than two repetitions have an onset";
+            return Err(Error::Numerical(what.into()));
         }
         let count = good.len() as f64;
         let mean = |f: &dyn Fn(&Repetition) -> f64| good.iter().map(|r| f(r)).sum::<f64>() / count;
@@ -220,6 +212,7 @@ impl<'a> KnownDeck<'a> {
         let inside =
             |r: &Repetition, target: f64| (onset(r) - target).abs() <= r.error.half_width_m_s();
         let holds = |target: f64| IntervalCoverage::count(good.iter().map(|r| inside(r, target)));
+        let derivatives = good.iter().flat_map(|r| &r.derivatives_inside).copied();
         let mut report = CoverageReport {
             plan: self.plan.clone(),
             true_onset_m_s: self.true_onset_m_s,
@@ -234,10 +227,7 @@ impl<'a> KnownDeck<'a> {
                 / (mean(&|r| r.error.standard_error_m_s.powi(4)) - variance * variance),
             holds_truth: holds(self.true_onset_m_s),
             holds_fit_without_noise: holds(self.true_onset_m_s + self.bias_m_s),
-            derivatives_hold_truth: IntervalCoverage::count(
-                good.iter()
-                    .flat_map(|r| r.derivatives_inside.iter().copied()),
-            ),
+            derivatives_hold_truth: IntervalCoverage::count(derivatives),
             speeds_differ: IntervalCoverage::count(good.iter().map(|r| r.speeds_differ)),
             without_onset: runs.len() - good.len(),
             warnings: Vec::new(),

@@ -9,6 +9,7 @@
 //!
 //! A block comes as `Qᵀ` times its rows: whatever is outside the span of its columns contributes nothing.
 
+use super::speed_scatter::Effect;
 use crate::error::{Error, Result};
 use crate::identification::least_squares::StreamingQr;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -79,13 +80,15 @@ impl Block {
     }
 }
 
-/// Blocks of one fit with what is common to all of them.
+/// The data that an estimate was made from, for another process as well: blocks of one fit with what is common to all of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Design {
-    pub blocks: Vec<Block>,
+pub struct Design {
+    pub(super) blocks: Vec<Block>,
+    /// Random effects of mean speeds beside the scatter of the blocks.
+    pub(super) effects: Vec<Effect>,
     /// `M⁻¹`, or what is left of it along the tangent, P×P.
     #[serde(with = "crate::state_space::rows")]
-    pub inverse: DMatrix<f64>,
+    pub(super) inverse: DMatrix<f64>,
     /// Orthonormal directions that active constraints leave to the parameters, P×q; those of the parameters where nothing holds
     /// them.
     #[serde(with = "crate::state_space::rows")]
@@ -143,16 +146,14 @@ impl Design {
     ) -> Result<Self> {
         let mut design = Self {
             blocks,
+            effects: Vec::new(),
             inverse,
             tangent,
             working,
             enlarge: Vec::new(),
         };
-        design.enlarge = design
-            .blocks
-            .iter()
-            .map(|b| design.enlargement(b))
-            .collect::<Result<_>>()?;
+        let enlarge = design.blocks.iter().map(|b| design.enlargement(b));
+        design.enlarge = enlarge.collect::<Result<_>>()?;
         Ok(design)
     }
 
@@ -174,9 +175,8 @@ impl Design {
         let eigen = SymmetricEigen::try_new(inner, f64::EPSILON, 10_000)
             .ok_or_else(|| Error::Numerical("covariance: no eigenvalues of a block".into()))?;
         let floor = LEVERAGE_TOLERANCE * eigen.eigenvalues.amax();
-        let powers = eigen
-            .eigenvalues
-            .map(|x| if x > floor { x.sqrt().recip() } else { 0.0 });
+        let power = |x: f64| if x > floor { x.sqrt().recip() } else { 0.0 };
+        let powers = eigen.eigenvalues.map(power);
         let middle = &eigen.eigenvectors * scaled(&eigen.eigenvectors.transpose(), &powers);
         Ok(scaled(&scaled(&middle, &root).transpose(), &root))
     }
@@ -200,9 +200,8 @@ impl Design {
     /// The blocks put together in groups.
     pub(crate) fn merged(&self, groups: &[usize], names: Vec<String>) -> Vec<Block> {
         let named = names.into_iter().enumerate();
-        named
-            .map(|(g, name)| Block::joined(name, &self.members(groups, g)))
-            .collect()
+        let blocks = named.map(|(g, name)| Block::joined(name, &self.members(groups, g)));
+        blocks.collect()
     }
 
     fn members(&self, groups: &[usize], group: usize) -> Vec<Block> {
@@ -236,11 +235,10 @@ impl Design {
         Self::new(blocks.clone(), tangent.clone())?;
         let all = Block::joined(String::new(), &blocks);
         let qr = along(&all.rows, &tangent).qr();
-        let inner = qr
-            .r()
-            .solve_upper_triangular(&qr.q().tr_mul(&all.residual))
-            .ok_or_else(|| Error::Numerical("covariance: one speed alone".into()))?;
-        let step = &tangent * inner;
+        let right = qr.q().tr_mul(&all.residual);
+        let inner = qr.r().solve_upper_triangular(&right);
+        let none = || Error::Numerical("covariance: one speed alone".into());
+        let step = &tangent * inner.ok_or_else(none)?;
         for block in &mut blocks {
             block.residual -= &block.rows * &step;
         }
@@ -254,13 +252,11 @@ impl Design {
 
     /// Contribution of each block to the errors of the parameters, P×G.
     pub(crate) fn contributions(&self) -> DMatrix<f64> {
-        let columns: Vec<DVector<f64>> = self
-            .blocks
-            .iter()
-            .zip(&self.enlarge)
-            .map(|(b, enlarge)| &self.inverse * b.rows.transpose() * (enlarge * &b.residual))
-            .collect();
-        DMatrix::from_columns(&columns)
+        let column = |(b, enlarge): (&Block, &DMatrix<f64>)| {
+            &self.inverse * b.rows.transpose() * (enlarge * &b.residual)
+        };
+        let columns = self.blocks.iter().zip(&self.enlarge).map(column);
+        DMatrix::from_columns(&columns.collect::<Vec<_>>())
     }
 
     /// Satterthwaite's degrees of freedom of the variance of `contrast · parameters`, under the working variances.
@@ -285,10 +281,9 @@ impl Design {
                 squares += entry * entry;
             }
         }
-        if squares > 0.0 {
-            (trace * trace / squares).max(1.0)
-        } else {
-            1.0
+        match squares > 0.0 {
+            true => (trace * trace / squares).max(1.0),
+            false => 1.0,
         }
     }
 
@@ -308,12 +303,9 @@ impl Design {
             gram.gemm(*weight, &rows.transpose(), &rows, 1.0);
             right.gemv(*weight, &rows.transpose(), &block.residual, 1.0);
         }
-        let step = gram
-            .cholesky()
-            .ok_or_else(|| Error::Numerical("bootstrap: a replicate is singular".into()))?
-            .solve(&right)
-            .component_mul(&unit);
-        Ok(&self.tangent * step)
+        let singular = || Error::Numerical("bootstrap: a replicate is singular".into());
+        let step = gram.cholesky().ok_or_else(singular)?.solve(&right);
+        Ok(&self.tangent * step.component_mul(&unit))
     }
 }
 

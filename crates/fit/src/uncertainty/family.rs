@@ -103,14 +103,11 @@ pub fn family_coverage(plan: &FamilyPlan, progress: OnDone<'_>) -> Result<Family
     let decks = numbered(plan.decks, progress, |number| {
         Ok(judged(number, &SyntheticDeck::draw(plan, number)?))
     })?;
-    let mut ranges: Vec<RangeCount> = FamilyRange::ALL
-        .iter()
-        .filter_map(|range| RangeCount::count(*range, &decks))
-        .collect();
-    ranges.extend(RangeCount::count(FamilyRange::All, &decks));
+    let ranges = FamilyRange::ALL.into_iter().chain([FamilyRange::All]);
+    let counts = ranges.filter_map(|range| RangeCount::count(range, &decks));
     Ok(FamilyReport {
         plan: *plan,
-        ranges,
+        ranges: counts.collect(),
         decks,
     })
 }
@@ -148,9 +145,8 @@ impl DeckOutcome {
                 let error = onset_error(&estimate, &deck.structure, &onset, None)?;
                 self.onset_m_s = Some(onset.at.speed_m_s);
                 let interval = interval_with_forms(&error, &[spread]);
-                self.parts_m_s = interval
-                    .parts()
-                    .map(|p| (p.scatter_m_s, p.form_m_s.unwrap_or(0.0)));
+                let parts = interval.parts();
+                self.parts_m_s = parts.map(|p| (p.scatter_m_s, p.form_m_s.unwrap_or(0.0)));
                 match interval {
                     OnsetInterval::Known {
                         low_m_s, high_m_s, ..
@@ -195,33 +191,25 @@ impl DeckOutcome {
 
 impl RangeCount {
     fn count(range: FamilyRange, decks: &[DeckOutcome]) -> Option<Self> {
-        let own = decks
-            .iter()
-            .filter(|d| range == FamilyRange::All || d.range == range);
-        let own: Vec<&DeckOutcome> = own.collect();
-        let stated = || {
-            own.iter()
-                .filter_map(|d| Some((d.truth_m_s, d.interval_m_s?)))
-        };
-        let calm = || {
-            own.iter()
-                .filter_map(|d| Some(d.truth_m_s < d.no_flutter_up_to_m_s?))
-        };
-        let mut halves: Vec<f64> = stated()
-            .map(|(_, (low, high))| 100.0 * (high - low) / (high + low))
-            .collect();
+        let is_own = |d: &&DeckOutcome| range == FamilyRange::All || d.range == range;
+        let own: Vec<&DeckOutcome> = decks.iter().filter(is_own).collect();
+        let interval = |d: &&DeckOutcome| Some((d.truth_m_s, d.interval_m_s?));
+        let stated = || own.iter().filter_map(interval);
+        let wrong = |d: &&DeckOutcome| Some(d.truth_m_s < d.no_flutter_up_to_m_s?);
+        let calm = || own.iter().filter_map(wrong);
+        let half = |(_, (low, high)): (f64, (f64, f64))| 100.0 * (high - low) / (high + low);
+        let mut halves: Vec<f64> = stated().map(half).collect();
         halves.sort_by(f64::total_cmp);
         let error = |d: &&DeckOutcome| {
             let (scatter_m_s, form_m_s) = d.interval_m_s.and(d.parts_m_s)?;
             Some((d.onset_m_s? - d.truth_m_s) / scatter_m_s.hypot(form_m_s))
         };
         let squares: Vec<f64> = own.iter().filter_map(error).map(|z| z * z).collect();
+        let holds = |(truth, (low, high)): (f64, (f64, f64))| low <= truth && truth <= high;
         (!own.is_empty()).then(|| Self {
             range,
             decks: own.len(),
-            held: IntervalCoverage::count(
-                stated().map(|(truth, (low, high))| low <= truth && truth <= high),
-            ),
+            held: IntervalCoverage::count(stated().map(holds)),
             no_flutter: calm().filter(|wrong| !wrong).count(),
             refused: own.iter().filter(|d| d.refused.is_some()).count(),
             false_no_flutter: calm().filter(|wrong| *wrong).count(),

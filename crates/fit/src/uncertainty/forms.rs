@@ -119,10 +119,8 @@ impl FormEnsemble {
         let tested = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
             .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
         let table = table_of(samples, dofs)?;
-        let read = INTERPOLATIONS
-            .iter()
-            .map(|by| InterpolatedTable::by(*by, &table, dofs, Extrapolation::Refuse));
-        let read = read.collect::<Result<_>>()?;
+        let by = |by| InterpolatedTable::by(by, &table, dofs, Extrapolation::Refuse);
+        let read = INTERPOLATIONS.into_iter().map(by).collect::<Result<_>>()?;
         let numbers = samples.len() as f64;
         let fitted = threads::each(&fitted_forms(tested), true, |(form, fit)| {
             let fitted = known(fit).or_else(|| fit_table(samples, dofs, fit).ok())?;
@@ -205,15 +203,10 @@ impl FormEnsemble {
 
 /// Interpolated tables that say something of the onset: those that have one, and those that are stable where others flutter.
 fn told(read: Vec<FormOnset>, fits: &[FormOnset]) -> Vec<FormOnset> {
-    let lowest = lowest(fits);
-    let contradicts = |f: &FormOnset| {
-        f.stable_up_to_m_s
-            .zip(lowest)
-            .is_some_and(|(to, onset)| to > onset)
-    };
-    read.into_iter()
-        .filter(|f| f.onset_m_s.is_some() || contradicts(f))
-        .collect()
+    let lowest = lowest(fits).unwrap_or(f64::INFINITY);
+    let contradicts = |f: &FormOnset| f.stable_up_to_m_s.is_some_and(|to| to > lowest);
+    let says = |f: &FormOnset| f.onset_m_s.is_some() || contradicts(f);
+    read.into_iter().filter(says).collect()
 }
 
 fn lowest(forms: &[FormOnset]) -> Option<f64> {
@@ -256,11 +249,8 @@ impl FormSpread {
 
     /// Root mean square distance of the onsets from one of them, m/s: what the choice of that form leaves open.
     pub fn deviation_from_m_s(&self, onset_m_s: f64) -> Option<f64> {
-        let squares: Vec<f64> = self
-            .forms
-            .iter()
-            .filter_map(|f| Some((f.onset_m_s? - onset_m_s).powi(2)))
-            .collect();
+        let square = |f: &FormOnset| Some((f.onset_m_s? - onset_m_s).powi(2));
+        let squares: Vec<f64> = self.forms.iter().filter_map(square).collect();
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
         (!squares.is_empty()).then(|| mean.sqrt())
     }
@@ -288,21 +278,19 @@ fn fitted_forms(tested: ReducedFrequencyRange) -> Vec<(String, FrequencyFit)> {
         };
         (format!("{lags} lag(s)"), form, PoleSearch::default())
     };
-    BANKS
-        .map(|count| bank(count, WIDE))
-        .chain([bank(NARROW.0, NARROW.1)])
-        .chain(LAGS.map(lags))
-        .map(|(name, form, poles)| {
-            let fit = FrequencyFit {
-                form,
-                poles,
-                weights: FrequencyWeights::Relative,
-                constraints: Constraints::Dissipative,
-                ..FrequencyFit::default()
-            };
-            (name, fit)
-        })
-        .collect()
+    let banks = BANKS.map(|count| bank(count, WIDE));
+    let banks = banks.chain([bank(NARROW.0, NARROW.1)]);
+    let fit = |(name, form, poles)| {
+        let fit = FrequencyFit {
+            form,
+            poles,
+            weights: FrequencyWeights::Relative,
+            constraints: Constraints::Dissipative,
+            ..FrequencyFit::default()
+        };
+        (name, fit)
+    };
+    banks.chain(LAGS.map(lags)).map(fit).collect()
 }
 
 /// Variance of the residuals of each transfer function of a fit to so many numbers per degree of freedom, over its mean square; none
@@ -341,17 +329,15 @@ impl FormOnset {
 fn admissible(all: Vec<(AdmissibleForm, Vec<f64>)>) -> Result<Vec<AdmissibleForm>> {
     let sum = |variances: &Vec<f64>| -> f64 { variances.iter().sum() };
     let each = all.iter().map(|(_, variances)| variances.clone());
-    let best = each
-        .min_by(|a, b| sum(a).total_cmp(&sum(b)))
-        .ok_or_else(|| Error::Numerical("no form can be fitted to these samples".into()))?;
+    let best = each.min_by(|a, b| sum(a).total_cmp(&sum(b)));
+    let none = || Error::Numerical("no form can be fitted to these samples".into());
+    let best = best.ok_or_else(none)?;
     let floor = AS_GOOD.powi(2);
     // the mean over the transfer functions
     let ratio = |own: &[f64]| {
-        let ratios = own.iter().zip(&best);
-        let sum: f64 = ratios
-            .map(|(own, best)| (own + floor) / (best + floor))
-            .sum();
-        sum / own.len() as f64
+        let both = own.iter().zip(&best);
+        let ratios = both.map(|(own, best)| (own + floor) / (best + floor));
+        ratios.sum::<f64>() / own.len() as f64
     };
     let rated = all.into_iter().map(|(form, own)| AdmissibleForm {
         residual_ratio: ratio(&own),

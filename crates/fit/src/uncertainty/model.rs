@@ -3,7 +3,7 @@
 use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::forms::{FormEnsemble, FormSpread};
 use super::onset::{
-    CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
+    CONFIDENCE, OnsetError, ResampledOnset, Resampling, onset_error, resample_onset,
 };
 use super::speed_onsets::{Contradiction, SpeedOnsets, speed_onsets};
 use super::statistics::two_sided_quantile;
@@ -21,8 +21,6 @@ use std::convert::Infallible;
 
 /// Replicates of each resampling.
 const REPLICATES: usize = 400;
-/// Seed of the resamplings.
-const SEED: u64 = 1;
 /// Onsets closer than this, relatively, are that of the section of the training.
 const SAME_ONSET: f64 = 1e-9;
 /// How far above the onset of a model those of other forms are looked for.
@@ -70,25 +68,13 @@ impl ModelUncertainty {
         let Some(onset) = onset else {
             return Ok(uncertainty);
         };
-        let estimate = &uncertainty.coefficients;
-        let resampled = |resampling| {
-            let plan = ResamplingPlan {
-                resampling,
-                replicates: REPLICATES,
-                seed: SEED,
-                search,
-                tested: Some(tested),
-            };
-            resample_onset(estimate, structure, onset, &plan)
-        };
-        let error = onset_error(estimate, structure, onset, None)?;
-        let blocks = resampled(Resampling::Blocks)?;
-        let drawn = resampled(Resampling::Normal)?;
-        let speeds = speed_onsets(estimate, structure, onset, &search, tested)?;
-        uncertainty.onset = Some(error);
-        uncertainty.block_bootstrap = blocks;
-        uncertainty.drawn_coefficients = drawn;
-        uncertainty.speeds = speeds;
+        let own = &uncertainty.coefficients;
+        let resampled =
+            |by| resample_onset(own, structure, onset, by, REPLICATES, &search, Some(tested));
+        uncertainty.onset = Some(onset_error(own, structure, onset, None)?);
+        uncertainty.block_bootstrap = resampled(Resampling::Blocks)?;
+        uncertainty.drawn_coefficients = resampled(Resampling::Normal)?;
+        uncertainty.speeds = speed_onsets(own, structure, onset, &search, tested)?;
         Ok(uncertainty)
     }
 
@@ -170,17 +156,15 @@ impl ModelUncertainty {
             return Ok(OnsetInterval::none("found without the model's realisation"));
         }
         if !self.coefficients.makes(model, onset.at.reduced_frequency)? {
-            return Ok(OnsetInterval::none(
-                "the covariance on file belongs to another training",
-            ));
+            let why = "the covariance on file belongs to another training";
+            return Ok(OnsetInterval::none(why));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
         let error = onset_error(&self.coefficients, structure, onset, known)?;
         if let Some(bias) = self.coefficients.known_bias() {
-            return Ok(OnsetInterval::none(format!(
-                "{bias} (standard error of the scatter alone {:.3} m/s)",
-                error.standard_error_m_s
-            )));
+            let alone = error.standard_error_m_s;
+            let why = format!("{bias} (standard error of the scatter alone {alone:.3} m/s)");
+            return Ok(OnsetInterval::none(why));
         }
         let spread = self.spread_of(structure, onset)?;
         Ok(interval_with_forms(&error, spread.as_slice()))
@@ -188,12 +172,8 @@ impl ModelUncertainty {
 
     /// Reads what was saved.
     pub fn from_json(text: &str) -> Result<Self> {
-        json::read("uncertainty", text).map_err(|e| {
-            Error::json(
-                "the uncertainty of a model as written by `aerodeck train`",
-                &e,
-            )
-        })
+        let what = "the uncertainty of a model as written by `aerodeck train`";
+        json::read("uncertainty", text).map_err(|e| Error::json(what, &e))
     }
 
     /// Indented JSON.
@@ -203,10 +183,8 @@ impl ModelUncertainty {
 
     /// What a reader must know of the onset: that the mean speeds contradict each other.
     pub fn warning(&self) -> Option<String> {
-        self.speeds
-            .contradiction
-            .as_ref()
-            .map(Contradiction::explain)
+        let contradiction = self.speeds.contradiction.as_ref();
+        contradiction.map(Contradiction::explain)
     }
 
     /// The same of an onset with any section; where the tests are not known any more, of that of the training.
@@ -214,11 +192,9 @@ impl ModelUncertainty {
         if self.is_own(onset) {
             return self.warning();
         }
-        let Some(tested) = self.coefficients.tested_range() else {
-            return self.warning();
-        };
-        let search = Self::search_of(onset);
-        let found = speed_onsets(&self.coefficients, structure, onset, &search, tested).ok();
+        let (own, search) = (&self.coefficients, Self::search_of(onset));
+        let found = |tested| speed_onsets(own, structure, onset, &search, tested).ok();
+        let found = own.tested_range().and_then(found);
         let found = found.filter(|f| !f.each.is_empty());
         found.map_or_else(|| self.warning(), |f| f.contradiction.map(|c| c.explain()))
     }
@@ -308,9 +284,8 @@ pub(crate) fn derivative_intervals(
                     let at = |g: &TransferMatrix| part_of(g[(i, j)], part) / here.k.powi(2);
                     let gradient: Vec<f64> = here.slopes.iter().map(at).collect();
                     let standard_error = estimate.standard_error(&gradient)?;
-                    let nu = estimate
-                        .degrees_of_freedom(&gradient)
-                        .unwrap_or(f64::INFINITY);
+                    let nu = estimate.degrees_of_freedom(&gradient);
+                    let nu = nu.unwrap_or(f64::INFINITY);
                     let half = two_sided_quantile(CONFIDENCE, nu.min(MANY)) * standard_error;
                     let value = at(&here.value);
                     intervals.push(DerivativeInterval {

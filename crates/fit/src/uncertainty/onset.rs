@@ -4,7 +4,7 @@
 //! `dλ = uᴴ dA v / uᴴ v` (Murthy & Haftka, "Derivatives of eigenvalues and eigenvectors of a general complex matrix",
 //! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
 
-use super::coefficients::{CoefficientUncertainty, KnownData};
+use super::coefficients::CoefficientUncertainty;
 use super::draws::ModelDraws;
 use super::statistics::{SampledOnsets, two_sided_quantile};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
@@ -22,6 +22,8 @@ use std::f64::consts::TAU;
 
 /// Confidence of every interval.
 pub(crate) const CONFIDENCE: f64 = 0.95;
+/// Seed of the resamplings, of which each replicate draws from a stream of its own.
+const SEED: u64 = 1;
 /// Relative step of the difference of state matrices.
 const STEP: f64 = 1e-6;
 /// Secant steps to a zero of the growth rate.
@@ -68,13 +70,11 @@ pub(super) fn error_at(
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
     let gradient = onset_gradient(estimate, structure, speed_m_s, omega)?;
+    let known = estimate.degrees_of_freedom(&gradient);
     Ok(OnsetError {
         speed_m_s,
         standard_error_m_s: estimate.standard_error(&gradient)?,
-        degrees_of_freedom: estimate
-            .degrees_of_freedom(&gradient)
-            .or(degrees_of_freedom)
-            .unwrap_or(1.0),
+        degrees_of_freedom: known.or(degrees_of_freedom).unwrap_or(1.0),
         between_speeds: estimate.speeds.as_ref().map(|s| s.source),
     })
 }
@@ -117,49 +117,37 @@ pub struct ResampledOnset {
     pub high_m_s: f64,
 }
 
-/// What a resampling needs besides the estimate.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ResamplingPlan {
-    /// How parameters are drawn.
-    pub resampling: Resampling,
-    /// Number of replicates.
-    pub replicates: usize,
-    /// Seed; each replicate draws from a stream of its own.
-    pub seed: u64,
-    /// Where to look for an onset that is not near the estimate.
-    pub search: OnsetSearch,
-    /// Reduced frequencies in which the model was tested.
-    pub tested: Option<ReducedFrequencyRange>,
-}
-
 /// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
-/// along its slope (see [`ModelDraws`]). The answer does not depend on the number of threads. `None` for blocks of an estimate that no longer knows its data, and where no draw has an onset.
+/// along its slope (see [`ModelDraws`]). An onset that is not near the estimate is looked for in `search`, with the reduced frequencies
+/// in which the model was `tested`. The answer does not depend on the number of threads. `None` for blocks of an estimate that no longer knows its data, and where no draw has an onset.
 pub(crate) fn resample_onset(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,
-    plan: &ResamplingPlan,
+    resampling: Resampling,
+    replicates: usize,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
 ) -> Result<Option<ResampledOnset>> {
     let draws = ModelDraws::new(estimate)?;
-    let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+    let near = [onset.at.speed_m_s, TAU * onset.at.frequency_hz];
     let onset_of = |r: usize| -> Result<Option<Option<f64>>> {
-        let Some(values) = drawn(estimate, &draws, plan, r)? else {
+        let Some(values) = drawn(estimate, &draws, resampling, r)? else {
             return Ok(None);
         };
         // a draw that makes no model, or none that can be coupled, has no onset
         let section = draws.model_at(&values);
         let section = section.and_then(|m| CoupledSection::with_model(structure, &m));
-        let near = [speed_m_s, omega];
-        let found = section.and_then(|s| followed(&s, near, &plan.search, plan.tested));
+        let found = section.and_then(|s| followed(&s, near, search, tested));
         Ok(Some(found.ok().flatten().map(|[speed, _]| speed)))
     };
-    let found = numbered(plan.replicates, &|_, _| (), onset_of)?;
+    let found = numbered(replicates, &|_, _| (), onset_of)?;
     let found: Option<Vec<Option<f64>>> = found.into_iter().collect();
     let onsets = found.map(SampledOnsets::from);
     let onsets = onsets.filter(|o| !o.speeds_m_s.is_empty());
     Ok(onsets.map(|onsets| ResampledOnset {
-        resampling: plan.resampling,
-        replicates: plan.replicates,
+        resampling,
+        replicates,
         without_onset: onsets.without_onset,
         mean_m_s: onsets.mean_m_s,
         standard_deviation_m_s: onsets.standard_deviation_m_s,
@@ -172,21 +160,21 @@ pub(crate) fn resample_onset(
 fn drawn(
     estimate: &CoefficientUncertainty,
     draws: &ModelDraws<'_>,
-    plan: &ResamplingPlan,
+    resampling: Resampling,
     replicate: usize,
 ) -> Result<Option<Vec<f64>>> {
-    let mut random = random_stream(plan.seed, replicate as u64);
-    if plan.resampling == Resampling::Normal {
+    let mut random = random_stream(SEED, replicate as u64);
+    if resampling == Resampling::Normal {
         return Ok(Some(draws.parameters(&mut random)));
     }
-    let Some(KnownData { design, effects }) = &estimate.data else {
+    let Some(design) = &estimate.data else {
         return Ok(None);
     };
     // exact for coefficients, one Gauss–Newton step for searched poles, along what active constraints leave free
     let weights = (0..estimate.blocks.len()).map(|_| Exp1.sample(&mut random));
     let step = design.reweighted(&weights.collect::<Vec<f64>>())?;
     let mut values = estimate.moved_by(&step);
-    for column in effects.iter().flat_map(|e| e.columns.column_iter()) {
+    for column in design.effects.iter().flat_map(|e| e.columns.column_iter()) {
         let z: f64 = StandardNormal.sample(&mut random);
         for (value, change) in values.iter_mut().zip(column.iter()) {
             *value += z * change;
@@ -226,34 +214,31 @@ pub(crate) fn onset_gradient(
     let behind = nearest(&section.at(speed_m_s - h)?, lambda)?;
     let with_speed = (ahead.re - behind.re) / (2.0 * h);
     if with_speed == 0.0 {
-        return Err(Error::Numerical(
-            "onset sensitivity: the growth rate does not change with wind speed".into(),
-        ));
+        let what = "onset sensitivity: the growth rate does not change with wind speed";
+        return Err(Error::Numerical(what.into()));
     }
     let here = section.at(speed_m_s)?;
     let mu = here.matrix_eigenvalue(lambda);
     let right = eigenvector(&here.a, mu)?;
     let left = eigenvector(&here.a.transpose(), mu)?;
     // the transposed matrix has the conjugate of the left vector, so no conjugation here
-    let scale = bilinear(
-        &left,
-        &complex(&DMatrix::identity(right.len(), right.len())),
-        &right,
-    );
+    let unit = complex(&DMatrix::identity(right.len(), right.len()));
+    let scale = bilinear(&left, &unit, &right);
     let matrix_at = |p: usize, step: f64| -> Result<DMatrix<f64>> {
         let mut moved = values.clone();
         moved[p] += step;
         let section = section_at(structure, estimate, &moved)?;
         Ok(section.at(speed_m_s)?.a)
     };
-    (0..values.len())
-        .map(|p| {
-            let step = STEP * values[p].abs().max(1e-2);
-            let change = (matrix_at(p, step)? - matrix_at(p, -step)?) / (2.0 * step);
-            let slope = bilinear(&left, &complex(&change), &right) / scale;
-            Ok(-rate_change(&here, mu, slope).re / with_speed)
-        })
-        .collect()
+    let slope = |p: usize| {
+        let step = STEP * values[p].abs().max(1e-2);
+        let change = (matrix_at(p, step)? - matrix_at(p, -step)?) / (2.0 * step);
+        let change = bilinear(&left, &complex(&change), &right) / scale;
+        // of the continuous-time eigenvalue
+        let change = here.step_s.map_or(change, |step_s| change / (mu * step_s));
+        Ok(-change.re / with_speed)
+    };
+    (0..values.len()).map(slope).collect()
 }
 
 /// `xᵀ m y`.
@@ -265,20 +250,12 @@ fn bilinear(
     x.iter().zip((m * y).iter()).map(|(a, b)| a * b).sum()
 }
 
-/// Change of the continuous-time eigenvalue for a change of that of the state matrix.
-fn rate_change(system: &CoupledSystem, mu: Complex<f64>, change: Complex<f64>) -> Complex<f64> {
-    system
-        .step_s
-        .map_or(change, |step_s| change / (mu * step_s))
-}
-
 /// The eigenvalue nearest to `target`, rad/s.
 fn nearest(system: &CoupledSystem, target: Complex<f64>) -> Result<Complex<f64>> {
-    system
-        .eigenvalues()?
-        .into_iter()
-        .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
-        .ok_or_else(|| Error::Numerical("onset: no eigenvalues".into()))
+    let distance = |z: &Complex<f64>| (z - target).norm();
+    let all = system.eigenvalues()?.into_iter();
+    let nearest = all.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.ok_or_else(|| Error::Numerical("onset: no eigenvalues".into()))
 }
 
 /// Speed (m/s) and circular frequency of the onset that is followed from those of another, or else of the one that a search finds;

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::identification::affine::AffineSpace;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{NOTHING_HELD, SAME_DIRECTION};
-use crate::identification::{FitReport, Form, OwnFilters, PoleSearch};
+use crate::identification::{Coefficient, EntryReport, FitReport, Form, OwnFilters, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -138,10 +138,9 @@ impl FitParameters {
         for entry in &report.entries {
             first.push(all.len());
             let (force, motion) = (Some(entry.force), Some(entry.motion));
-            let coefficients = entry.coefficients.iter();
-            all.extend(
-                coefficients.map(|c| Parameter::new(c.name.clone(), force, motion, c.value)),
-            );
+            let parameter =
+                |c: &Coefficient| Parameter::new(c.name.clone(), force, motion, c.value);
+            all.extend(entry.coefficients.iter().map(parameter));
         }
         let (mut searched, mut held) = (Vec::new(), 0);
         let mut dofs: Vec<Dof> = report.entries.iter().map(|e| e.motion).collect();
@@ -151,15 +150,12 @@ impl FitParameters {
         let apart: Vec<_> = own.iter().map(|o| (o.force, o.motion)).collect();
         for search in &report.search {
             // the poles in use: a search may end between the points it evaluated
-            let used = report
-                .entries
-                .iter()
-                .find(|e| match search.entry {
-                    Some(entry) => entry == (e.force, e.motion),
-                    None => !apart.contains(&(e.force, e.motion)),
-                })
-                .map(|e| form.collapse(&e.poles))
-                .unwrap_or_default();
+            let has_them = |e: &&EntryReport| match search.entry {
+                Some(entry) => entry == (e.force, e.motion),
+                None => !apart.contains(&(e.force, e.motion)),
+            };
+            let used = report.entries.iter().find(has_them);
+            let used = used.map_or_else(Vec::new, |e| form.collapse(&e.poles));
             for (index, pole) in used.iter().enumerate() {
                 let near = |bound: f64| (pole / bound).ln().abs() < AT_BOUND;
                 let pressed =
@@ -174,12 +170,8 @@ impl FitParameters {
                     index,
                 });
                 let (force, motion) = search.entry.unzip();
-                all.push(Parameter::new(
-                    format!("pole {index}"),
-                    force,
-                    motion,
-                    *pole,
-                ));
+                let name = format!("pole {index}");
+                all.push(Parameter::new(name, force, motion, *pole));
             }
         }
         Self {
@@ -193,28 +185,24 @@ impl FitParameters {
 
     /// How poles enter, in words.
     pub(crate) fn sentence(&self) -> String {
-        let mut text = if self.searched.is_empty() {
-            "poles count as known".to_owned()
-        } else {
-            SEARCHED_POLES.to_owned()
+        let searched = match self.searched.is_empty() {
+            true => "poles count as known",
+            false => SEARCHED_POLES,
         };
-        if self.held > 0 {
-            text.push_str(&format!(
-                "; {} pole(s) held by a bound of the search count as known",
-                self.held
-            ));
-        }
-        text
+        let held = match self.held {
+            0 => String::new(),
+            n => format!("; {n} pole(s) held by a bound of the search count as known"),
+        };
+        searched.to_owned() + &held
     }
 
     /// How they make the model.
     pub(super) fn coordinates(&self, report: &FitReport) -> Coordinates {
         let rows = report.entries.chunks(report.entries.len().isqrt());
+        let chains = rows.map(|row| row.iter().map(|e| e.poles.clone()).collect());
         Coordinates::Continuous {
             form: self.form.clone(),
-            chains: rows
-                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
-                .collect(),
+            chains: chains.collect(),
             searched: self.searched.clone(),
         }
     }
@@ -277,18 +265,14 @@ pub(super) fn moved_pole(form: &Form, chain: &[f64], index: usize) -> Result<(Ba
 
 /// How active constraints enter, in words.
 pub(super) fn constraint_sentence(report: &FitReport) -> String {
-    match &report.constraints {
-        Some(c) => {
-            let follows = if c.active.iter().any(|a| a.limit.is_some()) {
-                ", but not the growth with which the tests end: it follows the data"
-            } else {
-                ""
-            };
-            format!(
-                "; what {} active constraint(s) hold counts as known{follows}",
-                c.active.len()
-            )
-        }
-        None => String::new(),
-    }
+    let Some(constraints) = &report.constraints else {
+        return String::new();
+    };
+    let active = &constraints.active;
+    let follows = match active.iter().any(|a| a.limit.is_some()) {
+        true => ", but not the growth with which the tests end: it follows the data",
+        false => "",
+    };
+    let count = active.len();
+    format!("; what {count} active constraint(s) hold counts as known{follows}")
 }

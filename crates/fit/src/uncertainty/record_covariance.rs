@@ -40,9 +40,8 @@ pub fn record_uncertainty(
 ) -> Result<CoefficientUncertainty> {
     let records = Records::read(records, fit.static_term)?;
     if fit.static_term == StaticTerm::Estimated {
-        return Err(Error::Numerical(
-            "covariance: not known for a constant estimated along".into(),
-        ));
+        let what = "covariance: not known for a constant estimated along";
+        return Err(Error::Numerical(what.into()));
     }
     let task = RecordFit {
         fit,
@@ -157,9 +156,8 @@ impl Entries {
         let tells = |c: &&Stretch| !(c.set.is_empty() && self.constants.is_empty());
         for stretch in closed.iter().filter(tells) {
             if !self.shared && stretch.set.len() > 1 {
-                return Err(Error::Numerical(
-                    "covariance: poles per transfer function need records of single motions".into(),
-                ));
+                let what = "covariance: poles per transfer function need records of single motions";
+                return Err(Error::Numerical(what.into()));
             }
             let record = &records[stretch.record];
             parts.extend((0..self.inputs).map(|i| self.part(record, stretch, i)));
@@ -175,10 +173,9 @@ impl Entries {
         i: usize,
     ) -> StretchRows<'a> {
         let moving = stretch.set.len();
-        let which = if self.shared {
-            0
-        } else {
-            i * self.inputs + stretch.set[0]
+        let which = match self.shared {
+            true => 0,
+            false => i * self.inputs + stretch.set[0],
         };
         let factor = &stretch.factors[which];
         let weight = stretch.weights[i];
@@ -231,19 +228,14 @@ pub fn discrete_uncertainty(
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
     let Model::DiscreteLaguerre(model) = model else {
-        return Err(Error::input(
-            "model",
-            "a discrete Laguerre model",
-            model.kind(),
-        ));
+        let expected = "a discrete Laguerre model";
+        return Err(Error::input("model", expected, model.kind()));
     };
-    let Some((alpha, filters)) = model
-        .shared_parameters()
-        .filter(|_| fit.static_term == StaticTerm::Estimated)
-    else {
-        return Err(Error::Numerical(
-            "covariance: known for discrete models whose filters are shared and whose constant was estimated along".into(),
-        ));
+    let estimated = fit.static_term == StaticTerm::Estimated;
+    let shared = model.shared_parameters().filter(|_| estimated);
+    let Some((alpha, filters)) = shared else {
+        let what = "covariance: known for discrete models whose filters are shared and whose constant was estimated along";
+        return Err(Error::Numerical(what.into()));
     };
     let records = Records::read(records, fit.static_term)?;
     let inputs = records.dofs.len();
@@ -252,18 +244,11 @@ pub fn discrete_uncertainty(
         per_input: filters,
         constant: true,
     };
-    let closed = discrete_pass(
-        &records,
-        order,
-        &[vec![alpha; inputs]],
-        fit.weights,
-        STRETCHES,
-        progress,
-    )?
-    .stretches;
+    let alphas = [vec![alpha; inputs]];
+    let pass = discrete_pass(&records, order, &alphas, fit.weights, STRETCHES, progress)?;
     let (entries, parameters) = Entries::discrete(model, filters);
     let free = DMatrix::identity(parameters.len(), parameters.len());
-    let (design, blocks) = sandwich(entries.rows(&records.each, &closed)?, free)?;
+    let (design, blocks) = sandwich(entries.rows(&records.each, &pass.stretches)?, free)?;
     CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; α is given"),
         Some(records.tested_range()?),

@@ -11,6 +11,7 @@
 
 use super::design::{Block, Design};
 use crate::error::Result;
+use crate::identification::samples::unit_scale;
 use crate::identification::time::pass::Stretch;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
@@ -101,11 +102,7 @@ fn weigh<'a>(parts: &mut [StretchRows<'a>]) {
     for members in groups.values() {
         let own: Vec<&StretchRows<'_>> = members.iter().map(|&m| &parts[m]).collect();
         let total: f64 = own.iter().map(|part| part.total).sum();
-        let scale = if total > 0.0 {
-            total.sqrt().recip()
-        } else {
-            1.0
-        };
+        let scale = unit_scale(total);
         for (&m, variance) in members.iter().zip(working_variances(&own)) {
             let block = &mut parts[m].block;
             block.rows *= scale;
@@ -120,25 +117,19 @@ fn weigh<'a>(parts: &mut [StretchRows<'a>]) {
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
 /// squares on the logarithms.
 fn working_variances(parts: &[&StretchRows<'_>]) -> Vec<f64> {
-    let floor = 1e-12
-        * parts
-            .iter()
-            .map(|p| p.block.residual.norm_squared())
-            .fold(0.0, f64::max);
+    let squares = parts.iter().map(|p| p.block.residual.norm_squared());
+    let floor = 1e-12 * squares.fold(0.0, f64::max);
     if floor <= 0.0 {
         // a fit without residuals has no scale; only relative sizes matter
         return vec![1.0; parts.len()];
     }
-    let points: Vec<(usize, f64, f64)> = parts
-        .iter()
-        .map(|p| {
-            let hz = p.of.frequency_hz.unwrap_or(1.0);
-            let mean_square =
-                p.block.residual.norm_squared().max(floor) / p.block.residual.len() as f64;
-            let weight = p.of.weights[p.force];
-            (p.of.record, hz.ln(), (mean_square / weight.powi(2)).ln())
-        })
-        .collect();
+    let point = |p: &&StretchRows<'_>| {
+        let (hz, residual) = (p.of.frequency_hz.unwrap_or(1.0), &p.block.residual);
+        let mean_square = residual.norm_squared().max(floor) / residual.len() as f64;
+        let weight = p.of.weights[p.force];
+        (p.of.record, hz.ln(), (mean_square / weight.powi(2)).ln())
+    };
+    let points: Vec<(usize, f64, f64)> = parts.iter().map(point).collect();
     let mut means: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
     for (record, x, y) in &points {
         let sums = means.entry(*record).or_insert((0.0, 0.0, 0.0));
@@ -154,17 +145,13 @@ fn working_variances(parts: &[&StretchRows<'_>]) -> Vec<f64> {
         squares += (x - mx).powi(2);
         products += (x - mx) * (y - my);
     }
-    let slope = if squares > 0.0 {
-        (products / squares).clamp(-STEEPEST, STEEPEST)
-    } else {
-        0.0
+    let slope = match squares > 0.0 {
+        true => (products / squares).clamp(-STEEPEST, STEEPEST),
+        false => 0.0,
     };
-    points
-        .iter()
-        .zip(parts)
-        .map(|((record, x, _), part)| {
-            let (mx, my) = mean(record);
-            part.of.weights[part.force].powi(2) * (my + slope * (x - mx)).exp()
-        })
-        .collect()
+    let variance = |((record, x, _), part): (&(usize, f64, f64), &&StretchRows<'_>)| {
+        let (mx, my) = mean(record);
+        part.of.weights[part.force].powi(2) * (my + slope * (x - mx)).exp()
+    };
+    points.iter().zip(parts).map(variance).collect()
 }

@@ -110,16 +110,15 @@ pub fn speed_onsets_by(
         });
     }
     let apart = |a: &OnsetError, b: &OnsetError| (a.speed_m_s / b.speed_m_s - 1.0).abs() > AGREEING;
-    let pairs = alone
-        .iter()
-        .enumerate()
-        .flat_map(|(i, a)| alone[i + 1..].iter().map(move |b| (a, b)));
-    let worst = pairs
-        .filter(|(a, b)| apart(&a.2, &b.2))
-        .map(|(a, b)| (z_of(&a.2, &b.2), a, b))
-        .filter(|((z, limit), _, _)| z.abs() > *limit)
-        .max_by(|x, y| x.0.0.abs().total_cmp(&y.0.0.abs()));
-    if let Some(((z, _), (v1, first, one), (v2, second, other))) = worst {
+    let mut pairs = Vec::new();
+    for (i, a) in alone.iter().enumerate() {
+        for b in alone[i + 1..].iter().filter(|b| apart(&a.2, &b.2)) {
+            let (z, limit) = z_of(&a.2, &b.2);
+            pairs.extend((z.abs() > limit).then_some((z, a, b)));
+        }
+    }
+    pairs.sort_by(|x, y| x.0.abs().total_cmp(&y.0.abs()));
+    if let Some((z, (v1, first, one), (v2, second, other))) = pairs.pop() {
         let gradient = slopes()?;
         let (force, motion) = greatest_part(estimate, &gradient, first, second);
         let (k_low, k_high) = band(force, motion, tested, [first, second])?;
@@ -176,9 +175,8 @@ fn greatest_part(
         let sum: f64 = list.iter().map(|&p| gradient[p] * (a[p] - b[p])).sum();
         sum.abs()
     };
-    let at = (0..own.len())
-        .max_by(|x, y| part(&own[*x]).total_cmp(&part(&own[*y])))
-        .unwrap_or(0);
+    let greatest = (0..own.len()).max_by(|x, y| part(&own[*x]).total_cmp(&part(&own[*y])));
+    let at = greatest.unwrap_or(0);
     (estimate.dofs[at / n], estimate.dofs[at % n])
 }
 
@@ -193,10 +191,9 @@ fn band(
     let ranges = speeds.map(|s| s.tested_range().unwrap_or(tested));
     let low = ranges[0].min.full_width().max(ranges[1].min.full_width());
     let high = ranges[0].max.full_width().min(ranges[1].max.full_width());
-    let (low, high) = if low < high {
-        (low, high)
-    } else {
-        (tested.min.full_width(), tested.max.full_width())
+    let (low, high) = match low < high {
+        true => (low, high),
+        false => (tested.min.full_width(), tested.max.full_width()),
     };
     let dofs = &speeds[0].dofs;
     let place = |dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
@@ -210,9 +207,8 @@ fn band(
         let difference = 2.0 * (x - y).norm() / (x.norm() + y.norm());
         differences.push((k.full_width(), difference));
     }
-    let top = (0..POINTS)
-        .max_by(|x, y| differences[*x].1.total_cmp(&differences[*y].1))
-        .unwrap_or(0);
+    let top = (0..POINTS).max_by(|x, y| differences[*x].1.total_cmp(&differences[*y].1));
+    let top = top.unwrap_or(0);
     let large = |i: &usize| differences[*i].1 >= HALF * differences[top].1;
     let from = (0..=top).rev().take_while(large).last().unwrap_or(top);
     let to = (top..POINTS).take_while(large).last().unwrap_or(top);
@@ -225,28 +221,20 @@ impl SpeedOnsets {
         if self.each.is_empty() {
             return None;
         }
-        let each: Vec<String> = self
-            .each
-            .iter()
-            .map(|s| match (&s.onset, &s.reason) {
-                (Some(o), _) => {
-                    let half = o.half_width_m_s();
-                    let (low, high) = (o.speed_m_s - half, o.speed_m_s + half);
-                    format!(
-                        "{:.3} m/s ({low:.3} to {high:.3}) at {:.2} m/s",
-                        o.speed_m_s, s.mean_speed_m_s
-                    )
-                }
-                (None, reason) => format!(
-                    "none at {:.2} m/s ({})",
-                    s.mean_speed_m_s,
-                    reason.as_deref().unwrap_or("not judged")
-                ),
-            })
-            .collect();
+        let one = |s: &SpeedOnset| {
+            let tests = s.mean_speed_m_s;
+            let Some(onset) = &s.onset else {
+                let reason = s.reason.as_deref().unwrap_or("not judged");
+                return format!("none at {tests:.2} m/s ({reason})");
+            };
+            let (speed, half) = (onset.speed_m_s, onset.half_width_m_s());
+            let (low, high) = (speed - half, speed + half);
+            format!("{speed:.3} m/s ({low:.3} to {high:.3}) at {tests:.2} m/s")
+        };
+        let each: Vec<String> = self.each.iter().map(one).collect();
+        let each = each.join("; ");
         Some(format!(
-            "onset by the tests of each mean speed alone: {}",
-            each.join("; ")
+            "onset by the tests of each mean speed alone: {each}"
         ))
     }
 }

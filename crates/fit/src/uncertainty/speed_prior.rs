@@ -25,27 +25,20 @@ const PRIOR_FREEDOM: f64 = 6.0;
 /// What the embedded measured decks show: a row of ratios and a row of standard deviations between speeds, in per cent of the transfer
 /// functions (in phase: hundredths of a radian), each of lift and moment in size and in phase, of dissipative Laguerre models (L = 3)
 /// fitted to the tables of heave and rotation. The test `ratios_are_those_of_the_embedded_decks` computes them anew.
-pub(super) const MEASURED: [(&str, [[f64; 4]; 2]); 5] = [
-    (
-        "LN20-5500",
-        [[9.64, 3.08, 3.59, 3.97], [3.33, 2.02, 0.59, 0.95]],
-    ),
-    (
-        "LN21-5200",
-        [[6.48, 1.34, 0.84, 1.38], [1.41, 1.01, 0.31, 0.40]],
-    ),
-    (
-        "LN21-5500",
-        [[5.18, 1.21, 2.34, 2.35], [3.02, 2.30, 1.32, 1.69]],
-    ),
-    (
-        "LN21-5800",
-        [[6.13, 1.09, 2.03, 2.33], [5.76, 2.74, 1.23, 1.39]],
-    ),
-    (
-        "LN21-6100",
-        [[1.16, 2.16, 2.63, 3.01], [16.15, 71.34, 6.70, 6.54]],
-    ),
+pub(super) const MEASURED: [[[f64; 4]; 2]; 5] = [
+    [[9.64, 3.08, 3.59, 3.97], [3.33, 2.02, 0.59, 0.95]],
+    [[6.48, 1.34, 0.84, 1.38], [1.41, 1.01, 0.31, 0.40]],
+    [[5.18, 1.21, 2.34, 2.35], [3.02, 2.30, 1.32, 1.69]],
+    [[6.13, 1.09, 2.03, 2.33], [5.76, 2.74, 1.23, 1.39]],
+    [[1.16, 2.16, 2.63, 3.01], [16.15, 71.34, 6.70, 6.54]],
+];
+/// Their names.
+pub(super) const MEASURED_DECKS: [&str; 5] = [
+    "LN20-5500",
+    "LN21-5200",
+    "LN21-5500",
+    "LN21-5800",
+    "LN21-6100",
 ];
 
 /// Distribution of the ratio of the variance between speeds to that of independent test runs.
@@ -64,13 +57,12 @@ pub(super) struct SpeedPrior {
 impl SpeedPrior {
     /// By the measured decks, one of them left out where it is the deck at hand.
     pub(super) fn measured(without: Option<&str>) -> Self {
-        let others = || MEASURED.iter().filter(|(name, _)| Some(*name) != without);
-        let ratios: Vec<f64> = others().flat_map(|(_, [ratios, _])| *ratios).collect();
+        let decks = || MEASURED_DECKS.into_iter().zip(MEASURED);
+        let others = || decks().filter(|(name, _)| Some(*name) != without);
+        let ratios: Vec<f64> = others().flat_map(|(_, [ratios, _])| ratios).collect();
         let least = [0, 1, 2, 3].map(|column| {
-            let logs: Vec<f64> = others()
-                .map(|(_, [_, percent])| percent[column].ln())
-                .collect();
-            0.01 * mean(&logs).exp()
+            let logs = others().map(|(_, [_, percent])| percent[column].ln());
+            0.01 * mean(&logs.collect::<Vec<_>>()).exp()
         });
         Self {
             least,
@@ -155,7 +147,7 @@ mod tests {
     /// is the mean. One-sided 95 and 97.5 % of `χ²(1)/2` are 1.353 and 1.921.
     #[test]
     fn degrees_of_freedom_are_the_fewest_of_the_measured_decks() {
-        let ratios: Vec<f64> = MEASURED.iter().flat_map(|(_, [r, _])| *r).collect();
+        let ratios: Vec<f64> = MEASURED.iter().flat_map(|[r, _]| *r).collect();
         let greatest = |nu: f64| {
             let at = |scale: f64| -> f64 {
                 let one =
@@ -192,7 +184,7 @@ mod tests {
     fn the_prior_of_the_measured_decks() {
         let all = SpeedPrior::measured(None);
         assert!((all.ratio - 3.737).abs() < 1e-3, "{all:?}");
-        for (name, _) in MEASURED {
+        for name in MEASURED_DECKS {
             let without = SpeedPrior::measured(Some(name));
             assert!((2.5..4.5).contains(&without.ratio), "{name}: {without:?}");
         }

@@ -91,30 +91,19 @@ pub(super) struct Effect {
     pub degrees_of_freedom: f64,
 }
 
-impl Effect {
-    fn variance(&self, gradient: &DVector<f64>) -> f64 {
-        self.columns.tr_mul(gradient).norm_squared()
-    }
-}
-
 /// Satterthwaite's degrees of freedom of the variance of blocks and effects together.
-pub(super) fn degrees_of_freedom(
-    design: &Design,
-    effects: &[Effect],
-    gradient: &DVector<f64>,
-) -> f64 {
+pub(super) fn degrees_of_freedom(design: &Design, gradient: &DVector<f64>) -> f64 {
     let own = design.degrees_of_freedom(gradient);
     let blocks = design.contributions().tr_mul(gradient).norm_squared();
     let (mut sum, mut squares) = (blocks, blocks * blocks / own);
-    for effect in effects {
-        let variance = effect.variance(gradient);
+    for effect in &design.effects {
+        let variance = effect.columns.tr_mul(gradient).norm_squared();
         sum += variance;
         squares += (variance * effect.total).powi(2) / effect.degrees_of_freedom;
     }
-    if squares > 0.0 {
-        (sum * sum / squares).max(1.0)
-    } else {
-        own
+    match squares > 0.0 {
+        true => (sum * sum / squares).max(1.0),
+        false => own,
     }
 }
 
@@ -166,12 +155,8 @@ pub(super) fn between_speeds(
     };
     let both = |i: usize| [false, true].map(|turned| judge.effect(i, turned));
     let units: Vec<[Option<UnitEffect>; 2]> = (0..n).map(both).collect();
-    let ratios: Vec<f64> = units
-        .iter()
-        .flatten()
-        .flatten()
-        .filter_map(|u| u.ratio)
-        .collect();
+    let known = units.iter().flatten().flatten();
+    let ratios: Vec<f64> = known.filter_map(|u| u.ratio).collect();
     let mut of_deck = prior;
     if !ratios.is_empty() {
         let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
@@ -212,10 +197,9 @@ pub(super) fn between_speeds(
 fn common_points(shared: Option<(f64, f64)>, at: &[Slopes]) -> Vec<&Slopes> {
     let inside = |s: &&Slopes| shared.is_none_or(|(low, high)| low <= s.k && s.k <= high);
     let common: Vec<&Slopes> = at.iter().filter(inside).collect();
-    if common.is_empty() {
-        at.iter().collect()
-    } else {
-        common
+    match common.is_empty() {
+        true => at.iter().collect(),
+        false => common,
     }
 }
 
@@ -290,11 +274,8 @@ impl Judge<'_> {
             for (p, value) in own.iter().zip(moved.iter()) {
                 scattered[*p] = *value;
             }
-            let of_each: Vec<DVector<f64>> = self
-                .grams
-                .iter()
-                .map(|gram| &self.design.inverse * (gram * &scattered))
-                .collect();
+            let of_speed = |gram: &DMatrix<f64>| &self.design.inverse * (gram * &scattered);
+            let of_each: Vec<DVector<f64>> = self.grams.iter().map(of_speed).collect();
             let scattering = size.max(smallest);
             weight += size / scattering * square(&DMatrix::from_columns(&of_each));
             of_speeds += size * self.of_speeds.as_ref().map_or(0.0, square);
@@ -352,18 +333,11 @@ impl SpeedScatter {
             true => String::new(),
             false => format!(" {} m/s", speeds.join(", ")),
         };
-        let forces: Vec<String> = self
-            .forces
-            .iter()
-            .map(|f| {
-                format!(
-                    "{} force {:.1} % in size, {:.1}° in phase",
-                    f.force.name(),
-                    100.0 * f.size,
-                    f.phase.to_degrees()
-                )
-            })
-            .collect();
+        let of_force = |f: &ForceScatter| {
+            let (name, size, phase) = (f.force.name(), 100.0 * f.size, f.phase.to_degrees());
+            format!("{name} force {size:.1} % in size, {phase:.1}° in phase")
+        };
+        let forces: Vec<String> = self.forces.iter().map(of_force).collect();
         let (forces, prior) = (forces.join("; "), self.prior_ratio);
         match self.ratio {
             Some(ratio) => format!(

@@ -46,15 +46,13 @@ pub(super) fn normal_quantile(u: f64) -> f64 {
 pub(super) fn clopper_pearson(count: u64, samples: u64, confidence: f64) -> (f64, f64) {
     let tail = 0.5 * (1.0 - confidence);
     let (k, n) = (count as f64, samples as f64);
-    let lower = if count == 0 {
-        0.0
-    } else {
-        beta_quantile(tail, k, n - k + 1.0)
+    let lower = match count {
+        0 => 0.0,
+        _ => beta_quantile(tail, k, n - k + 1.0),
     };
-    let upper = if count == samples {
-        1.0
-    } else {
-        beta_quantile(1.0 - tail, k + 1.0, n - k)
+    let upper = match count == samples {
+        true => 1.0,
+        false => beta_quantile(1.0 - tail, k + 1.0, n - k),
     };
     (lower, upper)
 }
@@ -135,12 +133,10 @@ impl StudentScale {
     /// # Errors
     /// [`Error::Numerical`] for a number that is not positive.
     pub fn new(freedom: f64) -> Result<Self> {
-        let chi_squared = ChiSquared::new(freedom).map_err(|e| {
-            Error::Numerical(format!("draws with {freedom} degrees of freedom: {e}"))
-        })?;
+        let failed = |e| Error::Numerical(format!("draws with {freedom} degrees of freedom: {e}"));
         Ok(Self {
             freedom,
-            chi_squared,
+            chi_squared: ChiSquared::new(freedom).map_err(failed)?,
         })
     }
 

@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 use crate::identification::EntryReport;
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
-use crate::identification::frequency_options::FrequencyFit;
+use crate::identification::options::FrequencyFit;
 use crate::identification::report::FitReport;
-use crate::identification::samples::{EntrySample, EntrySamples, sort_by_entry};
+use crate::identification::samples::{EntrySample, EntrySamples, sort_by_entry, unit_scale};
 use crate::section::Dof;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -34,11 +34,9 @@ pub fn table_uncertainty(
     deck: Option<&str>,
 ) -> Result<CoefficientUncertainty> {
     if !fit.is_plain() {
-        return Err(Error::Numerical(
-            "covariance over test runs: not available for limits, regularisation, weights of entries, lags of each force \
-             and the minimum-state form"
-                .into(),
-        ));
+        let what = "covariance over test runs: not available for limits, regularisation, weights of entries, lags of each force and the \
+                    minimum-state form";
+        return Err(Error::Numerical(what.into()));
     }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
     let parameters = FitParameters::new(&fit.form, &fit.poles, &fit.own, report);
@@ -47,13 +45,10 @@ pub fn table_uncertainty(
     // rows of one motion at one frequency and speed
     let mut runs: Vec<(Dof, Vec<Block>)> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
-        let searched = parameters
-            .searched
-            .iter()
-            .enumerate()
-            .filter(|(_, pole)| pole.is_of(e / dofs.len(), e % dofs.len()));
-        let searched: Vec<(usize, usize)> =
-            searched.map(|(m, p)| (first_pole + m, p.index)).collect();
+        let (i, j) = (e / dofs.len(), e % dofs.len());
+        let searched = parameters.searched.iter().zip(first_pole..);
+        let searched = searched.filter(|(pole, _)| pole.is_of(i, j));
+        let searched: Vec<_> = searched.map(|(pole, at)| (at, pole.index)).collect();
         let (report, first) = (&report.entries[e], parameters.first[e]);
         let mut rows = vec![vec![0.0; count]; entry.rows.len()];
         let (residuals, variance) =
@@ -119,11 +114,7 @@ fn rows_of(
 ) -> Result<(Vec<f64>, f64)> {
     let (basis, values) = (Basis::new(form, &report.poles)?, report.values());
     let total = entry.total();
-    let scale = if total > 0.0 {
-        total.sqrt().recip()
-    } else {
-        1.0
-    };
+    let scale = unit_scale(total);
     let weighted = |r: f64, row: &EntrySample| scale * row.weight * r;
     let residuals = entry.residuals(&basis, &values);
     let residuals = residuals.iter().zip(&entry.rows);
@@ -139,12 +130,9 @@ fn rows_of(
     for &(at, index) in searched {
         let (up, down) = moved_pole(form, &report.poles, index)?;
         for (line, row) in rows.iter_mut().zip(&entry.rows) {
-            let change: f64 = seen(&up, row)
-                .iter()
-                .zip(seen(&down, row))
-                .zip(&values)
-                .map(|((a, b), c)| (a - b) * c)
-                .sum();
+            let (above, below) = (seen(&up, row), seen(&down, row));
+            let changes = above.iter().zip(below).zip(&values);
+            let change: f64 = changes.map(|((a, b), c)| (a - b) * c).sum();
             line[at] = weighted(change / (2.0 * STEP * report.poles[index]), row);
         }
     }

@@ -4,7 +4,7 @@ mod between_speeds;
 mod growth_limit;
 mod own_filters;
 
-use super::onset::{ResamplingPlan, onset_error, onset_gradient, resample_onset};
+use super::onset::{onset_error, onset_gradient, resample_onset};
 use super::*;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};
@@ -54,7 +54,7 @@ fn two_poles(poles: PoleSearch) -> FrequencyFit {
 /// The covariance of the blocks alone, for truths that do not differ between speeds.
 fn by_blocks(mut estimate: CoefficientUncertainty) -> CoefficientUncertainty {
     let data = estimate.data.as_mut().unwrap();
-    let contributions = data.design.contributions();
+    let contributions = data.contributions();
     estimate.covariance = &contributions * contributions.transpose();
     data.effects.clear();
     estimate
@@ -174,36 +174,27 @@ fn three_routes_give_one_standard_error() {
     let (model, estimate) = fitted(&scattered(3), &two_poles(PoleSearch::fixed(&[0.091, 0.6])));
     let at = onset(&model);
     let error = onset_error(&estimate, &structure(), &at, None).unwrap();
-    let resampled = |resampling| {
-        let plan = ResamplingPlan {
+    let draw = |resampling, replicates| {
+        let search = OnsetSearch::default();
+        let drawn = resample_onset(
+            &estimate,
+            &structure(),
+            &at,
             resampling,
-            replicates: 600,
-            seed: 1,
-            search: OnsetSearch::default(),
-            tested: None,
-        };
-        let once = resample_onset(&estimate, &structure(), &at, &plan)
-            .unwrap()
-            .unwrap();
-        assert_eq!(once.without_onset, 0);
-        assert_eq!(
-            Some(once.clone()),
-            resample_onset(&estimate, &structure(), &at, &plan).unwrap()
+            replicates,
+            &search,
+            None,
         );
+        drawn.unwrap()
+    };
+    let resampled = |resampling| {
+        let once = draw(resampling, 600).unwrap();
+        assert_eq!(once.without_onset, 0);
+        assert_eq!(Some(once.clone()), draw(resampling, 600));
         once.standard_deviation_m_s / error.standard_error_m_s
     };
     // of no onset at all there are no numbers
-    let none = ResamplingPlan {
-        resampling: Resampling::Normal,
-        replicates: 0,
-        seed: 1,
-        search: OnsetSearch::default(),
-        tested: None,
-    };
-    assert_eq!(
-        resample_onset(&estimate, &structure(), &at, &none).unwrap(),
-        None
-    );
+    assert_eq!(draw(Resampling::Normal, 0), None);
     // 600 draws tell a standard deviation to 3 %
     let drawn = resampled(Resampling::Normal);
     assert!((drawn - 1.0).abs() < 0.12, "{drawn}");

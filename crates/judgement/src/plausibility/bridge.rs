@@ -16,7 +16,7 @@ use line::{LENGTH, length_m, of_line};
 use shapes::{greatest, half_waves, of_shapes, place};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
-pub use turbulence::{TurbulenceFigures, of_turbulence};
+pub use turbulence::of_turbulence;
 
 /// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
 /// anything as heavy as a bridge is far below this.
@@ -117,10 +117,8 @@ pub fn of_modes_left_out(bridge: &Bridge, left_out: &[BridgeMode]) -> Vec<Findin
         let odd = Finding::doubt(FindingKind::Contradiction, "modes.select", text);
         Some(odd.otherwise("flutter couples a vertical and a torsional mode".to_owned()))
     };
-    [(0, "vertical"), (2, "torsional")]
-        .into_iter()
-        .filter_map(missing)
-        .collect()
+    let motions = [(0, "vertical"), (2, "torsional")];
+    motions.into_iter().filter_map(missing).collect()
 }
 
 /// That no mode moves mainly in this way, in which forces act: nothing can flutter then, which looks like a bridge that is safe in
@@ -153,10 +151,9 @@ fn greatest_displacement(mode: &BridgeMode) -> f64 {
 /// `∫φ_a φ_b` of one motion over the girder.
 fn product(nodes: &[Node], a: &BridgeMode, b: &BridgeMode, motion: usize) -> f64 {
     let shapes = a.shape.iter().zip(&b.shape);
-    let parts = nodes.iter().zip(shapes);
-    parts
-        .map(|(n, (a, b))| n.length_m * a[motion] * b[motion])
-        .sum()
+    let nodes = nodes.iter().zip(shapes);
+    let parts = nodes.map(|(n, (a, b))| n.length_m * a[motion] * b[motion]);
+    parts.sum()
 }
 
 /// Whether two modes are one: see [`of_modes`].
@@ -210,9 +207,8 @@ fn masses(bridge: &Bridge, frequencies_are_usual: bool) -> Vec<Finding> {
     let width = mean_width_m(bridge);
     let ratio = mass / (bridge.air_density_kg_m3 * width * width);
     if !MASS_RATIOS.contains(&ratio) {
-        let otherwise = MASS_RATIOS
-            .contains(&(1e3 * ratio))
-            .then(|| format!("in t it would be {} kg/m", significant(1e3 * mass)));
+        let meant = || format!("in t it would be {} kg/m", significant(1e3 * mass));
+        let otherwise = MASS_RATIOS.contains(&(1e3 * ratio)).then(meant);
         let (low, high) = MASS_RATIOS.into_inner();
         let key = format!("{}: generalised mass", place(vertical));
         let text = format!(
@@ -262,16 +258,14 @@ fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
     let modes = bridge.modes.iter();
     let vertical = modes.filter(|m| bridge.main_motion(m) == Some(0));
     let speed = |m: &BridgeMode| m.frequency_hz * length_m / half_waves(m, 0) as f64;
-    let slowest = vertical
-        .map(|m| (speed(m), m))
-        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let speeds = vertical.map(|m| (speed(m), m));
+    let slowest = speeds.min_by(|a, b| a.0.total_cmp(&b.0));
     let Some((speed, mode)) = slowest.filter(|(speed, _)| !WAVE_SPEEDS.contains(speed)) else {
         return Vec::new();
     };
     let hertz = mode.frequency_hz;
-    let otherwise = WAVE_SPEEDS
-        .contains(&(speed / TAU))
-        .then(|| format!("in rad/s it would be {} Hz", significant(hertz / TAU)));
+    let meant = || format!("in rad/s it would be {} Hz", significant(hertz / TAU));
+    let otherwise = WAVE_SPEEDS.contains(&(speed / TAU)).then(meant);
     let usual = |x: f64| significant(x * hertz / speed);
     let (low, high) = WAVE_SPEEDS.into_inner();
     let text = format!(

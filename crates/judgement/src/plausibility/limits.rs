@@ -62,10 +62,8 @@ pub fn beyond(key: &str, value: f64, limits: &Limits) -> Option<Finding> {
     let unit = limits.unit;
     let meant = limits.meant.iter().find(|(_, f)| is_usual(f * value));
     let otherwise = meant.map(|(name, factor)| {
-        format!(
-            "in {name} it would be {} {unit}",
-            significant(factor * value)
-        )
+        let meant = significant(factor * value);
+        format!("in {name} it would be {meant} {unit}")
     });
     let text = format!("{low} to {high} {unit} is usual");
     Some(Finding::unit(key, value, text).otherwise(otherwise))
@@ -94,11 +92,8 @@ pub fn ratio_hint(ratio: f64) -> &'static str {
         (1.0 / TAU, " (2\u{3c0} times less: Hz for rad/s?)"),
     ];
     // a mean speed is known to some per cent
-    let near = |known: f64| (ratio / known - 1.0).abs() < 0.05;
-    KNOWN
-        .iter()
-        .find(|(known, _)| near(*known))
-        .map_or("", |(_, words)| *words)
+    let near = |(known, _): &&(f64, &str)| (ratio / known - 1.0).abs() < 0.05;
+    KNOWN.iter().find(near).map_or("", |(_, words)| *words)
 }
 
 #[cfg(test)]

@@ -57,10 +57,8 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
     let air = unusual_air("section.air_density_kg_m3", section.air_density_kg_m3);
     let mut found: Vec<Finding> = width.into_iter().chain(air).collect();
     let scale_is_usual = found.is_empty();
-    let sway = section
-        .lateral
-        .as_ref()
-        .map(|s| ("lateral", s.damping_ratio));
+    let sway = section.lateral.as_ref();
+    let sway = sway.map(|s| ("lateral", s.damping_ratio));
     let ratios = [
         ("vertical", section.vertical.damping_ratio),
         ("torsion", section.torsion.damping_ratio),
@@ -195,10 +193,8 @@ pub(super) fn unusual_radius(key: &str, width_m: f64, ratio: f64) -> Option<Find
         (1.0 / thousand, "were the mass in t/m, it"),
         (1e-3, "were lengths of J in mm, it"),
     ];
-    let mut meant = meant
-        .into_iter()
-        .map(|(factor, what)| (factor * ratio, what));
-    let meant = meant.find(|(ratio, _)| RADII.contains(ratio));
+    let meant = meant.map(|(factor, what)| (factor * ratio, what));
+    let meant = meant.into_iter().find(|(ratio, _)| RADII.contains(ratio));
     let otherwise = meant.map(|(ratio, what)| format!("{what} would be {ratio:.3} widths"));
     Some(found.otherwise(otherwise))
 }
@@ -249,9 +245,8 @@ fn unusual_frequency(name: &str, hertz: f64, width_m: f64) -> Option<Finding> {
         return None;
     }
     let (low, high) = usual.clone().into_inner();
-    let meant = FREQUENCIES
-        .iter()
-        .find(|(_, f)| usual.contains(&(f * hertz)));
+    let mut units = FREQUENCIES.iter();
+    let meant = units.find(|(_, f)| usual.contains(&(f * hertz)));
     let otherwise = match meant {
         Some((unit, f)) => Some(format!(
             "in {unit} it would be {} Hz",
@@ -264,11 +259,8 @@ fn unusual_frequency(name: &str, hertz: f64, width_m: f64) -> Option<Finding> {
     };
     let text = format!("{low} to {high} Hz is usual at a width of {width_m} m");
     let found = Finding::unit(format!("section.{name}.frequency_hz"), hertz, text);
-    Some(
-        found
-            .otherwise(otherwise)
-            .into_note_if(possible.contains(&hertz)),
-    )
+    let found = found.otherwise(otherwise);
+    Some(found.into_note_if(possible.contains(&hertz)))
 }
 
 /// A flat plate of these numbers flutters at `V = 3.7 f_t B √(m r/(ρB³) (1 − (f_v/f_t)²))` (Selberg's formula, within some per

@@ -141,13 +141,11 @@ fn flutter(readings: &[FlutterReading]) -> Vec<CriticalSpeed> {
     };
     let (against, agreeing): (Vec<&FlutterReading>, Vec<_>) =
         others.iter().partition(|o| contradict(first, o));
-    let of_others = agreeing
-        .into_iter()
-        .filter_map(|o| match o.interval_is_known() {
-            true => lower(o).or(o.best_m_s()),
-            // the spread between ways of reading is no lower end of another answer
-            false => o.best_m_s(),
-        });
+    let of_others = agreeing.into_iter().filter_map(|o| {
+        // the spread between ways of reading is no lower end of another answer
+        let end = lower(o).filter(|_| o.interval_is_known());
+        end.or(o.best_m_s())
+    });
     let least = lower(first).into_iter().chain(of_others).reduce(f64::min);
     let mut all: Vec<CriticalSpeed> = speed(first, least).into_iter().collect();
     all.extend(against.into_iter().filter_map(|o| speed(o, lower(o))));

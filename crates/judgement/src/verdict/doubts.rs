@@ -268,7 +268,7 @@ fn not_judged_above(first: &FlutterReading, to: f64, asked: f64) -> Doubt {
     };
     let (missing, of_tests) = match &first.basis {
         ForceBasis::Tested { range, reach } => (
-            reach.missing_up_to(asked, *range),
+            reach.missing_up_to(asked, **range),
             reach.why.as_ref().filter(|_| reach.to_m_s <= to),
         ),
         ForceBasis::Exact | ForceBasis::Stated => (None, None),

@@ -43,9 +43,8 @@ impl Outcome {
                 settled_by: vec!["a positive required speed".to_owned()],
             };
         }
-        let undetermined = doubts
-            .iter()
-            .any(|d| matches!(d.kind, DoubtKind::IntervalUndetermined { .. }));
+        let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
+        let undetermined = doubts.iter().any(open);
         // forces of steady flow that another reading does not find
         let contradicted = |c: &CriticalSpeed| {
             doubts.iter().any(|d| match &d.kind {

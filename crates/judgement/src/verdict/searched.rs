@@ -1,7 +1,6 @@
 //! Evidence of one section in the forces of one model, from the searches alone.
 
-use super::evidence::{DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis};
-use super::reach::Reach;
+use super::evidence::{DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, Reach};
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};

@@ -1,7 +1,7 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
 use super::options::{CompareOptions, TestedDeck};
-use super::score::{ModelOnRecord, Score, ScoreSummary, summaries};
+use super::score::{Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_decks};
 use crate::error::{Result, ensure};
 use crate::identification::{Fitted, fit_discrete};
@@ -57,23 +57,18 @@ pub fn compare_decks(options: &CompareOptions, progress: OnDone<'_>) -> Result<D
         let by = teacher.clone().map_or_else(|| train(&deck), Ok)?;
         Ok((deck, by))
     };
-    let decks = options
-        .decks
-        .iter()
-        .map(trained)
-        .collect::<Result<Vec<_>>>()?;
-    let name = &options.laguerre_name();
+    let decks = options.decks.iter().map(trained);
+    let decks = decks.collect::<Result<Vec<_>>>()?;
+    let name = options.laguerre_name();
     let mut trials = Vec::new();
-    for (deck, ((trained_on, speed_m_s), fitted)) in &decks {
-        trials.extend(deck.records.iter().map(|record| ModelOnRecord {
-            deck,
-            record,
-            name,
-            model: &fitted.model,
-            held_out: *trained_on != deck.table.name || *speed_m_s != record.header.mean_speed_m_s,
-        }));
+    for (deck, trained) in &decks {
+        trials.extend(deck.records.iter().map(|record| (deck, record, trained)));
     }
-    let outcomes = numbered(trials.len(), progress, |at| trials[at].run(options))?;
+    let outcomes = numbered(trials.len(), progress, |at| {
+        let (deck, record, ((trained_on, speed_m_s), fitted)) = &trials[at];
+        let held_out = *trained_on != deck.table.name || *speed_m_s != record.header.mean_speed_m_s;
+        deck.scores(record, &name, &fitted.model, held_out, options)
+    })?;
     let scores: Vec<Score> = outcomes.into_iter().flat_map(|(_, s)| s).collect();
     let scores_of = |(deck, (trained_on, fitted)): (TestedDeck, (_, Fitted))| TestedDeckScores {
         deck: deck.table.name,

@@ -2,7 +2,7 @@
 
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
 use super::options::{CompareOptions, TestedDeck};
-use super::score::{ModelOnRecord, Score, ScoreSummary, summaries};
+use super::score::{Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_models};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::TransferSample;
@@ -96,17 +96,12 @@ pub fn compare_models(options: &CompareOptions, progress: OnDone<'_>) -> Result<
     let models = fits
         .each_ref()
         .map(|(name, f)| (name.clone(), &f.model as &dyn Transfer));
-    let mut trials = Vec::with_capacity(fits.len() * records.len());
-    for (name, fitted) in &fits {
-        trials.extend(records.iter().map(|record| ModelOnRecord {
-            deck: &deck,
-            record,
-            name,
-            model: &fitted.model,
-            held_out: false,
-        }));
-    }
-    let outcomes = numbered(trials.len(), progress, |at| trials[at].run(options))?;
+    let each = |fit| records.iter().map(move |record| (fit, record));
+    let trials: Vec<(&(String, Fitted), &Record)> = fits.iter().flat_map(each).collect();
+    let outcomes = numbered(trials.len(), progress, |at| {
+        let ((name, fitted), record) = trials[at];
+        deck.scores(record, name, &fitted.model, false, options)
+    })?;
     let (predicted, scores): (Vec<_>, Vec<_>) = outcomes.into_iter().unzip();
     let scores = scores.concat();
     let entries = compare_entries(&group, speed, &options.dofs, &models)?;

@@ -195,41 +195,35 @@ pub fn score_table(scores: &[Score]) -> String {
     text
 }
 
-/// A model and a record.
-pub(super) struct ModelOnRecord<'a> {
-    pub(super) deck: &'a TestedDeck,
-    pub(super) record: &'a Record,
-    /// Name of the model in the results.
-    pub(super) name: &'a str,
-    pub(super) model: &'a Model,
-    /// Whether the model was not trained on this record.
-    pub(super) held_out: bool,
-}
-
-impl ModelOnRecord<'_> {
-    /// What the model predicts for the record, one vector per force, and its scores, one per force and frequency.
-    pub(super) fn run(&self, options: &CompareOptions) -> Result<(Vec<Vec<f64>>, Vec<Score>)> {
-        let record = self.record;
-        let predicted = predicted_forces(self.model, record)?;
+impl TestedDeck {
+    /// What a model predicts for a record, one vector per force, and its scores, one per force and frequency. `name` is that of the model
+    /// in the results; it is `held_out` where it was not trained on this record.
+    pub(super) fn scores(
+        &self,
+        record: &Record,
+        name: &str,
+        model: &Model,
+        held_out: bool,
+        options: &CompareOptions,
+    ) -> Result<(Vec<Vec<f64>>, Vec<Score>)> {
+        let predicted = predicted_forces(model, record)?;
         let h = &record.header;
         let motion = record.moving().next().unwrap_or(h.dofs[0]);
         let mut scores = Vec::new();
         for (i, &force) in h.dofs.iter().enumerate() {
             let case = Case {
-                deck: self.deck.table.name.clone(),
-                model: self.name.to_owned(),
+                deck: self.table.name.clone(),
+                model: name.to_owned(),
                 speed_m_s: h.mean_speed_m_s,
-                held_out: self.held_out,
+                held_out,
                 motion,
                 force,
             };
             for segment in &h.segments {
-                let ramp_s = self.deck.plan.ramp_s;
-                let window = options.scoring.window(record, segment, ramp_s)?;
-                let frequency_hz = segment.frequency_hz;
-                let [measured, predicted] = [&record.force[i], &predicted[i]];
-                let (measured, predicted) = (&measured[window.clone()], &predicted[window]);
-                let scoring = &options.scoring;
+                let (scoring, frequency_hz) = (&options.scoring, segment.frequency_hz);
+                let window = scoring.window(record, segment, self.plan.ramp_s)?;
+                let measured = &record.force[i][window.clone()];
+                let predicted = &predicted[i][window];
                 let metrics = scoring.metrics(measured, predicted, h.sampling_hz, frequency_hz);
                 let which = || format!("{}, {} force, {frequency_hz} Hz", case.deck, force.name());
                 scores.push(Score {

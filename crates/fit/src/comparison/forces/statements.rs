@@ -102,9 +102,8 @@ pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<St
     if let Some(e) = entry(t, y) {
         let beyond = e.points.iter().zip(&e.models[0].points);
         let beyond = beyond.filter(|(_, m)| !in_phase_band(m.1));
-        let beyond: Vec<String> = beyond
-            .map(|(p, _)| format!("{:.2}", p.frequency_hz))
-            .collect();
+        let beyond = beyond.map(|(p, _)| format!("{:.2}", p.frequency_hz));
+        let beyond: Vec<String> = beyond.collect();
         let list = match beyond.is_empty() {
             true => "none".into(),
             false => format!("{} Hz", beyond.join(", ")),

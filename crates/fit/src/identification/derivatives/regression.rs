@@ -156,10 +156,9 @@ impl<'a> TestPointEquations<'a> {
             above += e * e;
             below += (f - base).powi(2);
         }
-        if below > 0.0 {
-            (above / below).sqrt()
-        } else {
-            0.0
+        match below > 0.0 {
+            true => (above / below).sqrt(),
+            false => 0.0,
         }
     }
 

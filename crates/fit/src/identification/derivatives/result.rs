@@ -32,12 +32,8 @@ impl Default for DerivativeOptions {
 impl DerivativeOptions {
     pub(super) fn validate(&self) -> Result<()> {
         let share = self.full_amplitude;
-        ensure(
-            share > 0.0 && share < 1.0,
-            "full_amplitude",
-            "between 0 and 1",
-            share,
-        )?;
+        let inside = share > 0.0 && share < 1.0;
+        ensure(inside, "full_amplitude", "between 0 and 1", share)?;
         for (key, ratio) in [
             ("same_speed", self.same_speed),
             ("same_frequency", self.same_frequency),
@@ -137,9 +133,8 @@ pub struct IdentifiedDerivatives {
 impl IdentifiedDerivatives {
     /// The estimates of one derivative, by speed group and frequency.
     pub fn each(&self, derivative: Derivative) -> impl Iterator<Item = &DerivativeEstimate> {
-        self.estimates
-            .iter()
-            .filter(move |e| e.derivative == derivative)
+        let estimates = self.estimates.iter();
+        estimates.filter(move |e| e.derivative == derivative)
     }
 
     /// Mean speeds of all estimates, m/s, rising and in groups of test points.
@@ -199,10 +194,8 @@ impl IdentifiedDerivatives {
         let group = |e: &DerivativeEstimate| group_of(&groups, e.mean_speed_m_s);
         // within a group V̂ falls steadily, as a table wants it, also when its speeds are not quite one
         self.estimates.sort_by(|a, b| {
-            a.derivative
-                .cmp(&b.derivative)
-                .then(group(a).cmp(&group(b)))
-                .then(b.v_hat.total_cmp(&a.v_hat))
+            let [own, other] = [a, b].map(|e| (e.derivative, group(e)));
+            own.cmp(&other).then(b.v_hat.total_cmp(&a.v_hat))
         });
     }
 }

@@ -59,10 +59,9 @@ impl TestRun {
         let motion_of = |j: usize| {
             let scale = header.dofs[j].motion_scale(header.width_m);
             let time = (0..self.samples.len()).map(|k| k as f64 / header.sampling_hz);
-            let (value, slope): (Vec<f64>, Vec<f64>) = time
-                .map(|t| self.fits[j].oscillation(t))
-                .map(|(value, slope)| (scale * value, scale * slope / omega))
-                .unzip();
+            let moves = time.map(|t| self.fits[j].oscillation(t));
+            let scaled = moves.map(|(value, slope)| (scale * value, scale * slope / omega));
+            let (value, slope): (Vec<f64>, Vec<f64>) = scaled.unzip();
             [value, slope]
         };
         (0..header.dofs.len()).map(motion_of).collect()
@@ -89,9 +88,8 @@ impl TestRun {
 pub(super) fn rotation_amplitude_deg(dofs: &[Dof], groups: &[Vec<TestRun>]) -> Option<f64> {
     let torsion = dofs.iter().position(|d| *d == Dof::Torsion)?;
     let driven = groups.iter().flatten().filter(|s| s.driven == torsion);
-    driven
-        .map(|s| s.amplitude[torsion].to_degrees())
-        .reduce(f64::max)
+    let amplitudes = driven.map(|s| s.amplitude[torsion].to_degrees());
+    amplitudes.reduce(f64::max)
 }
 
 /// The test points: steady stretches of all records, which are to be like the `first`, in groups.
@@ -172,14 +170,12 @@ fn stretch(
     options: &DerivativeOptions,
 ) -> Result<Option<TestRun>> {
     let (s, rate) = (header.segments[segment], header.sampling_hz);
+    let (name, samples) = (&header.name, rate / s.frequency_hz);
     ensure(
-        rate / s.frequency_hz >= SAMPLES_AT_LEAST,
-        format_args!(
-            "record {}: segment at {:.3} Hz",
-            header.name, s.frequency_hz
-        ),
+        samples >= SAMPLES_AT_LEAST,
+        format_args!("record {name}: segment at {:.3} Hz", s.frequency_hz),
         format_args!("at least {SAMPLES_AT_LEAST} samples in a period"),
-        format_args!("{:.2} ({rate} Hz)", rate / s.frequency_hz),
+        format_args!("{samples:.2} ({rate} Hz)"),
     )?;
     let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(signals.len());
     let start = at(s.start_s);
@@ -241,11 +237,8 @@ fn insert(groups: &mut Vec<Vec<TestRun>>, stretch: TestRun, options: &Derivative
         group.iter().all(same) && group.iter().all(|s| s.driven != stretch.driven)
     };
     let off = |group: &&mut Vec<TestRun>| (speed(&group[0]) / speed(&stretch)).ln().abs();
-    let nearest = groups
-        .iter_mut()
-        .filter(fits)
-        .min_by(|a, b| off(a).total_cmp(&off(b)));
-    match nearest {
+    let fitting = groups.iter_mut().filter(fits);
+    match fitting.min_by(|a, b| off(a).total_cmp(&off(b))) {
         Some(group) => group.push(stretch),
         None => groups.push(vec![stretch]),
     }

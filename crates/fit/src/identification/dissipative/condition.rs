@@ -119,12 +119,11 @@ impl<'a> Dissipation<'a> {
     fn all(&self, part: usize) -> Vec<Condition> {
         let feed = self.distinct[0].feed();
         let step = REACH.ln() / (SAMPLES as f64 - 1.0);
-        let mut all: Vec<Condition> = (0..SAMPLES)
-            .map(|i| {
-                let ratio = (step * i as f64).exp();
-                self.above(self.k_max * ratio, ratio, part)
-            })
-            .collect();
+        let at = |i| {
+            let ratio = (step * i as f64).exp();
+            self.above(self.k_max * ratio, ratio, part)
+        };
+        let mut all: Vec<Condition> = (0..SAMPLES).map(at).collect();
         let fast = || self.limit(ConstraintKind::FastMotion, None, part);
         let added_mass = || Condition {
             scale: 1.0 / self.k_max,
@@ -141,10 +140,9 @@ impl<'a> Dissipation<'a> {
         let fading = ratio.powi(-2);
         Condition {
             // without e₁ the filters alone are left, which fade
-            scale: if self.distinct[0].feed().e1 {
-                1.0
-            } else {
-                fading
+            scale: match self.distinct[0].feed().e1 {
+                true => 1.0,
+                false => fading,
             },
             margin: MARGIN,
             own: fading,

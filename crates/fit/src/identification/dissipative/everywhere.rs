@@ -85,10 +85,8 @@ impl Dissipation<'_> {
                         a[(at + l * n + i, at + m * n + i)] = -squared[(l, m)];
                     }
                     for j in 0..n {
-                        for e in [
-                            motions[i] * self.count + motions[j],
-                            motions[j] * self.count + motions[i],
-                        ] {
+                        for (row, column) in [(i, j), (j, i)] {
+                            let e = motions[row] * self.count + motions[column];
                             if self.basis_of[e] == d {
                                 c[(i, at + l * n + j)] += 0.5 * coefficients[e][feed + l];
                             }
@@ -105,15 +103,8 @@ impl Dissipation<'_> {
                 c[(i, at + j)] = -edge.own[(i, j)] * self.k_max * self.k_max;
             }
         }
-        let inner = a - b * inverse * c;
-        let real = |z: &&nalgebra::Complex<f64>| z.re > 0.0 && z.im.abs() < NEARLY_REAL * z.re;
-        Some(
-            eigenvalues(&inner)
-                .ok()?
-                .iter()
-                .filter(real)
-                .map(|z| z.re.sqrt())
-                .collect(),
-        )
+        let squares = eigenvalues(&(a - b * inverse * c)).ok()?.into_iter();
+        let real = squares.filter(|z| z.re > 0.0 && z.im.abs() < NEARLY_REAL * z.re);
+        Some(real.map(|z| z.re.sqrt()).collect())
     }
 }

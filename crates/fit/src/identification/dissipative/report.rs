@@ -47,17 +47,9 @@ pub struct ActiveConstraint {
     /// The same in the fit.
     pub held: f64,
     /// What its limit follows, where that is the growth with which the tests end.
+    /// `K_max` and the `W`, symmetric, over all degrees of freedom, with which `Σ W ∘ Im G(K_max)/K_max` changes by as much as the limit.
     #[serde(skip)]
-    pub(crate) limit: Option<GrowthLimit>,
-}
-
-/// A limit that follows the data: `Σ W ∘ Im G(K_max)/K_max` changes by as much as it does.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct GrowthLimit {
-    /// `K_max`.
-    pub k_max: f64,
-    /// `W`, symmetric, over all degrees of freedom.
-    pub weights: DMatrix<f64>,
+    pub(crate) limit: Option<(f64, DMatrix<f64>)>,
 }
 
 /// What constraints cost one transfer function.
@@ -93,12 +85,10 @@ pub struct ConstraintReport {
 impl ConstraintKind {
     /// What a transfer function contributes, as a row over its columns.
     pub(super) fn row(self, k: Option<f64>, basis: &Basis) -> Vec<f64> {
-        let column = |order: usize| basis.feed().orders().position(|o| o == order);
         let unit = |order: usize| {
-            let one = column(order);
-            (0..basis.len())
-                .map(|c| f64::from(u8::from(Some(c) == one)))
-                .collect()
+            let one = basis.feed().orders().position(|o| o == order);
+            let each = (0..basis.len()).map(|c| f64::from(u8::from(Some(c) == one)));
+            each.collect()
         };
         match (self, k) {
             (Self::AboveTestedRange, Some(k)) => {
@@ -124,10 +114,10 @@ impl ActiveConstraint {
     /// The same of what it holds beyond its limit, where that follows the data.
     pub(crate) fn gradient_beyond_limit(&self, i: usize, j: usize, basis: &Basis) -> Vec<f64> {
         let mut gradient = self.gradient(i, j, basis);
-        if let Some(limit) = &self.limit {
-            let row = ConstraintKind::AboveTestedRange.row(Some(limit.k_max), basis);
+        if let Some((k_max, weights)) = &self.limit {
+            let row = ConstraintKind::AboveTestedRange.row(Some(*k_max), basis);
             for (to, x) in gradient.iter_mut().zip(row) {
-                *to -= limit.weights[(i, j)] * x;
+                *to -= weights[(i, j)] * x;
             }
         }
         gradient
@@ -157,24 +147,15 @@ impl ActiveConstraint {
 
     /// Whose motion it is.
     fn whose(&self, dofs: &[Dof]) -> String {
-        let one = self.direction.iter().position(|v| v * v > ONE_MOTION);
-        if let Some(i) = one {
+        let direction = || self.direction.iter();
+        if let Some(i) = direction().position(|v| v * v > ONE_MOTION) {
             return dofs[i].name().to_owned();
         }
-        let largest = self
-            .direction
-            .iter()
-            .copied()
-            .fold(0.0, |a: f64, v| if v.abs() > a.abs() { v } else { a });
-        let parts = self
-            .direction
-            .iter()
-            .zip(dofs)
-            .filter(|(v, _)| v.abs() > 0.05);
-        let parts: Vec<_> = parts
-            .map(|(v, d)| format!("{:.2} {}", v * largest.signum(), d.name()))
-            .collect();
-        format!("coupled ({})", parts.join(", "))
+        let larger = |a: f64, v: &f64| if v.abs() > a.abs() { *v } else { a };
+        let sign = direction().fold(0.0, larger).signum();
+        let parts = direction().zip(dofs).filter(|(v, _)| v.abs() > 0.05);
+        let parts = parts.map(|(v, d)| format!("{:.2} {}", v * sign, d.name()));
+        format!("coupled ({})", parts.collect::<Vec<_>>().join(", "))
     }
 }
 
@@ -209,10 +190,9 @@ impl ConstraintReport {
 
     /// Largest rise of a residual, in percentage points, and where.
     pub fn dearest(&self) -> Option<(&ConstraintCost, f64)> {
-        self.costs
-            .iter()
-            .filter_map(|c| Some((c, 100.0 * (c.with? - c.without?))))
-            .max_by(|a, b| a.1.total_cmp(&b.1))
+        let costs = self.costs.iter();
+        let rises = costs.filter_map(|c| Some((c, 100.0 * (c.with? - c.without?))));
+        rises.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
@@ -228,7 +208,14 @@ fn sentences(active: &[ActiveConstraint], dofs: &[Dof]) -> Vec<String> {
 fn sentence(run: &[ActiveConstraint], dofs: &[Dof]) -> String {
     let first = &run[0];
     let whose = first.whose(dofs);
-    let would = |what: &str, symbol: &str| data_alone(run, what, symbol);
+    // what the data alone would give at the worst of the run
+    let worst = run.iter().map(|c| c.alone).fold(f64::MIN, f64::max);
+    let would = |what: &str, symbol: &str| match worst > 0.0 {
+        true => format!("the data alone would make it negative ({symbol} {worst:+.3})"),
+        false => format!(
+            "the data alone give {what} there ({symbol} {worst:+.3}), but not with the other constraints"
+        ),
+    };
     let (i, j) = first.entry.unwrap_or_default();
     let (force, motion) = (dofs[i].name(), dofs[j].name());
     let at_zero = |what: &str| {
@@ -261,33 +248,19 @@ fn sentence(run: &[ActiveConstraint], dofs: &[Dof]) -> String {
     }
 }
 
-/// What the data alone would give at the worst of a run of constraints.
-fn data_alone(run: &[ActiveConstraint], what: &str, symbol: &str) -> String {
-    let alone = run.iter().map(|c| c.alone).fold(f64::MIN, f64::max);
-    if alone > 0.0 {
-        format!("the data alone would make it negative ({symbol} {alone:+.3})")
-    } else {
-        format!(
-            "the data alone give {what} there ({symbol} {alone:+.3}), but not with the other constraints"
-        )
-    }
-}
-
 /// The reduced frequencies of a run of constraints, and at what they hold the damping.
 fn place_and_limit(run: &[ActiveConstraint]) -> String {
     let ks: Vec<f64> = run.iter().filter_map(|c| c.k).collect();
     let (low, high) = (ks[0], ks[ks.len() - 1]);
-    let place = if low < high {
-        format!("K = {low:.3} to {high:.3}")
-    } else {
-        format!("K = {low:.3}")
+    let place = match low < high {
+        true => format!("K = {low:.3} to {high:.3}"),
+        false => format!("K = {low:.3}"),
     };
     let own = run.iter().map(|c| c.held).fold(0.0, f64::max);
-    if own > 0.0 {
-        format!(
+    match own > 0.0 {
+        true => format!(
             "{place} is held at the growth with which the tests end, fading with K² (Im G/K {own:+.3} there)"
-        )
-    } else {
-        format!("{place} is held at zero")
+        ),
+        false => format!("{place} is held at zero"),
     }
 }

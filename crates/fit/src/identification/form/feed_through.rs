@@ -35,10 +35,8 @@ impl FeedThrough {
 
     /// Derivative orders that are on.
     pub(crate) fn orders(self) -> impl Iterator<Item = usize> {
-        [self.e0, self.e1, self.e2]
-            .into_iter()
-            .enumerate()
-            .filter_map(|(order, on)| on.then_some(order))
+        let terms = [self.e0, self.e1, self.e2].into_iter().enumerate();
+        terms.filter_map(|(order, on)| on.then_some(order))
     }
 
     pub(crate) fn count(self) -> usize {

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
-use crate::identification::dissipative::{FitRequirements, Solution, Strictness};
+use crate::identification::dissipative::{FitRequirements, Solution};
 use crate::identification::entry_report::EntryReport;
 use crate::identification::form::Form;
 use crate::identification::joint::JointFit;
@@ -51,7 +51,7 @@ impl<'a> EntryFits<'a> {
         mut self,
         requirements: &FitRequirements,
         shares: &[f64],
-        strictness: Strictness,
+        everywhere: bool,
     ) -> Result<Self> {
         let largest = shares.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let mut joint = JointFit::default();
@@ -60,7 +60,7 @@ impl<'a> EntryFits<'a> {
             joint.add(solution.coefficients.clone(), spread, *share);
         }
         let entries = joint.parts.clone();
-        self.joint = Some(joint.held(entries, &self.bases, requirements, strictness)?);
+        self.joint = Some(joint.held(entries, &self.bases, requirements, everywhere)?);
         Ok(self)
     }
 
@@ -119,10 +119,8 @@ impl<'a> EntryFits<'a> {
             let (values, fit) = (self.coefficients(e), &self.solutions[e]);
             let residuals = entry.residuals(&self.bases[e], values);
             reports.push(entry.report(&residuals, self.bases[e].poles(), fit));
-            let weighted = residuals
-                .iter()
-                .zip(&entry.rows)
-                .map(|(r, row)| r * row.weight);
+            let rows = residuals.iter().zip(&entry.rows);
+            let weighted = rows.map(|(r, row)| r * row.weight);
             let sum = match self.solution() {
                 Some(_) => weighted.chain(fit.penalty(values)).map(|r| r * r).sum(),
                 None => fit.factor.residual_sum(fit.unknowns, 0),

@@ -3,7 +3,7 @@
 use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
-use crate::identification::frequency_options::FrequencyFit;
+use crate::identification::options::FrequencyFit;
 use crate::identification::own::{EntryForm, search_for, searched_together};
 use crate::identification::report::SearchReport;
 use crate::identification::samples::{EntrySamples, shares};

@@ -3,7 +3,7 @@
 use super::{Fitted, LagSearch, LinearProblem, LinearSolution};
 use crate::error::Result;
 use crate::identification::affine::AffineMap;
-use crate::identification::dissipative::{ActiveConstraint, ConstraintReport, Strictness};
+use crate::identification::dissipative::{ActiveConstraint, ConstraintReport};
 use crate::identification::joint::JointFit;
 use crate::identification::report::SearchPoint;
 use crate::section::Dof;
@@ -29,7 +29,7 @@ impl LagSearch<'_> {
         tested: ReducedFrequencyRange,
         alone: Fitted,
     ) -> Result<Fitted> {
-        if self.rows(&best, Strictness::Everywhere)?.active.is_none() {
+        if self.rows(&best, true)?.active.is_none() {
             return Ok(alone);
         }
         let point = self.normalised(self.descended(best).as_slice());
@@ -52,13 +52,11 @@ impl LagSearch<'_> {
     }
 
     /// Coefficients of every force at one point, under the constraints once these are asked for.
-    pub(super) fn rows(&self, x: &[f64], strictness: Strictness) -> Result<FittedForces> {
+    pub(super) fn rows(&self, x: &[f64], everywhere: bool) -> Result<FittedForces> {
         let (lags, e) = (self.lags_at(x), self.e_at(x));
         let problems: Vec<_> = (0..self.n).map(|i| self.row(i, &lags, &e)).collect();
-        let mut solutions = Vec::new();
-        for (i, problem) in problems.iter().enumerate() {
-            solutions.push(self.solve(i, problem)?);
-        }
+        let solved = problems.iter().enumerate().map(|(i, p)| self.solve(i, p));
+        let solutions = solved.collect::<Result<Vec<_>>>()?;
         let mut rows = FittedForces {
             problems,
             values: solutions.iter().map(|s| s.coefficients.clone()).collect(),
@@ -74,7 +72,7 @@ impl LagSearch<'_> {
             entries.extend((0..self.n).map(|j| self.entry_of(force, j, &e)));
         }
         let bases = vec![self.roger_basis(&lags)?; self.entries.len()];
-        let joint = joint.held(entries, &bases, requirements, strictness)?;
+        let joint = joint.held(entries, &bases, requirements, everywhere)?;
         rows.values = (0..self.n).map(|i| joint.of_part(i)).collect();
         rows.active = joint.constrained.map(|constrained| constrained.active);
         Ok(rows)
@@ -83,10 +81,8 @@ impl LagSearch<'_> {
     /// One transfer function of a force in the columns of Roger's form.
     fn entry_of(&self, force: &AffineMap, j: usize, e: &DMatrix<f64>) -> AffineMap {
         let feed = self.feed.count();
-        let places: Vec<(usize, f64)> = (0..feed)
-            .map(|c| (j * feed + c, 1.0))
-            .chain((0..self.states).map(|l| (self.n * feed + l, e[(l, j)])))
-            .collect();
-        force.picked(&places)
+        let lags = (0..self.states).map(|l| (self.n * feed + l, e[(l, j)]));
+        let places = (0..feed).map(|c| (j * feed + c, 1.0)).chain(lags);
+        force.picked(&places.collect::<Vec<_>>())
     }
 }

@@ -81,24 +81,14 @@ impl RecordFit<'_> {
     /// through.
     pub(crate) fn thinning(&self) -> usize {
         let stride = |r: &DimensionlessRecord| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize;
-        self.records
-            .each
-            .iter()
-            .map(stride)
-            .min()
-            .unwrap_or(1)
-            .max(1)
+        let strides = self.records.each.iter().map(stride);
+        strides.min().unwrap_or(1).max(1)
     }
 
     /// Variance of the noise before the low-pass over that of the residuals behind it.
     pub(crate) fn noise_ratio(&self) -> f64 {
         let passed = |r: &DimensionlessRecord| 2.0 * NOISE_BANDWIDTH * self.cutoff_hz(r) * r.step_s;
-        1.0 / self
-            .records
-            .each
-            .iter()
-            .map(passed)
-            .fold(0.0, f64::max)
-            .min(1.0)
+        let all = self.records.each.iter().map(passed);
+        1.0 / all.fold(0.0, f64::max).min(1.0)
     }
 }

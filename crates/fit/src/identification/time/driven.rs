@@ -15,12 +15,7 @@ const LEFT_OUT: f64 = 0.01;
 
 /// Of motions over the same time those that are driven: the others follow.
 pub(super) fn driven_motions(motions: &[Vec<f64>]) -> Vec<usize> {
-    driven(
-        motions
-            .iter()
-            .map(|motion| largest_about_mean(motion))
-            .collect(),
-    )
+    driven(motions.iter().map(|m| largest_about_mean(m)).collect())
 }
 
 /// Of motions of these sizes those that are driven: not below [`DRIVEN_TOO`] of the greatest, and not zero.
@@ -56,13 +51,11 @@ fn band(power: &[f64]) -> Option<(f64, f64)> {
         return None;
     }
     let mut sum = 0.0;
-    let cumulative: Vec<f64> = power
-        .iter()
-        .map(|p| {
-            sum += p / total;
-            sum
-        })
-        .collect();
+    let up_to = |p: &f64| {
+        sum += p / total;
+        sum
+    };
+    let cumulative: Vec<f64> = power.iter().map(up_to).collect();
     let at = |part: f64| {
         let bin = cumulative.iter().position(|c| *c >= part);
         TAU * bin.unwrap_or(PERIODOGRAM / 2 - 1).max(1) as f64 / PERIODOGRAM as f64
@@ -77,10 +70,8 @@ fn powers(signals: &Signals) -> Result<Vec<Vec<f64>>> {
     let take = |power: &mut [f64], samples: &[f64]| {
         let mean = mean(samples);
         let step = TAU / samples.len().max(1) as f64;
-        let windowed = samples
-            .iter()
-            .enumerate()
-            .map(|(k, x)| (x - mean) * (0.5 - 0.5 * (step * k as f64).cos()));
+        let window = |k: i32| 0.5 - 0.5 * (step * f64::from(k)).cos();
+        let windowed = samples.iter().zip(0..).map(|(x, k)| (x - mean) * window(k));
         for (power, z) in power.iter_mut().zip(transform.spectrum(windowed)) {
             *power += z.norm_sqr();
         }

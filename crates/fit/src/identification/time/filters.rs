@@ -127,13 +127,11 @@ impl<'a> ContinuousColumns<'a> {
         cutoff_hz: f64,
         constant: bool,
     ) -> Result<Self> {
+        let name = &record.header.name;
         ensure(
             cutoff_hz * record.step_s < 0.5,
             "low_pass_hz",
-            format_args!(
-                "less than half the sampling frequency of record {}",
-                record.header.name
-            ),
+            format_args!("less than half the sampling frequency of record {name}"),
             cutoff_hz,
         )?;
         let step = record.delta_s();
@@ -147,10 +145,7 @@ impl<'a> ContinuousColumns<'a> {
         let inputs = bases.first().map_or(0, Vec::len);
         let every = bases.iter().flatten();
         let longest = every.map(|b| b.poles().len()).max().unwrap_or(0);
-        let at_rest = |of_inputs: &Vec<FilterStep>| {
-            let each = of_inputs.iter().map(|s| vec![0.0; s.count]);
-            each.collect::<Vec<_>>()
-        };
+        let at_rest = |s: &Vec<FilterStep>| s.iter().map(|s| vec![0.0; s.count]).collect();
         Ok(Self {
             bases,
             low_pass: LowPassStep::new(&hold),
@@ -176,20 +171,18 @@ fn filter_step(basis: &Basis, a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> 
     let hold = hold(&joint, &drive, step)?;
     let rest = own.lu().solve(&-driven.column(0));
     let rest = rest.ok_or_else(|| Error::Numerical("filters: a pole at zero".into()))?;
+    let own = |i| hold.phi[(ORDER + i / count, ORDER + i % count)];
+    let drive = |l| {
+        std::array::from_fn(|m| match m {
+            0..ORDER => hold.phi[(ORDER + l, m)],
+            ORDER => hold.gamma_0[ORDER + l],
+            _ => hold.gamma_1[ORDER + l],
+        })
+    };
     Ok(FilterStep {
         count,
-        own: (0..count * count)
-            .map(|i| hold.phi[(ORDER + i / count, ORDER + i % count)])
-            .collect(),
-        drive: (0..count)
-            .map(|l| {
-                std::array::from_fn(|m| match m {
-                    0..ORDER => hold.phi[(ORDER + l, m)],
-                    ORDER => hold.gamma_0[ORDER + l],
-                    _ => hold.gamma_1[ORDER + l],
-                })
-            })
-            .collect(),
+        own: (0..count * count).map(own).collect(),
+        drive: (0..count).map(drive).collect(),
         rest: rest.as_slice().to_vec(),
     })
 }
@@ -233,9 +226,9 @@ impl Columns for ContinuousColumns<'_> {
             self.steps[candidate][j].advance(&self.motion[j], state, &mut self.filters[j]);
         }
         let rows = chunk.rows();
-        let (feed, count) = self.bases[candidate]
-            .first()
-            .map_or((FeedThrough::none(), 0), |b| (b.feed(), b.poles().len()));
+        let basis = self.bases[candidate].first();
+        let none = (FeedThrough::none(), 0);
+        let (feed, count) = basis.map_or(none, |b| (b.feed(), b.poles().len()));
         let mut columns: Vec<&[f64]> = Vec::new();
         columns.extend(self.ones.as_ref().map(|ones| &ones[..rows]));
         for order in feed.orders() {

@@ -4,7 +4,7 @@
 use super::systems::ForceSystems;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::{ActiveConstraint, FitRequirements, Strictness};
+use crate::identification::dissipative::{ActiveConstraint, FitRequirements};
 use crate::identification::entry_report::EntryReport;
 use crate::identification::joint::JointFit;
 use crate::identification::least_squares::Factor;
@@ -46,15 +46,10 @@ impl<'a> FittedSystems<'a> {
             if let Some(column) = factor.undetermined(factor.columns()) {
                 let holds = |j: &usize| systems.places(i, *j).contains(&column);
                 let silent = (0..dofs.len()).find(holds);
+                let silent = silent.map_or("", |j| dofs[j].name());
+                let expected = format!("a {silent} motion rich enough for {filters}");
                 let found = "none that determines its coefficients (is a run of it missing among these speeds?)";
-                return Err(Error::input(
-                    "records",
-                    format!(
-                        "a {} motion rich enough for {filters}",
-                        silent.map_or("", |j| dofs[j].name())
-                    ),
-                    found,
-                ));
+                return Err(Error::input("records", expected, found));
             }
             Ok(factor.solve(factor.columns())?.as_slice().to_vec())
         };
@@ -79,8 +74,7 @@ impl<'a> FittedSystems<'a> {
         bases: &[Basis],
         requirements: &FitRequirements,
     ) -> Result<()> {
-        let everywhere = Strictness::Everywhere;
-        let (joint, _) = self.systems.held(bases, requirements, everywhere)?;
+        let (joint, _) = self.systems.held(bases, requirements, true)?;
         if joint.constrained.is_none() {
             return Ok(());
         }
@@ -154,10 +148,9 @@ impl<'a> FittedSystems<'a> {
         if let Some(joint) = &self.joint {
             let all: Option<Vec<f64>> = (0..n).map(|i| self.variance(i)).collect();
             let per_force = joint.parts.len() / n;
-            let of_joint =
-                all.and_then(|v| joint.covariance(i * n + j, |part| v[part / per_force]));
-            if let Some(covariance) = of_joint {
-                return Ok(Some(covariance));
+            let held = all.and_then(|v| joint.covariance(i * n + j, |part| v[part / per_force]));
+            if held.is_some() {
+                return Ok(held);
             }
         }
         let Some(variance) = self.variance(i) else {
@@ -182,26 +175,21 @@ impl<'a> FittedSystems<'a> {
         let own = self.systems.alone(i, j);
         let of_rows: Vec<f64> = self.constant(i).into_iter().chain(values.clone()).collect();
         let relative = |f: &Factor| (f.residual_sum_of(&of_rows, 0) / f.total_sum(0)).sqrt();
-        let (condition, cancellation) = match own.as_deref() {
-            Some(f) => (f.condition(f.columns()), f.cancellation(&of_rows, 0)),
-            None => (
-                whole.condition(whole.columns()),
-                whole.cancellation(&self.coefficients[i], 0),
-            ),
+        let own = own.as_deref();
+        let (judged, coefficients) = match own {
+            Some(f) => (f, &of_rows),
+            None => (&*whole, &self.coefficients[i]),
         };
         Ok(EntryReport {
             force: self.dofs[i],
             motion: self.dofs[j],
-            relative_rms: own
-                .as_deref()
-                .filter(|f| f.total_sum(0) > 0.0)
-                .map(relative),
+            relative_rms: own.filter(|f| f.total_sum(0) > 0.0).map(relative),
             worst_relative: None,
             poles: self.chains[e].clone(),
             coefficients: Vec::new(),
             covariance: Vec::new(),
-            condition,
-            cancellation,
+            condition: judged.condition(judged.columns()),
+            cancellation: judged.cancellation(coefficients, 0),
         }
         .with_coefficients(self.names[e].clone(), &values, self.covariance(i, j)?))
     }
@@ -209,11 +197,10 @@ impl<'a> FittedSystems<'a> {
     /// Objectives with fewer filters, from the same factorisation, for transfer functions of which all have the same
     /// `feed` columns before their filters.
     pub(crate) fn orders(&self, feed: usize) -> Vec<OrderReport> {
-        (1..=self.systems.counts[0] - feed)
-            .map(|filters| OrderReport {
-                filters,
-                objective: self.systems.systems[0].objective(feed + filters, &|_, _| true),
-            })
-            .collect()
+        let order = |filters| OrderReport {
+            filters,
+            objective: self.systems.systems[0].objective(feed + filters, &|_, _| true),
+        };
+        (1..=self.systems.counts[0] - feed).map(order).collect()
     }
 }

@@ -46,9 +46,8 @@ impl ColumnOrder {
         let pairs = (0..self.per_input).flat_map(|c| (0..self.inputs).map(move |j| (c, j)));
         let used = pairs.filter(|(c, j)| used(*c, *j));
         let constant = self.constant.then_some(0).into_iter();
-        constant
-            .chain(used.map(|(c, j)| self.index(c, j)))
-            .collect()
+        let used = used.map(|(c, j)| self.index(c, j));
+        constant.chain(used).collect()
     }
 }
 
@@ -350,7 +349,8 @@ impl OpenStretch {
         let stretch = closed.last().map_or(0, |c: &Stretch| c.stretch + 1);
         let last = done.sets.len().saturating_sub(1);
         for (at, (set, systems)) in done.sets.into_iter().enumerate() {
-            let own = if at == last { 1.0 } else { 0.0 };
+            // of the last alone
+            let own = usize::from(at == last);
             closed.push(Stretch {
                 record: index,
                 stretch,
@@ -360,8 +360,8 @@ impl OpenStretch {
                 set,
                 factors: systems.into_iter().map(StreamingQr::finish).collect(),
                 weights: vec![1.0; done.squares.len()],
-                squares: done.squares.iter().map(|s| s * own).collect(),
-                moving_rows: if at == last { done.moving_rows } else { 0 },
+                squares: done.squares.iter().map(|s| s * own as f64).collect(),
+                moving_rows: own * done.moving_rows,
             });
         }
     }
@@ -380,10 +380,9 @@ fn weigh(stretches: &mut [Stretch], weights: TimeWeights) {
         for i in 0..alike[0].squares.len() {
             let sum: f64 = alike.iter().map(|c| c.squares[i]).sum();
             // a force that is zero throughout cannot be scaled by its size
-            let weight = if sum == 0.0 {
-                1.0
-            } else {
-                (rows as f64 / sum).sqrt()
+            let weight = match sum {
+                0.0 => 1.0,
+                _ => (rows as f64 / sum).sqrt(),
             };
             alike.iter_mut().for_each(|s| s.weights[i] = weight);
         }

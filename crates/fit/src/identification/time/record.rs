@@ -50,9 +50,8 @@ impl Records {
     /// [`Error::Input`] naming the record and the value that cannot be, for records of different degrees of freedom, channels
     /// of different lengths and samples that are not finite.
     pub(crate) fn read(records: &[&dyn RecordSource], static_term: StaticTerm) -> Result<Self> {
-        let first = records
-            .first()
-            .ok_or_else(|| Error::input("records", "at least one", "none"))?;
+        let none = || Error::input("records", "at least one", "none");
+        let first = records.first().ok_or_else(none)?;
         let mut dofs = first.header().dofs.clone();
         dofs.sort();
         dofs.dedup();
@@ -223,9 +222,8 @@ impl DimensionlessRecord {
             }
             Ok(())
         })?;
-        means
-            .iter_mut()
-            .for_each(|m| *m /= f64::max(rows as f64, 1.0));
+        let count = f64::max(rows as f64, 1.0);
+        means.iter_mut().for_each(|m| *m /= count);
         self.signals.change(|block| {
             for (mean, force) in means.iter().zip(&mut block.channels[dofs..]) {
                 force.iter_mut().for_each(|x| *x -= mean);

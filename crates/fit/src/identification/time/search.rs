@@ -5,8 +5,8 @@ use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::FitRequirements;
-use crate::identification::form::Form;
-use crate::identification::form::PoleSearch;
+use crate::identification::form::{Form, PoleSearch};
+use crate::identification::least_squares::Factor;
 use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
 use crate::identification::report::{SearchPoint, SearchReport, best_of};
 use crate::identification::search::Bounds;
@@ -53,11 +53,8 @@ pub(crate) fn choose_poles(
     let entries = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let requirements = fit.requirements(dofs, tested)?;
     let group = |members| PoleGroup::new(&fit.poles, &entries, tested, members);
-    let together = searched_together(&entries);
-    let mut groups = together
-        .into_iter()
-        .map(group)
-        .collect::<Result<Vec<_>>>()?;
+    let groups = searched_together(&entries).into_iter().map(group);
+    let mut groups = groups.collect::<Result<Vec<_>>>()?;
     let unconstrained = groups.len();
     if requirements.any() && unconstrained == 1 && groups[0].members.len() == entries.len() {
         let members = groups[0].members.clone();
@@ -104,8 +101,7 @@ impl RecordFit<'_> {
             let basis = Basis::orthonormal(&self.fit.form, chain)?;
             Ok(vec![basis; self.records.dofs.len()])
         };
-        let bases = candidates.iter().map(everywhere);
-        let bases: Vec<_> = bases.collect::<Result<_>>()?;
+        let bases: Vec<_> = candidates.iter().map(everywhere).collect::<Result<_>>()?;
         let passed = self.pass(&bases, self.thinning(), 0, pass, PASSES)?;
         let systems = passed.systems();
         for (g, poles, at) in trials {
@@ -149,10 +145,9 @@ impl PoleGroup {
             entry: first.alone.then_some((members[0] / n, members[0] % n)),
             form: first.form.clone(),
             points: Vec::new(),
-            step: if options.start.is_some() {
-                range / 4.0
-            } else {
-                range / (FIRST_POINTS as f64 - 1.0)
+            step: match options.start {
+                Some(_) => range / 4.0,
+                None => range / (FIRST_POINTS as f64 - 1.0),
             },
             members,
             options,
@@ -174,10 +169,8 @@ impl PoleGroup {
     fn objective(&self, poles: &[f64], system: &Rc<Systems>) -> Result<f64> {
         let columns = self.form.feed_through().count() + self.form.filters();
         // a motion that is missing is named in the last pass
-        let known = system
-            .whole
-            .iter()
-            .all(|f| f.undetermined(f.columns()).is_none());
+        let determined = |f: &Factor| f.undetermined(f.columns()).is_none();
+        let known = system.whole.iter().all(determined);
         if let Some(requirements) = self.constrained.as_ref().filter(|_| known) {
             let basis = Basis::orthonormal(&self.form, &self.form.expand(poles))?;
             let (_, objective) = ForceSystems::held_alike(system, basis, requirements)?;
@@ -203,25 +196,19 @@ impl PoleGroup {
     fn refine(&mut self) -> Result<Vec<Vec<f64>>> {
         let bounds = &self.bounds;
         let best = best_of(&self.points)?;
-        let count = best.poles.len();
-        let (offsets, shrink): (&[f64], f64) = if count == 1 {
-            (&[-2.0, -1.0, 1.0, 2.0], 1.0 / 3.0)
-        } else {
-            (&[-1.0, 0.0, 1.0], 0.5)
+        let (offsets, shrink): (&[f64], f64) = match best.poles.len() {
+            1 => (&[-2.0, -1.0, 1.0, 2.0], 1.0 / 3.0),
+            _ => (&[-1.0, 0.0, 1.0], 0.5),
         };
         self.step *= shrink;
         let mut sets: Vec<Vec<f64>> = vec![Vec::new()];
         for pole in &best.poles {
-            sets = sets
-                .iter()
-                .flat_map(|set| {
-                    offsets.iter().map(|o| {
-                        let moved = pole * (o * self.step).exp();
-                        let inside = moved.clamp(bounds.least, bounds.max);
-                        set.iter().copied().chain([inside]).collect()
-                    })
-                })
-                .collect();
+            let moved = offsets.iter().map(|o| pole * (o * self.step).exp());
+            let inside: Vec<f64> = moved.map(|p| p.clamp(bounds.least, bounds.max)).collect();
+            let longer = |set: &Vec<f64>| -> Vec<Vec<f64>> {
+                inside.iter().map(|p| [&set[..], &[*p]].concat()).collect()
+            };
+            sets = sets.iter().flat_map(longer).collect();
         }
         sets.retain(|set| *set != best.poles && bounds.admits(set));
         sets.dedup();
@@ -247,11 +234,9 @@ impl PoleGroup {
         let at = |p: &SearchPoint| (p.poles[0].ln(), p.objective.powi(2));
         let (x, y) = at(best);
         let near = |below: bool| {
-            self.points
-                .iter()
-                .map(at)
-                .filter(|(u, _)| (*u < x) == below && *u != x)
-                .min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()))
+            let others = self.points.iter().map(at);
+            let beside = others.filter(|(u, _)| (*u < x) == below && *u != x);
+            beside.min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()))
         };
         let ((a, fa), (b, fb)) = (near(true)?, near(false)?);
         let (left, right) = ((y - fa) / (x - a), (fb - y) / (b - x));

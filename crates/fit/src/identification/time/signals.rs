@@ -21,14 +21,11 @@ pub(crate) struct Signals {
     /// Number of degrees of freedom.
     dofs: usize,
     rows: usize,
-    store: Store,
+    /// The first blocks, unless they stand in the file.
+    blocks: Vec<SignalBlock>,
+    file: Option<Mutex<File>>,
     /// The block that is being filled.
     last: SignalBlock,
-}
-
-enum Store {
-    Memory(Vec<SignalBlock>),
-    File(Mutex<File>),
 }
 
 /// Up to [`SIGNAL_ROWS`] consecutive samples.
@@ -59,7 +56,8 @@ impl Signals {
         Self {
             dofs,
             rows: 0,
-            store: Store::Memory(Vec::new()),
+            blocks: Vec::new(),
+            file: None,
             last: SignalBlock {
                 first: 0,
                 channels: vec![Vec::new(); 2 * dofs],
@@ -88,18 +86,16 @@ impl Signals {
     }
 
     fn close(&mut self) -> Result<()> {
-        if let Store::Memory(blocks) = &mut self.store
-            && blocks.len() == IN_MEMORY
-        {
+        if self.blocks.len() == IN_MEMORY {
             let mut file = tempfile::tempfile().map_err(io)?;
-            for block in blocks {
+            for block in self.blocks.drain(..) {
                 block.write(&mut file)?;
             }
-            self.store = Store::File(Mutex::new(file));
+            self.file = Some(Mutex::new(file));
         }
-        match &mut self.store {
-            Store::Memory(blocks) => blocks.push(self.last.clone()),
-            Store::File(file) => self.last.write(&mut locked(file))?,
+        match &self.file {
+            None => self.blocks.push(self.last.clone()),
+            Some(file) => self.last.write(&mut locked(file))?,
         }
         self.rows += self.last.rows();
         self.last.first = self.rows;
@@ -200,17 +196,15 @@ impl Signals {
     /// # Errors
     /// [`Error::Io`] for a file that cannot be read or written.
     pub(crate) fn change(&mut self, mut f: impl FnMut(&mut SignalBlock)) -> Result<()> {
-        if let Store::Memory(blocks) = &mut self.store {
-            blocks.iter_mut().for_each(f);
+        let Some(file) = &self.file else {
+            self.blocks.iter_mut().for_each(f);
             return Ok(());
-        }
-        if let Store::File(file) = &self.store {
-            let mut block = SignalBlock::default();
-            for first in (0..self.rows).step_by(SIGNAL_ROWS) {
-                self.read(file, first, &mut block)?;
-                f(&mut block);
-                block.write(&mut *self.at(file, first)?)?;
-            }
+        };
+        let mut block = SignalBlock::default();
+        for first in (0..self.rows).step_by(SIGNAL_ROWS) {
+            self.read(file, first, &mut block)?;
+            f(&mut block);
+            block.write(&mut *self.at(file, first)?)?;
         }
         Ok(())
     }
@@ -224,13 +218,11 @@ impl Signals {
 
     /// The block that begins with a sample, which is `read` where it stands in a file.
     fn block<'a>(&'a self, first: usize, read: &'a mut SignalBlock) -> Result<&'a SignalBlock> {
-        match &self.store {
-            Store::Memory(blocks) => Ok(&blocks[first / SIGNAL_ROWS]),
-            Store::File(file) => {
-                self.read(file, first, read)?;
-                Ok(read)
-            }
-        }
+        let Some(file) = &self.file else {
+            return Ok(&self.blocks[first / SIGNAL_ROWS]);
+        };
+        self.read(file, first, read)?;
+        Ok(read)
     }
 
     fn read(&self, file: &Mutex<File>, first: usize, block: &mut SignalBlock) -> Result<()> {
@@ -269,10 +261,7 @@ mod tests {
                 writer.extend(part, |c, k| value(c, first + k)).unwrap();
             }
             let mut signals = writer.finish().unwrap();
-            assert_eq!(
-                matches!(signals.store, Store::File(_)),
-                rows > IN_MEMORY * SIGNAL_ROWS
-            );
+            assert_eq!(signals.file.is_some(), rows > IN_MEMORY * SIGNAL_ROWS);
             for sign in [1.0, -1.0] {
                 let mut seen = 0;
                 let check = |block: &SignalBlock| {

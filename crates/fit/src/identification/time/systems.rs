@@ -3,7 +3,7 @@
 use super::pass::{ColumnOrder, Pass, Stretch};
 use crate::error::Result;
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::{FitRequirements, Strictness};
+use crate::identification::dissipative::FitRequirements;
 use crate::identification::joint::JointFit;
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::identification::report::{LEAST_NOISE, relative_noise};
@@ -58,10 +58,9 @@ impl Systems {
         let finished = |systems: Vec<StreamingQr>| -> Vec<Factor> {
             systems.into_iter().map(StreamingQr::finish).collect()
         };
-        let sets: Vec<(Vec<usize>, Vec<Factor>)> = of_sets
-            .into_iter()
-            .map(|(set, systems)| (set.to_vec(), finished(systems)))
-            .collect();
+        let sets = of_sets.into_iter();
+        let sets = sets.map(|(set, systems)| (set.to_vec(), finished(systems)));
+        let sets: Vec<(Vec<usize>, Vec<Factor>)> = sets.collect();
         let whole = |i: usize| {
             let mut all = StreamingQr::new(order.width(order.inputs), 1);
             for (set, factors) in &sets {
@@ -134,11 +133,7 @@ impl ForceSystems {
     /// Places of all columns of motion `j` in the whole system of force `i`.
     pub(crate) fn places(&self, i: usize, j: usize) -> Vec<usize> {
         let (order, columns) = (self.of_force(i).order, self.columns(i));
-        let place = |c| {
-            columns
-                .iter()
-                .position(|&column| column == order.index(c, j))
-        };
+        let place = |c| columns.iter().position(|&at| at == order.index(c, j));
         (0..self.count(i, j)).filter_map(place).collect()
     }
 
@@ -162,7 +157,7 @@ impl ForceSystems {
             counts: vec![basis.len(); entries],
             systems: vec![Rc::clone(system)],
         };
-        forces.held(&vec![basis; entries], requirements, Strictness::Sampled)
+        forces.held(&vec![basis; entries], requirements, false)
     }
 
     /// All transfer functions in the columns of `bases`, row by row, held together by what is asked of them, and the objective of
@@ -175,7 +170,7 @@ impl ForceSystems {
         &self,
         bases: &[Basis],
         requirements: &FitRequirements,
-        strictness: Strictness,
+        everywhere: bool,
     ) -> Result<(JointFit, f64)> {
         let n = bases.len().isqrt();
         let apart = (0..n).all(|i| (0..n).all(|j| self.alone(i, j).is_some()))
@@ -208,7 +203,7 @@ impl ForceSystems {
                 entries.extend((0..n).map(picked));
             }
         }
-        let joint = joint.held(entries, bases, requirements, strictness)?;
+        let joint = joint.held(entries, bases, requirements, everywhere)?;
         let objective = likeliest(&joint, &sums);
         Ok((joint, objective))
     }
@@ -229,9 +224,8 @@ fn likeliest(joint: &JointFit, sums: &[[f64; 2]]) -> f64 {
 }
 
 fn reduced<'a>(factor: &'a Factor, columns: &[usize]) -> Cow<'a, Factor> {
-    if columns.len() == factor.columns() {
-        Cow::Borrowed(factor)
-    } else {
-        Cow::Owned(factor.select(columns))
+    match columns.len() == factor.columns() {
+        true => Cow::Borrowed(factor),
+        false => Cow::Owned(factor.select(columns)),
     }
 }

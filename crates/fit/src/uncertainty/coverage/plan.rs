@@ -68,9 +68,9 @@ impl CoveragePlan {
         )?;
         // without any the repetitions are one, and their scatter is rounding
         positive("tunnel.noise_fraction", self.tunnel.noise_fraction)?;
-        self.poles
-            .iter()
-            .try_for_each(|p| positive("poles", *p).map(drop))?;
+        for p in &self.poles {
+            positive("poles", *p)?;
+        }
         non_negative("speed_scatter", self.speed_scatter)?;
         non_negative("run_scatter", self.run_scatter).map(drop)
     }
@@ -89,10 +89,9 @@ impl CoveragePlan {
                 feed_through: FeedThrough::default(),
                 pole_per_transfer_function: false,
             },
-            poles: if self.search_poles {
-                given
-            } else {
-                PoleSearch::fixed(&self.poles)
+            poles: match self.search_poles {
+                true => given,
+                false => PoleSearch::fixed(&self.poles),
             },
             weights: self.weights,
             ..TimeFit::default()

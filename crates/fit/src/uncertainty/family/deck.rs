@@ -109,9 +109,8 @@ impl FamilyRange {
                 let below = (count / 2).max(2);
                 let ends = (from / between(2.0, 3.0), from * ratio * between(2.0, 3.0));
                 let lower = spread(ends.0, from, below);
-                return lower
-                    .chain(spread(from * ratio, ends.1, count - below))
-                    .collect();
+                let upper = spread(from * ratio, ends.1, count - below);
+                return lower.chain(upper).collect();
             }
         };
         spread(low, high, count).collect()
@@ -209,7 +208,7 @@ fn truth(random: &mut ChaCha8Rng, sways: bool, third: bool) -> RationalModel {
         one * (part * z.clamp(-2.5, 2.5)).exp()
     };
     let mut scaled = |m: &DMatrix<f64>, part: f64| m.map(|x| about(x, part));
-    let (a1, mut a2) = (scaled(&jones.a1, 0.15), scaled(&jones.a2, 0.15));
+    let [mut a1, mut a2] = [&jones.a1, &jones.a2].map(|m| scaled(m, 0.15));
     let mut a3 = scaled(&jones.a3, 0.2);
     a3[(0, 1)] = a3[(1, 0)];
     let mut lag_terms: Vec<DMatrix<f64>> =
@@ -227,12 +226,13 @@ fn truth(random: &mut ChaCha8Rng, sways: bool, third: bool) -> RationalModel {
         lag_terms.push(lag_term);
         lags.push(random.random_range(0.05..0.3));
     }
-    let mut a1 = a1;
     if sways {
-        [&mut a1, &mut a2, &mut a3]
+        for m in [&mut a1, &mut a2, &mut a3]
             .into_iter()
             .chain(&mut lag_terms)
-            .for_each(|m| *m = m.clone().insert_row(1, 0.0).insert_column(1, 0.0));
+        {
+            *m = m.clone().insert_row(1, 0.0).insert_column(1, 0.0);
+        }
         // quasi-steady sway: drag and its slopes
         let drag = random.random_range(0.1..0.5);
         a2[(1, 1)] = -drag;
@@ -244,10 +244,9 @@ fn truth(random: &mut ChaCha8Rng, sways: bool, third: bool) -> RationalModel {
         a3[(1, 1)] = -0.05;
     }
     RationalModel {
-        dofs: if sways {
-            Dof::THREE.to_vec()
-        } else {
-            Dof::TWO.to_vec()
+        dofs: match sways {
+            true => Dof::THREE.to_vec(),
+            false => Dof::TWO.to_vec(),
         },
         a1,
         a2,
@@ -334,10 +333,9 @@ fn shift(
         let (in_size, in_phase) = (deviation(), deviation());
         let squares = (0..n).map(|j| size(i, j).powi(2)).sum::<f64>() / n as f64;
         for j in 0..n {
-            let part = if size(i, j) > 0.0 {
-                (squares.sqrt() / size(i, j)).min(3.0)
-            } else {
-                0.0
+            let part = match size(i, j) {
+                own if own > 0.0 => (squares.sqrt() / own).min(3.0),
+                _ => 0.0,
             };
             for speed in &mut *shifts {
                 let mut normal = || -> f64 { StandardNormal.sample(random) };

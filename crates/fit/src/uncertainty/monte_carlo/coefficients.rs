@@ -64,12 +64,10 @@ pub(super) fn replace(model: &mut Model, values: &[f64]) {
                 }
                 for l in 0..m.lag_terms.len() {
                     for (_, own) in m.lag_groups(l) {
-                        let column = m.lag_terms[l].column_mut(j);
                         let mut elsewhere = 0.0;
-                        column
-                            .into_iter()
-                            .zip(own)
-                            .for_each(|(x, own)| put(if own { x } else { &mut elsewhere }));
+                        for (x, own) in m.lag_terms[l].column_mut(j).iter_mut().zip(own) {
+                            put(if own { x } else { &mut elsewhere });
+                        }
                     }
                 }
             }

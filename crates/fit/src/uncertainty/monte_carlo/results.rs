@@ -247,6 +247,23 @@ impl Tally {
         let failed = std::iter::repeat_n(0.0, self.failed);
         let earliest = joined(&unsafe_speeds, open().chain(failed));
         let (mean, deviation) = mean_and_deviation(self.onsets.iter().copied());
+        let quantile = |&probability: &f64| {
+            let told = tells(drawn, probability);
+            let of = |sorted: &[f64]| sample_quantile(sorted, drawn, probability);
+            let ends_m_s = [&earliest, &unsafe_speeds].map(|s| of(s).filter(|_| told));
+            // known to lie there or below where it is that of a sample that grows at the lowest speed
+            let place = (probability * (drawn.max(1) - 1) as f64).floor() as usize;
+            let mut around = unsafe_speeds.iter().skip(place).take(2);
+            let start = |v: &f64| self.starts.binary_search_by(|s| s.total_cmp(v)).is_ok();
+            Quantile {
+                probability,
+                speed_m_s: ends_m_s[1].filter(|v| ends_m_s[0] == Some(*v)),
+                ends_m_s,
+                or_below: told && around.any(start),
+                too_few_samples: !told,
+            }
+        };
+        let design_speed = plan.design_speed_m_s.filter(|_| drawn > 0);
         MonteCarloResult {
             model: model.to_owned(),
             seed: plan.seed,
@@ -266,31 +283,12 @@ impl Tally {
             nominal_or_below,
             mean_m_s: Some(mean).filter(|_| !self.onsets.is_empty()),
             standard_deviation_m_s: Some(deviation).filter(|_| self.onsets.len() > 1),
-            quantiles: plan
-                .quantiles
-                .iter()
-                .map(|p| {
-                    let told = tells(drawn, *p);
-                    let of = |sorted: &[f64]| sample_quantile(sorted, drawn, *p).filter(|_| told);
-                    let ends = [of(&earliest), of(&unsafe_speeds)];
-                    let start = is_a_start(&unsafe_speeds, &self.starts, rank(drawn, *p));
-                    Quantile {
-                        probability: *p,
-                        speed_m_s: ends[1].filter(|v| ends[0] == Some(*v)),
-                        ends_m_s: ends,
-                        or_below: told && start,
-                        too_few_samples: !told,
-                    }
-                })
-                .collect(),
+            quantiles: plan.quantiles.iter().map(quantile).collect(),
             histogram: histogram(&self.onsets),
             drawn_forces: None,
             findings: Vec::new(),
             verdict: None,
-            design: plan
-                .design_speed_m_s
-                .filter(|_| drawn > 0)
-                .map(|speed| design(&self, speed, plan.confidence)),
+            design: design_speed.map(|speed| design(&self, speed, plan.confidence)),
             failures: self.failures,
         }
     }
@@ -313,17 +311,6 @@ fn tells(drawn: usize, probability: f64) -> bool {
     // 1 − p is rounded: 10 samples tell 0.9
     let one = 1.0 - 1e-9;
     probability.min(1.0 - probability) * drawn as f64 >= one
-}
-
-/// Place at or below that of a quantile.
-fn rank(drawn: usize, probability: f64) -> usize {
-    (probability * (drawn.max(1) - 1) as f64).floor() as usize
-}
-
-/// Whether the quantile at a place among sorted speeds is that of one of `starts`, sorted as well: known to lie there or below.
-fn is_a_start(sorted: &[f64], starts: &[f64], rank: usize) -> bool {
-    let mut around = sorted.iter().skip(rank).take(2);
-    around.any(|v| starts.binary_search_by(|s| s.total_cmp(v)).is_ok())
 }
 
 /// Bins of Freedman and Diaconis's width.

@@ -129,9 +129,8 @@ fn drawn(
     model: &TrainedModel,
 ) -> Result<(f64, TrainedModel, Option<CovarianceFactor>)> {
     plan.validate()?;
-    let limit = plan
-        .speed_max_m_s
-        .unwrap_or(model.experiment.onset_search_limit_m_s);
+    let limit = model.experiment.onset_search_limit_m_s;
+    let limit = plan.speed_max_m_s.unwrap_or(limit);
     plan.check_design_speed(limit)?;
     let (drawn, covariance) = drawn_model(plan, model)?;
     let model = TrainedModel {
@@ -143,12 +142,11 @@ fn drawn(
 
 impl<'a> Finder<'a> {
     pub(super) fn new(model: &'a TrainedModel, speed_max_m_s: f64) -> Result<Self> {
-        let sweep = coefficients::linear(&model.model, Some(model.tested_range))
-            .map(|forces| OnsetSweep::new(forces, &model.section.structure()?, speed_max_m_s))
-            .transpose()?;
+        let forces = coefficients::linear(&model.model, Some(model.tested_range));
+        let sweep = |forces| OnsetSweep::new(forces, &model.section.structure()?, speed_max_m_s);
         Ok(Self {
             model,
-            sweep,
+            sweep: forces.map(sweep).transpose()?,
             search: OnsetSearch {
                 speed_max_m_s,
                 speeds: SPEEDS,

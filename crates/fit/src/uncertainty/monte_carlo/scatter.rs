@@ -156,13 +156,12 @@ fn follow(saved: &ModelUncertainty, trained: &TrainedModel) -> Result<(Model, Co
 /// The covariance of coefficients whose names are among `names` from the text of a file: a table, or the report of a fit
 /// whose poles were given.
 fn from_file(path: &Path, text: &str, names: &[String]) -> Result<CovarianceFactor> {
-    let read = if is_json(path) {
-        from_report(path, text)
-    } else {
-        from_csv(text)
+    let read = match is_json(path) {
+        true => from_report(path, text),
+        false => from_csv(text),
     };
-    read.and_then(|(own, matrix)| factorise(&own, matrix, names))
-        .map_err(|e| e.in_file(path))
+    let factor = read.and_then(|(own, matrix)| factorise(&own, &matrix, names));
+    factor.map_err(|e| e.in_file(path))
 }
 
 /// The blocks of all transfer functions of a fit, independent of each other.
@@ -200,18 +199,12 @@ fn from_report(path: &Path, text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
 
 /// Names in the first line, then as many rows of as many numbers; lines that start with `#` are remarks.
 fn from_csv(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
-    let mut lines = text
-        .lines()
-        .zip(1..)
-        .filter(|(line, _)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
-    let cells = |line: &str| {
-        line.split(',')
-            .map(|c| c.trim().to_owned())
-            .collect::<Vec<_>>()
-    };
-    let (header, _) = lines
-        .next()
-        .ok_or_else(|| Error::input("line 1", "names of coefficients", "an empty file"))?;
+    let says = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let mut lines = text.lines().zip(1..).filter(|(line, _)| says(line));
+    let cells =
+        |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().to_owned()).collect() };
+    let none = || Error::input("line 1", "names of coefficients", "an empty file");
+    let (header, _) = lines.next().ok_or_else(none)?;
     let names = cells(header);
     let mut values = Vec::with_capacity(names.len() * names.len());
     let mut rows = 0;
@@ -232,17 +225,13 @@ fn from_csv(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
         }
         rows += 1;
     }
-    ensure(
-        rows == names.len(),
-        "covariance",
-        counted(names.len(), "row"),
-        rows,
-    )?;
+    let expected = counted(names.len(), "row");
+    ensure(rows == names.len(), "covariance", expected, rows)?;
     let matrix = DMatrix::from_row_slice(rows, rows, &values);
     Ok((names, matrix))
 }
 
-fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<CovarianceFactor> {
+fn factorise(own: &[String], matrix: &DMatrix<f64>, names: &[String]) -> Result<CovarianceFactor> {
     let mut places = Vec::with_capacity(own.len());
     for name in own {
         let place = names.iter().position(|n| n == name).ok_or_else(|| {
@@ -259,19 +248,15 @@ fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<C
     }
     Ok(CovarianceFactor {
         places,
-        factor: factor_of(&matrix)?,
+        factor: factor_of(matrix)?,
         draws: DrawnForces::default(),
     })
 }
 
 /// A factor `S` with `C = S Sᵀ`.
 fn factor_of(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>> {
-    ensure(
-        matrix.iter().all(|x| x.is_finite()),
-        "covariance",
-        "finite numbers",
-        "others",
-    )?;
+    let finite = matrix.iter().all(|x| x.is_finite());
+    ensure(finite, "covariance", "finite numbers", "others")?;
     let asymmetry = (matrix - matrix.transpose()).amax();
     ensure(
         asymmetry <= INDEFINITE * matrix.amax(),

@@ -95,7 +95,7 @@ fn ratios_are_those_of_the_embedded_decks() {
         constraints: Constraints::Dissipative,
         ..FrequencyFit::default()
     };
-    let found = speed_prior::MEASURED.map(|(name, _)| {
+    let found = speed_prior::MEASURED_DECKS.map(|name| {
         let table = embedded::deck(name).unwrap();
         let (_, estimate) = fitted(&table.samples(&Dof::TWO), &fit);
         let forces = estimate.speeds.unwrap().forces;
@@ -107,7 +107,7 @@ fn ratios_are_those_of_the_embedded_decks() {
             .flat_map(|f| [100.0 * f.size, 100.0 * f.phase]);
         ratios.chain(percent).collect::<Vec<f64>>()
     });
-    for (found, (_, rows)) in found.iter().zip(speed_prior::MEASURED) {
+    for (found, rows) in found.iter().zip(speed_prior::MEASURED) {
         let stored = rows.as_flattened();
         // two decimals are stored
         assert!(

@@ -46,7 +46,7 @@ fn the_growth_at_the_end_of_the_tests_is_not_known_exactly() {
     let (_, alone) = fit(Constraints::None, poles);
     let active = &report.constraints.as_ref().unwrap().active;
     let above = active.iter().find(|a| a.limit.is_some()).unwrap();
-    let k_max = above.limit.as_ref().unwrap().k_max;
+    let k_max = above.limit.as_ref().unwrap().0;
     let at_end = ActiveConstraint {
         k: Some(k_max),
         ..above.clone()

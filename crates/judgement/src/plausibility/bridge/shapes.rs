@@ -35,10 +35,8 @@ fn contradiction(place: impl Into<String>, text: impl Into<String>) -> Finding {
 fn unturned(bridge: &Bridge) -> Option<Finding> {
     let moves =
         |node: usize, motion: usize| bridge.modes.iter().any(|m| m.shape[node][motion] != 0.0);
-    let nodes = 0..bridge.nodes.len();
-    let still: Vec<usize> = nodes
-        .filter(|n| !moves(*n, 2) && (moves(*n, 0) || moves(*n, 1)))
-        .collect();
+    let unturned = |n: &usize| !moves(*n, 2) && (moves(*n, 0) || moves(*n, 1));
+    let still: Vec<usize> = (0..bridge.nodes.len()).filter(unturned).collect();
     let (count, all) = (still.len(), bridge.nodes.len());
     if count == all || (count as f64) <= UNTURNED * all as f64 {
         return None;

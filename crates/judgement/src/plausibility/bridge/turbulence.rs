@@ -14,29 +14,21 @@ const PERIODS: f64 = 10.0;
 /// Nobody samples the wind along a bridge faster, s.
 const LEAST_STEP_S: f64 = 0.02;
 
-/// What a file of turbulence holds, in figures.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TurbulenceFigures {
-    /// Time from sample to sample, s.
-    pub step_s: f64,
-    /// Length, s.
-    pub duration_s: f64,
-    /// Standard deviations of `u` and `w`, m/s.
-    pub deviations_m_s: [f64; 2],
-}
-
-/// What is odd about the turbulence of a file: times that move no mode as turbulence does, and gusts as no wind has them, in a mean wind
-/// of `speed_m_s`, m/s, and beside the intensities that are `stated`, where these are known.
+/// What is odd about the turbulence of a file of some duration: times that move no mode as turbulence does, and gusts as no wind has
+/// them, of these standard deviations of `u` and `w`, in a mean wind of `speed_m_s`, m/s, and beside the intensities that are `stated`,
+/// where these are known.
 pub fn of_turbulence(
     modes: &[BridgeMode],
-    figures: &TurbulenceFigures,
+    step_s: f64,
+    duration_s: f64,
+    deviations_m_s: [f64; 2],
     speed_m_s: Option<f64>,
     stated: [Option<f64>; 2],
 ) -> Vec<Finding> {
-    let mut found: Vec<Finding> = of_times(modes, figures).into_iter().collect();
+    let mut found: Vec<Finding> = of_times(modes, step_s, duration_s).into_iter().collect();
     if let Some(speed_m_s) = speed_m_s {
         let components = ["u", "w"].into_iter().zip(stated);
-        let each = components.zip(figures.deviations_m_s);
+        let each = components.zip(deviations_m_s);
         found.extend(each.filter_map(|((name, stated), deviation_m_s)| {
             of_intensity(name, stated, deviation_m_s, speed_m_s)
         }));
@@ -44,14 +36,10 @@ pub fn of_turbulence(
     found
 }
 
-fn of_times(modes: &[BridgeMode], figures: &TurbulenceFigures) -> Option<Finding> {
-    let slowest = modes
-        .iter()
-        .min_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz))?;
+fn of_times(modes: &[BridgeMode], step_s: f64, duration_s: f64) -> Option<Finding> {
+    let by_frequency = |a: &&BridgeMode, b: &&BridgeMode| a.frequency_hz.total_cmp(&b.frequency_hz);
+    let slowest = modes.iter().min_by(by_frequency)?;
     let (number, period_s) = (slowest.number, slowest.frequency_hz.recip());
-    let &TurbulenceFigures {
-        step_s, duration_s, ..
-    } = figures;
     if step_s * SAMPLES_PER_PERIOD > period_s {
         let text = format!(
             "a period of mode {number}, the slowest, is {} s: gusts that far apart do not move it as they would",

@@ -22,20 +22,14 @@ pub(super) fn candidates(
         })
     });
     let conventions = others.filter(move |c| *c != label).map(move |c| {
-        let words = format!(
-            "read as {}, over {}, {}",
-            c.notation.title(),
-            c.argument.definition(),
-            c.axes
-        );
+        let (notation, argument) = (c.notation.title(), c.argument.definition());
+        let words = format!("read as {notation}, over {argument}, {}", c.axes);
         let read = move |d, p: &_| c.read_point(d, &label.express_point(d, p));
         (words, by_point(table, read))
     });
     let scaled = |words: &str, factor: fn(Derivative) -> f64| {
-        (
-            words.to_owned(),
-            by_point(table, move |d, p| times(p, factor(d))),
-        )
+        let reading = by_point(table, move |d, p| times(p, factor(d)));
+        (words.to_owned(), reading)
     };
     let per_degree = scaled("read as numbers per degree of rotation", |d| {
         match d.motion() {
@@ -59,9 +53,8 @@ pub(super) fn candidates(
     // between reduced frequencies this factor is another argument
     let by_velocity = matches!(label.argument, Argument::VHat | Argument::VStar);
     let by_semi_chord = by_velocity.then(|| (words.to_owned(), by_semi_chord));
-    conventions
-        .chain([per_degree, nose_down, about_mid_chord(table)])
-        .chain(by_semi_chord)
+    let others = [per_degree, nose_down, about_mid_chord(table)];
+    conventions.chain(others).chain(by_semi_chord)
 }
 
 /// Moments moved by half a width from the leading edge to mid-chord, where the lift was measured as well.

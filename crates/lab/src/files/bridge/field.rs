@@ -2,7 +2,7 @@
 
 use super::table::Table;
 use crate::error::{Error, Place, Result, ensure};
-use crate::plausibility::{TurbulenceFigures, ratio_hint, significant};
+use crate::plausibility::{ratio_hint, significant};
 use std::path::Path;
 
 /// Nodes and columns this close are at one place, m: places are written with a few digits.
@@ -52,8 +52,13 @@ impl FieldTable {
         }))
     }
 
-    /// What it holds, in figures: deviations from the mean of each place.
-    pub fn figures(&self) -> TurbulenceFigures {
+    /// Length, s.
+    pub fn duration_s(&self) -> f64 {
+        self.step_s * self.gusts[0][0].len() as f64
+    }
+
+    /// Standard deviations of `u` and `w`, m/s, from the mean of each place.
+    pub fn deviations_m_s(&self) -> [f64; 2] {
         let variance = |row: &Vec<f64>| {
             let mean = row.iter().sum::<f64>() / row.len() as f64;
             row.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / row.len() as f64
@@ -62,11 +67,7 @@ impl FieldTable {
             let sum: f64 = rows.iter().map(variance).sum();
             (sum / rows.len() as f64).sqrt()
         };
-        TurbulenceFigures {
-            step_s: self.step_s,
-            duration_s: self.step_s * self.gusts[0][0].len() as f64,
-            deviations_m_s: [deviation(&self.gusts[0]), deviation(&self.gusts[1])],
-        }
+        [deviation(&self.gusts[0]), deviation(&self.gusts[1])]
     }
 
     /// The field at other places, m: its own where a place is one of them, else on the straight line between its neighbours.

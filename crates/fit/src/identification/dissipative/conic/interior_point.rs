@@ -1,8 +1,6 @@
 //! The way through the interior of the cones, by Newton's steps towards the answer.
 
-use super::second_order::{
-    Cone, Scaling, Vector, determinant, dot, product, quotient, reach, tail,
-};
+use super::{Cone, Scaling, Vector, determinant, dot, product, quotient, reach, tail};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::subtract;
 use aerodeck_core::vectorised;
@@ -38,16 +36,16 @@ pub(super) struct Point {
 
 impl Problem {
     pub(super) fn new(cones: &[Cone], seen: &[usize], unit: f64) -> Self {
-        let mut spans = Vec::new();
-        let mut count = 0;
-        for cone in cones {
-            spans.push((count, cone.rows.len()));
-            count += cone.rows.len();
-        }
+        let mut end = 0;
+        let span = |cone: &Cone| {
+            end += cone.rows.len();
+            (end - cone.rows.len(), cone.rows.len())
+        };
+        let spans = cones.iter().map(span).collect();
         let all: Vec<&DVector<f64>> = cones.iter().flat_map(|c| &c.rows).collect();
         Self {
             spans,
-            rows: DMatrix::from_fn(count, seen.len(), |r, c| all[r][seen[c]]),
+            rows: DMatrix::from_fn(all.len(), seen.len(), |r, c| all[r][seen[c]]),
             bound: cones.iter().map(|c| c.bound.map(|b| b / unit)).collect(),
         }
     }
@@ -84,9 +82,8 @@ impl Problem {
         for _ in 0..STEPS {
             let gap: f64 = at.s.iter().zip(&at.z).map(|(s, z)| dot(s, z)).sum();
             let moved = self.times(&at.w);
-            let short: Vec<Vector> = (0..at.s.len())
-                .map(|c| from_fn(|r| moved[c][r] + at.s[c][r] - self.bound[c][r]))
-                .collect();
+            let short = |c: usize| from_fn(|r| moved[c][r] + at.s[c][r] - self.bound[c][r]);
+            let short: Vec<Vector> = (0..at.s.len()).map(short).collect();
             let uneven = &at.w + self.transposed(&at.z);
             let infeasible = short.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
             // the maximum passes over what is not a number
@@ -94,9 +91,8 @@ impl Problem {
                 break;
             }
             let size = at.w.norm_squared().max(f64::MIN_POSITIVE);
-            let error = (gap / size)
-                .max(infeasible * infeasible / size)
-                .max(uneven.norm_squared() / size);
+            let error = (gap / size).max(infeasible * infeasible / size);
+            let error = error.max(uneven.norm_squared() / size);
             if error < best.0 {
                 best = (error, at.clone());
             }
@@ -133,9 +129,8 @@ impl Problem {
 
     fn step(&self, at: &Point, short: &[Vector], uneven: &DVector<f64>, gap: f64) -> Option<Point> {
         let cones = at.s.len();
-        let scalings = (0..cones)
-            .map(|c| Scaling::new(&at.s[c], &at.z[c]))
-            .collect::<Option<Vec<_>>>()?;
+        let scalings = at.s.iter().zip(&at.z).map(|(s, z)| Scaling::new(s, z));
+        let scalings = scalings.collect::<Option<Vec<_>>>()?;
         // W⁻¹ rows
         let mut scaled = self.rows.clone();
         let rows = scaled.nrows().max(1);
@@ -149,42 +144,37 @@ impl Problem {
         let factor = one_plus_gram(&scaled).cholesky()?;
         let direction = |wanted: &[Vector]| -> (DVector<f64>, Vec<Vector>, Vec<Vector>) {
             // W⁻¹ (short − W (λ \ wanted))
-            let rest: Vec<Vector> = (0..cones)
-                .map(|c| {
-                    let back = quotient(&scalings[c].lambda, &wanted[c]);
-                    let short = scalings[c].divide(&short[c]);
-                    from_fn(|r| short[r] - back[r])
-                })
-                .collect();
+            let rest = |c: usize| {
+                let back = quotient(&scalings[c].lambda, &wanted[c]);
+                let short = scalings[c].divide(&short[c]);
+                from_fn(|r| short[r] - back[r])
+            };
+            let rest: Vec<Vector> = (0..cones).map(rest).collect();
             let (w, left) = refined(&scaled, &factor, &self.flat(&rest), uneven);
             let left = self.cut(&left);
             let along = self.times(&w);
-            let z = (0..cones).map(|c| scalings[c].divide(&left[c])).collect();
-            let s = (0..cones)
-                .map(|c| from_fn(|r| -short[c][r] - along[c][r]))
-                .collect();
-            (w, s, z)
+            let z = (0..cones).map(|c| scalings[c].divide(&left[c]));
+            let s = (0..cones).map(|c| from_fn(|r| -short[c][r] - along[c][r]));
+            (w, s.collect(), z.collect())
         };
         let squared = |c: usize| product(&scalings[c].lambda, &scalings[c].lambda);
         let affine: Vec<Vector> = (0..cones).map(squared).collect();
         let (_, s, z) = direction(&affine);
         let reach = reach(&at.s, &s).min(reach(&at.z, &z)).min(1.0);
-        let left: f64 = (0..cones)
-            .map(|c| {
-                let s: Vector = from_fn(|r| at.s[c][r] + reach * s[c][r]);
-                let z: Vector = from_fn(|r| at.z[c][r] + reach * z[c][r]);
-                dot(&s, &z)
-            })
-            .sum();
+        let gap_left = |c: usize| {
+            let s: Vector = from_fn(|r| at.s[c][r] + reach * s[c][r]);
+            let z: Vector = from_fn(|r| at.z[c][r] + reach * z[c][r]);
+            dot(&s, &z)
+        };
+        let left: f64 = (0..cones).map(gap_left).sum();
         let centre = (left / gap).clamp(0.0, 1.0).powi(3) * gap / cones as f64;
-        let corrected: Vec<Vector> = (0..cones)
-            .map(|c| {
-                let second = product(&scalings[c].divide(&s[c]), &scalings[c].times(&z[c]));
-                let mut all: Vector = from_fn(|r| affine[c][r] + second[r]);
-                all[0] -= centre;
-                all
-            })
-            .collect();
+        let corrected = |c: usize| {
+            let second = product(&scalings[c].divide(&s[c]), &scalings[c].times(&z[c]));
+            let mut all: Vector = from_fn(|r| affine[c][r] + second[r]);
+            all[0] -= centre;
+            all
+        };
+        let corrected: Vec<Vector> = (0..cones).map(corrected).collect();
         let (w, s, z) = direction(&corrected);
         let length =
             (SHORT_OF_BOUNDARY * self::reach(&at.s, &s).min(self::reach(&at.z, &z))).min(1.0);
