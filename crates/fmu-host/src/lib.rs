@@ -23,7 +23,6 @@ mod reading_fmi3;
 mod replay;
 mod simulation;
 mod slave;
-mod status;
 mod trials;
 pub mod xml;
 
@@ -37,12 +36,12 @@ pub use log::LogMessage;
 pub use reading_fmi3::array_element_name;
 pub use replay::{LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 pub use slave::{FmuState, Slave};
-pub use status::Status;
 
 use crate::error::{Error, Result, ensure};
 use crate::xml::Element;
 use description::FILE;
 use findings::FmuFindings;
+pub use library::Status;
 use library::{Binary, OwnFunctions};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};

@@ -1,7 +1,6 @@
 //! Messages of a running FMU, collected.
 
-use super::library::{Int, Text};
-use super::status::Status;
+use super::library::{Int, Status, Text};
 use aerodeck_unit::fmi2::types::fmi2CallbackLogger;
 use std::ffi::{CStr, c_void};
 use std::sync::{Mutex, MutexGuard};

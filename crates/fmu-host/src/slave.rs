@@ -7,9 +7,8 @@ mod values;
 pub use states::FmuState;
 
 use super::description::{ModelDescription, ScalarVariable};
-use super::library::{Binary, Component, Int, OwnFunctions, Text, Truth, spelt};
+use super::library::{Binary, Component, Int, OwnFunctions, Status, Text, Truth, spelt};
 use super::log::{LogBook, LogMessage, collect_plain, logger, messages_of};
-use super::status::Status;
 use crate::error::{Error, Result};
 use aerodeck_unit::fmi2::types::fmi2CallbackFunctions;
 use std::cell::Cell;

@@ -5,7 +5,6 @@
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
 //! taken them. Outputs are computed once per step when first asked for.
 
-mod access;
 mod bridge_built;
 mod bridge_onset;
 mod bridge_unit;
@@ -30,7 +29,6 @@ mod saving;
 mod section;
 mod section_unit;
 mod sensitivity;
-mod serialized;
 mod stepping;
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,13 @@
 //! Numbers of the present moment of a section or bridge.
 
 use super::coupled::{Built, Coupled, CoupledKind};
+use super::damping::told_from;
 use super::memory::{Memory, Now};
 use super::trust::shown;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::flutter::{aliased_below, smallest_damping};
+use crate::flutter::smallest_damping;
 use crate::resources::Resources;
 use crate::response::Outputs;
 use crate::section::Dof;
@@ -15,11 +16,6 @@ use std::cmp::Ordering;
 
 /// Relative step of a difference over the wind speed.
 const WIND_STEP: f64 = 1e-5;
-
-/// Wind speed, m/s, from which on damping is told: a motion without a spring has no period in still air, which a sample could miss.
-fn told_from(section: &CoupledSection) -> f64 {
-    aliased_below(section).unwrap_or(0.0)
-}
 
 /// Derivative of the smallest damping ratio with respect to the wind speed, per m/s; `None` where that is not known.
 fn damping_slope(section: &CoupledSection, wind: f64) -> Option<f64> {

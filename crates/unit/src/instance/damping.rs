@@ -1,6 +1,7 @@
 //! The smallest damping ratio at the present wind, which importers may read at every step.
 
 use super::trust::shown;
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{LeastDamping, aliased_below, smallest_damping};
 use crate::response::{Inputs, Stepper};
@@ -10,16 +11,12 @@ use nalgebra::{Complex, DMatrix};
 /// Damping of the present modes with room for its computation; made anew, as [`Default`] is, where the system is.
 #[derive(Debug, Default)]
 pub(super) struct PresentDamping {
-    way: Option<Way>,
+    /// Of continuous forces.
+    least: Option<LeastDamping>,
+    /// Of sampled ones.
+    sampled: Option<Sampled>,
     /// A wind speed, m/s, and the smallest damping ratio there.
     last: Option<[f64; 2]>,
-}
-
-/// How it is found again and again.
-#[derive(Debug)]
-enum Way {
-    Continuous(LeastDamping),
-    Sampled(Sampled),
 }
 
 /// The matrix from sample to sample, and room for its eigenvalues.
@@ -32,6 +29,11 @@ struct Sampled {
     eigenvalues: Vec<Complex<f64>>,
 }
 
+/// Wind speed, m/s, from which on damping is told: a motion without a spring has no period in still air, which a sample could miss.
+pub(super) fn told_from(section: &CoupledSection) -> f64 {
+    aliased_below(section).unwrap_or(0.0)
+}
+
 impl PresentDamping {
     /// The ratio of the section of `stepper`, the same at every call, at a wind speed, m/s.
     ///
@@ -41,13 +43,18 @@ impl PresentDamping {
         if let Some([_, ratio]) = self.last.filter(|[at, _]| *at == wind_m_s) {
             return Ok(ratio);
         }
-        let way = self.way.get_or_insert_with(|| Way::new(stepper));
-        let ratio = match way {
-            Way::Continuous(least) => least.at(stepper.section(), wind_m_s)?,
-            Way::Sampled(sampled) => match sampled.at(stepper, wind_m_s)? {
-                Some(ratio) => ratio,
-                None => smallest_damping(stepper.section(), wind_m_s)?,
-            },
+        if self.least.is_none() && self.sampled.is_none() {
+            self.least = LeastDamping::new(stepper.section());
+        }
+        let ratio = match &mut self.least {
+            Some(least) => least.at(stepper.section(), wind_m_s)?,
+            None => {
+                let sampled = self.sampled.get_or_insert_with(|| Sampled::new(stepper));
+                match sampled.at(stepper, wind_m_s)? {
+                    Some(ratio) => ratio,
+                    None => smallest_damping(stepper.section(), wind_m_s)?,
+                }
+            }
         };
         self.last = Some([wind_m_s, ratio]);
         Ok(ratio)
@@ -55,31 +62,22 @@ impl PresentDamping {
 
     /// What is known of the modes at the last wind.
     pub(super) fn modes(&self) -> Option<&LeastDamping> {
-        match &self.way {
-            Some(Way::Continuous(modes)) => Some(modes),
-            _ => None,
-        }
-    }
-}
-
-impl Way {
-    fn new(stepper: &Stepper) -> Self {
-        let section = stepper.section();
-        if let Some(least) = LeastDamping::new(section) {
-            return Self::Continuous(least);
-        }
-        let states = section.states();
-        Self::Sampled(Sampled {
-            // a motion without a spring has no period in still air, and damping is told by what is there
-            lowest_m_s: aliased_below(section).unwrap_or(0.0),
-            steady: Inputs::steady(0.0, section.structure().dofs.len()),
-            matrix: DMatrix::zeros(states, states),
-            eigenvalues: Vec::with_capacity(states),
-        })
+        self.least.as_ref()
     }
 }
 
 impl Sampled {
+    fn new(stepper: &Stepper) -> Self {
+        let section = stepper.section();
+        let states = section.states();
+        Self {
+            lowest_m_s: told_from(section),
+            steady: Inputs::steady(0.0, section.structure().dofs.len()),
+            matrix: DMatrix::zeros(states, states),
+            eigenvalues: Vec::with_capacity(states),
+        }
+    }
+
     /// By the rates `ln z/Δt`; what has died out after a sample (`z = 0`) has none. `None` where the eigenvalues are not found.
     /// Where a sample lasts longer than half a period, `ln z` is that of another motion.
     fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<Option<f64>> {
