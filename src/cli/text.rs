@@ -6,10 +6,12 @@ use super::{TextTable, Written, headline, list, speed_or};
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
+use crate::section::Dof;
 use crate::selection::Recommendation;
 use crate::study::{
     Deck, Divergence, FlutterStudy, KnownUncertainty, StageFailure, Study, TrainedWithReport,
 };
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// The whole chain: the answer, and what stands beside it; everything else with `verbose`, and on the page.
@@ -36,12 +38,8 @@ pub(crate) fn chain(
     } else {
         let kind = summary.fits.iter().find(|f| f.model == summary.model);
         let kind = kind.map_or(String::new(), |f| format!(" ({})", f.report.method));
-        let _ = writeln!(
-            text,
-            "Model     {}{kind}{}\n",
-            summary.model,
-            summary.fmu().map_or("", |_| ", held by the FMU")
-        );
+        let held = summary.fmu().map_or("", |_| ", held by the FMU");
+        let _ = writeln!(text, "Model     {}{kind}{held}\n", summary.model);
         let found = &summary.results;
         text.push_str(&table(found, &[]));
         for o in &found.undetermined {
@@ -126,51 +124,35 @@ pub(super) fn fit_of(trained: &TrainedWithReport) -> String {
 /// One fit.
 pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty) -> String {
     let mut text = format!("Fit       {name}: {}\n", report.method);
-    let residuals: Vec<String> = report
-        .entries
-        .iter()
-        .filter_map(|e| {
-            let rms = e.relative_rms?;
-            Some(format!(
-                "{}{} {:.1} %",
-                force_symbol(e.force),
-                e.motion.symbol(),
-                100.0 * rms
-            ))
-        })
-        .collect();
-    let poles: Vec<String> = distinct_poles(report);
+    let residuals = report.entries.iter().filter_map(|e| {
+        let (force, motion) = (force_symbol(e.force), e.motion.symbol());
+        Some(format!("{force}{motion} {:.1} %", 100.0 * e.relative_rms?))
+    });
+    let residuals: Vec<String> = residuals.collect();
+    let poles = distinct_poles(report).join(", ");
+    let poles = match &poles[..] {
+        "" => String::new(),
+        some => format!("; poles {some}"),
+    };
+    let (residuals, condition) = (residuals.join(", "), report.condition_in_words());
     let _ = writeln!(
         text,
-        "          residual rms {}; {}{}",
-        residuals.join(", "),
-        report.condition_in_words(),
-        if poles.is_empty() {
-            String::new()
-        } else {
-            format!("; poles {}", poles.join(", "))
-        }
+        "          residual rms {residuals}; {condition}{poles}"
     );
+    let range = report.tested_range;
+    let [low, high] = [range.min, range.max].map(|k| k.full_width());
     let _ = writeln!(
         text,
-        "          tested K {:.3} to {:.3} (V* {:.2} to {:.2})",
-        report.tested_range.min.full_width(),
-        report.tested_range.max.full_width(),
-        std::f64::consts::TAU / report.tested_range.max.full_width(),
-        std::f64::consts::TAU / report.tested_range.min.full_width(),
+        "          tested K {low:.3} to {high:.3} (V* {:.2} to {:.2})",
+        TAU / high,
+        TAU / low,
     );
     if let Some(constraints) = &report.constraints {
         text.push_str(&held(constraints));
     }
     match uncertainty {
-        Ok(known) => {
-            if let Some(line) = known.explain() {
-                let _ = writeln!(text, "          {line}");
-            }
-        }
-        Err(reason) => {
-            let _ = writeln!(text, "          no interval of the onset: {reason}");
-        }
+        Ok(known) => text.extend(known.explain().map(|line| format!("          {line}\n"))),
+        Err(reason) => text.push_str(&format!("          no interval of the onset: {reason}\n")),
     }
     for note in &report.notes {
         let _ = writeln!(text, "          note: {note}");
@@ -185,42 +167,33 @@ fn held(constraints: &ConstraintReport) -> String {
         let _ = writeln!(text, "          held: {sentence}");
     }
     if let Some((cost, points)) = constraints.dearest() {
+        let (force, motion) = (force_symbol(cost.force), cost.motion.symbol());
         let _ = write!(
             text,
-            "          constraints raise residuals by at most {points:.2} percentage points ({}{})",
-            force_symbol(cost.force),
-            cost.motion.symbol()
+            "          constraints raise residuals by at most {points:.2} percentage points ({force}{motion})"
         );
     }
     if let Some(onset) = &constraints.onset {
-        let speed = |v| speed_or("not found", v);
-        let _ = write!(
-            text,
-            "; onset {} without them, {} with them",
-            speed(onset.without_m_s),
-            speed(onset.with_m_s)
-        );
+        let [without, with] = [onset.without_m_s, onset.with_m_s].map(|v| speed_or("not found", v));
+        let _ = write!(text, "; onset {without} without them, {with} with them");
     }
     text.push('\n');
     text
 }
 
 fn distinct_poles(report: &FitReport) -> Vec<String> {
-    let mut poles: Vec<f64> = report
-        .entries
-        .iter()
-        .flat_map(|e| e.poles.clone())
-        .collect();
+    let poles = report.entries.iter().flat_map(|e| e.poles.clone());
+    let mut poles: Vec<f64> = poles.collect();
     poles.sort_by(f64::total_cmp);
     poles.dedup();
     poles.iter().map(|p| format!("{p:.3}")).collect()
 }
 
-fn force_symbol(dof: crate::section::Dof) -> &'static str {
+fn force_symbol(dof: Dof) -> &'static str {
     match dof {
-        crate::section::Dof::Vertical => "L",
-        crate::section::Dof::Lateral => "D",
-        crate::section::Dof::Torsion => "M",
+        Dof::Vertical => "L",
+        Dof::Lateral => "D",
+        Dof::Torsion => "M",
     }
 }
 
@@ -240,7 +213,7 @@ pub(crate) fn onsets(results: &FlutterStudy) -> String {
         all.map(|w| format!("warning: {model}: {w}\n")).collect()
     };
     for o in &results.onsets {
-        text.extend(without_interval(o));
+        text.push_str(&without_interval(o));
         text.push_str(&warnings(&o.at.model, &o.warnings));
     }
     for s in &results.unstable {
@@ -297,16 +270,16 @@ pub(super) fn figures(o: &Onset) -> [String; 5] {
 }
 
 /// What the interval is made of, or why there is no 95 % interval, or none at all.
-fn without_interval(o: &Onset) -> Option<String> {
+fn without_interval(o: &Onset) -> String {
     let place = format!("{} ({})", o.at.model, o.at.method.name());
     match &o.interval {
-        OnsetInterval::None { reason } => Some(format!("no interval: {place}: {reason}\n")),
+        OnsetInterval::None { reason } => format!("no interval: {place}: {reason}\n"),
         OnsetInterval::Spread { of, .. } => {
-            Some(format!("in brackets, no 95 % interval: {place}: {of}\n"))
+            format!("in brackets, no 95 % interval: {place}: {of}\n")
         }
-        OnsetInterval::Undetermined { reason, .. } => Some(format!("{place}: {reason}\n")),
+        OnsetInterval::Undetermined { reason, .. } => format!("{place}: {reason}\n"),
         OnsetInterval::Known { parts, .. } => {
-            Some(format!("standard error: {place}: {}\n", parts.explain()))
+            format!("standard error: {place}: {}\n", parts.explain())
         }
     }
 }
@@ -319,9 +292,7 @@ pub(crate) fn interval(of: &OnsetInterval) -> String {
         } => format!("[{low_m_s:.3} – {high_m_s:.3}]"),
         OnsetInterval::Known {
             low_m_s, high_m_s, ..
-        } => {
-            format!("{low_m_s:.3} – {high_m_s:.3}")
-        }
+        } => format!("{low_m_s:.3} – {high_m_s:.3}"),
         OnsetInterval::Undetermined { .. } => "not determined".to_owned(),
         OnsetInterval::None { .. } => "none".to_owned(),
     }
@@ -340,24 +311,17 @@ pub(crate) fn failures(all: &[StageFailure]) -> String {
 
 /// Divergence of each model.
 fn divergence(all: &[Divergence]) -> String {
-    let assumed: String = all
-        .iter()
-        .filter_map(|d| Some(format!("  {}: {}\n", d.model, d.assumed.as_ref()?)))
-        .collect();
-    let speeds: Vec<String> = all
-        .iter()
-        .map(|d| format!("{} {}", d.model, speed_or("none", d.speed_m_s)))
-        .collect();
+    let assumed = |d: &Divergence| Some(format!("  {}: {}\n", d.model, d.assumed.as_ref()?));
+    let assumed: String = all.iter().filter_map(assumed).collect();
+    let speed = |d: &Divergence| format!("{} {}", d.model, speed_or("none", d.speed_m_s));
+    let speeds: Vec<String> = all.iter().map(speed).collect();
     format!("Divergence: {}\n{assumed}", speeds.join(", "))
 }
 
 /// What was assumed in reading the deck, and what looks wrong in it.
 pub(crate) fn deck_warnings(deck: &Deck) -> String {
-    let warnings = deck.warnings();
-    warnings
-        .iter()
-        .map(|w| format!("warning: deck: {w}\n"))
-        .collect()
+    let warnings = deck.warnings().into_iter();
+    warnings.map(|w| format!("warning: deck: {w}\n")).collect()
 }
 
 /// Deviations from the deck's own onset.

@@ -24,7 +24,7 @@ pub(super) const FLAT_PLATE: &str = "flat plate";
 const PLATE_MODEL_WIDTH_M: f64 = 0.5;
 
 /// Reduced frequencies in which the onset of the flat plate is searched: still air to nearly steady flow.
-const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
+const EXACT_RANGE: [f64; 2] = [0.02, 10.0];
 
 /// Where the aerodynamics of a study come from.
 #[derive(Debug, Clone)]
@@ -60,11 +60,9 @@ fn at_speeds(whole: Option<&DerivativeTable>, study: &Study) -> Result<Option<De
 
 /// Width at which the flat plate is tested, m: speeds and frequencies of the tunnel are those of section models.
 fn plate_width_m(study: &Study) -> f64 {
-    let width_m = study.section.width_m;
-    if width_m < WIDEST_MODEL_M {
-        width_m
-    } else {
-        PLATE_MODEL_WIDTH_M
+    match study.section.width_m {
+        width_m if width_m < WIDEST_MODEL_M => width_m,
+        _ => PLATE_MODEL_WIDTH_M,
     }
 }
 
@@ -90,9 +88,8 @@ impl Deck {
             };
             let (mut table, of_file) = read_table_with(study.directory.join(name), &options)?;
             convention = of_file;
-            table
-                .header
-                .state_angle("deck.angle_deg", study.deck.angle_deg)?;
+            let angle_deg = study.deck.angle_deg;
+            table.header.state_angle("deck.angle_deg", angle_deg)?;
             Some(table)
         } else {
             let deck = embedded::deck_where_files_are_taken(name);
@@ -104,15 +101,12 @@ impl Deck {
             "a table in a file (.csv, .xlsx) as deck.source",
             format_args!("`{name}`, whose convention is known"),
         )?;
-        let states = study.deck.width_m.is_some()
-            || study.deck.angle_deg.is_some()
-            || study.deck.missing.is_some();
-        ensure(
-            is_file || !states,
-            "deck",
-            "`width_m`, `angle_deg` and `missing` for a table in a file (.csv, .xlsx) only",
-            format_args!("source `{name}`"),
-        )?;
+        let of = &study.deck;
+        let states = of.width_m.is_some() || of.angle_deg.is_some() || of.missing.is_some();
+        let expected =
+            "`width_m`, `angle_deg` and `missing` for a table in a file (.csv, .xlsx) only";
+        let found = format_args!("source `{name}`");
+        ensure(is_file || !states, "deck", expected, found)?;
         if let Some(table) = &whole {
             table.require(&dofs)?;
         } else {
@@ -173,13 +167,10 @@ impl Deck {
 
     /// Records of the virtual tunnel, one per motion and speed.
     pub(crate) fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
+        let (plate, width_m) = (FlatPlate::default(), plate_width_m(study));
         match &self.whole {
             Some(table) => study.tunnel.records_from_table(table, &self.dofs),
-            None => study.tunnel.records_from_model(
-                &FlatPlate::default(),
-                FLAT_PLATE,
-                plate_width_m(study),
-            ),
+            None => study.tunnel.records_from_model(&plate, FLAT_PLATE, width_m),
         }
     }
 
@@ -189,35 +180,26 @@ impl Deck {
         study: &Study,
         groups: Option<&[usize]>,
     ) -> Result<Vec<TransferSample>> {
-        match &self.whole {
-            Some(table) => {
-                let Some(groups) = groups else {
-                    return Ok(table.samples(&self.dofs));
-                };
-                let mut samples = Vec::new();
-                let count = table.speed_groups().len().max(1);
-                for group in chosen(Some(groups), count)? {
-                    let part = table.at_speed_group(group)?;
-                    samples.extend(part.samples(&self.dofs));
-                }
-                Ok(samples)
+        if let Some(table) = &self.whole {
+            if groups.is_none() {
+                return Ok(table.samples(&self.dofs));
             }
-            None => {
-                // groups are numbered from the lowest speed, as those of tables and records
-                let mut speeds = study.tunnel.speeds_m_s.clone();
-                speeds.sort_by(f64::total_cmp);
-                let chosen = chosen(groups, speeds.len())?;
-                let ks: Vec<_> = chosen
-                    .iter()
-                    .flat_map(|i| {
-                        study.tunnel.frequencies_hz.iter().map(|f| {
-                            ReducedFrequency::from_hertz(*f, plate_width_m(study), speeds[*i])
-                        })
-                    })
-                    .collect();
-                sample_model(&FlatPlate::default(), &ks)
+            let mut samples = Vec::new();
+            for group in chosen(groups, table.speed_groups().len().max(1))? {
+                let part = table.at_speed_group(group)?;
+                samples.extend(part.samples(&self.dofs));
             }
+            return Ok(samples);
         }
+        // groups are numbered from the lowest speed, as those of tables and records
+        let mut speeds = study.tunnel.speeds_m_s.clone();
+        speeds.sort_by(f64::total_cmp);
+        let (width_m, mut ks) = (plate_width_m(study), Vec::new());
+        for i in chosen(groups, speeds.len())? {
+            let frequencies = study.tunnel.frequencies_hz.iter();
+            ks.extend(frequencies.map(|f| ReducedFrequency::from_hertz(*f, width_m, speeds[i])));
+        }
+        sample_model(&FlatPlate::default(), &ks)
     }
 
     /// The measured table at the speeds of the deck; `None` for the flat plate.
@@ -285,36 +267,23 @@ impl Deck {
         structure: &Structure,
         speed_max_m_s: f64,
     ) -> Result<FlutterSearch> {
-        match self.table() {
-            Some(table) => {
-                let by = self.interpolation;
-                let mut search = self.table_onset(by, table, structure, speed_max_m_s)?;
-                if let FlutterSearch::Onset(onset) = &mut search {
-                    onset.interval = self.spread(table, structure, speed_max_m_s);
-                }
-                Ok(search)
+        let Some(table) = self.table() else {
+            let [low, high] = EXACT_RANGE.map(ReducedFrequency::from_full_width);
+            let (name, plate) = (self.own_model_name(), FlatPlate::default());
+            let range = ReducedFrequencyRange::between(low, high);
+            let mut search = determinant_onset(&name, structure, &plate, range, speed_max_m_s)?;
+            if let FlutterSearch::Onset(onset) = &mut search {
+                // exact at every K: there is no tested range to leave
+                onset.in_tested_range = None;
+                onset.interval = OnsetInterval::none("a closed formula, without data that scatter");
             }
-            None => {
-                let range = ReducedFrequencyRange::between(
-                    ReducedFrequency::from_full_width(EXACT_RANGE.0),
-                    ReducedFrequency::from_full_width(EXACT_RANGE.1),
-                );
-                let mut search = determinant_onset(
-                    &self.own_model_name(),
-                    structure,
-                    &FlatPlate::default(),
-                    range,
-                    speed_max_m_s,
-                )?;
-                if let FlutterSearch::Onset(onset) = &mut search {
-                    // exact at every K: there is no tested range to leave
-                    onset.in_tested_range = None;
-                    onset.interval =
-                        OnsetInterval::none("a closed formula, without data that scatter");
-                }
-                Ok(search)
-            }
+            return Ok(search);
+        };
+        let mut search = self.table_onset(self.interpolation, table, structure, speed_max_m_s)?;
+        if let FlutterSearch::Onset(onset) = &mut search {
+            onset.interval = self.spread(table, structure, speed_max_m_s);
         }
+        Ok(search)
     }
 
     fn table_onset(

@@ -25,13 +25,9 @@ pub(super) fn text(
     }
     let mut text = headline::short(&study.file.name, verdict);
     let bridge = &study.by_model;
-    let (nodes, modes) = (bridge.nodes.len(), bridge.modes.len());
-    let _ = writeln!(
-        text,
-        "Bridge    {}, {}\n",
-        counted(nodes, "node"),
-        counted(modes, "mode")
-    );
+    let nodes = counted(bridge.nodes.len(), "node");
+    let modes = counted(bridge.modes.len(), "mode");
+    let _ = writeln!(text, "Bridge    {nodes}, {modes}\n");
     let mut table = of_onsets("Flutter onset by");
     for answer in &results.answers {
         let forces = std::iter::once(answer.forces.clone());
@@ -47,11 +43,8 @@ pub(super) fn text(
     let named = named.map(|m| format!("{} ({:.0} %)", m.mode, 100.0 * m.energy_share));
     let named: Vec<String> = named.collect();
     if !named.is_empty() {
-        let _ = writeln!(
-            text,
-            "Modes     of the flutter, by kinetic energy: {}",
-            named.join(", ")
-        );
+        let named = named.join(", ");
+        let _ = writeln!(text, "Modes     of the flutter, by kinetic energy: {named}");
     }
     for sentence in beside_the_onset(results) {
         let _ = writeln!(text, "{sentence}");
@@ -77,20 +70,16 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
     if !results.left_out.is_empty() {
         text.push_str("Onset with fewer modes (by share of the kinetic energy at the onset)\n");
     }
-    let full = results
-        .answers
-        .last()
-        .and_then(|a| a.search.critical_speed_m_s());
+    let full = results.answers.last();
+    let full = full.and_then(|a| a.search.critical_speed_m_s());
     for left in &results.left_out {
         let onset = speed_or("no flutter", left.onset_m_s);
-        let change = left.onset_m_s.zip(full).map_or(String::new(), |(v, full)| {
-            format!(" ({:+.2} %)", 100.0 * (v / full - 1.0))
-        });
+        let change = |(v, full): (f64, f64)| format!(" ({:+.2} %)", 100.0 * (v / full - 1.0));
+        let change = left.onset_m_s.zip(full).map(change).unwrap_or_default();
+        let (modes, percent) = (left.modes.len(), 100.0 * left.below_share);
         let _ = writeln!(
             text,
-            "  {:>3} modes from {:>7.3} % on: {onset}{change}",
-            left.modes.len(),
-            100.0 * left.below_share
+            "  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}"
         );
     }
     for sentence in beside_the_onset(results) {
@@ -107,16 +96,14 @@ pub(super) fn beside_the_onset(results: &BridgeFlutter) -> Vec<String> {
             mean.speed_m_s, mean.rotation_deg
         )
     });
-    let divergence = speed_or("none", results.divergence_m_s);
-    let divergence = format!("Divergence of the model: {divergence}");
-    let of_tables = results.table_divergence.as_ref().map(|d| {
-        let speed = speed_or("none", d.speed_m_s);
-        format!("Divergence of the tables: {speed}")
-    });
-    let all = std::iter::once(divergence).chain(of_tables);
-    all.chain(rotation)
-        .chain(table_against_model(results))
-        .collect()
+    let divergence =
+        |of: &str, speed| format!("Divergence of the {of}: {}", speed_or("none", speed));
+    let mut all = vec![divergence("model", results.divergence_m_s)];
+    let of_tables = results.table_divergence.as_ref();
+    all.extend(of_tables.map(|d| divergence("tables", d.speed_m_s)));
+    all.extend(rotation);
+    all.extend(table_against_model(results));
+    all
 }
 
 /// How far the answer by the models is from that by the tables.
@@ -183,18 +170,12 @@ fn one(answer: &BridgeAnswer) -> String {
             let _ = writeln!(text, "  {}", other.explain());
         }
     }
-    for m in answer
-        .motion
-        .iter()
-        .flat_map(|m| &m.modes)
-        .filter(|m| m.energy_share >= NAMED_SHARE)
-    {
+    let modes = answer.motion.iter().flat_map(|m| &m.modes);
+    for m in modes.filter(|m| m.energy_share >= NAMED_SHARE) {
+        let (mode, hertz, percent) = (m.mode, m.frequency_hz, 100.0 * m.energy_share);
         let _ = writeln!(
             text,
-            "    mode {:>3} ({:.4} Hz) {:>5.1} % of the kinetic energy, phase {:>6.1}°",
-            m.mode,
-            m.frequency_hz,
-            100.0 * m.energy_share,
+            "    mode {mode:>3} ({hertz:.4} Hz) {percent:>5.1} % of the kinetic energy, phase {:>6.1}°",
             m.phase_deg
         );
     }

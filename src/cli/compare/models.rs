@@ -38,45 +38,32 @@ pub(crate) fn run(options: &CompareOptions, left_in: &Path, progress: &Progress)
 /// Metrics over the frequency of a motion (Figures 3.12, 3.13, 3.27, 3.28).
 fn metrics(options: &CompareOptions, results: &ModelsComparison, motion: Dof) -> Result<Figure> {
     let chosen = results.scores.iter().filter(|s| s.case.motion == motion);
-    let title = format!(
-        "{} at {:.2} m/s: metrics of the predicted forces, {} motion",
-        results.deck,
-        results.speed_m_s,
-        motion.name()
-    );
+    let (deck, speed, name) = (&results.deck, results.speed_m_s, motion.name());
+    let title = format!("{deck} at {speed:.2} m/s: metrics of the predicted forces, {name} motion");
     let label = |s: &Score| s.case.model.clone();
     metrics_of(&title, &options.dofs, &chosen.collect::<Vec<_>>(), &label)
 }
 
 /// Magnitude and phase with the bands (Figures 3.21 and 3.22).
 fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
-    let plots: Vec<TransferPlot> = results
-        .entries
-        .iter()
-        .map(|entry| TransferPlot {
-            name: format!(
-                "{} due to {} motion",
-                entry.force.force_name(),
-                entry.motion.name()
-            ),
+    let plots = results.entries.iter().map(|entry| {
+        let (force, motion) = (entry.force.force_name(), entry.motion.name());
+        let points = entry.points.iter();
+        let points = points.map(|p| (p.frequency_hz, p.magnitude, p.phase_deg));
+        TransferPlot {
+            name: format!("{force} due to {motion} motion"),
             reference: TransferCurve {
                 model: "measured".into(),
-                points: entry
-                    .points
-                    .iter()
-                    .map(|p| (p.frequency_hz, p.magnitude, p.phase_deg))
-                    .collect(),
+                points: points.collect(),
             },
             reference_is_points: true,
             tolerance: Some((0.15, 5.0)),
             models: entry.curves.clone(),
-        })
-        .collect();
-    let title = format!(
-        "{} at {:.2} m/s: transfer functions",
-        results.deck, results.speed_m_s
-    );
-    transfer_figure(&title, "Frequency (Hz)", &plots)
+        }
+    });
+    let (deck, speed) = (&results.deck, results.speed_m_s);
+    let title = format!("{deck} at {speed:.2} m/s: transfer functions");
+    transfer_figure(&title, "Frequency (Hz)", &plots.collect::<Vec<_>>())
 }
 
 /// Derivatives over reduced velocity (Figures 3.23 to 3.26).
@@ -118,19 +105,16 @@ fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
         let points = history.time_s.iter().copied().zip(values.iter().copied());
         PlottedSeries::new(label, points.collect())
     };
-    let unit = if history.force == Dof::Torsion {
-        "N·m/m"
-    } else {
-        "N/m"
+    let unit = match history.force {
+        Dof::Torsion => "N·m/m",
+        _ => "N/m",
     };
-    let measured = [series("measured", &history.measured)];
+    let mut all = vec![series("measured", &history.measured)];
     let models = results.models.iter().zip(&history.predicted);
+    all.extend(models.map(|(m, values)| series(&m.name, values)));
     TimePanel {
         y_label: format!("{} ({unit})", history.force.force_name()),
-        series: measured
-            .into_iter()
-            .chain(models.map(|(m, values)| series(&m.name, values)))
-            .collect(),
+        series: all,
     }
 }
 
@@ -198,29 +182,23 @@ fn text(results: &ModelsComparison) -> String {
     );
     for model in &results.models {
         let poles: Vec<String> = model.poles.iter().map(|p| format!("{p:.3}")).collect();
+        let poles = match poles.is_empty() {
+            true => String::new(),
+            false => format!(", poles {}", poles.join(", ")),
+        };
+        let coefficients = counted(model.coefficients, "coefficient");
+        let (name, method) = (&model.name, &model.method);
         let _ = writeln!(
             text,
-            "{}: {}; {} a transfer function{}",
-            model.name,
-            model.method,
-            counted(model.coefficients, "coefficient"),
-            if poles.is_empty() {
-                String::new()
-            } else {
-                format!(", poles {}", poles.join(", "))
-            }
+            "{name}: {method}; {coefficients} a transfer function{poles}"
         );
     }
     text.push_str(
         "\nFrequency domain, bands of the thesis (±15 %, ±5°) around the measured derivatives\n",
     );
     for entry in &results.entries {
-        let _ = writeln!(
-            text,
-            "{} force due to {} motion",
-            entry.force.name(),
-            entry.motion.name()
-        );
+        let (force, motion) = (entry.force.name(), entry.motion.name());
+        let _ = writeln!(text, "{force} force due to {motion} motion");
         for (m, model) in results.models.iter().enumerate() {
             let _ = writeln!(text, "  {:<34} {}", model.name, entry.describe(m));
         }

@@ -24,11 +24,9 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
     let file = BridgeFile::from_toml(&facts.bridge_file, folder.to_path_buf())?;
     // what stands there from other runs is not of these results
     let read = |name: &str| {
-        let own = facts
-            .files
-            .iter()
-            .any(|f| f.file_name().is_some_and(|n| n == name));
-        own.then(|| std::fs::read(folder.join(name)).ok()).flatten()
+        let mut files = facts.files.iter();
+        files.find(|f| f.file_name().is_some_and(|n| n == name))?;
+        std::fs::read(folder.join(name)).ok()
     };
     let text_of = |name: &str| read(name).and_then(|bytes| String::from_utf8(bytes).ok());
     // found in the order of the routes, the model last
@@ -82,118 +80,87 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
     let own = digest(facts.bridge_file.as_bytes());
     page.hashes.push(("bridge file".to_owned(), own));
     let inputs = facts.inputs.iter();
-    page.hashes
-        .extend(inputs.map(|i| (i.name.clone(), i.sha1.clone())));
+    let inputs = inputs.map(|i| (i.name.clone(), i.sha1.clone()));
     let fmu = (!in_the_archive).then_some(BRIDGE_FMU);
-    for name in fmu.into_iter().chain([CURVES]) {
-        page.hashes
-            .extend(read(name).map(|bytes| (name.to_owned(), digest(&bytes))));
-    }
+    let files = fmu.into_iter().chain([CURVES]);
+    let files = files.filter_map(|name| Some((name.to_owned(), digest(&read(name)?))));
+    page.hashes.extend(inputs.chain(files));
     rendered(&page)
 }
 
 /// The curves of the modes that are drawn in colour, in the same colours.
 fn chosen(curves: Vec<PageCurve>, shown: &[String]) -> Vec<PageCurve> {
     let place = |curve: &PageCurve| {
-        let own = |name: &String| {
-            curve
-                .label
-                .strip_suffix(name.as_str())
-                .is_some_and(|rest| rest.ends_with(", "))
-        };
+        let rest = |name: &String| curve.label.strip_suffix(name.as_str());
+        let own = |name: &String| rest(name).is_some_and(|rest| rest.ends_with(", "));
         shown.iter().position(own)
     };
-    let mut all: Vec<PageCurve> = curves
-        .into_iter()
-        .filter_map(|curve| {
-            let model = place(&curve)?;
-            Some(PageCurve {
-                model,
-                branch: 0,
-                own: true,
-                label: shown[model].clone(),
-                ..curve
-            })
+    let chosen = curves.into_iter().filter_map(|curve| {
+        let model = place(&curve)?;
+        Some(PageCurve {
+            model,
+            branch: 0,
+            own: true,
+            label: shown[model].clone(),
+            ..curve
         })
-        .collect();
+    });
+    let mut all: Vec<PageCurve> = chosen.collect();
     all.sort_by_key(|c| c.model);
     all
 }
 
 fn asked(facts: &BridgeSummary, file: &BridgeFile) -> Vec<(String, String)> {
     let damping = match &file.modes.damping_ratio {
-        DampingRatios::Same(ratio) => {
-            format!("damping ratio {} % each", round(100.0 * ratio))
-        }
+        DampingRatios::Same(ratio) => format!("damping ratio {} % each", round(100.0 * ratio)),
         DampingRatios::Each(_) => "damping ratios of their own".to_owned(),
     };
-    let wind = match file.wind.profile.is_empty() {
-        true => "the same along the girder, square to it".to_owned(),
-        false => format!(
-            "a profile along the girder of {} points, square to it",
-            file.wind.profile.len()
-        ),
+    let wind = match file.wind.profile.len() {
+        0 => "the same along the girder, square to it".to_owned(),
+        points => format!("a profile along the girder of {points} points, square to it"),
     };
-    let search = &file.flutter;
+    let (modes, of) = (facts.modes.len(), file.modes.path.display());
+    let (highest, speeds) = (file.flutter.speed_max_m_s, file.flutter.speeds);
+    let (length, width) = (facts.length_m, facts.width_m);
     let rows = [
-        (
-            "girder",
-            format!("{:.1} m in {} nodes", facts.length_m, facts.nodes),
-        ),
-        (
-            "modes",
-            format!(
-                "{} of {}, {damping}",
-                facts.modes.len(),
-                file.modes.path.display()
-            ),
-        ),
+        ("girder", format!("{length:.1} m in {} nodes", facts.nodes)),
+        ("modes", format!("{modes} of {of}, {damping}")),
         ("air density ρ", format!("{} kg/m³", file.air_density_kg_m3)),
-        (
-            "reduced frequency K",
-            format!("ωB/V with B = {} m", facts.width_m),
-        ),
+        ("reduced frequency K", format!("ωB/V with B = {width} m")),
         ("wind", wind),
         (
             "wind speeds",
-            format!(
-                "up to {} m/s, {} looked at",
-                search.speed_max_m_s, search.speeds
-            ),
+            format!("up to {highest} m/s, {speeds} looked at"),
         ),
     ];
     rows.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
 fn licences(facts: &BridgeSummary) -> String {
-    let mut all: Vec<&str> = facts
-        .sections
-        .iter()
-        .map(|s| s.licence.lines().next().unwrap_or(""))
-        .collect();
+    let sections = facts.sections.iter();
+    let first_lines = sections.map(|s| s.licence.lines().next().unwrap_or(""));
+    let mut all: Vec<&str> = first_lines.collect();
     all.dedup();
     all.join("; ")
 }
 
 fn taking_part(shares: &[ModeShare]) -> PageSection {
     let named = shares.iter().filter(|m| m.energy_share >= NAMED_SHARE);
+    let row = |m: &ModeShare| {
+        vec![
+            m.mode.to_string(),
+            format!("{:.4}", m.frequency_hz),
+            format!("{:.2}", 100.0 * m.energy_share),
+            format!("{:.1}", m.phase_deg),
+        ]
+    };
+    let text =
+        "Shares of the kinetic energy at the onset; phases to the mode with the largest share.";
     PageSection {
         title: "Modes that take part in the flutter".to_owned(),
-        text: vec![
-            "Shares of the kinetic energy at the onset; phases to the mode with the largest share."
-                .to_owned(),
-        ],
+        text: vec![text.to_owned()],
         header: "mode | f in still air, Hz | share % | phase °",
-        rows: named
-            .map(|m| {
-                vec![
-                    m.mode.to_string(),
-                    format!("{:.4}", m.frequency_hz),
-                    format!("{:.2}", 100.0 * m.energy_share),
-                    format!("{:.1}", m.phase_deg),
-                ]
-            })
-            .collect(),
+        rows: named.map(row).collect(),
         ..PageSection::default()
     }
 }
@@ -201,15 +168,13 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
 fn fewer(left_out: &[LeftOut], full: Option<f64>) -> PageSection {
     let row = |l: &LeftOut| {
         let numbers: Vec<String> = l.modes.iter().map(usize::to_string).collect();
-        let change = l
-            .onset_m_s
-            .zip(full)
-            .map(|(v, full)| format!("{:+.2}", 100.0 * (v / full - 1.0)));
+        let change = |v: f64, full: f64| format!("{:+.2}", 100.0 * (v / full - 1.0));
+        let change = l.onset_m_s.zip(full).map(|(v, full)| change(v, full));
+        let onset = l.onset_m_s.map(|v| format!("{v:.3}"));
         vec![
             format!("{}", 100.0 * l.below_share),
             numbers.join(", "),
-            l.onset_m_s
-                .map_or("no flutter".to_owned(), |v| format!("{v:.3}")),
+            onset.unwrap_or("no flutter".to_owned()),
             change.unwrap_or("–".to_owned()),
         ]
     };
@@ -306,9 +271,8 @@ fn figures(read: &dyn Fn(&str) -> Option<String>, sections: &[SectionFacts]) -> 
              do not grow.",
         ),
     ];
-    let of_bridge = of_bridge
-        .into_iter()
-        .filter_map(|(stem, title, caption)| drawn(stem, title, caption));
+    let of_bridge = of_bridge.into_iter();
+    let of_bridge = of_bridge.filter_map(|(stem, title, caption)| drawn(stem, title, caption));
     let sections = sections.iter().enumerate().filter_map(of_section);
     sections.chain(of_bridge).collect()
 }
