@@ -230,11 +230,8 @@ fn cases() -> Result<Vec<(ReferenceCase, Compute)>> {
     let of = |(name, compute): &(&str, Compute)| {
         let place = read.iter().position(|case| case.name == *name);
         let place = place.ok_or_else(|| {
-            Error::input(
-                "data/reference",
-                "a case for every computation",
-                format!("no `{name}`"),
-            )
+            let expected = "a case for every computation";
+            Error::input("data/reference", expected, format!("no `{name}`"))
         })?;
         Ok((read.swap_remove(place), *compute))
     };
@@ -246,10 +243,9 @@ fn cases() -> Result<Vec<(ReferenceCase, Compute)>> {
 /// # Errors
 /// [`Error::Input`] for a file of reference cases that is none.
 pub fn run_all() -> Result<Vec<CaseResult>> {
-    let cases = cases()?;
+    let cases = cases()?.into_iter();
     Ok(cases
-        .iter()
-        .flat_map(|(case, compute)| case.run(*compute))
+        .flat_map(|(case, compute)| case.run(compute))
         .collect())
 }
 
@@ -261,9 +257,10 @@ pub fn run(name: &str) -> Result<Vec<CaseResult>> {
     let cases = cases()?;
     let Some((case, compute)) = cases.iter().find(|(case, _)| case.name == name) else {
         let names = COMPUTATIONS.map(|(name, _)| name).join(", ");
+        let expected = format!("one of {names}");
         return Err(Error::input(
             "reference case",
-            format!("one of {names}"),
+            expected,
             format!("`{name}`"),
         ));
     };
@@ -276,11 +273,9 @@ impl ReferenceCase {
             if values.len() == self.figures.len() {
                 return Ok(values);
             }
-            Err(Error::Numerical(format!(
-                "{} figures computed, {} expected",
-                values.len(),
-                self.figures.len()
-            )))
+            let (computed, expected) = (values.len(), self.figures.len());
+            let why = format!("{computed} figures computed, {expected} expected");
+            Err(Error::Numerical(why))
         });
         let judge = |(i, figure): (usize, &CaseResult)| {
             let found = values.as_ref().map(|values| values[i]);

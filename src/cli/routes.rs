@@ -3,6 +3,7 @@
 use super::text::interval;
 use super::{TextTable, speed_or};
 use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
+use crate::section::Dof;
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
@@ -35,9 +36,8 @@ pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
 
 /// A row of the table.
 fn add(table: &mut TextTable, route: &Route) {
-    let divergence = route
-        .divergence_m_s
-        .map_or("none".to_owned(), |v| format!("{v:.3}"));
+    let divergence = route.divergence_m_s.map(|v| format!("{v:.3}"));
+    let divergence = divergence.unwrap_or("none".to_owned());
     let name = [route.model.clone(), route.method.name().to_owned()];
     let mut without =
         |answer: &str| table.sentence(name.clone(), &format!("{answer}; divergence {divergence}"));
@@ -138,13 +138,10 @@ fn found(o: &Onset, route: &Route) -> String {
         o.at.reduced_frequency.full_width()
     );
     let _ = match &route.tested_range {
-        Some(range) => writeln!(
-            text,
-            " (tested V̂ {:.2} to {:.2}: {})",
-            range.max.v_hat(),
-            range.min.v_hat(),
-            tested(o, route)
-        ),
+        Some(range) => {
+            let (low, high, tested) = (range.max.v_hat(), range.min.v_hat(), tested(o, route));
+            writeln!(text, " (tested V̂ {low:.2} to {high:.2}: {tested})")
+        }
         None if route.low_frequency_limit => writeln!(text, " (a limit for K → 0)"),
         None => writeln!(text, " (exact at every K)"),
     };
@@ -153,42 +150,32 @@ fn found(o: &Onset, route: &Route) -> String {
             let ends = interval(&o.interval);
             writeln!(text, "  95 % interval {ends} m/s\n  {}", parts.explain())
         }
-        OnsetInterval::Spread { of, .. } => writeln!(
-            text,
-            "  {} m/s, no 95 % interval: {of}",
-            interval(&o.interval)
-        ),
+        OnsetInterval::Spread { of, .. } => {
+            let ends = interval(&o.interval);
+            writeln!(text, "  {ends} m/s, no 95 % interval: {of}")
+        }
         OnsetInterval::Undetermined { reason, .. } => writeln!(text, "  {reason}"),
         OnsetInterval::None { reason } => writeln!(text, "  no interval: {reason}"),
     };
-    let slope = o
-        .damping_slope_s_m
-        .map_or("unknown".to_owned(), |s| format!("{s:.5} s/m"));
-    let _ = writeln!(
-        text,
-        "  mode {}; damping slope dζ/dV {slope}",
-        o.mode_in_words()
-    );
-    let _ = writeln!(
-        text,
-        "  {}: {}",
-        ModeBranch::in_words(&o.branch),
-        kind(route)
-    );
+    let slope = o.damping_slope_s_m.map(|s| format!("{s:.5} s/m"));
+    let slope = slope.unwrap_or("unknown".to_owned());
+    let (mode, branch) = (o.mode_in_words(), ModeBranch::in_words(&o.branch));
+    let _ = writeln!(text, "  mode {mode}; damping slope dζ/dV {slope}");
+    let _ = writeln!(text, "  {branch}: {}", kind(route));
     for p in route.mode.iter().flat_map(|m| &m.participation) {
         let name = match p.dof {
-            crate::section::Dof::Vertical => "H1*",
-            crate::section::Dof::Lateral => "P1*",
-            crate::section::Dof::Torsion => "A2*",
+            Dof::Vertical => "H1*",
+            Dof::Lateral => "P1*",
+            Dof::Torsion => "A2*",
         };
+        let alone = p.alone_m_s.map(|v| format!("onset at {v:.3} m/s"));
         let _ = writeln!(
             text,
             "    {:<8} {:>5.1} % of the kinetic energy, {name} {:+.4}, alone: {}",
             p.dof.name(),
             100.0 * p.energy_share,
             p.direct_damping,
-            p.alone_m_s
-                .map_or("no onset".to_owned(), |v| format!("onset at {v:.3} m/s"))
+            alone.unwrap_or("no onset".to_owned())
         );
     }
     text
@@ -196,8 +183,9 @@ fn found(o: &Onset, route: &Route) -> String {
 
 /// The onsets that the figure marks: one per force model, as on the cards.
 pub(crate) fn marked(table: &RouteTable) -> Vec<Onset> {
-    cards(table)
-        .filter_map(|route| route.search.onset().cloned())
-        .filter(|onset| onset.headline_m_s().is_ok())
+    let onsets = cards(table).filter_map(|route| route.search.onset());
+    onsets
+        .filter(|o| o.headline_m_s().is_ok())
+        .cloned()
         .collect()
 }

@@ -98,11 +98,11 @@ pub(super) fn iabse_in_wind() -> Result<Vec<f64>> {
         Ok([z.im / TAU, -z.re / z.norm()])
     };
     let mut figures = Vec::new();
-    for speed in [15.0, 30.0, 45.0, 60.0, 75.0] {
+    for speed in SPEEDS_M_S {
         figures.extend(mode(speed, 1)?);
     }
-    for speed in [15.0, 30.0, 45.0, 60.0] {
-        figures.extend(mode(speed, 0)?);
+    for speed in &SPEEDS_M_S[..4] {
+        figures.extend(mode(*speed, 0)?);
     }
     Ok(figures)
 }
@@ -111,10 +111,8 @@ pub(super) fn iabse_impedance() -> Result<Vec<f64>> {
     let structure = SectionModel::iabse_1_1a().structure()?;
     let z = impedance(&structure, &WITHOUT_ROTARY, 45.0, TAU * 0.278)?;
     let by_row = [z[(0, 0)], z[(0, 1)], z[(1, 0)], z[(1, 1)]];
-    Ok(by_row
-        .iter()
-        .flat_map(|z| [z.re / 1e6, z.im / 1e6])
-        .collect())
+    let parts = by_row.iter().flat_map(|z| [z.re / 1e6, z.im / 1e6]);
+    Ok(parts.collect())
 }
 
 /// Fung's deck in feet; only ratios of mass and density count, so that the density may be 1.
@@ -122,16 +120,10 @@ pub(super) fn fung() -> Result<Vec<f64>> {
     let (mass_ratio, radius_squared, semi_chord) = (40.0, 0.6222, 30.0);
     let (heave_squared, torsion_squared) = (0.775_f64, 2.41_f64);
     let mass = mass_ratio * PI * semi_chord * semi_chord;
-    let section = SectionModel::two_dof(
-        2.0 * semi_chord,
-        1.0,
-        Translation::new(mass, heave_squared.sqrt() / TAU, 0.0),
-        Rotation::new(
-            mass * radius_squared * semi_chord * semi_chord,
-            torsion_squared.sqrt() / TAU,
-            0.0,
-        ),
-    );
+    let inertia = mass * radius_squared * semi_chord * semi_chord;
+    let heave = Translation::new(mass, heave_squared.sqrt() / TAU, 0.0);
+    let torsion = Rotation::new(inertia, torsion_squared.sqrt() / TAU, 0.0);
+    let section = SectionModel::two_dof(2.0 * semi_chord, 1.0, heave, torsion);
     let onset = by_determinant(&section, &FlatPlate::default(), WIDE)?;
     Ok(vec![
         onset.at.speed_m_s,
@@ -149,12 +141,9 @@ fn divergence(section: &SectionModel) -> Result<f64> {
 /// With `b`, `ω_α` and `ρ` of one only the ratios are left.
 pub(super) fn typical(a: f64) -> Result<Vec<f64>> {
     let mass = 20.0 * PI;
-    let mut section = SectionModel::two_dof(
-        2.0,
-        1.0,
-        Translation::new(mass, 0.4 / TAU, 0.0),
-        Rotation::new(0.24 * mass, 1.0 / TAU, 0.0),
-    );
+    let heave = Translation::new(mass, 0.4 / TAU, 0.0);
+    let torsion = Rotation::new(0.24 * mass, 1.0 / TAU, 0.0);
+    let mut section = SectionModel::two_dof(2.0, 1.0, heave, torsion);
     section.axis_offset_m = Some(a);
     section.mass_offset_m = Some(0.1);
     let onset = by_determinant(&section, &FlatPlate::default(), WIDE)?;
@@ -187,11 +176,9 @@ pub(super) fn unbalanced() -> Result<Vec<f64>> {
 
 pub(super) fn jones_coefficients() -> Result<Vec<f64>> {
     let jones = RationalModel::jones_flat_plate();
-    Ok(jones
-        .lag_terms
-        .iter()
-        .flat_map(|a| [a[(0, 0)], a[(0, 1)], a[(1, 0)], a[(1, 1)]])
-        .collect())
+    let terms = jones.lag_terms.iter();
+    let by_row = terms.flat_map(|a| [a[(0, 0)], a[(0, 1)], a[(1, 0)], a[(1, 1)]]);
+    Ok(by_row.collect())
 }
 
 /// The section with Jones's rational function.
@@ -223,11 +210,8 @@ pub(super) fn jones_onset() -> Result<Vec<f64>> {
     ];
     for density in [1.20, 1.25] {
         section.air_density_kg_m3 = density;
-        figures.push(
-            by_eigenvalues(&coupled(&section)?, 120.0, None)?
-                .at
-                .speed_m_s,
-        );
+        let onset = by_eigenvalues(&coupled(&section)?, 120.0, None)?;
+        figures.push(onset.at.speed_m_s);
     }
     Ok(figures)
 }
@@ -241,11 +225,8 @@ pub(super) fn jones_eigenvalues() -> Result<Vec<f64>> {
         let mut modes: Vec<_> = all.iter().filter(|z| z.im > 1e-9).collect();
         modes.sort_by(|a, b| a.im.total_cmp(&b.im));
         figures.extend(modes.iter().flat_map(|z| [z.re, z.im]));
-        let mut lags: Vec<f64> = all
-            .iter()
-            .filter(|z| z.im.abs() <= 1e-9)
-            .map(|z| z.re)
-            .collect();
+        let real = all.iter().filter(|z| z.im.abs() <= 1e-9);
+        let mut lags: Vec<f64> = real.map(|z| z.re).collect();
         lags.sort_by(f64::total_cmp);
         figures.extend(lags);
     }
@@ -276,10 +257,8 @@ pub(super) fn iabse_rms() -> Result<Vec<f64>> {
         vertical: Some(W),
     };
     let problem = BuffetingProblem::of_section(&structure, &WITHOUT_ROTARY, None, &turbulence)?;
-    let responses = SPEEDS_M_S
-        .iter()
-        .map(|speed| FrequencyDomain::new(&problem, *speed)?.section_response(None))
-        .collect::<Result<Vec<_>>>()?;
+    let at = |speed: &f64| FrequencyDomain::new(&problem, *speed)?.section_response(None);
+    let responses = SPEEDS_M_S.iter().map(at).collect::<Result<Vec<_>>>()?;
     let heave = responses.iter().map(|r| r.rms[0]);
     let edge = responses.iter().map(|r| r.rms[1] * 0.5 * structure.width_m);
     Ok(heave.chain(edge).collect())

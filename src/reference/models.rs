@@ -32,10 +32,9 @@ pub(super) fn guideline() -> Result<Vec<f64>> {
 
 /// Reduced frequencies of Table 3.2 on the section of Table 4.1.
 fn tested_k(speed_m_s: f64) -> Vec<ReducedFrequency> {
-    [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5]
-        .iter()
-        .map(|f| ReducedFrequency::from_hertz(*f, 0.5, speed_m_s))
-        .collect()
+    let frequencies_hz = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5];
+    let at = |f| ReducedFrequency::from_hertz(f, 0.5, speed_m_s);
+    frequencies_hz.map(at).to_vec()
 }
 
 pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
@@ -60,11 +59,8 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
     let searched = fit(laguerre(), PoleSearch::default())?;
     let one = fit(rational(1, false), PoleSearch::default())?;
     let two = fit(rational(2, true), PoleSearch::default())?;
-    let mut figures = vec![
-        onset_of_fit(&given)?,
-        onset_of_fit(&searched)?,
-        onset_of_fit(&one)?,
-    ];
+    let mut figures = vec![onset_of_fit(&given)?, onset_of_fit(&searched)?];
+    figures.push(onset_of_fit(&one)?);
     figures.extend(lags(&one));
     figures.push(onset_of_fit(&two)?);
     figures.extend(lags(&two));
@@ -147,11 +143,9 @@ pub(super) fn random_motion() -> Result<Vec<f64>> {
     let mut section = SectionModel::iabse_1_1a();
     section.air_density_kg_m3 = 1.2;
     let reduced = |speed: f64| {
-        let frequencies = [
-            section.vertical.frequency_hz.unwrap_or(f64::NAN),
-            section.torsion.frequency_hz.unwrap_or(f64::NAN),
-        ];
-        speed / (section.width_m * 0.5 * (frequencies[0] + frequencies[1]))
+        let frequencies = [section.vertical.frequency_hz, section.torsion.frequency_hz];
+        let [vertical, torsion] = frequencies.map(|f| f.unwrap_or(f64::NAN));
+        speed / (section.width_m * 0.5 * (vertical + torsion))
     };
     let exact = by_determinant(&section, &WITHOUT_ROTARY, WIDE)?;
     let plan = TunnelPlan {
@@ -186,9 +180,8 @@ pub(super) fn laguerre_flat_plate() -> Result<Vec<f64>> {
         ..TimeFit::default()
     };
     let Fitted { model, report } = fit_records(&sources(&records), &fit, &|_| {})?;
-    Ok(vec![
-        onset_of_records(&model, report.tested_range)?.at.speed_m_s,
-    ])
+    let onset = onset_of_records(&model, report.tested_range)?;
+    Ok(vec![onset.at.speed_m_s])
 }
 
 /// Wind speeds of each deck and section, from near still air to the onset.
@@ -211,9 +204,8 @@ pub(super) fn dissipative() -> Result<Vec<f64>> {
             let model = fit_table(&samples, &Dof::TWO, &FrequencyFit::default())?.model;
             let coupled = CoupledSection::with_model(&section.structure()?, &model)?;
             let tested = Some(table.tested_range(&Dof::TWO));
-            let onset = by_eigenvalues(&coupled, *speed_max_m_s, tested)?
-                .at
-                .speed_m_s;
+            let onset = by_eigenvalues(&coupled, *speed_max_m_s, tested)?;
+            let onset = onset.at.speed_m_s;
             figures.push(onset);
             for i in 1..=SPEEDS_BELOW {
                 // up to just below the onset, from near still air
@@ -236,9 +228,8 @@ pub(super) fn over_decks(onset: fn(&DerivativeTable) -> Result<f64>) -> Result<V
 pub(super) fn interpolated(table: &DerivativeTable, by: Interpolation) -> Result<f64> {
     let model = InterpolatedTable::by(by, table, &Dof::TWO, Extrapolation::Refuse)?;
     let range = model.tested_range();
-    Ok(by_determinant(&SectionModel::table_4_1(), &model, range)?
-        .at
-        .speed_m_s)
+    let onset = by_determinant(&SectionModel::table_4_1(), &model, range)?;
+    Ok(onset.at.speed_m_s)
 }
 
 pub(super) fn rational(
@@ -246,12 +237,9 @@ pub(super) fn rational(
     added_mass: bool,
     weights: FrequencyWeights,
 ) -> Result<f64> {
-    let form = Form::Rational {
-        lags: 1,
-        added_mass,
-    };
+    let lags = 1;
     let fit = FrequencyFit {
-        form,
+        form: Form::Rational { lags, added_mass },
         weights,
         ..FrequencyFit::default()
     };
@@ -265,9 +253,8 @@ pub(super) fn fitted(table: &DerivativeTable, fit: FrequencyFit) -> Result<f64> 
         ..fit
     };
     let model = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?.model;
-    Ok(onset_of_records(&model, table.tested_range(&Dof::TWO))?
-        .at
-        .speed_m_s)
+    let onset = onset_of_records(&model, table.tested_range(&Dof::TWO))?;
+    Ok(onset.at.speed_m_s)
 }
 
 pub(super) fn rational_ln21_5200() -> Result<Vec<f64>> {
@@ -321,35 +308,23 @@ fn reduced_velocities() -> Vec<Vec<f64>> {
 /// The flat plate at these reduced velocities; `B = 1 m` and `V = 1 m/s`, which have no influence.
 fn tabulated(v_hats: &[f64]) -> Result<DerivativeTable> {
     let frequencies: Vec<f64> = v_hats.iter().map(|v| 1.0 / (TAU * v)).collect();
-    DerivativeTable::sampled(
-        "flat plate",
-        &FlatPlate::default(),
-        1.0,
-        &[1.0],
-        &frequencies,
-    )
+    let plate = FlatPlate::default();
+    DerivativeTable::sampled("flat plate", &plate, 1.0, &[1.0], &frequencies)
 }
 
 pub(super) fn table_errors() -> Result<Vec<f64>> {
+    use Interpolation::{CubicSpline, LinearVHat, ModifiedAkima};
     let sections = [SectionModel::table_4_1(), SectionModel::iabse_1_1a()];
     let mut figures = Vec::new();
-    for by in [
-        Interpolation::ModifiedAkima,
-        Interpolation::CubicSpline,
-        Interpolation::LinearVHat,
-    ] {
+    for by in [ModifiedAkima, CubicSpline, LinearVHat] {
         let mut errors = Vec::new();
         for section in &sections {
-            let exact = by_determinant(section, &FlatPlate::default(), WIDE)?
-                .at
-                .speed_m_s;
+            let exact = by_determinant(section, &FlatPlate::default(), WIDE)?;
             for v_hats in reduced_velocities() {
                 let table = tabulated(&v_hats)?;
                 let model = InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Refuse)?;
-                let onset = by_determinant(section, &model, model.tested_range())?
-                    .at
-                    .speed_m_s;
-                errors.push(100.0 * (onset / exact - 1.0));
+                let onset = by_determinant(section, &model, model.tested_range())?;
+                errors.push(100.0 * (onset.at.speed_m_s / exact.at.speed_m_s - 1.0));
             }
         }
         let squares: f64 = errors.iter().map(|e| e * e).sum();

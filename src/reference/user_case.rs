@@ -179,12 +179,9 @@ impl UserCase {
         of_schema(CASE_SCHEMA, self.schema)?;
         positive("speed_max_m_s", self.speed_max_m_s)?;
         let a = &self.aerodynamics;
-        let kinds = [
-            a.flat_plate.is_some(),
-            a.rational.is_some(),
-            a.table.is_some(),
-            a.model.is_some(),
-        ];
+        let formulas = [a.flat_plate.is_some(), a.rational.is_some()];
+        let files = [a.table.is_some(), a.model.is_some()];
+        let kinds = [formulas, files].concat();
         if kinds.iter().filter(|given| **given).count() != 1 {
             let expected = "exactly one of `flat_plate`, `rational`, `table`, `model`";
             return Err(Error::input("aerodynamics", expected, "none or several"));
@@ -209,28 +206,24 @@ impl UserFigure {
         finite(format!("{place}.expected"), self.expected)?;
         positive(format!("{place}.tolerance"), self.tolerance)?;
         let expected = "`eigenvalues`, `determinant` or `pk_iteration`";
-        ensure(
-            self.route != Some(OnsetMethod::FmuStepping),
-            format!("{place}.route"),
-            expected,
-            "`fmu_stepping`",
-        )?;
+        let known = self.route != Some(OnsetMethod::FmuStepping);
+        ensure(known, format!("{place}.route"), expected, "`fmu_stepping`")?;
         let in_wind = (self.speed_m_s, self.dof);
         match (self.quantity.in_wind(), in_wind) {
             (true, (Some(speed), Some(_))) => {
                 non_negative(format!("{place}.speed_m_s"), speed).map(drop)
             }
-            (true, _) => Err(Error::input(
-                place,
-                "`speed_m_s` and `dof` of a mode in wind",
-                "none",
-            )),
+            (true, _) => {
+                let expected = "`speed_m_s` and `dof` of a mode in wind";
+                Err(Error::input(place, expected, "none"))
+            }
             (false, (None, None)) => Ok(()),
-            (false, _) => Err(Error::input(
-                place,
-                "`speed_m_s` and `dof` with `mode_frequency` and `mode_damping_ratio` only",
-                format!("them with the {}", self.quantity.words().0),
-            )),
+            (false, _) => {
+                let expected =
+                    "`speed_m_s` and `dof` with `mode_frequency` and `mode_damping_ratio` only";
+                let found = format!("them with the {}", self.quantity.words().0);
+                Err(Error::input(place, expected, found))
+            }
         }
     }
 }

@@ -73,23 +73,20 @@ impl LoadedCase {
     fn new(case: &UserCase) -> Result<Self> {
         let a = &case.aerodynamics;
         let mut section = case.section.clone();
+        let dofs = section
+            .as_ref()
+            .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
         let (model, tested): (Box<dyn Transfer>, _) = if let Some(path) = &a.model {
             let trained = TrainedModel::read(&case.directory.join(path))?;
             section.get_or_insert(trained.section);
             (Box::new(trained.model), Some(trained.tested_range))
         } else if let Some(name) = &a.table {
             let table = named_table(name, &case.directory)?;
-            let dofs = section
-                .as_ref()
-                .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
             let by = a.interpolation.unwrap_or_default();
             let model = InterpolatedTable::by(by, &table, &dofs, Extrapolation::Hold)?;
             let range = model.tested_range();
             (Box::new(model), Some(range))
         } else if let Some(r) = &a.rational {
-            let dofs = section
-                .as_ref()
-                .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
             let model = RationalModel {
                 dofs,
                 a1: r.a1.clone(),
@@ -105,15 +102,9 @@ impl LoadedCase {
         };
         let section = section.ok_or_else(|| Error::input("section", "a section", "none"))?;
         let structure = section.structure()?;
-        ensure(
-            model.dofs() == structure.dofs,
-            "section",
-            format_args!(
-                "the degrees of freedom of the forces, {}",
-                Dof::names(model.dofs())
-            ),
-            Dof::names(&structure.dofs),
-        )?;
+        let (own, found) = (Dof::names(model.dofs()), Dof::names(&structure.dofs));
+        let expected = format_args!("the degrees of freedom of the forces, {own}");
+        ensure(model.dofs() == structure.dofs, "section", expected, found)?;
         Ok(Self {
             structure,
             model,
@@ -139,10 +130,9 @@ impl LoadedCase {
             FigureQuantity::Selberg | FigureQuantity::Rocard => {
                 let lines = sanity_lines(&self.structure)
                     .ok_or_else(|| nothing("formula: the rotation is not faster than the heave"))?;
-                if figure.quantity == FigureQuantity::Selberg {
-                    lines.selberg_m_s
-                } else {
-                    lines.rocard_m_s
+                match figure.quantity {
+                    FigureQuantity::Selberg => lines.selberg_m_s,
+                    _ => lines.rocard_m_s,
                 }
             }
             FigureQuantity::ModeFrequency | FigureQuantity::ModeDampingRatio => {
@@ -168,13 +158,10 @@ impl LoadedCase {
 
     fn in_wind(&self, figure: &UserFigure) -> Result<f64> {
         let speed = figure.speed_m_s.unwrap_or(0.0);
-        let place = self
-            .structure
-            .dofs
-            .iter()
-            .position(|d| Some(*d) == figure.dof);
+        let dofs = &self.structure.dofs;
+        let place = dofs.iter().position(|d| Some(*d) == figure.dof);
         let dof = place.ok_or_else(|| {
-            let expected = format!("one of {}", Dof::names(&self.structure.dofs));
+            let expected = format!("one of {}", Dof::names(dofs));
             Error::input("dof", expected, figure.dof.map_or("none", Dof::name))
         })?;
         let mode = quasi_pk_mode(&self.structure, self.model.as_ref(), speed, dof)?;
@@ -187,10 +174,9 @@ impl LoadedCase {
                 known.max.full_width()
             )));
         }
-        Ok(if figure.quantity == FigureQuantity::ModeFrequency {
-            mode.im / TAU
-        } else {
-            -mode.re / mode.norm()
+        Ok(match figure.quantity {
+            FigureQuantity::ModeFrequency => mode.im / TAU,
+            _ => -mode.re / mode.norm(),
         })
     }
 
@@ -210,18 +196,13 @@ impl LoadedCase {
             }
             (OnsetMethod::Eigenvalues, None) => {
                 let expected = "forces with a realisation for the eigenvalues";
-                return Err(Error::input(
-                    "route",
-                    expected,
-                    "forces that are only a G(K)",
-                ));
+                let found = "forces that are only a G(K)";
+                return Err(Error::input("route", expected, found));
             }
             (OnsetMethod::PkIteration, _) => pk_onset("", s, model, &search, self.tested)?,
             _ => determinant_onset("", s, model, self.tested.unwrap_or(WIDE), self.speed_max)?,
         };
-        found
-            .onset()
-            .cloned()
-            .ok_or_else(|| Error::Numerical(found.explain()))
+        let none = || Error::Numerical(found.explain());
+        found.onset().cloned().ok_or_else(none)
     }
 }
