@@ -181,11 +181,8 @@ fn convert(args: &TableArgs, result: &Path) -> Result<Answer> {
     };
     let mut out = OutputDir::new(folder_of(result))?;
     out.write(name, bytes)?;
-    let mut text = format!(
-        "{}: {} derivatives\n  from {from}\n  to   {to}\n",
-        table.name,
-        table.derivatives().count()
-    );
+    let (name, count) = (&table.name, table.derivatives().count());
+    let mut text = format!("{name}: {count} derivatives\n  from {from}\n  to   {to}\n");
     let warnings = warnings(&table, &from, &mut text);
     let value =
         serde_json::json!({ "table": table.name, "from": from, "to": to, "warnings": warnings });
@@ -196,13 +193,9 @@ fn convert(args: &TableArgs, result: &Path) -> Result<Answer> {
 fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
     let place = |path: &Path| path.canonicalize().ok();
     let input = place(file_and_sheet(&args.table).0.as_ref());
-    ensure(
-        input.is_none() || input != place(result),
-        "out",
-        "another file than the table that is read",
-        "that, which was left as it is",
-    )
-    .map_err(|e| e.in_file(result))
+    let other = input.is_none() || input != place(result);
+    let expected = "another file than the table that is read";
+    ensure(other, "out", expected, "that, which was left as it is").map_err(|e| e.in_file(result))
 }
 
 /// What the reader took for granted and what looks wrong, also as lines of the text.
@@ -225,9 +218,8 @@ fn show(args: &TableArgs, each_point: bool) -> Result<Answer> {
         if each_point {
             let _ = writeln!(text, "  {symbol}");
             for p in &derivative.points {
-                let speed = p
-                    .mean_speed_m_s
-                    .map_or_else(String::new, |v| format!("{v:8.3} m/s"));
+                let speed = p.mean_speed_m_s.map(|v| format!("{v:8.3} m/s"));
+                let speed = speed.unwrap_or_default();
                 let _ = writeln!(text, "{speed:>16}{:12.5}{:14.6}", p.argument, p.value);
             }
         } else {
@@ -255,12 +247,8 @@ fn head(table: &DerivativeTable, from: &Convention, shown: &Convention) -> Strin
         let words: Vec<_> = speeds.iter().map(|v| format!("{v:.2}")).collect();
         let _ = write!(text, ", mean speeds {} m/s", words.join(", "));
     }
-    let _ = writeln!(
-        text,
-        ", all tested between K = {:.4} and {:.4}",
-        range.min.full_width(),
-        range.max.full_width()
-    );
+    let [low, high] = [range.min, range.max].map(|k| k.full_width());
+    let _ = writeln!(text, ", all tested between K = {low:.4} and {high:.4}");
     let _ = writeln!(text, "  in the file: {from}");
     if from != shown {
         let _ = writeln!(text, "  shown:       {shown}");

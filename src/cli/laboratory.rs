@@ -82,10 +82,8 @@ pub(super) fn laboratory_page(
 
 fn run_row(run: &RunReport) -> Vec<String> {
     let said = line(run);
-    let rest = said
-        .strip_prefix(&format!("{}: ", run.run))
-        .unwrap_or(&said);
-    vec![run.run.clone(), rest.to_owned()]
+    let rest = said.strip_prefix(&format!("{}: ", run.run));
+    vec![run.run.clone(), rest.unwrap_or(&said).to_owned()]
 }
 
 fn estimate_row(e: &DerivativeEstimate) -> Vec<String> {
@@ -115,21 +113,22 @@ fn line(run: &RunReport) -> String {
         Dof::Vertical => ("kg", "downwind of"),
         Dof::Lateral => ("kg", "above"),
     };
-    let inertia = run.still_air.as_ref().map_or_else(
-        || "no inertia seen".to_owned(),
-        |s| {
-            let centre = s.centre_of_mass_m.map_or_else(String::new, |m| {
-                // no zero with a sign
-                let mm = (1e4 * m).round() / 10.0 + 0.0;
-                format!(" at {mm:.1} mm {way} the axis")
-            });
-            format!("inertia {:.4} {unit}{centre}", s.inertia)
-        },
-    );
-    let still_air = run.alignment.as_ref().map_or_else(
-        || "no still air".to_owned(),
-        |a| format!("still air {:+.2} samples", a.offset_samples),
-    );
+    let inertia = run.still_air.as_ref().map(|s| {
+        let centre = s.centre_of_mass_m.map(|m| {
+            // no zero with a sign
+            let mm = (1e4 * m).round() / 10.0 + 0.0;
+            format!(" at {mm:.1} mm {way} the axis")
+        });
+        format!(
+            "inertia {:.4} {unit}{}",
+            s.inertia,
+            centre.unwrap_or_default()
+        )
+    });
+    let inertia = inertia.unwrap_or("no inertia seen".to_owned());
+    let still_air = run.alignment.as_ref();
+    let still_air = still_air.map(|a| format!("still air {:+.2} samples", a.offset_samples));
+    let still_air = still_air.unwrap_or("no still air".to_owned());
     format!(
         "{}: {} at {:.2} m/s, {}, {still_air}, {inertia}, signal {:.0} dB above the noise, {} replaced",
         run.run,
@@ -150,28 +149,22 @@ pub(super) fn processing_text(
     let mut text = format!("{}\n", raw.section);
     let error = report
         .lag_standard_error_s
-        .map_or_else(String::new, |e| format!(" ± {:.3}", 1e3 * e));
-    let _ = writeln!(
-        text,
-        "  lag of the force channels {:.3}{error} ms",
-        1e3 * report.lag_s
-    );
+        .map(|e| format!(" ± {:.3}", 1e3 * e));
+    let (lag_ms, error) = (1e3 * report.lag_s, error.unwrap_or_default());
+    let _ = writeln!(text, "  lag of the force channels {lag_ms:.3}{error} ms");
     for run in &report.runs {
         let _ = writeln!(text, "  {}", line(run));
     }
     if let Some(found) = derivatives {
         let estimates = found.estimates.iter().filter(|e| e.value != 0.0);
         let relative = estimates.map(|e| (e.standard_error / e.value).abs());
-        let median = median(&relative.collect::<Vec<_>>());
+        let percent = 100.0 * median(&relative.collect::<Vec<_>>());
+        let known = Derivative::ALL.into_iter();
+        let known = known.filter(|d| found.each(*d).next().is_some()).count();
+        let all = found.estimates.len();
         let _ = writeln!(
             text,
-            "  {} derivatives, {} numbers in all, median standard error {:.2} %",
-            Derivative::ALL
-                .iter()
-                .filter(|d| found.each(**d).next().is_some())
-                .count(),
-            found.estimates.len(),
-            100.0 * median
+            "  {known} derivatives, {all} numbers in all, median standard error {percent:.2} %"
         );
     }
     text

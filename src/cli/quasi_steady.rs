@@ -11,6 +11,7 @@ use crate::report::{
     DerivativePlot, Figure, PlottedSeries, TimePanel, derivatives_figure, equilibrium_figure,
     time_history_figure, vf_vg_figure,
 };
+use crate::section::Dof;
 use crate::study::{
     FlutterStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study,
     simulated_motion,
@@ -93,11 +94,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     let _ = writeln!(text, "\nstatic coefficients: {}", results.coefficients);
     if let Some(first) = results.linear.first() {
         let arms = first.arms();
-        let arms: Vec<String> = results
-            .dofs
-            .iter()
-            .map(|d| format!("{} {:+.3}", d.symbol(), arms.arm(*d)))
-            .collect();
+        let arm = |d: &Dof| format!("{} {:+.3}", d.symbol(), arms.arm(*d));
+        let arms: Vec<String> = results.dofs.iter().map(arm).collect();
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
     let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
@@ -115,8 +113,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
                 let _ = writeln!(text, "kind: {}", mode.kind.name());
             }
         }
-        FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => {
-            let _ = writeln!(text, "{}", results.onset.search.explain());
+        other => {
+            let _ = writeln!(text, "{}", other.explain());
         }
     }
     text
@@ -125,16 +123,12 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
 /// A line per wind speed, as many as a terminal shows.
 fn equilibria(results: &QuasiSteadyStudy) -> String {
     let dofs = &results.dofs;
-    let motions = dofs
-        .iter()
-        .map(|d| format!(">{} {} | ", d.symbol(), d.shown_in().1));
-    let motions: String = motions.collect();
+    let motion = |d: &Dof| format!(">{} {} | ", d.symbol(), d.shown_in().1);
+    let motions: String = dofs.iter().map(motion).collect();
     let mut table = TextTable::new(&format!(">V m/s | {motions}>stiffness left"));
     let points = &results.equilibria.points;
-    let shown = points
-        .iter()
-        .step_by(points.len().div_ceil(TABLE_LINES).max(1));
-    for point in shown {
+    let every = points.len().div_ceil(TABLE_LINES).max(1);
+    for point in points.iter().step_by(every) {
         let motion = dofs.iter().zip(&point.displacement);
         let motion = motion.map(|(dof, value)| format!("{:.5}", dof.shown_in().0 * value));
         let left = format!("{:.1} %", 100.0 * point.stiffness_left);
@@ -145,14 +139,11 @@ fn equilibria(results: &QuasiSteadyStudy) -> String {
 }
 
 fn run_in_words(run: &SimulatedMotion) -> String {
-    let n = run.dofs.len();
+    let rows = counted(run.nonlinear.len(), "row");
+    let each = counted(run.substeps, "Runge-Kutta step");
     let mut text = format!(
-        "\nNonlinear run at {} m/s: {} of {} s, {} each, halving changes {:.1e}\n",
-        run.speed_m_s,
-        counted(run.nonlinear.len(), "row"),
-        run.step_s,
-        counted(run.substeps, "Runge-Kutta step"),
-        run.step_error
+        "\nNonlinear run at {} m/s: {rows} of {} s, {each} each, halving changes {:.1e}\n",
+        run.speed_m_s, run.step_s, run.step_error
     );
     if run.gusts_m_s.iter().any(|gust| *gust != (0.0, 0.0)) {
         text += "  gusts act in full, without the admittance that `buffeting` gives them\n";
@@ -160,20 +151,16 @@ fn run_in_words(run: &SimulatedMotion) -> String {
     let spread = |rows: &[Vec<f64>], i: usize| {
         let mean = rows.iter().map(|r| r[i]).sum::<f64>() / rows.len() as f64;
         let square = rows.iter().map(|r| (r[i] - mean).powi(2)).sum::<f64>() / rows.len() as f64;
-        (mean, square.sqrt())
+        [mean, square.sqrt()]
     };
-    for (i, dof) in run.dofs.iter().enumerate().take(n) {
+    for (i, dof) in run.dofs.iter().enumerate() {
         let (factor, unit) = dof.shown_in();
-        let (mean, rms) = spread(&run.nonlinear, i);
-        let (linear_mean, linear_rms) = spread(&run.linear, i);
+        let shown = |rows| spread(rows, i).map(|x| factor * x);
+        let ([mean, rms], [of_linear, linear]) = (shown(&run.nonlinear), shown(&run.linear));
         let _ = writeln!(
             text,
-            "  {}: mean {:.5}, RMS {:.5} {unit}; linear: mean {:.5}, RMS {:.5}",
+            "  {}: mean {mean:.5}, RMS {rms:.5} {unit}; linear: mean {of_linear:.5}, RMS {linear:.5}",
             dof.symbol(),
-            factor * mean,
-            factor * rms,
-            factor * linear_mean,
-            factor * linear_rms
         );
     }
     text

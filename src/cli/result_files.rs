@@ -187,12 +187,9 @@ pub(super) fn write_derivatives(
     out: &mut OutputDir,
 ) -> Result<()> {
     let mut fitted = Vec::new();
-    for one in &trained[..trained.len().min(MAX_CURVES)] {
-        let v_hat = one.model.tested_range.min.v_hat();
-        fitted.push((
-            one.model.name.clone(),
-            derivative_lines(&one.model.model, v_hat)?,
-        ));
+    for one in trained.iter().take(MAX_CURVES).map(|t| &t.model) {
+        let lines = derivative_lines(&one.model, one.tested_range.min.v_hat())?;
+        fitted.push((one.name.clone(), lines));
     }
     let (exact, range) = deck.model()?;
     let exact = match (range, trained.first()) {
@@ -219,13 +216,11 @@ pub(super) fn write_derivatives(
 fn measured(table: &DerivativeTable, d: Derivative) -> Vec<PlottedSeries> {
     let points = table.points(d);
     let groups = near_groups(points.iter().filter_map(|p| p.mean_speed_m_s), SAME_SPEED);
-    let mut series: Vec<PlottedSeries> = groups
-        .iter()
-        .map(|g| {
-            let mean = g.iter().sum::<f64>() / g.len() as f64;
-            PlottedSeries::new(format!("measured, {mean:.1} m/s"), Vec::new())
-        })
-        .collect();
+    let of_group = |g: &Vec<f64>| {
+        let mean = g.iter().sum::<f64>() / g.len() as f64;
+        PlottedSeries::new(format!("measured, {mean:.1} m/s"), Vec::new())
+    };
+    let mut series: Vec<PlottedSeries> = groups.iter().map(of_group).collect();
     if series.is_empty() {
         series.push(PlottedSeries::new("measured", Vec::new()));
     }
@@ -249,20 +244,16 @@ pub(super) fn write_response(
     for factor in AROUND_ONSET {
         let speed = factor * speed_m_s;
         let percent = (100.0 * (factor - 1.0_f64)).round();
-        let label = if percent == 0.0 {
-            format!("{speed:.1} m/s, the onset")
-        } else {
-            format!("{speed:.1} m/s ({percent:+} %)")
+        let label = match percent == 0.0 {
+            true => format!("{speed:.1} m/s, the onset"),
+            false => format!("{speed:.1} m/s ({percent:+} %)"),
         };
         let mut rows = Vec::new();
         simulated(model, speed, PERIODS.0 / frequency_hz, step, &mut rows)?;
         runs.push((label, rows));
     }
-    let runs: Vec<_> = runs
-        .iter()
-        .map(|(label, rows)| (&label[..], &rows[..]))
-        .collect();
-    let panels = motion_panels(model.model.dofs(), &runs);
+    let runs = runs.iter().map(|(label, rows)| (&label[..], &rows[..]));
+    let panels = motion_panels(model.model.dofs(), &runs.collect::<Vec<_>>());
     let title = format!("{}: released below, at and above the onset", model.name);
     figures::write(RESPONSE, out, || {
         scaled_history_figure(&title, &panels, "Time t (s)", 2)

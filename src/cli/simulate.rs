@@ -127,14 +127,12 @@ fn verdict(model: &TrainedModel, speed: f64, modes: &[ModeSummary]) -> String {
     let tested = &model.tested_range;
     for mode in modes.iter().filter(|mode| !mode.in_tested_range) {
         let k = ReducedFrequency::from_hertz(mode.frequency_hz, model.section.width_m, speed);
+        let [low, high, k_mode] = [tested.min, tested.max, k].map(|k| k.full_width());
+        let gap = tested.gap_at(k).map_or("", |_| ", in a gap between tests");
         let _ = writeln!(
             text,
-            "  OUTSIDE the tested range, K = ωB/V {:.3} to {:.3}: the mode at {:.4} Hz, K {:.3}{}",
-            tested.min.full_width(),
-            tested.max.full_width(),
-            mode.frequency_hz,
-            k.full_width(),
-            tested.gap_at(k).map_or("", |_| ", in a gap between tests")
+            "  OUTSIDE the tested range, K = ωB/V {low:.3} to {high:.3}: the mode at {:.4} Hz, K {k_mode:.3}{gap}",
+            mode.frequency_hz
         );
     }
     text
@@ -179,29 +177,29 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
         ended => ended.map(|()| Vec::new())?,
     };
     let modes = modes(&model, speed)?;
-    let columns = columns(&model.section.dofs());
+    let dofs = model.section.dofs();
+    let columns = columns(&dofs);
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
     out.write("simulation.csv", csv(&model, speed, &columns, &rows))?;
     let title = format!("{} at {speed} m/s", model.name);
     figures::write("simulation", &mut out, || {
         let runs = [(&model.name[..], &rows[..])];
-        let panels = motion_panels(&model.section.dofs(), &runs);
+        let panels = motion_panels(&dofs, &runs);
         time_history_figure(&title, &panels, "Time t (s)")
     })?;
     let written = out.commit()?;
     let early = failed.iter().map(|why| format!("  ENDS EARLY: {why}\n"));
-    let text = format!(
-        "{title}: {} of {step} s\n{}{}{}",
+    let early: String = early.collect();
+    let (steps, verdict) = (
         counted(rows.len() - 1, "step"),
-        early.collect::<String>(),
         verdict(&model, speed, &modes),
+    );
+    let text = format!(
+        "{title}: {steps} of {step} s\n{early}{verdict}{}",
         list(&written)
     );
-    let answer = Answer::new(
-        text,
-        &json!({ "columns": columns, "rows": rows, "modes": modes, "findings": findings, "failed": failed }),
-    )?;
-    Ok(answer.passed_if(failed.is_empty()))
+    let value = json!({ "columns": columns, "rows": rows, "modes": modes, "findings": findings, "failed": failed });
+    Ok(Answer::new(text, &value)?.passed_if(failed.is_empty()))
 }
 
 fn section_of(model: &TrainedModel) -> Result<CoupledSection> {
@@ -241,12 +239,8 @@ pub(super) fn simulated(
         }
         stepper.outputs(&state, &inputs, &mut outputs)?;
         let mut row = vec![time];
-        for values in [
-            &outputs.displacement,
-            &outputs.rate,
-            &outputs.acceleration,
-            &outputs.self_excited_force,
-        ] {
+        let motion = [&outputs.displacement, &outputs.rate, &outputs.acceleration];
+        for values in motion.into_iter().chain([&outputs.self_excited_force]) {
             row.extend_from_slice(values);
         }
         if !row.iter().all(|x| x.is_finite()) {
@@ -272,12 +266,12 @@ fn columns(dofs: &[Dof]) -> Vec<String> {
 }
 
 fn csv(model: &TrainedModel, speed: f64, columns: &[String], rows: &[Vec<f64>]) -> String {
+    let of = &model.provenance;
+    let [name, source, licence] =
+        [&model.name, &of.source, &of.licence].map(|text| text.replace('\n', " "));
     let mut text = format!(
-        "# {}; {} at {speed} m/s\n# source: {}\n# licence: {}\n# per unit length of span; y and lift up, theta and moment nose-up\n",
-        model.name.replace('\n', " "),
-        model.model.kind(),
-        model.provenance.source.replace('\n', " "),
-        model.provenance.licence.replace('\n', " "),
+        "# {name}; {} at {speed} m/s\n# source: {source}\n# licence: {licence}\n# per unit length of span; y and lift up, theta and moment nose-up\n",
+        model.model.kind()
     );
     let _ = writeln!(text, "{}", columns.join(","));
     for row in rows {

@@ -52,13 +52,8 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
         {
             result_files::write_response(&own.model, &onset.at, &mut out)?;
         }
-        let page = thesis_page(
-            &results,
-            PRINTED_M_S,
-            &records.select(Some(&[1]))?,
-            &out,
-            progress,
-        )?;
+        let first = records.select(Some(&[1]))?;
+        let page = thesis_page(&results, &first, &out, progress)?;
         let mut left = OutputDir::new(folder)?;
         left.write("thesis.html", rendered(&page)?)?;
         text.push_str(&list(&left.commit()?));
@@ -76,33 +71,24 @@ const PRINTED_FIRST_ORDER: [&str; 3] = ["0.8283", "0.889", "0.0096"];
 /// The page; the figure of the onsets stands in `out` as `flutter.svg`.
 fn thesis_page(
     results: &FlutterStudy,
-    printed_m_s: f64,
     records: &[&dyn RecordSource],
     out: &OutputDir,
     progress: &Progress,
 ) -> Result<SectionsPage> {
-    let mut sections = vec![
-        functions()?,
-        first_order(progress)?,
-        parameters(records, progress)?,
-    ];
+    let mut sections = vec![functions()?, first_order(progress)?];
+    sections.push(parameters(records, progress)?);
     sections.extend(thesis_comparisons(progress)?);
-    sections.push(onsets(results, printed_m_s, out));
-    sections.push(errata());
-    sections.push(not_computed());
-    let own = results
-        .onsets
-        .iter()
-        .find(|o| o.at.model != "interpolated table");
-    let own = own.map_or("no onset".to_owned(), |o| {
-        format!("{:.1} m/s", o.at.speed_m_s)
-    });
+    sections.extend([onsets(results, out), errata(), not_computed()]);
+    let mut onsets = results.onsets.iter();
+    let own = onsets.find(|o| o.at.model != "interpolated table");
+    let own = own.map(|o| format!("{:.1} m/s", o.at.speed_m_s));
+    let own = own.unwrap_or("no onset".to_owned());
     Ok(SectionsPage {
         title: "The thesis, computed again".to_owned(),
         subtitle:
             "Investigation of Laguerre expansion basis for modelling of bridge aeroelastic forces"
                 .to_owned(),
-        answer: format!("Onset of the coupled section: printed {printed_m_s} m/s, here {own}"),
+        answer: format!("Onset of the coupled section: printed {PRINTED_M_S} m/s, here {own}"),
         sections,
         ..SectionsPage::default()
     })
@@ -214,13 +200,11 @@ fn first_order(progress: &Progress) -> Result<PageSection> {
     })
 }
 
-fn onsets(results: &FlutterStudy, printed_m_s: f64, out: &OutputDir) -> PageSection {
+fn onsets(results: &FlutterStudy, out: &OutputDir) -> PageSection {
     let row = |o: &crate::flutter::Onset| {
-        let trained = o.at.model != "interpolated table";
-        let printed = if trained {
-            format!("{printed_m_s}")
-        } else {
-            "–".to_owned()
+        let printed = match o.at.model.as_str() {
+            "interpolated table" => "–".to_owned(),
+            _ => PRINTED_M_S.to_string(),
         };
         vec![
             format!("{} ({})", o.at.model, o.at.method.name()),

@@ -23,22 +23,15 @@ pub(super) fn page(
     unstable: &[String],
     verdict: Option<&Verdict>,
 ) -> Result<SectionsPage> {
-    let speeds: Vec<String> = all
-        .iter()
-        .map(|b| b.frequency.speed_m_s.to_string())
-        .collect();
+    let speeds = all.iter().map(|b| b.frequency.speed_m_s.to_string());
+    let speeds = speeds.collect::<Vec<_>>().join(", ");
+    let answer = vec![format!("Response to turbulence at {speeds} m/s")];
     let sections = all.iter().map(section);
     Ok(SectionsPage {
         title: study.file.name.clone(),
         subtitle: "Response of the whole bridge to turbulence".to_owned(),
         verdict: verdict.cloned().unwrap_or_default(),
-        answer: std::iter::once(format!(
-            "Response to turbulence at {} m/s",
-            speeds.join(", ")
-        ))
-        .chain(unstable.iter().cloned())
-        .collect::<Vec<_>>()
-        .join("; "),
+        answer: [&answer[..], unstable].concat().join("; "),
         of: study.file.report.dated(Some(&today()?)),
         key: digest(text.as_bytes()),
         sections: sections.collect::<Result<_>>()?,
@@ -54,9 +47,7 @@ pub(super) fn of_motion(rms: f64, figure: String) -> String {
 pub(super) fn forces(results: &BridgeBuffeting) -> String {
     let mut text = String::new();
     if let Some(models) = &results.models {
-        text.push_str(
-            "frequency domain: tables between their points (or the flat plate, exactly)\n",
-        );
+        text += "frequency domain: tables between their points (or the flat plate, exactly)\n";
         let fits = models.fits.join("; ");
         let _ = writeln!(text, "time domain: models ({fits})");
         if let Some((n, i, change)) = models.largest() {
@@ -70,15 +61,12 @@ pub(super) fn forces(results: &BridgeBuffeting) -> String {
         }
     }
     if let Some(time) = &results.time {
-        let plan = &time.plan;
+        let (plan, seconds, peak_s) = (&time.plan, time.record_s, time.plan.peak_s());
+        let records = counted(plan.records, "record");
+        let (step_s, seed) = (plan.step_s, plan.seed);
         let _ = writeln!(
             text,
-            "time domain: {} of {} s, every {} s, seed {}; peaks in {} s",
-            counted(plan.records, "record"),
-            time.record_s,
-            plan.step_s,
-            plan.seed,
-            plan.peak_s()
+            "time domain: {records} of {seconds} s, every {step_s} s, seed {seed}; peaks in {peak_s} s"
         );
         if let Some(why) = &time.too_short {
             let _ = writeln!(text, "  {why}");
@@ -89,11 +77,10 @@ pub(super) fn forces(results: &BridgeBuffeting) -> String {
     }
     let parts = results.frequency.part_in_tested_range.iter().flatten();
     let least = parts.flatten().copied().reduce(f64::min);
-    if let Some(least) = least {
+    if let Some(percent) = least.map(|least| 100.0 * least) {
         let _ = writeln!(
             text,
-            "variance inside the tested range of K: {:.0} % at least; the rest is extrapolation",
-            100.0 * least
+            "variance inside the tested range of K: {percent:.0} % at least; the rest is extrapolation"
         );
     }
     text
@@ -108,16 +95,13 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
             let rms = of.frequency.rms[n][i];
             let (mean, g) = (of.envelope.mean[at][i], of.expected_peak_factor[n][i]);
             let number = |x: f64| format!("{:.4}", factor * x);
-            let time = of
-                .time
-                .as_ref()
-                .map_or("–".to_owned(), |t| number(t.rms[n][i]));
+            let time = of.time.as_ref().map(|t| number(t.rms[n][i]));
             rows.push(vec![
                 name.clone(),
                 motion.to_owned(),
                 number(mean),
                 number(rms),
-                time,
+                time.unwrap_or("–".to_owned()),
                 of_motion(rms, format!("{g:.2}")),
                 number(mean - g * rms),
                 number(mean + g * rms),
@@ -128,13 +112,12 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
     let envelope = envelope_figure(of, &format!("Along the span at {speed} m/s"))?;
     let title = format!("Spectra at {speed} m/s");
     let spectra = buffeting_spectra_figure(&title, &Dof::THREE, &of.nodes, &of.spectra)?;
-    let figures = [
-        (
-            "Mean, and mean ± expected peak, along the girder.",
-            envelope,
-        ),
-        ("Spectra of the displacements times the frequency.", spectra),
+    let captions = [
+        "Mean, and mean ± expected peak, along the girder.",
+        "Spectra of the displacements times the frequency.",
     ];
+    let figures = captions.into_iter().zip([envelope, spectra]);
+    let figures = figures.map(|(caption, figure)| (caption.to_owned(), figure.svg().to_owned()));
     let of_sections = of.envelope.section_forces.iter().map(|f| {
         let peak = f.peak_factor * f.rms;
         format!(
@@ -154,9 +137,6 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
         text,
         header: "node | motion | mean | RMS | RMS, records | g | mean − peak | mean + peak | acceleration",
         rows,
-        figures: figures
-            .into_iter()
-            .map(|(caption, figure)| (caption.to_owned(), figure.svg().to_owned()))
-            .collect(),
+        figures: figures.collect(),
     })
 }

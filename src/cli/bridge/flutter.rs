@@ -165,15 +165,11 @@ fn scattered(
 }
 
 fn scatter_line(of: &ScatteredOnset) -> String {
-    let onsets = &of.onsets;
+    let (samples, onsets) = (of.scatter.samples, &of.onsets);
+    let (mean, deviation) = (onsets.mean_m_s, onsets.standard_deviation_m_s);
+    let ([low, high], none) = (onsets.interval_m_s, onsets.without_onset);
     format!(
-        "Scatter of {} samples: {:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s; {} without onset",
-        of.scatter.samples,
-        onsets.mean_m_s,
-        onsets.standard_deviation_m_s,
-        onsets.interval_m_s[0],
-        onsets.interval_m_s[1],
-        onsets.without_onset
+        "Scatter of {samples} samples: {mean:.3} m/s, standard deviation {deviation:.3} m/s, 95 % between {low:.3} and {high:.3} m/s; {none} without onset"
     )
 }
 
@@ -293,12 +289,8 @@ fn animation_csv(motion: &BridgeMotion) -> String {
         let (sin, cos) = (TAU * phase).sin_cos();
         for n in &motion.nodes {
             let [y, x, t] = n.motion.map(|z| z[0] * cos - z[1] * sin);
-            let _ = writeln!(
-                text,
-                "{phase},{},{},{y},{x},{t}",
-                csv_cell(&n.node),
-                n.along_m
-            );
+            let (node, along_m) = (csv_cell(&n.node), n.along_m);
+            let _ = writeln!(text, "{phase},{node},{along_m},{y},{x},{t}");
         }
     }
     text
@@ -309,49 +301,38 @@ fn animation_csv(motion: &BridgeMotion) -> String {
 fn panels(results: &BridgeFlutter) -> Option<Vec<TimePanel>> {
     let onset = results.onset()?;
     let z = displaced(results.answers.last()?.motion.as_ref()?)?;
-    let branch = results
-        .curves
-        .branches
-        .iter()
-        .find(|b| b.name == onset.branch)?;
+    let mut branches = results.curves.branches.iter();
+    let branch = branches.find(|b| b.name == onset.branch)?;
     let mut runs = Vec::with_capacity(AROUND.len());
     for factor in AROUND {
         let wanted = factor * onset.at.speed_m_s;
         let distance = |p: &&ModePoint| (p.speed_m_s - wanted).abs();
         let nearest = branch.points.iter();
         let nearest = nearest.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        let at_onset = factor == 1.0;
-        let (speed, lambda) = match at_onset {
-            true => (
-                onset.at.speed_m_s,
-                Complex::new(0.0, TAU * onset.at.frequency_hz),
-            ),
-            false => {
-                let lambda = nearest.eigenvalue;
-                (nearest.speed_m_s, Complex::new(lambda.re, lambda.im))
-            }
-        };
-        let percent = 100.0 * (speed / onset.at.speed_m_s - 1.0);
-        let label = match at_onset {
-            true => format!("{speed:.1} m/s, the onset"),
-            false => format!("{speed:.1} m/s ({percent:+.1} %)"),
-        };
-        runs.push((label, lambda));
+        runs.push(if factor == 1.0 {
+            let label = format!("{:.1} m/s, the onset", onset.at.speed_m_s);
+            (label, Complex::new(0.0, TAU * onset.at.frequency_hz))
+        } else {
+            let (speed, lambda) = (nearest.speed_m_s, nearest.eigenvalue);
+            let percent = 100.0 * (speed / onset.at.speed_m_s - 1.0);
+            let label = format!("{speed:.1} m/s ({percent:+.1} %)");
+            (label, Complex::new(lambda.re, lambda.im))
+        });
     }
     let period = TAU / runs[0].1.im;
     let names = ["vertical y (m)", "lateral x (m)", "rotation θ (°)"];
-    let panel = |(i, name): (usize, &str)| TimePanel {
-        y_label: name.to_owned(),
-        series: runs
-            .iter()
-            .map(|(label, lambda)| {
-                let points = (0..=PERIODS.0 * PERIODS.1).map(|n| {
-                    let t = period * n as f64 / PERIODS.1 as f64;
-                    (t, (z[i] * (lambda * t).exp()).re)
-                });
-                PlottedSeries::new(label.clone(), points.collect())
-            })
-            .collect(),
+    let panel = |(i, name): (usize, &str)| {
+        let series = runs.iter().map(|(label, lambda)| {
+            let points = (0..=PERIODS.0 * PERIODS.1).map(|n| {
+                let t = period * n as f64 / PERIODS.1 as f64;
+                (t, (z[i] * (lambda * t).exp()).re)
+            });
+            PlottedSeries::new(label.clone(), points.collect())
+        });
+        TimePanel {
+            y_label: name.to_owned(),
+            series: series.collect(),
+        }
     };
     Some(names.into_iter().enumerate().map(panel).collect())
 }

@@ -1,6 +1,7 @@
 //! `aerodeck bridge show`: modes, similarities, what is stated.
 
 use super::files::BridgeArgs;
+use crate::bridge::BridgeMode;
 use crate::cli::{Answer, Progress, TextTable, figures};
 use crate::error::{Result, counted};
 use crate::report::modes_figure;
@@ -57,22 +58,20 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     let similarities = study.similarities();
     text.push_str("\nSimilarity of vertical and torsional modes, (∫φ_y φ_θ)²/(∫φ_y² ∫φ_θ²); a section study assumes 1:\n");
     for s in similarities.iter().take(PAIRS) {
+        let (vertical, torsional) = (s.vertical_mode, s.torsional_mode);
         let _ = writeln!(
             text,
-            "  modes {:>3} and {:>3}: {:.4}",
-            s.vertical_mode, s.torsional_mode, s.similarity
+            "  modes {vertical:>3} and {torsional:>3}: {:.4}",
+            s.similarity
         );
     }
-    let modes: Vec<_> = bridge
-        .modes
-        .iter()
-        .map(|m| {
-            serde_json::json!({
-                "mode": m.number, "frequency_hz": m.frequency_hz, "generalised_mass": m.generalised_mass,
-                "damping_ratio": m.damping_ratio
-            })
+    let mode = |m: &BridgeMode| {
+        serde_json::json!({
+            "mode": m.number, "frequency_hz": m.frequency_hz, "generalised_mass": m.generalised_mass,
+            "damping_ratio": m.damping_ratio
         })
-        .collect();
+    };
+    let modes: Vec<_> = bridge.modes.iter().map(mode).collect();
     let json = serde_json::json!({
         "name": study.file.name, "nodes": bridge.nodes.len(), "modes": modes, "dampers": bridge.dampers, "similarities": similarities,
         "notes": study.warnings(), "findings": study.findings

@@ -9,13 +9,10 @@ use std::fmt::Write as _;
 
 /// The table of cells, the recommendation, and why metrics are missing.
 pub(crate) fn text(selection: &Selection, metrics: &[MetricGrid]) -> String {
+    let (cells, values) = (selection.cells.len(), selection.values.len());
+    let (symbol, most) = (&selection.symbol, selection.filters_max);
     let mut text = format!(
-        "{} cells: {} values of {}, L = 1 to {}\n\nBest fit of each number of filters, as a free search of {} finds it\n",
-        selection.cells.len(),
-        selection.values.len(),
-        selection.symbol,
-        selection.filters_max,
-        selection.symbol,
+        "{cells} cells: {values} values of {symbol}, L = 1 to {most}\n\nBest fit of each number of filters, as a free search of {symbol} finds it\n"
     );
     let free = selection.free.iter().flatten();
     text.push_str(&table(selection, free.map(|at| &selection.cells[*at])));
@@ -52,9 +49,8 @@ fn table<'a>(selection: &Selection, cells: impl Iterator<Item = &'a Cell>) -> St
 fn row(cell: &Cell) -> [String; 7] {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     let cv = cell.cross_validation;
-    let onset = cell
-        .onset_m_s
-        .map_or("no onset".to_owned(), |v| format!("onset {v:.3} m/s"));
+    let onset = cell.onset_m_s.map(|v| format!("onset {v:.3} m/s"));
+    let onset = onset.unwrap_or("no onset".to_owned());
     [
         cell.filters.to_string(),
         format!("{:.3}", cell.value),
@@ -139,6 +135,7 @@ pub(crate) fn parameter_maps(
 fn map(selection: &Selection, title: String, values: Vec<Option<f64>>) -> HeatMap {
     let filters = selection.filters_max;
     let cells = selection.cells.iter();
+    let chosen = selection.recommended.as_ref();
     HeatMap {
         title,
         x_label: match selection.symbol.as_str() {
@@ -150,10 +147,7 @@ fn map(selection: &Selection, title: String, values: Vec<Option<f64>>) -> HeatMa
         rows: filters,
         values,
         refused: cells.map(|c| !c.rejected.is_empty()).collect(),
-        chosen: selection
-            .recommended
-            .as_ref()
-            .map(|r| (r.cell / filters, r.cell % filters)),
+        chosen: chosen.map(|r| (r.cell / filters, r.cell % filters)),
         ..HeatMap::default()
     }
 }

@@ -56,18 +56,15 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
     let speeds = range.curve_speeds_m_s();
     let equilibria = static_equilibria(&structure, &theory, &speeds)?;
     let name = format!("quasi-steady, {}", table.name());
-    let linear = equilibria
-        .points
-        .iter()
-        .map(|p| theory.linearised(p.rotation_rad))
-        .collect::<Result<_>>()?;
+    let points = equilibria.points.iter();
+    let linear = points.map(|p| theory.linearised(p.rotation_rad));
+    let linear = linear.collect::<Result<_>>()?;
     let (low, high) = table.range_rad();
-    let line = (0..LINE_POINTS)
-        .map(|i| {
-            let angle = low + (high - low) * i as f64 / (LINE_POINTS - 1) as f64;
-            Ok((angle.to_degrees(), table.at(angle)?))
-        })
-        .collect::<Result<_>>()?;
+    let line = (0..LINE_POINTS).map(|i| {
+        let angle = low + (high - low) * i as f64 / (LINE_POINTS - 1) as f64;
+        Ok((angle.to_degrees(), table.at(angle)?))
+    });
+    let line = line.collect::<Result<_>>()?;
     let onset = quasi_steady_onset(&name, &structure, &theory, &range.search())?;
     let mut known = evidence(study, &onset);
     known.searched_to_m_s = Some(range.searched_to_m_s);
@@ -141,9 +138,9 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
     let path = static_equilibria(&structure, &theory, &[run.wind_speed_m_s])?;
     let Some(equilibrium) = path.points.first().cloned() else {
         let why = path.end.map_or(String::new(), |end| end.explain());
+        let speed = run.wind_speed_m_s;
         return Err(Error::Numerical(format!(
-            "simulation at {} m/s: {why}",
-            run.wind_speed_m_s
+            "simulation at {speed} m/s: {why}"
         )));
     };
     let linear = theory.linearised(equilibrium.rotation_rad)?;
@@ -153,26 +150,23 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
     let mut released = vec![0.0; 2 * n];
     released[0] = run.initial_vertical_m;
     released[n - 1] = run.initial_rotation_deg.to_radians();
-    let start: Vec<f64> = (0..2 * n)
-        .map(|i| released[i] + equilibrium.displacement.get(i).copied().unwrap_or(0.0))
-        .collect();
-    let section = NonlinearSection::new(structure.clone(), theory, run.wind_speed_m_s, &gusts)?;
-    let nonlinear = section.run(&start, run.step_s, steps, STEP_TOLERANCE)?;
-    let about = linear_rows(&structure, &linear, &released, &gusts, run, steps)?;
-    let with_rest = |row: Vec<f64>| -> Vec<f64> {
+    let with_rest = |row: &[f64]| -> Vec<f64> {
         let rest = equilibrium
             .displacement
             .iter()
             .chain(std::iter::repeat(&0.0));
         row.iter().zip(rest).map(|(a, b)| a + b).collect()
     };
+    let start = with_rest(&released);
+    let section = NonlinearSection::new(structure.clone(), theory, run.wind_speed_m_s, &gusts)?;
+    let nonlinear = section.run(&start, run.step_s, steps, STEP_TOLERANCE)?;
+    let about = linear_rows(&structure, &linear, &released, &gusts, run, steps)?;
+    let blown = (0..=steps).map(|i| gusts.at(run.step_s * i as f64));
     Ok(Some(SimulatedMotion {
         speed_m_s: run.wind_speed_m_s,
         dofs: structure.dofs.clone(),
-        linear: about.into_iter().map(with_rest).collect(),
-        gusts_m_s: (0..=steps)
-            .map(|i| gusts.at(run.step_s * i as f64))
-            .collect(),
+        linear: about.iter().map(|row| with_rest(row)).collect(),
+        gusts_m_s: blown.collect(),
         step_s: run.step_s,
         substeps: nonlinear.substeps,
         step_error: nonlinear.step_error,
@@ -234,21 +228,20 @@ fn linear_rows(
     let buffeting = structure.forces_at_axis(linear.buffeting().clone());
     let force = |time: f64| -> Vec<f64> {
         let (u, w) = gusts.at(time);
-        let rows = buffeting.row_iter().zip(&structure.dofs);
-        rows.map(|(row, dof)| {
-            half_rho_v * dof.force_scale(structure.width_m) * (row[0] * u + row[1] * w)
-        })
-        .collect()
+        let scales = structure
+            .dofs
+            .iter()
+            .map(|d| d.force_scale(structure.width_m));
+        let rows = buffeting.row_iter().zip(scales);
+        rows.map(|(row, scale)| half_rho_v * scale * (row[0] * u + row[1] * w))
+            .collect()
     };
     let mut inputs = Inputs::steady(run.wind_speed_m_s, n);
     let mut rows = vec![state.values.clone()];
     for i in 0..steps {
         let (now, next) = (force(step_s * i as f64), force(step_s * (i + 1) as f64));
-        inputs.force_rate = now
-            .iter()
-            .zip(&next)
-            .map(|(a, b)| (b - a) / step_s)
-            .collect();
+        let rates = now.iter().zip(&next).map(|(a, b)| (b - a) / step_s);
+        inputs.force_rate = rates.collect();
         inputs.force = now;
         stepper.advance(&mut state, &inputs, step_s)?;
         rows.push(state.values.clone());
