@@ -146,10 +146,9 @@ fn plan(plan: &CoveragePlan) -> String {
         Truth::Jones => "Jones's rational function",
         Truth::Theodorsen => "Theodorsen's function",
     };
-    let noise = if tunnel.noise_correlation_s > 0.0 {
-        format!("correlation time {} s", tunnel.noise_correlation_s)
-    } else {
-        "white".to_owned()
+    let noise = match tunnel.noise_correlation_s {
+        time_s if time_s > 0.0 => format!("correlation time {time_s} s"),
+        _ => "white".to_owned(),
     };
     let poles = if plan.search_poles {
         "searched"
@@ -174,6 +173,8 @@ fn speeds(r: &CoverageReport) -> Vec<(&'static str, String)> {
     let number = |value: f64| format!("{value:>9.1}");
     let mean_square = "stated standard error (root mean square)";
     let bias = "bias (fit without noise − truth)";
+    let scatter = "scatter from repetition to repetition";
+    let freedom = "degrees of freedom (mean)";
     let half = "half width of the intervals (mean)";
     let observed = "  as the scatter of the variances shows";
     vec![
@@ -181,16 +182,10 @@ fn speeds(r: &CoverageReport) -> Vec<(&'static str, String)> {
         (bias, speed(r.bias_m_s)),
         ("mean error", speed(r.mean_error_m_s)),
         ("  its standard error", speed(r.standard_error_of_mean_m_s)),
-        (
-            "scatter from repetition to repetition",
-            speed(r.scatter_m_s),
-        ),
+        (scatter, speed(r.scatter_m_s)),
         (mean_square, speed(r.stated_standard_error_m_s)),
         (half, speed(r.mean_half_width_m_s)),
-        (
-            "degrees of freedom (mean)",
-            number(r.mean_degrees_of_freedom),
-        ),
+        (freedom, number(r.mean_degrees_of_freedom)),
         (observed, number(r.observed_degrees_of_freedom)),
     ]
 }

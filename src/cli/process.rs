@@ -90,11 +90,8 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     doubts.extend(processed.report.doubts());
     notes.extend(processed.report.warnings());
     let derivatives = progress.during("derivatives", || derivatives(&processed, &mut notes))?;
-    doubts.extend(
-        derivatives
-            .iter()
-            .flat_map(IdentifiedDerivatives::contradictions),
-    );
+    let known = derivatives.iter();
+    doubts.extend(known.flat_map(IdentifiedDerivatives::contradictions));
     let mut out = OutputDir::new(&args.out)?;
     outdate(&raw.section, args.force, &mut out);
     let names = write_records(&processed, &mut out)?;
@@ -117,28 +114,19 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
         }
     }
     if !tabled && !args.force && out.target(STUDY).exists() {
-        notes.push(format!(
-            "{STUDY} of an earlier run is left; --force removes it"
-        ));
+        let note = format!("{STUDY} of an earlier run is left; --force removes it");
+        notes.push(note);
     }
     let found = derivatives.as_ref();
-    let page = laboratory_page(
-        &raw,
-        &processed.report,
-        found,
-        &[&doubts[..], &notes].concat(),
-        &out,
-    );
+    let remarks = [&doubts[..], &notes].concat();
+    let page = laboratory_page(&raw, &processed.report, found, &remarks, &out);
     out.write(PAGE, rendered(&page)?)?;
     let mut text = processing_text(&raw, &processed.report, found);
     for (what, texts) in [("doubt", &doubts), ("note", &notes)] {
         text.extend(texts.iter().map(|t| format!("  {what}: {t}\n")));
     }
     let value = serde_json::json!({
-        "report": processed.report,
-        "derivatives": derivatives,
-        "doubts": doubts,
-        "notes": notes,
+        "report": processed.report, "derivatives": derivatives, "doubts": doubts, "notes": notes
     });
     // broadband runs give records, and are not asked for more
     let mut runs = processed.report.runs.iter();
@@ -275,12 +263,9 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
     let mut names = Vec::with_capacity(processed.records.len());
     for record in &processed.records {
         let name = record_path(&record.header.name);
-        ensure(
-            !names.contains(&name),
-            "campaign",
-            "a name of its own for every run",
-            format_args!("`{}` a second time", record.header.name),
-        )?;
+        let expected = "a name of its own for every run";
+        let found = format_args!("`{}` a second time", record.header.name);
+        ensure(!names.contains(&name), "campaign", expected, found)?;
         names.push(name);
     }
     out.write_records(names.iter().cloned().zip(&processed.records))?;
@@ -381,10 +366,8 @@ fn bar(e: &DerivativeEstimate) -> (f64, f64, f64) {
 
 /// Speeds of one group of test points in words.
 fn speeds_label(group: &[f64]) -> String {
-    let (low, high) = (group[0], group[group.len() - 1]);
-    if high - low < 0.05 {
-        format!("{low:.1} m/s")
-    } else {
-        format!("{low:.1} to {high:.1} m/s")
+    match (group[0], group[group.len() - 1]) {
+        (low, high) if high - low < 0.05 => format!("{low:.1} m/s"),
+        (low, high) => format!("{low:.1} to {high:.1} m/s"),
     }
 }

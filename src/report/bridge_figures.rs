@@ -25,9 +25,8 @@ fn motion_ink(i: usize) -> Ink {
 }
 
 fn motion_legend() -> Vec<Entry> {
-    (0..3)
-        .map(|i| Entry::new(MOTIONS[i], motion_ink(i)))
-        .collect()
+    let entry = |i: usize| Entry::new(MOTIONS[i], motion_ink(i));
+    (0..3).map(entry).collect()
 }
 
 /// Vertical, lateral and torsional displacement of each mode along the girder, the largest of each mode being 1.
@@ -40,10 +39,8 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     let mut panels = Vec::with_capacity(bridge.modes.len());
     let columns = bridge.modes.len().min(3);
     for mode in &bridge.modes {
-        let values = mode
-            .shape
-            .iter()
-            .flat_map(|s| (0..3).map(|i| (s[i] * scale[i]).abs()));
+        let shape = mode.shape.iter();
+        let values = shape.flat_map(|s| (0..3).map(|i| (s[i] * scale[i]).abs()));
         let greatest = values.fold(f64::MIN_POSITIVE, f64::max);
         let mut panel = Panel::new(Axis::new("x (m)").tight(), Axis::new(""));
         panel.title = Some(format!("mode {}: {:.4} Hz", mode.number, mode.frequency_hz));
@@ -51,10 +48,8 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
         panel.level = Some(0.0);
         for i in 0..3 {
             let nodes = bridge.nodes.iter().zip(&mode.shape);
-            let points = nodes
-                .map(|(n, s)| (n.along_m, s[i] * scale[i] / greatest))
-                .collect();
-            panel.add(MOTIONS[i], points, motion_ink(i));
+            let points = nodes.map(|(n, s)| (n.along_m, s[i] * scale[i] / greatest));
+            panel.add(MOTIONS[i], points.collect(), motion_ink(i));
         }
         panels.push(panel);
     }
@@ -94,11 +89,7 @@ fn drawn(of: &BridgeFlutter) -> (Vec<(&ModeBranch, Ink)>, Vec<Entry>) {
     let mut all: Vec<_> = branches.map(|b| (place(&b.name), b)).collect();
     all.sort_by_key(|(place, _)| *place);
     let entry = |(place, b): &(Option<usize>, &ModeBranch)| {
-        let flutters = if onset == Some(&b.name) {
-            " (flutters)"
-        } else {
-            ""
-        };
+        let flutters = onset.filter(|o| *o == b.name).map_or("", |_| " (flutters)");
         let words = format!("{}{flutters}", b.name);
         Some(Entry::new(words, ink((*place)?, &b.name)))
     };
@@ -226,10 +217,8 @@ pub(crate) fn flutter_motion_figure(
         for i in 0..3 {
             // Re(z e^{iωt}) a quarter of a period later is −Im z
             let sign = if part == 0 { 1.0 } else { -1.0 };
-            let points = motion
-                .nodes
-                .iter()
-                .map(|n| (n.along_m, sign * n.motion[i][part] * scale[i]));
+            let nodes = motion.nodes.iter();
+            let points = nodes.map(|n| (n.along_m, sign * n.motion[i][part] * scale[i]));
             panel.add(MOTIONS[i], points.collect(), motion_ink(i));
         }
         panel

@@ -90,8 +90,8 @@ impl VfVg {
     /// All branches of the `i`-th model.
     fn draw_curves(&mut self, model: &FlutterCurves, i: usize) -> Result<()> {
         let colour = colour(PLACE, i)?;
-        self.models
-            .push(Entry::new(&model.model, Ink::line(colour, dash(i))));
+        let entry = Entry::new(&model.model, Ink::line(colour, dash(i)));
+        self.models.push(entry);
         for branch in &model.branches {
             let width = branch_width(index_of(&self.branches, &branch.name));
             let name = format!("{}, {}", model.model, ModeBranch::in_words(&branch.name));
@@ -103,8 +103,8 @@ impl VfVg {
                 for stretch in near_zero(&percent) {
                     self.close.add(&name, stretch, ink);
                 }
-                self.frequency
-                    .add(&name, points(run, |p| p.frequency_hz), ink);
+                let hertz = points(run, |p| p.frequency_hz);
+                self.frequency.add(&name, hertz, ink);
                 self.damping.add(&name, percent, ink);
             }
         }
@@ -125,29 +125,25 @@ impl VfVg {
         self.close.add("onset", vec![(speed, 0.0)], ink);
         self.note_onset(onset, colour);
         if !onset.spurious_speeds_m_s.is_empty() {
-            let crosses = onset.spurious_speeds_m_s.iter().map(|v| (*v, 0.0));
-            self.damping.add(
-                format!("spurious crossings of {}", onset.at.model),
-                crosses.collect(),
-                Ink::dots(colour, Shape::Cross),
-            );
+            let crosses = onset
+                .spurious_speeds_m_s
+                .iter()
+                .map(|v| (*v, 0.0))
+                .collect();
+            let name = format!("spurious crossings of {}", onset.at.model);
+            self.damping
+                .add(name, crosses, Ink::dots(colour, Shape::Cross));
         }
         self.stated.push(Entry::new(statement(onset), ink));
     }
 
     /// The bar of the interval; the onset of the FMU has that of its model, which is drawn already.
     fn draw_interval(&mut self, onset: &Onset, colour: &'static str) {
-        let Some((low_m_s, high_m_s)) = onset.interval.ends() else {
-            return;
-        };
-        if onset.at.method == OnsetMethod::FmuStepping {
-            return;
+        let stepped = onset.at.method == OnsetMethod::FmuStepping;
+        if let Some((low_m_s, high_m_s)) = onset.interval.ends().filter(|_| !stepped) {
+            let bar = vec![(low_m_s, 0.0), (high_m_s, 0.0)];
+            self.close.add(BAR, bar, Ink::solid(colour, BAR_WIDTH));
         }
-        self.close.add(
-            BAR,
-            vec![(low_m_s, 0.0), (high_m_s, 0.0)],
-            Ink::solid(colour, BAR_WIDTH),
-        );
     }
 
     /// Puts the bars below the zero line, one under the other, the closer the more there are.
@@ -339,10 +335,8 @@ pub(super) fn root_locus<'a>(
     title: &str,
     legend: Vec<Entry>,
 ) -> Result<Figure> {
-    let mut panel = Panel::new(
-        Axis::new("Growth rate (1/s)"),
-        Axis::new("Frequency (Hz)").zero_based(),
-    );
+    let frequency = Axis::new("Frequency (Hz)").zero_based();
+    let mut panel = Panel::new(Axis::new("Growth rate (1/s)"), frequency);
     panel.uprights.push((0.0, BLACK));
     for (branch, ink) in branches {
         let points = branch.points.iter();

@@ -31,11 +31,9 @@ pub(crate) fn processing_figure(
     };
     let whole = 0.0..last.force[force].len() as f64 / rate;
     let windows = [whole.clone(), close_up(run, whole)];
-    let shaded: Vec<(f64, f64)> = run
-        .replaced
-        .iter()
-        .map(|r| (r.start_s, r.start_s + r.samples as f64 / rate))
-        .collect();
+    let replaced = run.replaced.iter();
+    let shaded = replaced.map(|r| (r.start_s, r.start_s + r.samples as f64 / rate));
+    let shaded: Vec<(f64, f64)> = shaded.collect();
     let force_ink = Ink::stroke(colour(PLACE, 0)?, None, 1.1);
     let motion_ink = Ink::stroke(colour(PLACE, 1)?, None, 1.1);
     let mut panels = Vec::with_capacity(2 * stages.len() + 2);
@@ -127,25 +125,18 @@ fn force_label(dof: Dof) -> String {
 /// A few periods around what was replaced, or of the test point in the middle.
 fn close_up(run: &RunReport, whole: Range<f64>) -> Range<f64> {
     let rate = run.sampling_hz;
-    let first = run
-        .replaced
-        .first()
-        .map(|r| r.start_s + 0.5 * r.samples as f64 / rate);
-    let middle_of = |s: &crate::wind_tunnel::Segment| 0.5 * (s.start_s + s.end_s);
+    let first = run.replaced.first();
+    let first = first.map(|r| r.start_s + 0.5 * r.samples as f64 / rate);
+    let mut segments = run.segments.iter().map(|s| &s.segment);
     let segment = match first {
-        Some(t) => run
-            .segments
-            .iter()
-            .find(|s| s.segment.start_s <= t && t <= s.segment.end_s),
-        None => run.segments.get(run.segments.len() / 2),
+        Some(t) => segments.find(|s| s.start_s <= t && t <= s.end_s),
+        None => segments.nth(run.segments.len() / 2),
     };
-    let (centre, half) = match (first, segment) {
-        (t, Some(s)) => (
-            t.unwrap_or_else(|| middle_of(&s.segment)),
-            0.5 * PERIODS / s.segment.frequency_hz,
-        ),
-        (Some(t), None) => (t, 1.0),
-        (None, None) => (0.5 * (whole.start + whole.end), 1.0),
+    let middle = match segment {
+        Some(s) => 0.5 * (s.start_s + s.end_s),
+        None => 0.5 * (whole.start + whole.end),
     };
+    let centre = first.unwrap_or(middle);
+    let half = segment.map_or(1.0, |s| 0.5 * PERIODS / s.frequency_hz);
     (centre - half).max(whole.start)..(centre + half).min(whole.end)
 }

@@ -14,14 +14,9 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
         return Err(Error::input(PLACE, "at least one onset", "none"));
     }
     let samples = Ink::line(colour(PLACE, 0)?, None);
-    let mut share = Panel::new(
-        Axis::new("").tight(),
-        Axis::new("Samples in a bin (%)").zero_based(),
-    );
-    let mut distribution = Panel::new(
-        Axis::new("Onset speed V (m/s)").tight(),
-        Axis::new("Onset at or below V (%)").zero_based(),
-    );
+    let panel = |x, y| Panel::new(Axis::new(x).tight(), Axis::new(y).zero_based());
+    let mut share = panel("", "Samples in a bin (%)");
+    let mut distribution = panel("Onset speed V (m/s)", "Onset at or below V (%)");
     let (outline, steps) = curves(result);
     share.add("histogram", outline, samples);
     distribution.add("distribution function", steps, samples);
@@ -34,14 +29,10 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
             panel.uprights.push((speed, colour));
         }
     }
+    let (model, samples, counts) = (&result.model, result.samples, result.counts_in_words());
     Drawing {
         name: PLACE,
-        title: Some(format!(
-            "{}: {} random sections, {}",
-            result.model,
-            result.samples,
-            result.counts_in_words()
-        )),
+        title: Some(format!("{model}: {samples} random sections, {counts}")),
         panels: vec![share, distribution],
         columns: 1,
         axes: (640.0, 210.0),
@@ -72,11 +63,9 @@ fn curves(result: &MonteCarloResult) -> (Curve, Curve) {
 
 /// The quantiles that have a speed, each with its number; their entry of the legend, if there are any.
 fn mark_quantiles(result: &MonteCarloResult, panel: &mut Panel) -> Option<Entry> {
-    let known: Curve = result
-        .quantiles
-        .iter()
-        .filter_map(|q| Some((q.speed_m_s?, 100.0 * q.probability)))
-        .collect();
+    let quantiles = result.quantiles.iter();
+    let known = quantiles.filter_map(|q| Some((q.speed_m_s?, 100.0 * q.probability)));
+    let known: Curve = known.collect();
     panel.notes.extend(known.iter().map(|at| Note {
         at: *at,
         text: format!("{} m/s", significant(at.0)),

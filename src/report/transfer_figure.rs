@@ -96,10 +96,9 @@ fn points(curve: &TransferCurve, phase: bool) -> Vec<(f64, f64)> {
 const BAND: Ink = Ink::stroke(GREY, Some("4 3"), 0.9);
 
 fn reference_ink(plot: &TransferPlot) -> Ink {
-    if plot.reference_is_points {
-        Ink::dots(BLACK, Shape::Circle)
-    } else {
-        Ink::solid(BLACK, 2.6)
+    match plot.reference_is_points {
+        true => Ink::dots(BLACK, Shape::Circle),
+        false => Ink::solid(BLACK, 2.6),
     }
 }
 
@@ -109,16 +108,9 @@ fn bands(plot: &TransferPlot, phase: bool) -> Vec<(&'static str, Vec<(f64, f64)>
         return Vec::new();
     };
     let edge = |sign: f64| {
-        let at = |p: &(f64, f64, f64)| {
-            let magnitude = p.1 * (1.0 + sign * part);
-            (
-                p.0,
-                if phase {
-                    p.2 + sign * degrees
-                } else {
-                    magnitude
-                },
-            )
+        let at = |p: &(f64, f64, f64)| match phase {
+            true => (p.0, p.2 + sign * degrees),
+            false => (p.0, p.1 * (1.0 + sign * part)),
         };
         plot.reference.points.iter().map(at).collect()
     };

@@ -2,7 +2,7 @@
 
 use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Shape, entries};
 use crate::aeroelastic::EquilibriumPath;
-use crate::buffeting::SpectrumCurve;
+use crate::buffeting::{BuffetingResponse, SpectrumCurve};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::study::BuffetingStudy;
@@ -14,10 +14,8 @@ const GUSTS: [&str; 2] = ["u", "w"];
 /// Name, symbol and unit of an ordinate, and the factor to that unit from m and rad.
 fn ordinate(dof: Dof, before: &str) -> (String, f64) {
     let (factor, unit) = dof.shown_in();
-    (
-        format!("{before}{} {} ({unit})", dof.name(), dof.symbol()),
-        factor,
-    )
+    let label = format!("{before}{} {} ({unit})", dof.name(), dof.symbol());
+    (label, factor)
 }
 
 /// Static displacements over wind speed, one panel per degree of freedom; the end of the branch is an upright.
@@ -74,16 +72,13 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
         let (label, factor) = ordinate(*dof, "RMS ");
         let speed = Axis::new("Wind speed V (m/s)").tight();
         let mut panel = Panel::new(speed, Axis::new(label).zero_based());
-        let line = |pick: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
-            let speeds = study.responses.iter().enumerate();
-            speeds
-                .map(|(k, r)| (r.speed_m_s, factor * pick(k)))
-                .collect()
+        let line = |pick: &dyn Fn(&BuffetingResponse) -> f64| -> Vec<(f64, f64)> {
+            let all = study.responses.iter();
+            all.map(|r| (r.speed_m_s, factor * pick(r))).collect()
         };
-        panel.add("all", line(&|k| study.responses[k].rms[i]), total);
+        panel.add("all", line(&|r| r.rms[i]), total);
         for (j, ink) in parts.iter().enumerate().filter(|_| both) {
-            let part = |k: usize| study.responses[k].rms_by_gust[j][i];
-            panel.add(GUSTS[j], line(&part), *ink);
+            panel.add(GUSTS[j], line(&|r| r.rms_by_gust[j][i]), *ink);
         }
         for domain in &study.time {
             let e = &domain.ensemble;

@@ -103,9 +103,8 @@ impl ReferenceUnit {
     }
 
     fn wind(&self) -> Option<usize> {
-        self.variables(|v| v.role == Role::WindSpeed)
-            .next()
-            .map(|(place, _)| place)
+        let mut winds = self.variables(|v| v.role == Role::WindSpeed);
+        winds.next().map(|(place, _)| place)
     }
 
     /// What is run: short to see whether it runs at all, and around the onset where there is one.
@@ -128,17 +127,12 @@ impl ReferenceUnit {
             return Ok(sets);
         }
         let onset = self.onset();
-        let (speed, period) = match onset {
-            Some((speed, frequency)) => (speed, 1.0 / frequency),
-            None => (self.wind_m_s, 1.0),
+        let (speed, period, what) = match onset {
+            Some((speed, frequency)) => (speed, 1.0 / frequency, "the onset"),
+            None => (self.wind_m_s, 1.0, "the wind of the default experiment"),
         };
-        let what = if onset.is_some() {
-            "the onset"
-        } else {
-            "the wind of the default experiment"
-        };
-        let run = |name: String, meaning: String, wind_m_s: f64| PlannedRun {
-            name,
+        let run = |name: &str, meaning: String, wind_m_s: f64| PlannedRun {
+            name: name.to_owned(),
             meaning,
             step_s: digits(period / STEPS_PER_PERIOD, 2),
             steps: (PERIODS * STEPS_PER_PERIOD) as usize,
@@ -147,11 +141,7 @@ impl ReferenceUnit {
         };
         let levels = LEVELS.map(|(level, factor)| {
             let wind = digits(factor * speed, 4);
-            run(
-                level.to_owned(),
-                format!("{factor} of {what}, {wind} m/s"),
-                wind,
-            )
+            run(level, format!("{factor} of {what}, {wind} m/s"), wind)
         });
         sets.push(ReferenceSet {
             name: "validation",
@@ -167,7 +157,7 @@ impl ReferenceUnit {
             ];
             let end = |(name, speed): (&str, f64)| {
                 run(
-                    name.to_owned(),
+                    name,
                     format!("The end of the interval at {speed} m/s"),
                     speed,
                 )
@@ -177,7 +167,7 @@ impl ReferenceUnit {
                 role: "experiment/uncertainty-analysis",
                 title: "Ends of the interval of the onset",
                 meaning: "Wind at both ends of the 95 % interval that the scatter of the data leaves for the onset",
-                runs: ends.into_iter().map(end).collect(),
+                runs: ends.map(end).into(),
             });
         }
         Ok(sets)
@@ -317,9 +307,7 @@ fn recorded_run(
     recorded: &[usize],
 ) -> std::result::Result<[Vec<Vec<f64>>; 2], Refusal> {
     let references = |places: &mut dyn Iterator<Item = usize>| -> Vec<u32> {
-        places
-            .filter_map(|place| u32::try_from(place).ok())
-            .collect()
+        places.filter_map(|p| u32::try_from(p).ok()).collect()
     };
     let of_inputs = references(&mut inputs.iter().map(|s| s.place));
     let of_outputs = references(&mut recorded.iter().copied());
@@ -338,10 +326,7 @@ fn recorded_run(
     instance.exit_initialization()?;
     now(instance, 0.0)?;
     for step in 0..planned.steps {
-        let (from, to) = (
-            step as f64 * planned.step_s,
-            (step + 1) as f64 * planned.step_s,
-        );
+        let [from, to] = [step, step + 1].map(|step| step as f64 * planned.step_s);
         let values = driven(from);
         instance.set_reals(&of_inputs, &values)?;
         set.push(with_time(from, values));
@@ -361,11 +346,8 @@ fn csv(names: &[&str], rows: &[Vec<f64>]) -> Result<String> {
     text.push('\n');
     for row in rows {
         let numbers = row.iter().map(|x| number(*x)).collect::<Result<Vec<_>>>();
-        text.push_str(
-            &numbers
-                .map_err(|_| Error::Numerical("a run that grew without end".into()))?
-                .join(","),
-        );
+        let grew = |_| Error::Numerical("a run that grew without end".into());
+        text += &numbers.map_err(grew)?.join(",");
         text.push('\n');
     }
     Ok(text)
