@@ -221,11 +221,10 @@ fn kind(line: &ArgMatches) -> String {
 fn readable_arguments() -> Result<()> {
     match std::env::args_os().find(|a| a.to_str().is_none()) {
         None => Ok(()),
-        Some(argument) => Err(Error::input(
-            "arguments",
-            "names and paths in UTF-8",
-            argument.to_string_lossy(),
-        )),
+        Some(argument) => {
+            let found = argument.to_string_lossy();
+            Err(Error::input("arguments", "names and paths in UTF-8", found))
+        }
     }
 }
 
@@ -242,12 +241,11 @@ fn usage(error: &clap::Error) -> u8 {
 }
 
 fn print(answer: &Answer, json: bool) -> u8 {
-    let said = if json {
-        say(&format!("{}\n", answer.json()))
-    } else {
-        say(&answer.shown())
+    let text = match json {
+        true => answer.json() + "\n",
+        false => answer.shown(),
     };
-    match said {
+    match say(&text) {
         Err(error) => {
             complain(&error);
             FAILED

@@ -187,13 +187,10 @@ impl ExportBlock {
     /// an importer that merely runs the FMU sees something; the FMU searches its onset up to `limit_m_s`.
     pub fn experiment(&self, first_m_s: f64, limit_m_s: f64) -> Experiment {
         // a round number of decimetres per second reads better in an importer
+        let part = self.part_of_onset * first_m_s;
         let speed = (10.0 * self.part_of_onset * first_m_s).floor() / 10.0;
         Experiment {
-            wind_speed_m_s: if speed > 0.0 {
-                speed
-            } else {
-                self.part_of_onset * first_m_s
-            },
+            wind_speed_m_s: if speed > 0.0 { speed } else { part },
             initial_vertical_m: self.initial_vertical_m,
             initial_rotation_rad: self.initial_rotation_deg.to_radians(),
             stop_time_s: self.stop_time_s,
@@ -280,18 +277,13 @@ impl Study {
     /// [`Error::Input`] when `export.model` names none of the models.
     pub(crate) fn exported(&self) -> Result<&ModelBlock> {
         let Some(name) = &self.export.model else {
-            return self
-                .models
-                .first()
-                .ok_or_else(|| Error::input("model", "at least one [[model]]", "none"));
+            let none = || Error::input("model", "at least one [[model]]", "none");
+            return self.models.first().ok_or_else(none);
         };
         self.models.iter().find(|m| m.name == *name).ok_or_else(|| {
             let names: Vec<_> = self.models.iter().map(|m| m.name.as_str()).collect();
-            Error::input(
-                "export.model",
-                format!("one of {}", names.join(", ")),
-                format!("`{name}`"),
-            )
+            let expected = format!("one of {}", names.join(", "));
+            Error::input("export.model", expected, format!("`{name}`"))
         })
     }
 }
@@ -358,13 +350,8 @@ impl ExportBlock {
     fn validate(&self) -> Result<()> {
         positive("export.part_of_onset", self.part_of_onset)?;
         let expected = format_args!("at most {MOST_OF_ONSET}: 1 is the onset");
-        let part = self.part_of_onset;
-        ensure(
-            part <= MOST_OF_ONSET,
-            "export.part_of_onset",
-            expected,
-            part,
-        )?;
+        let (place, part) = ("export.part_of_onset", self.part_of_onset);
+        ensure(part <= MOST_OF_ONSET, place, expected, part)?;
         positive("export.stop_time_s", self.stop_time_s)?;
         positive("export.step_size_s", self.step_size_s)?;
         let expected = format_args!("at most stop_time_s ({} s)", self.stop_time_s);

@@ -98,13 +98,8 @@ fn verdict(
 
 /// How many samples have an onset, where it lies, and how it scatters.
 fn onsets(r: &MonteCarloResult) -> Vec<String> {
-    let mut lines = vec![format!(
-        "{}: {}, seed {}: {}",
-        r.model,
-        counted(r.samples, "sample"),
-        r.seed,
-        r.counts_in_words()
-    )];
+    let (samples, counts) = (counted(r.samples, "sample"), r.counts_in_words());
+    let mut lines = vec![format!("{}: {samples}, seed {}: {counts}", r.model, r.seed)];
     if let Some(speed) = r.unstable_up_to_m_s {
         lines.push(format!(
             "warning: {} samples are unstable at and below the lowest speed that could be judged (up to {speed:.3} m/s): \
@@ -208,10 +203,9 @@ fn warnings(r: &MonteCarloResult) -> Vec<String> {
 
 /// The samples that failed, as far as they are named, and how many more.
 fn failures(r: &MonteCarloResult) -> Vec<String> {
-    let named = r.failures.iter();
-    let mut lines: Vec<String> = named
-        .map(|f| format!("failed: sample {}: {}", f.sample, f.reason))
-        .collect();
+    let failed = r.failures.iter();
+    let failed = failed.map(|f| format!("failed: sample {}: {}", f.sample, f.reason));
+    let mut lines: Vec<String> = failed.collect();
     if r.failed > lines.len() {
         lines.push(format!("failed: {} more", r.failed - lines.len()));
     }

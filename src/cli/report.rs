@@ -222,10 +222,8 @@ fn asked(summary: &Summary, study: &Study) -> Vec<(String, String)> {
                 (None, Some(k)) => format!("stiffness {k} per metre"),
                 (None, None) => "no spring".to_owned(),
             };
-            format!(
-                "{inertia}, {spring}, damping ratio {} %",
-                round(100.0 * damping)
-            )
+            let percent = round(100.0 * damping);
+            format!("{inertia}, {spring}, damping ratio {percent} %")
         };
     let translation = |t: &crate::section::Translation| {
         let mass = format!("{} kg/m", t.mass_kg_m);
@@ -233,25 +231,16 @@ fn asked(summary: &Summary, study: &Study) -> Vec<(String, String)> {
     };
     let t = &s.torsion;
     let inertia = format!("{} kg·m²/m", t.inertia_kg_m2_m);
-    let mut asked = vec![
-        ("deck", summary.deck.clone()),
-        (
-            "width B, air",
-            format!("{} m, {} kg/m³", s.width_m, s.air_density_kg_m3),
-        ),
-        ("vertical", translation(&s.vertical)),
-    ];
+    let torsion = support(inertia, t.frequency_hz, t.stiffness_n, t.damping_ratio);
+    let width = format!("{} m, {} kg/m³", s.width_m, s.air_density_kg_m3);
+    let mut asked = vec![("deck", summary.deck.clone()), ("width B, air", width)];
+    asked.push(("vertical", translation(&s.vertical)));
     asked.extend(s.lateral.iter().map(|l| ("lateral", translation(l))));
-    asked.push((
-        "torsion",
-        support(inertia, t.frequency_hz, t.stiffness_n, t.damping_ratio),
-    ));
+    asked.push(("torsion", torsion));
     if s.axis_offset_m.is_some() || s.mass_offset_m.is_some() {
-        let offset = |x: Option<f64>| x.unwrap_or(0.0);
+        let [axis, mass] = [s.axis_offset_m, s.mass_offset_m].map(|x| x.unwrap_or(0.0));
         let text = format!(
-            "axis {} m downwind of mid-chord, centre of mass {} m downwind of the axis",
-            offset(s.axis_offset_m),
-            offset(s.mass_offset_m)
+            "axis {axis} m downwind of mid-chord, centre of mass {mass} m downwind of the axis"
         );
         asked.push(("offsets", text));
     }

@@ -92,19 +92,13 @@ impl BridgeStudy {
     /// # Errors
     /// [`Error::Input`] for a file without the block and for values that cannot be.
     pub fn buffeting_block(&self) -> Result<BuffetingBlock> {
-        let table = self.file.buffeting.clone();
-        let table = table.ok_or_else(|| {
-            Error::input(
-                "buffeting",
-                "a block [buffeting] with the turbulence",
-                "none",
-            )
-        })?;
+        let wrong = |expected: &str, found: &str| Error::input("buffeting", expected, found);
+        let none = || wrong("a block [buffeting] with the turbulence", "none");
+        let table = self.file.buffeting.clone().ok_or_else(none)?;
         let block: BuffetingBlock = table.try_into().map_err(|e: toml::de::Error| {
-            Error::input(
-                "buffeting",
+            wrong(
                 "turbulence, coherence and plan",
-                e.message().replace('\n', " "),
+                &e.message().replace('\n', " "),
             )
         })?;
         block.coherence.validate("buffeting.coherence")?;
@@ -139,10 +133,8 @@ impl BridgeStudy {
         bridge: &Bridge,
         block: &BuffetingBlock,
     ) -> Result<BuffetingProblem<'static>> {
-        let turbulence = Turbulence {
-            along: block.along,
-            vertical: block.vertical,
-        };
+        let (along, vertical) = (block.along, block.vertical);
+        let turbulence = Turbulence { along, vertical };
         BuffetingProblem::of_bridge(bridge, &self.gust_matrices()?, turbulence, block.coherence)
     }
 
@@ -177,13 +169,8 @@ impl BridgeStudy {
             let beside = tables.is_some();
             let beside = beside.then(|| self.beside_tables(&models, &frequency));
             let spectra = domain.spectra(&nodes)?;
-            let envelope = envelope(
-                self,
-                &domain,
-                speed_m_s,
-                block.time.peak_s(),
-                block.section_forces.as_deref(),
-            )?;
+            let (peak_s, forces) = (block.time.peak_s(), block.section_forces.as_deref());
+            let envelope = envelope(self, &domain, speed_m_s, peak_s, forces)?;
             Ok((frequency, beside.transpose()?, spectra, envelope))
         };
         let (of_frequencies, time) = rayon::join(of_frequencies, || {
@@ -227,10 +214,9 @@ impl BridgeStudy {
                 .collect()
         });
         let sections = self.file.sections.iter().zip(&self.sections);
+        let fits = sections.map(|(block, forces)| format!("{}: {}", block.name, forces.method));
         Ok(ModelsBesideTables {
-            fits: sections
-                .map(|(block, forces)| format!("{}: {}", block.name, forces.method))
-                .collect(),
+            fits: fits.collect(),
             response,
             change,
         })

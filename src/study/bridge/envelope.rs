@@ -66,24 +66,21 @@ pub(super) fn envelope(
     let still = study.static_coefficients().unwrap_or_default();
     let at_rest = study.by_model.forces();
     let at_rest = at_rest.transfer(ReducedFrequency::from_full_width(0.0))?;
+    let peaks = |r: &[[f64; 3]; 3]| r.map(|of| peak(of, duration_s));
+    let section_forces = match forces {
+        Some(path) => {
+            let path = study.file.directory.join(path);
+            section_forces(&path, bridge, &covariances, duration_s)?
+        }
+        None => Vec::new(),
+    };
     Ok(SpanEnvelope {
         along_m: bridge.nodes.iter().map(|n| n.along_m).collect(),
         mean: static_deflection(&study.by_model, &still, &at_rest, speed_m_s)?,
         rms: rms.iter().map(|r| r.map(|of| of[0])).collect(),
-        peak_factor: rms
-            .iter()
-            .map(|r| r.map(|of| peak(of, duration_s)))
-            .collect(),
+        peak_factor: rms.iter().map(peaks).collect(),
         acceleration_rms: rms.iter().map(|r| r.map(|of| of[2])).collect(),
-        section_forces: match forces {
-            Some(path) => section_forces(
-                &study.file.directory.join(path),
-                bridge,
-                &covariances,
-                duration_s,
-            )?,
-            None => Vec::new(),
-        },
+        section_forces,
     })
 }
 

@@ -149,15 +149,14 @@ impl SectionForceModels {
             ModelUncertainty::of_data(known, forms, tested)
         });
         let notes = report.notes.iter();
+        let notes = notes.map(|n| format!("section {}: {n}", block.name));
         let alone = report.constraints.and_then(|held| held.unconstrained);
         Ok(Self {
             method: report.method,
             source: table.header.source.clone(),
             licence: table.header.licence.clone(),
             tested: Some(tested),
-            notes: notes
-                .map(|n| format!("section {}: {n}", block.name))
-                .collect(),
+            notes: notes.collect(),
             unconstrained: alone.map(|model| Arc::from(model as Box<dyn Transfer>)),
             uncertainty: known.map(|k| Some(Box::new(k))).map_err(|e| e.to_string()),
             ..Self::of(Arc::new(model.clone()), model)
@@ -168,19 +167,14 @@ impl SectionForceModels {
     fn flat_plate(block: &BridgeSectionBlock) -> Result<Self> {
         let place = format!("section {}", block.name);
         let expected = "vertical and torsional motion with the flat plate";
-        ensure(
-            block.motions == Dof::TWO,
-            place.as_str(),
-            expected,
-            Dof::names(&block.motions),
-        )?;
+        let (two, found) = (block.motions == Dof::TWO, Dof::names(&block.motions));
+        ensure(two, place.as_str(), expected, found)?;
         let expected = "a table in a file (.csv, .xlsx)";
-        ensure(
-            block.convention.is_empty(),
+        let (place, found) = (
             format!("{place}: convention"),
-            expected,
             format_args!("`{FLAT_PLATE}`"),
-        )?;
+        );
+        ensure(block.convention.is_empty(), place, expected, found)?;
         let jones = RationalModel::jones_flat_plate();
         Ok(Self {
             table: Some(Arc::new(FlatPlate::default())),

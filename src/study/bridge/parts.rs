@@ -234,11 +234,10 @@ impl SectionForcePart {
                 let (motion, force, external) = match dof {
                     Dof::Vertical => (["heave", "heave_rate"], "total_lift", "external_lift"),
                     Dof::Lateral => (["sway", "sway_rate"], "total_drag", "external_drag"),
-                    Dof::Torsion => (
-                        ["rotation", "rotation_rate"],
-                        "total_moment",
-                        "external_moment",
-                    ),
+                    Dof::Torsion => {
+                        let motion = ["rotation", "rotation_rate"];
+                        (motion, "total_moment", "external_moment")
+                    }
                 };
                 motions.extend(motion.map(|of| Connection {
                     from: at(STRUCTURE, of),
