@@ -4,6 +4,7 @@ pub mod description;
 pub mod description_fmi3;
 pub mod package;
 pub mod ssp;
+mod ssv;
 
 pub use aerodeck_fmu_host as importer;
 use aerodeck_fmu_host::xml;

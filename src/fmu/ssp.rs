@@ -4,15 +4,13 @@
 use super::Element;
 use super::description::number;
 use super::package::archive;
+use super::ssv::{VERSION, parameter_set};
 use crate::error::{Result, ensure};
 use crate::trained_model::Experiment;
 use std::collections::BTreeMap;
 
 const STRUCTURE: &str = "http://ssp-standard.org/SSP1/SystemStructureDescription";
-const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";
 const COMMON: &str = "http://ssp-standard.org/SSP1/SystemStructureCommon";
-/// Version of the standard.
-const VERSION: &str = "1.0";
 
 /// A unit of a system.
 #[derive(Debug, Clone)]
@@ -126,20 +124,4 @@ impl System {
 
 fn resource(name: &str, ending: &str) -> String {
     format!("resources/{name}.{ending}")
-}
-
-/// Start values of that name as an SSV file.
-pub(super) fn parameter_set(of: &str, values: &[(String, f64)]) -> Result<String> {
-    let mut all = Vec::new();
-    for (name, value) in values {
-        let value = Element::new("ssv:Real").with("value", number(*value)?);
-        let parameter = Element::new("ssv:Parameter").with("name", name);
-        all.push(parameter.containing([value]));
-    }
-    let root = Element::new("ssv:ParameterSet")
-        .with("xmlns:ssv", VALUES)
-        .with("version", VERSION)
-        .with("name", of)
-        .containing([Element::new("ssv:Parameters").containing(all)]);
-    Ok(root.document())
 }

@@ -18,7 +18,6 @@ pub use answers::{
 pub use buffeting::{BridgeBuffeting, BuffetingBlock, ModelsBesideTables};
 pub use envelope::{SectionForceResponse, SpanEnvelope};
 pub use export::BridgeExportOptions;
-use export::STATIC_COEFFICIENTS;
 pub use forces::SectionForceModels;
 pub(crate) use forces::block_table;
 pub use parts::SectionForcePart;

@@ -5,6 +5,7 @@
 //! structure, and handbook formulas. Two routes on one force model must agree to rounding; between force models the
 //! table shows what the choice of the model does.
 
+mod limit;
 mod steady;
 
 use super::{Deck, Study};
@@ -19,8 +20,8 @@ use crate::flutter::{
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use limit::{limit_onset, low_frequency_limit, steady_flat_plate};
 use serde::Serialize;
-use steady::{limit_onset, low_frequency_limit, steady_flat_plate};
 
 /// Reduced frequencies from still air to nearly steady flow.
 const WIDE: (f64, f64) = (0.02, 10.0);

@@ -1,5 +1,6 @@
 //! A bridge in parts: its structure alone, the wind forces on its sections, and both as a system of FMUs.
 
+use super::export::STATIC_COEFFICIENTS;
 use crate::aerodynamics::{GustForce, RationalAdmittance, RationalModel, Transfer as _};
 use crate::bridge::StripGroup;
 use crate::error::{Error, Result, ensure};
@@ -8,7 +9,7 @@ use crate::fmu::force_options::{ForceOptions, FurtherModel, StripOptions};
 use crate::fmu::package::{Export, FmiVersion, Label, Runtime, package};
 use crate::fmu::ssp::{Connection, System, SystemComponent};
 use crate::section::Dof;
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy, STATIC_COEFFICIENTS};
+use crate::study::bridge::{BridgeExportOptions, BridgeStudy};
 use crate::trained_model::{Model, Provenance, TrainedModel};
 use crate::verdict::Verdict;
 use nalgebra::DMatrix;
