@@ -8,18 +8,16 @@
 //! Q = Σ_i w_i Φ_iᵀ ½ρ(p_i V)² diag(B, B, B²) G(ωB/(p_i V)) diag(1/B, 1/B, 1) Φ_i η
 //! ```
 //!
-//! Nodes of one section in one wind are a group; for a group the sums over nodes are done once (`sums`), and what follows
+//! Nodes of one section in one wind are a group; for a group the sums over nodes are done once, and what follows
 //! (`modal`) is a structure in generalised coordinates with a force model of as many rows: coupling, flutter, response and
 //! FMU treat it as they treat a section. A section is the bridge of one node of unit length with unit shapes
 //! ([`Bridge::of_section`]).
 
 mod banks;
-mod damped;
 mod dampers;
 mod gusts;
 mod modal;
 mod similarity;
-mod sums;
 
 pub use dampers::{DampedPoint, Dampers, MassDamper, ViscousLink};
 pub use gusts::GustChannels;

@@ -12,7 +12,6 @@ mod choice;
 mod crossing;
 mod pencil;
 mod samples;
-mod setup;
 
 pub use basis::LinearForces;
 pub use samples::at_samples;
@@ -22,8 +21,7 @@ use crate::error::{Result, ensure, positive};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::state_space::Complex64;
 use crossing::Crossing;
-use pencil::{Pencil, Supports};
-use setup::{K_MAX, grid, supports};
+use pencil::{K_MAX, Pencil, Supports, grid, supports};
 
 /// Growth up to this part of the frequency is rounding.
 const ROUNDING: f64 = 1e-9;

@@ -3,8 +3,8 @@
 //! Strips go four at a time through the same operations, each in its own lane, so that its numbers do not depend on its
 //! neighbours. Where many strips lie in one flow, all go by one matrix: what unit numbers become on the same way.
 
+use super::StripFlow;
 use super::course::{COEFFICIENTS, MotionCubic};
-use super::flow::StripFlow;
 use crate::aerodynamics::{DiscreteRealization, Realization};
 use crate::error::{Error, Result};
 use crate::response::lanes::LANES;
