@@ -19,7 +19,7 @@ pub fn read_text(path: &Path) -> Result<String> {
     refuse_utf16(&bytes).map_err(|e| e.in_file(path))?;
     String::from_utf8(bytes).map_err(|e| {
         let (at, bytes) = (e.utf8_error().valid_up_to(), e.as_bytes());
-        let line = 1 + bytes[..at].iter().filter(|b| **b == b'\n').count();
+        let line = line_at(bytes, at);
         let found = format!("the byte 0x{:02x} (Latin-1?)", bytes[at]);
         Error::input(format!("line {line}"), "text in UTF-8", found).in_file(path)
     })
@@ -29,6 +29,18 @@ pub fn read_text(path: &Path) -> Result<String> {
 pub(crate) fn parsed<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T>) -> Result<T> {
     let text = read_text(path)?;
     parse(&text).map_err(|e| e.in_file(path))
+}
+
+/// The line, from 1, in which a byte of a text stands.
+pub(crate) fn line_at(text: &[u8], offset: usize) -> usize {
+    let before = &text[..offset.min(text.len())];
+    1 + before.iter().filter(|b| **b == b'\n').count()
+}
+
+/// The separator that a first row uses: where semicolons or tabs separate, commas are decimal.
+pub(crate) fn separator(row: &[u8]) -> u8 {
+    let mut others = [b';', b'\t'].into_iter();
+    others.find(|s| row.contains(s)).unwrap_or(b',')
 }
 
 /// Refuses a file, in words, of more bytes than these.

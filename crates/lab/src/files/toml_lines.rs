@@ -1,16 +1,11 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
 use crate::error::{Error, Place, PlaceStep, Result, has_control_characters};
-use crate::files::text::{parsed, read_text};
+use crate::files::text::{line_at, parsed, read_text};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
-
-fn line_of(text: &str, offset: usize) -> usize {
-    let before = &text.as_bytes()[..offset.min(text.len())];
-    1 + before.iter().filter(|b| **b == b'\n').count()
-}
 
 /// The file at `path` by `parse`, which is given its text and its directory.
 pub fn read<T>(path: &Path, parse: impl FnOnce(&str, PathBuf) -> Result<T>) -> Result<T> {
@@ -194,7 +189,7 @@ impl LinesOfJson {
 
 /// What was expected at an offset of `text`, and what stands there.
 fn refused(what: &str, text: &str, offset: usize, message: &str) -> Error {
-    let line = line_of(text, offset);
+    let line = line_at(text.as_bytes(), offset);
     let stood = text.lines().nth(line - 1).unwrap_or("").trim();
     let expected = format!("{what} ({})", message.replace('\n', " "));
     Error::input(Place::line(line), expected, format!("`{stood}`"))
@@ -238,7 +233,7 @@ fn line_of_key(text: &str, place: &[PlaceStep]) -> Option<usize> {
         };
         (table, list) = (value.get_ref().as_table(), value.get_ref().as_array());
     }
-    offset.map(|o| line_of(text, o))
+    offset.map(|o| line_at(text.as_bytes(), o))
 }
 
 #[cfg(test)]

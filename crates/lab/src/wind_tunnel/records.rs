@@ -78,15 +78,14 @@ impl RecordHeader {
         let (mut free_s, last_s) = (0.0, samples as f64 * step_s);
         for s in &self.segments {
             positive(self.place(s), s.frequency_hz)?;
-            ensure(
-                s.start_s >= free_s - step_s && s.end_s > s.start_s && s.end_s <= last_s + step_s,
-                self.place(s),
-                format_args!(
-                    "a stretch of its own between {free_s} s and the end of the record at {last_s} s"
-                ),
-                format_args!("{} s to {} s", s.start_s, s.end_s),
-            )?;
-            free_s = s.end_s;
+            let (start, end) = (s.start_s, s.end_s);
+            let inside = start >= free_s - step_s && end > start && end <= last_s + step_s;
+            let expected = format_args!(
+                "a stretch of its own between {free_s} s and the end of the record at {last_s} s"
+            );
+            let found = format_args!("{start} s to {end} s");
+            ensure(inside, self.place(s), expected, found)?;
+            free_s = end;
         }
         Ok(())
     }

@@ -199,12 +199,9 @@ impl TunnelPlan {
         ensure(rate <= MOST_HERTZ, "sampling_hz", expected, rate)?;
         let seconds = self.still_s + self.segment_s * self.frequencies_hz.len() as f64;
         let samples = rate * seconds;
-        ensure(
-            samples <= MOST_SAMPLES,
-            "segment_s",
-            format_args!("records of at most {MOST_SAMPLES:e} samples"),
-            format_args!("{samples:e}: {seconds} s at {rate} Hz"),
-        )
+        let expected = format_args!("records of at most {MOST_SAMPLES:e} samples");
+        let found = format_args!("{samples:e}: {seconds} s at {rate} Hz");
+        ensure(samples <= MOST_SAMPLES, "segment_s", expected, found)
     }
 
     /// Checks duration and band of the motion against the other keys.
@@ -215,12 +212,10 @@ impl TunnelPlan {
         if let TrainingMotion::WhiteNoise { min_hz, max_hz, .. } = self.motion {
             positive("motion.min_hz", min_hz)?;
             let highest = 0.2 * self.sampling_hz;
-            ensure(
-                max_hz > min_hz && max_hz <= highest,
-                "motion.max_hz",
-                format_args!("more than min_hz and at most a fifth of sampling_hz ({highest} Hz)"),
-                max_hz,
-            )?;
+            let fits = max_hz > min_hz && max_hz <= highest;
+            let expected =
+                format_args!("more than min_hz and at most a fifth of sampling_hz ({highest} Hz)");
+            ensure(fits, "motion.max_hz", expected, max_hz)?;
         }
         positive("motion.duration_s", duration)?;
         let ramps = 2.0 * self.ramp_s;

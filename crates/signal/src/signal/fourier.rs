@@ -32,12 +32,7 @@ impl Fourier {
         self.forward.get_or_init(plan).process(values);
     }
 
-    /// Replaces `X_n` by `Σ_n X_n exp(2πi kn/N)`, which is `N x_k`.
-    pub fn inverse(&self, values: &mut [Complex64]) {
-        self.inverse_in(values, &mut Vec::new());
-    }
-
-    /// [`Self::inverse`] in memory that the caller keeps from one transform to the next.
+    /// Replaces `X_n` by `Σ_n X_n exp(2πi kn/N)`, which is `N x_k`, in memory that the caller keeps from one transform to the next.
     pub fn inverse_in(&self, values: &mut [Complex64], scratch: &mut Vec<Complex64>) {
         let plan = || FftPlanner::new().plan_fft_inverse(self.length);
         let plan = self.inverse.get_or_init(plan);
@@ -55,7 +50,7 @@ impl Fourier {
 
     /// A real signal times `N` from its spectrum.
     pub fn sums(&self, mut spectrum: Vec<Complex64>) -> Vec<f64> {
-        self.inverse(&mut spectrum);
+        self.inverse_in(&mut spectrum, &mut Vec::new());
         spectrum.iter().map(|z| z.re).collect()
     }
 }

@@ -90,12 +90,10 @@ impl FieldTable {
             ensure(x[1] > x[0], place, "places that rise", found)?;
         }
         let covered = (own[0] - SAME_PLACE)..=(own[own.len() - 1] + SAME_PLACE);
-        ensure(
-            wanted.iter().all(|x| covered.contains(x)),
-            "places of the turbulence",
-            format_args!("{first} to {last} m, where the nodes of the bridge are"),
-            format_args!("{} to {} m", own[0], own[own.len() - 1]),
-        )?;
+        let holds = wanted.iter().all(|x| covered.contains(x));
+        let expected = format_args!("{first} to {last} m, where the nodes of the bridge are");
+        let found = format_args!("{} to {} m", own[0], own[own.len() - 1]);
+        ensure(holds, "places of the turbulence", expected, found)?;
         let of = |rows: &Vec<Vec<f64>>| wanted.iter().map(|x| between(&own, rows, *x)).collect();
         Ok(Self {
             step_s: self.step_s,

@@ -94,12 +94,11 @@ impl BridgeSectionBlock {
         let any = self.derivatives.is_some() || self.model.is_some() || self.statics.is_some();
         let expected = "one of `derivatives`, `model`, `static`";
         ensure(any, place, expected, "none")?;
-        ensure(
-            self.motions == Dof::TWO || self.motions == Dof::THREE,
-            format_args!("{place}.motions"),
-            "[\"vertical\", \"torsion\"] or [\"vertical\", \"lateral\", \"torsion\"]",
-            Dof::names(&self.motions),
-        )?;
+        let motions = &self.motions;
+        let known = motions == &Dof::TWO || motions == &Dof::THREE;
+        let (key, found) = (format!("{place}.motions"), Dof::names(motions));
+        let expected = "[\"vertical\", \"torsion\"] or [\"vertical\", \"lateral\", \"torsion\"]";
+        ensure(known, key, expected, found)?;
         let statics = self.statics.unwrap_or_default();
         statics.arms.validate(&format!("{place}.static."))
     }

@@ -35,12 +35,10 @@ const OFFSETS: [&str; 2] = ["downwind_m", "up_m"];
 const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
 
 pub(super) fn parse(text: &str) -> Result<BridgeModes> {
-    ensure(
-        text.lines().next().map(str::trim) == Some(&format!("# {FORMAT}")),
-        "line 1",
-        format_args!("`# {FORMAT}`"),
-        format_args!("`{}`", text.lines().next().unwrap_or("")),
-    )?;
+    let first = text.lines().next().unwrap_or("");
+    let (expected, found) = (format!("# {FORMAT}"), format_args!("`{first}`"));
+    let is_ours = first.trim() == expected;
+    ensure(is_ours, "line 1", format_args!("`{expected}`"), found)?;
     let header = CommentHeader::read(text, &[FORMAT], KEYS, &[MODE])?;
     header.must_say("axes", AXES)?;
     header.must_say("units", UNITS)?;

@@ -109,11 +109,14 @@ impl TurbSimHeader {
         positive("mean wind", self.mean_speed_m_s)?;
         let top = self.lowest_m + (self.counts[0] - 1) as f64 * self.steps[0];
         let rows = (self.lowest_m - SAME_HEIGHT)..=(top + SAME_HEIGHT);
+        let (hub, lowest) = (self.hub_height_m, self.lowest_m);
+        let inside = self.counts[0] == 1 || rows.contains(&hub);
+        let expected = format_args!("one within the grid, {lowest} to {top} m");
         ensure(
-            self.counts[0] == 1 || rows.contains(&self.hub_height_m),
+            inside,
             "height of the hub",
-            format_args!("one within the grid, {} to {top} m", self.lowest_m),
-            format_args!("{} m", self.hub_height_m),
+            expected,
+            format_args!("{hub} m"),
         )?;
         for c in ALONG_AND_UP {
             let place = format_args!("slope of component {}", c + 1);

@@ -68,11 +68,9 @@ fn data(
     let found = counted(rows.len(), "row");
     ensure(rows.len() == wanted, "phi.full", expected, found)?;
     if let Some(i) = rows.iter().position(|r| r.len() != modal.m.len()) {
-        return Err(Error::input(
-            format!("phi.full[{i}]"),
-            format!("{}, one per mode of `m`", counted(modal.m.len(), "column")),
-            counted(rows[i].len(), "column"),
-        ));
+        let [wanted, found] = [modal.m.len(), rows[i].len()].map(|n| counted(n, "column"));
+        let expected = format!("{wanted}, one per mode of `m`");
+        return Err(Error::input(format!("phi.full[{i}]"), expected, found));
     }
     let of_number = |(m, omega): (usize, f64)| {
         let at = |n: usize| std::array::from_fn(|d| rows[6 * n + d][m]);
@@ -90,13 +88,10 @@ fn frequencies(modal: &Modal) -> Result<Vec<f64>> {
         ensure(values.len() == count, name, expected, values.len())?;
         let one = |(i, x): (usize, &f64)| {
             let omega = if square { (x / modal.m[i]).sqrt() } else { *x };
-            ensure(
-                omega > 0.0 && omega.is_finite() && modal.m[i] > 0.0,
-                format_args!("mode {}", i + 1),
-                "a positive mass and frequency",
-                format_args!("mass {}, {name} {x}", modal.m[i]),
-            )?;
-            Ok(omega)
+            let is_positive = omega > 0.0 && omega.is_finite() && modal.m[i] > 0.0;
+            let (place, expected) = (format!("mode {}", i + 1), "a positive mass and frequency");
+            let found = format_args!("mass {}, {name} {x}", modal.m[i]);
+            ensure(is_positive, place, expected, found).map(|()| omega)
         };
         values.iter().enumerate().map(one).collect()
     };

@@ -28,7 +28,7 @@ use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result, ensure};
 use crate::files::derivatives::csv_header::{
-    ReadOptions, provenance, read_head, stated, width_m, write_head,
+    ReadOptions, provenance, read_head, stated, width_stated, write_head,
 };
 use crate::files::derivatives::csv_wide::{self, Rows};
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
@@ -96,7 +96,10 @@ pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<(DerivativeTabl
     let mut points = csv_wide::checked(rows, &convention)?;
     let mut header = provenance(&head)?;
     header.notes.extend(fill_in(&mut points, options.missing));
-    let width = width_m(&head, options.width_m)?;
+    let width = match width_stated(&head, options.width_m)? {
+        Some(width) => width,
+        None => head.required("width_m")?.positive()?,
+    };
     let table = DerivativeTable::new(head.required("name")?.value.clone(), width, header, points)?;
     Ok((table, convention))
 }

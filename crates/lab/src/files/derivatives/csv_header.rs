@@ -96,14 +96,6 @@ pub(super) fn stated(head: &CommentHeader) -> Result<StatedConvention> {
     Ok(stated)
 }
 
-/// Width `B`, m, of a file that must state it unless the caller does.
-pub(super) fn width_m(head: &CommentHeader, stated: Option<f64>) -> Result<f64> {
-    match width_stated(head, stated)? {
-        Some(width) => Ok(width),
-        None => head.required("width_m")?.positive(),
-    }
-}
-
 /// Width `B`, m, if the file or the caller states it; they may not contradict each other.
 pub(super) fn width_stated(head: &CommentHeader, stated: Option<f64>) -> Result<Option<f64>> {
     let stated = stated.map(|width| crate::error::positive("width_m", width));

@@ -22,7 +22,7 @@ use crate::files::derivatives::csv_header::{
 };
 use crate::files::header_csv::CommentHeader;
 use crate::files::header_csv::number;
-use crate::files::text::is_blank;
+use crate::files::text::{is_blank, separator};
 use std::collections::BTreeMap;
 
 const SPEED: &str = "mean_speed_m_s";
@@ -43,12 +43,6 @@ struct WideColumns<'a> {
     decimal_comma: bool,
 }
 
-/// The separator that the first row uses.
-fn separator(row: &str) -> char {
-    let mut others = [';', '\t'].into_iter();
-    others.find(|c| row.contains(*c)).unwrap_or(',')
-}
-
 fn cells(row: &str, separator: char) -> Vec<&str> {
     let bare = |cell: &str| -> usize { cell.len() - cell.trim_start_matches(['"', ' ']).len() };
     row.split(separator)
@@ -60,7 +54,7 @@ fn cells(row: &str, separator: char) -> Vec<&str> {
 pub(super) fn is_wide(text: &str) -> bool {
     let mut rows = text.lines().filter(|l| !l.starts_with('#') && !is_blank(l));
     rows.next()
-        .is_some_and(|row| !cells(row, separator(row)).contains(&"derivative"))
+        .is_some_and(|row| !cells(row, separator(row.as_bytes()).into()).contains(&"derivative"))
 }
 
 /// The table in `text`; `stem` names it when the header does not.
@@ -78,7 +72,7 @@ pub(super) fn parse(
     let mut lines = lines.filter(|l| !is_blank(l.1));
     let empty = || Error::input("", "a row of column names", "an empty file");
     let (line, row) = lines.next().ok_or_else(empty)?;
-    let between = separator(row);
+    let between = char::from(separator(row.as_bytes()));
     let names: Vec<&str> = cells(row, between).into_iter().map(without_unit).collect();
     let mut in_file = stated(&head)?;
     let said = options.convention.argument;

@@ -6,7 +6,7 @@
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Place, Result, counted};
-use crate::files::text::refuse_utf16;
+use crate::files::text::{line_at, refuse_utf16, separator};
 use std::borrow::Cow;
 
 /// A row of a thousand channels has 20 kB.
@@ -24,9 +24,9 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut set = ChannelSet::default();
     let start = take_comments(bytes, &mut set);
-    let (skipped, rest) = (count_lines(&bytes[..start]), &bytes[start..]);
+    let (skipped, rest) = (line_at(bytes, start) - 1, &bytes[start..]);
     check_lines(rest, skipped)?;
-    let separator = separator(rest);
+    let separator = separator(rest.split(|b| *b == b'\n').next().unwrap_or(rest));
     let decimal_comma = separator != b',';
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(separator)
@@ -93,18 +93,6 @@ fn check_lines(bytes: &[u8], skipped: usize) -> Result<()> {
     let expected = format!("a row of at most {LINE_BYTES_AT_MOST} bytes");
     let place = Place::line(skipped + i + 1);
     Err(Error::input(place, expected, format!("{length} bytes")))
-}
-
-fn count_lines(bytes: &[u8]) -> usize {
-    bytes.iter().filter(|b| **b == b'\n').count()
-}
-
-/// The separator is the one of semicolon, tab and comma that the first line holds, in this order: where
-/// semicolons or tabs separate, commas are decimal.
-fn separator(text: &[u8]) -> u8 {
-    let first = text.split(|b| *b == b'\n').next().unwrap_or(text);
-    let mut others = [b';', b'\t'].into_iter();
-    others.find(|s| first.contains(s)).unwrap_or(b',')
 }
 
 /// A number, NaN where nothing stands; `None` for text.

@@ -208,11 +208,11 @@ impl Campaign {
                     cells: vec![SectionForces::cell()],
                 })
             }
-            (rig, _) => Err(Error::input(
-                "rig",
-                "either load cells in `rig`, or the forces on the whole section in `channels.section`",
-                if rig.is_some() { "both" } else { "neither" },
-            )),
+            (rig, _) => {
+                let found = if rig.is_some() { "both" } else { "neither" };
+                let expected = "either load cells in `rig`, or the forces on the whole section in `channels.section`";
+                Err(Error::input("rig", expected, found))
+            }
         }
     }
 
@@ -298,34 +298,23 @@ impl RunBlock {
         let key = |name: &str| format!("{place}.{name}");
         let of_run = format!("(run `{}`)", self.name);
         ensure(!self.name.trim().is_empty(), key("name"), "a name", "none")?;
-        ensure(
-            self.still_air.is_some() || map.section.is_some(),
-            key("still_air"),
-            format_args!("the recording of the same motion in still air {of_run}"),
-            "none",
-        )?;
-        ensure(
-            !self.motion.is_empty(),
-            key("motion"),
-            format_args!("what moves {of_run}: vertical, lateral, torsion"),
-            "nothing",
-        )?;
+        let has_both = self.still_air.is_some() || map.section.is_some();
+        let expected = format_args!("the recording of the same motion in still air {of_run}");
+        ensure(has_both, key("still_air"), expected, "none")?;
+        let moves = !self.motion.is_empty();
+        let expected = format_args!("what moves {of_run}: vertical, lateral, torsion");
+        ensure(moves, key("motion"), expected, "nothing")?;
         for dof in &self.motion {
             self.validate_motion(*dof, map).map_err(|expected| {
                 let expected = format!("{expected} {of_run}");
                 Error::input(key("motion"), expected, "none")
             })?;
         }
-        match self.mean_speed_m_s {
-            Some(speed) => {
-                positive(key("mean_speed_m_s"), speed)?;
-            }
-            None if map.wind_speed.is_none() => {
-                let expected =
-                    format!("a mean speed or the channel `channels.wind_speed` {of_run}");
-                return Err(Error::input(key("mean_speed_m_s"), expected, "neither"));
-            }
-            None => {}
+        let is_known = self.mean_speed_m_s.is_some() || map.wind_speed.is_some();
+        let expected = format_args!("a mean speed or the channel `channels.wind_speed` {of_run}");
+        ensure(is_known, key("mean_speed_m_s"), expected, "neither")?;
+        if let Some(speed) = self.mean_speed_m_s {
+            positive(key("mean_speed_m_s"), speed)?;
         }
         // what comes from the files is checked when they are read
         let by_file =

@@ -114,12 +114,10 @@ pub(super) fn check_force(run: &str, rig: &Rig, still: &RawRecording, dof: Dof) 
         (key, Some(stated), unit) => format!("about the {stated:.4} {unit} that `{key}` states"),
         _ => "the inertia of the model".to_owned(),
     };
-    ensure(
-        channels.any(|c| c.iter().any(|f| *f != c[0])),
-        format_args!("run {run}, still air, {} motion", dof.name()),
-        expected,
-        "no force: no load-cell channel ever changes",
-    )
+    let place = format_args!("run {run}, still air, {} motion", dof.name());
+    let pushes = channels.any(|c| c.iter().any(|f| *f != c[0]));
+    let found = "no force: no load-cell channel ever changes";
+    ensure(pushes, place, expected, found)
 }
 
 /// Compares the inertia with that of the rig, if it states one: a doubt with the figures, or nothing.
