@@ -5,6 +5,7 @@
 
 mod estimate;
 
+pub use estimate::GrowthPoint;
 use estimate::growth_of_samples;
 
 use super::Fmu;
@@ -13,7 +14,6 @@ use super::simulation::{Times, start};
 use super::slave::{Slave, find};
 use crate::error::{Error, Result, ensure, positive};
 use crate::flutter::StableRange;
-use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// Names of displacement and rate of the motions that a section may have.
@@ -43,26 +43,6 @@ const MAX_STEPS: usize = 2_000_000;
 const INTERVALS: usize = 10;
 /// Relative width of the bracket at which the search ends.
 const TOLERANCE: f64 = 1e-6;
-
-/// Growth of the dominant mode at one wind speed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GrowthPoint {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Real part of the eigenvalue, 1/s; negative when it decays.
-    pub growth_rate_per_s: f64,
-    /// Imaginary part, rad/s; 0 when it does not oscillate.
-    pub frequency_rad_s: f64,
-    /// Complex amplitudes of the displacements, one for each motion.
-    pub shape: Vec<Complex<f64>>,
-}
-
-impl GrowthPoint {
-    /// Its frequency, Hz.
-    pub fn frequency_hz(&self) -> f64 {
-        self.frequency_rad_s / TAU
-    }
-}
 
 /// An onset found by stepping.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,6 +5,7 @@
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
 //! taken them. Outputs are computed once per step when first asked for.
 
+mod access;
 mod bridge_built;
 mod bridge_onset;
 mod bridge_unit;

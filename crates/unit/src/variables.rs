@@ -15,6 +15,7 @@ mod force;
 mod listing;
 mod parameters;
 mod real;
+mod response;
 mod section;
 #[cfg(test)]
 mod tests;
@@ -27,9 +28,8 @@ pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
 pub use listing::Listing;
 pub use parameters::SectionParameter;
-pub use variable::{
-    Dependency, DependencyKind, Response, Role, StartValue, StripParameter, Variable,
-};
+pub use response::Response;
+pub use variable::{Dependency, DependencyKind, Role, StartValue, StripParameter, Variable};
 
 use super::bridge_options::BridgeOptions;
 use super::force_options::ForceOptions;

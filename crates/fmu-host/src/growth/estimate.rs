@@ -7,7 +7,6 @@
 //! eigenvalues `μ` with energy at the end the largest counts: growth rate `ln|μ|/T`. Its frequency is known up to multiples of `2π/T` from `arg μ`, and the multiple from the
 //! eigenvector, in which rate and displacement stand in the ratio `λ`.
 
-use super::GrowthPoint;
 use crate::error::{Error, Result};
 use crate::state_space::{eigenvalues, eigenvector};
 use nalgebra::{Complex, DMatrix, DVector, SVD};
@@ -20,6 +19,26 @@ const LAG_PERIODS: f64 = 2.0;
 /// An eigenvalue counts if at the end its part of the motion is at least this part of the largest: above what the filters
 /// and rounding leave.
 const HEARD: f64 = 1e-4;
+
+/// Growth of the dominant mode at one wind speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrowthPoint {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Real part of the eigenvalue, 1/s; negative when it decays.
+    pub growth_rate_per_s: f64,
+    /// Imaginary part, rad/s; 0 when it does not oscillate.
+    pub frequency_rad_s: f64,
+    /// Complex amplitudes of the displacements, one for each motion.
+    pub shape: Vec<Complex<f64>>,
+}
+
+impl GrowthPoint {
+    /// Its frequency, Hz.
+    pub fn frequency_hz(&self) -> f64 {
+        self.frequency_rad_s / TAU
+    }
+}
 
 /// Period in s from the size of rates against displacements, by the slowest motion.
 pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! What a number that follows from parameters, wind and motion is made of.
 
 use super::dual::Dual;
-use super::variable::Response;
+use super::response::Response;
 use crate::section::Dof;
 use crate::si::SiUnit;
 use crate::standard::Causality;
