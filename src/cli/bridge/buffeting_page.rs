@@ -25,7 +25,7 @@ pub(super) fn page(
 ) -> Result<SectionsPage> {
     let speeds = all.iter().map(|b| b.frequency.speed_m_s.to_string());
     let speeds = speeds.collect::<Vec<_>>().join(", ");
-    let answer = vec![format!("Response to turbulence at {speeds} m/s")];
+    let answer = [format!("Response to turbulence at {speeds} m/s")];
     let sections = all.iter().map(section);
     Ok(SectionsPage {
         title: study.file.name.clone(),
