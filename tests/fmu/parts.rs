@@ -4,6 +4,7 @@ use crate::bridges::{DECKS, THREE, TWO, langenuen, langenuen_text, lively, read}
 use crate::patchwork::patchwork;
 use aerodeck::aerodynamics::{RationalAdmittance, Transfer};
 use aerodeck::bridge::BridgeMode;
+use aerodeck::fmu::bridge_gusts::BridgeGusts;
 use aerodeck::fmu::description_fmi3;
 use aerodeck::fmu::force_options::StripsOfModel;
 use aerodeck::fmu::importer::{Fmu, Slave, Value, replay};
@@ -318,12 +319,14 @@ fn arrays_of_some_nodes_are_named() {
 /// Gusts belong to the forces.
 #[test]
 fn what_a_structure_does_not_have_is_refused() {
-    let wanted = BridgeExportOptions {
-        gust_strips: Some(3),
-        ..BridgeExportOptions::default()
-    };
     let study = langenuen("LN21-5200", TWO);
-    let (model, whole) = study.export(&wanted).unwrap();
+    let (model, mut whole) = study.export(&BridgeExportOptions::default()).unwrap();
+    whole.bridge.as_mut().unwrap().gusts = Some(BridgeGusts {
+        coefficients: Vec::new(),
+        admittance: RationalAdmittance::None,
+        strips: Vec::new(),
+        source: String::new(),
+    });
     let refused = study.structure(model, whole, true).unwrap_err();
     assert!(
         refused.to_string().contains("not to the structure"),
